@@ -4,12 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from faultpath.decisions.map.asked import MapQuestion
 from faultpath.decisions.map.decide import decided
-from faultpath.decisions.map.grow import next_points
 from faultpath.decisions.map.lattice import COARSE, UNITS, Point, lattice
-from faultpath.decisions.map.model import MapRecord
-from faultpath.decisions.map.surface import Differences
+from faultpath.decisions.map.model import MapQuestion, MapRecord
+from faultpath.decisions.map.surface import Differences, next_points
 
 MODULES = ("observer", "predictor")
 Seen = Callable[[float, float], tuple[np.ndarray, np.ndarray]]

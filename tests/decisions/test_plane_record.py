@@ -9,10 +9,10 @@ from plane_toys import alike, grown, question, record, reversal
 
 from faultpath.decisions import RunProvenance
 from faultpath.decisions.map.decide import decided
-from faultpath.decisions.map.joint import Errors, Expected
-from faultpath.decisions.map.lattice import SHOWN, UNITS, lattice
+from faultpath.decisions.map.joint import Errors, lattice_weights
+from faultpath.decisions.map.lattice import SHOWN, UNITS, lattice, surface_weights
 from faultpath.decisions.map.model import MapRecord
-from faultpath.decisions.map.surface import Differences
+from faultpath.decisions.map.surface import Combined, Differences
 from faultpath.report.map import tables
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
@@ -23,7 +23,7 @@ DECIDES = re.compile(r"(new|old) (is|does|is expected)")
 @pytest.mark.parametrize("correlation", [-1.0, -0.4, 0.0, 0.6, 1.0])
 def test_the_expectation_of_a_bilinear_surface_is_that_of_its_moments(correlation: float) -> None:
     errors = Errors((0.1, -0.2), (0.15, 0.1))
-    weights = errors.weights(correlation)
+    weights = lattice_weights(errors, correlation)
     assert weights.sum() == pytest.approx(1)
     assert weights @ X == pytest.approx(0.1, abs=1e-6)
     assert weights @ Y == pytest.approx(-0.2, abs=1e-6)
@@ -35,8 +35,10 @@ def test_exchanging_the_modules_exchanges_the_errors() -> None:
     one, two = Errors((0.1, -0.2), (0.3, 0.2)), Errors((-0.2, 0.1), (0.2, 0.3))
     side = 2 * UNITS // SHOWN + 1
     for correlation in (-0.7, 0.3, 1.0):
-        turned = two.weights(correlation).reshape(side, side).T
-        np.testing.assert_allclose(one.weights(correlation).reshape(side, side), turned, atol=1e-12)
+        turned = lattice_weights(two, correlation).reshape(side, side).T
+        np.testing.assert_allclose(
+            lattice_weights(one, correlation).reshape(side, side), turned, atol=1e-12
+        )
 
 
 def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
@@ -46,8 +48,9 @@ def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
     ((low, high),) = made.joint.undecided
     assert -1 < low < estimate < high < 1
     assert [region.sign for region in made.joint.regions] == [1, -1]
-    expected = Expected.over(Errors((0.0, 0.0), (0.4, 0.4)), found, "carts-1")
-    assert expected.at([estimate]).means[0] == pytest.approx(0, abs=0.1)
+    weights = lattice_weights(Errors((0.0, 0.0), (0.4, 0.4)), estimate)
+    expected = Combined.of((weights @ surface_weights(found.points))[np.newaxis], found)
+    assert expected.means[0] == pytest.approx(0, abs=0.1)
     assert "new does better with an error correlation up to" in made.headline
     assert "; old from" in made.headline
     assert len(made.headline.split()) <= 20

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from plane_toys import MODULES, differences, grown, reversal
 
-from faultpath.decisions.map.grow import first_turn
 from faultpath.decisions.map.lattice import (
     COARSE,
     SHOWN,
@@ -12,6 +11,7 @@ from faultpath.decisions.map.lattice import (
     along,
     corners,
     cut,
+    first_turn,
     lattice,
     rays,
     sizes,

@@ -46,7 +46,7 @@ def test_each_path_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
 
 def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> None:
     said = screen(one_seed)
-    open_ = said[: said.index("Every sentence of the record")]
+    open_ = said[: said.index("What would change this")]
     for effect in one_seed.record.effects:
         low, high = effect.success.low or 0.0, effect.success.high or 0.0
         shown = f"[{low:.1f}, {high:.1f}]".replace("-", "−")

@@ -8,10 +8,10 @@ from faultpath.api.run import MAP_MADE_FROM
 from faultpath.api.saved import MAP
 from faultpath.decisions import RunProvenance
 from faultpath.decisions.map.decide import conclude
-from faultpath.decisions.map.grow import next_points
 from faultpath.decisions.map.lattice import COARSE, lattice
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.study import MapPlan
+from faultpath.decisions.map.surface import next_points
 from faultpath.trials.store import write_text
 from faultpath.trials.work import Progress
 

@@ -8,9 +8,8 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from faultpath.decisions import RunProvenance, wording
-from faultpath.decisions.map.asked import MapQuestion
 from faultpath.decisions.map.lattice import SHARED
-from faultpath.decisions.map.model import Flip, MapPoint, MapRecord
+from faultpath.decisions.map.model import Flip, MapPoint, MapQuestion, MapRecord
 from faultpath.decisions.map.words import cut
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.html import html

@@ -8,14 +8,14 @@ correlations together, so that whatever is said of any of them holds at once.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from functools import cache, lru_cache
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faultpath.decisions.map.lattice import SHOWN, UNITS, surface_weights
-from faultpath.decisions.map.surface import Combined, Differences, simultaneous
+from faultpath.decisions.map.model import CorrelationRegion, Expectation, JointErrors, MapQuestion
+from faultpath.decisions.map.surface import Combined, Differences, sign_of, simultaneous
 from faultpath.statistics.breakeven import pieces_of
 from faultpath.statistics.distributions import normal_quantile
 from faultpath.statistics.inputs import Floats
@@ -23,6 +23,7 @@ from faultpath.statistics.inputs import Floats
 _NODES = 96
 """Equally likely values of each of two independent errors, from which the joint ones are made."""
 _GRID = np.linspace(-1.0, 1.0, 81)
+_CURVE: list[float] = np.linspace(-1.0, 1.0, 41).tolist()
 
 
 @cache
@@ -33,8 +34,7 @@ def _independent() -> tuple[Floats, Floats]:
     return np.tile(one, _NODES), np.repeat(one, _NODES)
 
 
-@dataclass(frozen=True)
-class Errors:
+class Errors(NamedTuple):
     """A Gaussian joint distribution of the two errors, but for its correlation.
 
     `means` and `spreads` (standard deviations) are in units of the largest error of the map.
@@ -60,17 +60,14 @@ class Errors:
         x, y = self.draw(correlation)
         return float((np.maximum(np.abs(x), np.abs(y)) > 1.0).mean())
 
-    def weights(self, correlation: float) -> Floats:
-        """Return `[lattice]` how the expectation follows from the surface on its lattice.
-
-        Between the places of the lattice the surface is bilinear; an error beyond the map counts
-        as one at its edge.
-        """
-        return _weights(self, correlation)
-
 
 @lru_cache(maxsize=512)
-def _weights(errors: Errors, correlation: float) -> Floats:
+def lattice_weights(errors: Errors, correlation: float) -> Floats:
+    """Return `[lattice]` how the expectation follows from the surface on its lattice.
+
+    Between the places of the lattice the surface is bilinear; an error beyond the map counts as one
+    at its edge.
+    """
     steps = 2 * UNITS // SHOWN
     drawn = errors.draw(correlation)
     x, y = ((np.clip(e, -1.0, 1.0) + 1.0) * steps / 2.0 for e in drawn)
@@ -85,41 +82,53 @@ def _weights(errors: Errors, correlation: float) -> Floats:
     return found
 
 
-@dataclass(frozen=True, eq=False)
-class Expected:
-    """What is known of the expected difference over all correlations."""
+def joint(question: MapQuestion, found: Differences) -> JointErrors:
+    """Return the expected difference over all correlations, and where it is decided."""
+    (m1, m2), (s1, s2), largest = question.means, question.spreads, question.up_to
+    errors = Errors((m1 / largest, m2 / largest), (s1 / largest, s2 / largest))
+    surface = surface_weights(found.points)
 
-    errors: Errors
-    found: Differences
-    label: str
-    surface: Floats = field(repr=False)
-    z: float
+    def weights(correlations: Sequence[float]) -> Floats:
+        return np.stack([lattice_weights(errors, r) for r in correlations]) @ surface
 
-    @classmethod
-    def over(cls, errors: Errors, found: Differences, label: str) -> "Expected":
-        """Return it for the errors of a user and the points of a map."""
-        surface = surface_weights(found.points)
-        every = np.stack([errors.weights(r) for r in _GRID.tolist()]) @ surface
-        return cls(errors, found, label, surface, simultaneous(every, found, label))
+    z = simultaneous(weights(_GRID.tolist()), found, question.library_hash)
 
-    def at(self, correlations: Sequence[float]) -> Combined:
-        """Return the expected differences at correlations."""
-        weights = np.stack([self.errors.weights(r) for r in correlations])
-        return Combined.of(weights @ self.surface, self.found)
+    def at(correlations: Sequence[float]) -> Combined:
+        return Combined.of(weights(correlations), found)
 
-    def undecided(self, correlations: Floats) -> NDArray[np.bool_]:
-        """Return `[correlations]` whether the difference at each is not told from 0."""
-        return self.at(correlations.tolist()).signs(self.z, tested=False) == 0
+    def expected(correlations: Sequence[float]) -> tuple[Expectation, ...]:
+        every = at(correlations)
+        columns = (every.means, *every.ends(z), every.signs(z, tested=False))
+        return tuple(
+            Expectation(
+                correlation=r, value=float(value), low=float(a), high=float(b), sign=sign_of(sign)
+            )
+            for r, value, a, b, sign in zip(correlations, *columns, strict=True)
+        )
 
-    def pieces(self) -> tuple[tuple[float, float], ...]:
-        """Return the correlations at which nobody is decided to be ahead, as intervals."""
-        return pieces_of(self.undecided, _GRID)
+    pieces = pieces_of(lambda r: at(r.tolist()).signs(z, tested=False) == 0, _GRID)
+    edges = [-1.0, *(edge for piece in pieces for edge in piece), 1.0]
+    spans = [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
+    means: list[float] = at([0.5 * (a + b) for a, b in spans]).means.tolist() if spans else []
+    wanted = {0.0, 1.0} if question.correlation is None else {0.0, 1.0, question.correlation}
+    return JointErrors(
+        curve=expected(_CURVE),
+        asked=expected(sorted(wanted)),
+        estimates=_crossings(at(_GRID.tolist()).means),
+        undecided=pieces,
+        regions=tuple(
+            CorrelationRegion(low=low, high=high, sign=sign_of(mean))
+            for (low, high), mean in zip(spans, means, strict=True)
+        ),
+        outside=max(map(errors.outside, _CURVE)),
+        critical=z,
+    )
 
-    def crossings(self) -> tuple[float, ...]:
-        """Return where the estimate changes its sign, between the correlations looked at."""
-        means = self.at(_GRID.tolist()).means
-        change = np.flatnonzero(means[:-1] * means[1:] < 0.0)
-        exact = _GRID[1:-1][(means[1:-1] == 0.0) & (means[:-2] * means[2:] < 0.0)]
-        share = means[change] / (means[change] - means[change + 1])
-        between = _GRID[change] + share * (_GRID[change + 1] - _GRID[change])
-        return tuple(sorted([*between.tolist(), *exact.tolist()]))
+
+def _crossings(means: Floats) -> tuple[float, ...]:
+    """Return where the estimate changes its sign, between the correlations looked at."""
+    change = np.flatnonzero(means[:-1] * means[1:] < 0.0)
+    exact = _GRID[1:-1][(means[1:-1] == 0.0) & (means[:-2] * means[2:] < 0.0)]
+    share = means[change] / (means[change] - means[change + 1])
+    between = _GRID[change] + share * (_GRID[change + 1] - _GRID[change])
+    return tuple(sorted([*between.tolist(), *exact.tolist()]))

@@ -6,7 +6,7 @@ A point is a pair of whole numbers: the error at the first and at the second mod
 
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
-from itertools import product
+from itertools import pairwise, product
 from typing import TypeAlias
 
 import numpy as np
@@ -65,19 +65,27 @@ def sizes(direction: Point, points: Iterable[Point]) -> tuple[int, ...]:
     return tuple(size for size in range(UNITS + 1) if along(direction, size) in known)
 
 
-def surface_weights(points: Sequence[Point], spacing: int = SHOWN) -> Floats:
-    """Return `[lattice(spacing), points]`: how the surface follows from the points.
+def first_turn(known: Sequence[int], means: Sequence[float]) -> tuple[int, int] | None:
+    """Return the sizes between which the sign first differs from that at size 0; a tie does not."""
+    for (low, _), (high, mean) in pairwise(zip(known, means, strict=True)):
+        if means[0] * mean < 0.0:
+            return low, high
+    return None
+
+
+def surface_weights(points: Sequence[Point]) -> Floats:
+    """Return `[lattice(SHOWN), points]`: how the surface follows from the points.
 
     At a point it is what was measured there. Elsewhere it is halved down from the coarse lattice:
     the middle of an edge is the mean of the edge's ends, the middle of a cell the mean of the
     middles of its edges. So it is continuous, its weights are not negative and add up to 1, and
     without finer points it is bilinear in each cell.
     """
-    return _surface_weights(tuple(points), spacing)
+    return _surface_weights(tuple(points))
 
 
 @lru_cache(maxsize=4)
-def _surface_weights(points: tuple[Point, ...], spacing: int) -> Floats:
+def _surface_weights(points: tuple[Point, ...]) -> Floats:
     own = dict(zip(points, np.eye(len(points)), strict=True))
     rows = {place: own[place] for place in lattice(COARSE)}
 
@@ -86,7 +94,7 @@ def _surface_weights(points: tuple[Point, ...], spacing: int) -> Floats:
         rows[place] = own[place] if place in own else np.mean(inside, axis=0)
 
     step = COARSE // 2
-    while step >= spacing:
+    while step >= SHOWN:
         new = [place for place in lattice(step) if place not in rows]
         middles = [(x, y) for x, y in new if (x // step) % 2 and (y // step) % 2]
         for x, y in set(new).difference(middles):
@@ -95,6 +103,6 @@ def _surface_weights(points: tuple[Point, ...], spacing: int) -> Floats:
         for x, y in middles:
             take((x, y), [(x - step, y), (x + step, y), (x, y - step), (x, y + step)])
         step //= 2
-    weights = np.stack([rows[place] for place in lattice(spacing)])
+    weights = np.stack([rows[place] for place in lattice(SHOWN)])
     weights.setflags(write=False)  # shared by all who ask
     return weights

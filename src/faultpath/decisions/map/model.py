@@ -1,14 +1,56 @@
-"""The record of a map: what was flown, what is decided, and how it is said."""
+"""The question and the record of a map: what was run, what is decided, and how it is said."""
 
 from pydantic import Field
 
+from faultpath.core.frozen import Frozen
 from faultpath.core.results import Result
-from faultpath.decisions.map.asked import MapQuestion
+from faultpath.decisions.wording import MINUS
 from faultpath.statistics import Sign
 
 
+class MapQuestion(Frozen, allow_inf_nan=False):
+    """The question of a map, as its record keeps it."""
+
+    system: str
+    options: dict[str, str]
+    baseline: str
+    repair: str
+    fault: str
+    """Without a size: `gain`, `gain:offset`, `calibration`."""
+    against: tuple[str, str]
+    """The modules at which the error acts: across and upward in the picture."""
+    others: tuple[str, ...] = ()
+    """Readers of the same source that get it without error."""
+    up_to: float = Field(gt=0)
+    """The largest error, of either sign."""
+    relative: bool
+    """Whether errors are fractions of the reading; else they are in `unit`."""
+    unit: str
+    means: tuple[float, float]
+    spreads: tuple[float, float]
+    """Standard deviations of the joint distribution."""
+    correlation: float | None = Field(default=None, ge=-1, le=1)
+    points: int
+    """As many are run before those that bisect."""
+    library: str
+    library_hash: str
+    n_scenes: int
+    seeds: tuple[int, ...]
+    trained: bool = False
+
+    def said(self, size: float) -> str:
+        """Return a size in words: `+20 %`, or `+0.2 m`."""
+        if self.relative:
+            return f"{100 * size:+.3g} %".replace("-", MINUS) if size else "0 %"
+        return f"{size:+.3g} {self.unit}".replace("-", MINUS).removesuffix(" 1")
+
+    def winner(self, sign: int) -> str:
+        """Return the arm of a decided side."""
+        return self.repair if sign > 0 else self.baseline
+
+
 class MapPoint(Result, allow_inf_nan=False):
-    """A pair of errors that was flown; differences are repair minus baseline, pp."""
+    """A pair of errors that was run; differences are repair minus baseline, pp."""
 
     errors: tuple[float, float]
     baseline_percent: float
@@ -34,7 +76,7 @@ class MapSurface(Result, allow_inf_nan=False):
 
 
 class Flip(Result, allow_inf_nan=False):
-    """On one path, in one direction of the error: how large an error changes the verdict."""
+    """On one path, in one direction of the error: how large an error reverses the ranking."""
 
     path: str
     """A module, or `shared`."""
@@ -44,7 +86,7 @@ class Flip(Result, allow_inf_nan=False):
     turned: Sign
     """What is decided between `first` and `last`: the other side, or either where `start` is 0."""
     until: float | None
-    """Largest error up to which the verdict under correct inputs stays decided."""
+    """Largest error up to which what is decided under correct inputs stays decided."""
     estimate: float | None
     """Smallest error at which the estimate has the other sign than under correct inputs."""
     first: float | None

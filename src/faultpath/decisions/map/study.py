@@ -1,18 +1,20 @@
-"""The trials of a map: at each point two errors at two modules of one source."""
+"""What a map asks, and its trials: at each point two errors at two modules of one source."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from faultpath.core.errors import UserError
 from faultpath.decisions import CORRECT
 from faultpath.decisions.compared import Compared, compared
-from faultpath.decisions.map.asked import MapQuestion, SizedFault, check_up_to, places, sized_fault
 from faultpath.decisions.map.lattice import COARSE, UNITS, Point, lattice
+from faultpath.decisions.map.model import MapQuestion
 from faultpath.decisions.map.surface import Differences
 from faultpath.decisions.planning import scenes_of, two_variants
-from faultpath.faults import Fault
+from faultpath.faults import AnyFault, Fault, FaultText
+from faultpath.interface import module_of
 from faultpath.trials import (
     Arm,
     Library,
@@ -25,8 +27,6 @@ from faultpath.trials import (
 )
 from faultpath.trials import question as asking
 
-COARSE_POINTS = len(lattice(COARSE))
-
 _MOST_POINTS = 10_000
 """A hundred errors of each module."""
 
@@ -38,7 +38,6 @@ class MapPlan:
     question: MapQuestion
     system: System
     spec: SystemSpec
-    fault: SizedFault = field(repr=False)
     scenes: tuple[str, ...] = field(repr=False)
 
     @property
@@ -56,7 +55,7 @@ class MapPlan:
         return ",".join(f"{self.size(each):+.6g}" for each in point) if any(point) else CORRECT
 
     def study(self, points: Sequence[Point]) -> Study:
-        """Return the study of all points. Arms that a fault cannot reach are flown once."""
+        """Return the study of all points. Arms that a fault cannot reach run once."""
         variants = [self.system.variants[n] for n in (self.question.baseline, self.question.repair)]
         rows = tuple(
             Row(
@@ -87,7 +86,7 @@ class MapPlan:
         return tuple(
             part
             for units, modules in by_size.items()
-            for part in self.fault.at(self.size(units))
+            for part in _sized(self.system, self.question.fault, self.size(units))
             .striking(*modules)
             .resolved(self.system.interface, variant.consumers)
         )
@@ -118,18 +117,33 @@ def plan_map(
 ) -> MapPlan:
     """Lay out a map. `UserError` for anything that cannot be run or means nothing."""
     variants = two_variants(system, asked)
-    sized = sized_fault(system, asked.fault)
-    largest = check_up_to(sized, asked.up_to)
-    for end in (-largest, largest):
-        sized.at(end)
-    modules, others = places(system.interface, sized.at(largest), asked.against, variants)
-    if not COARSE_POINTS <= asked.points <= _MOST_POINTS:
+    kind = _kind(system, asked.fault)
+    relative = kind != "offset"
+    interface = system.interface
+    parts = _sized(system, asked.fault, 0.1 if relative else 1.0).resolved(interface)
+    sources = [interface.source(interface.channel(part.channel).sources[0]) for part in parts]
+    unsure = [
+        s.uncertainty for s in sources if s.uncertainty and s.uncertainty.relative is relative
+    ]
+    expected = max((each.expected_std for each in unsure), default=None)
+    largest = _largest(asked.up_to, expected, relative)
+    faults = [_sized(system, asked.fault, end) for end in (-largest, largest)]
+    modules, others = _places(system, faults[1], asked.against, variants)
+    least = len(lattice(COARSE))
+    if not least <= asked.points <= _MOST_POINTS:
         raise UserError(
-            f"--points {asked.points}: a map begins with {COARSE_POINTS} and takes at most "
+            f"--points {asked.points}: a map begins with {least} and takes at most "
             f"{_MOST_POINTS}, give a number between them."
         )
     chosen = scenes_of(library, asked.scenes)
-    middle, spread = _distribution(asked.mean, asked.spread, asked.correlation, largest, sized)
+    spread = _two("--spread", asked.spread or (expected or largest / 2.0,))
+    if min(spread) <= 0.0:
+        raise UserError("--spread: a standard deviation is above 0.")
+    middle = _two("--mean", asked.mean)
+    if max(map(abs, middle)) > largest:
+        raise UserError(f"--mean lies beyond the map, which ends at {largest:g}: see --up-to.")
+    if asked.correlation is not None and not -1.0 <= asked.correlation <= 1.0:
+        raise UserError(f"--correlation {asked.correlation:g} does not lie between -1 and 1.")
     question = MapQuestion(
         system=spec.name,
         options=spec.options,
@@ -139,8 +153,8 @@ def plan_map(
         against=modules,
         others=others,
         up_to=largest,
-        relative=sized.relative,
-        unit=sized.unit,
+        relative=relative,
+        unit=sources[0].unit,
         means=middle,
         spreads=spread,
         correlation=asked.correlation,
@@ -151,30 +165,86 @@ def plan_map(
         seeds=asked.seeds,
         trained=system.trained,
     )
-    return MapPlan(question, system, spec, sized, chosen)
+    return MapPlan(question, system, spec, chosen)
 
 
-def _distribution(
-    means: Sequence[float],
-    spreads: Sequence[float],
-    correlation: float | None,
-    largest: float,
-    fault: SizedFault,
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    given = spreads or (fault.expected or largest / 2.0,)
-    spread = _two("--spread", given)
-    if min(spread) <= 0.0:
-        raise UserError("--spread: a standard deviation is above 0.")
-    middle = _two("--mean", means)
-    if max(map(abs, middle)) > largest:
-        raise UserError(f"--mean lies beyond the map, which ends at {largest:g}: see --up-to.")
-    if correlation is not None and not -1.0 <= correlation <= 1.0:
-        raise UserError(f"--correlation {correlation:g} does not lie between -1 and 1.")
-    return middle, spread
+def _kind(system: System, text: str) -> str | None:
+    """Return the kind of a fault without its size: `scale`, `offset`, or none as in a preset."""
+    asked = FaultText.read(text)
+    if asked.sizes:
+        raise UserError(
+            f"fault '{text}': the map sets the size itself; leave '={asked.sizes[0]}' out and give "
+            "the largest one with --up-to."
+        )
+    if asked.consumers:
+        raise UserError(f"fault '{text}': name the modules with --against, without '@'.")
+    preset = asked.kind is None and asked.name in system.fault_presets
+    if not preset and asked.kind not in (None, "scale", "offset"):
+        raise UserError(
+            f"fault '{text}': a map needs errors of both signs; use {asked.name}:scale (relative, "
+            f"the default) or {asked.name}:offset, not '{asked.kind}'."
+        )
+    return asked.kind
+
+
+def _sized(system: System, text: str, size: float) -> AnyFault:
+    """Return a fault of a size at every reader; `UserError` where it takes no such size."""
+    asked = FaultText.read(text)
+    if asked.kind is None and asked.name not in system.fault_presets:
+        asked = replace(asked, kind="scale")
+    return system.fault(str(asked.at(f"{1.0 + size if asked.kind == 'scale' else size:.12g}")))
+
+
+def _largest(up_to: float | None, expected: float | None, relative: bool) -> float:
+    """Return the largest error, by default three declared spreads."""
+    if up_to is None:
+        if expected is None:
+            raise UserError(
+                "the interface declares no uncertainty of that source: say how large errors may "
+                "be, for example --up-to 0.2 for 20 % to either side."
+            )
+        return float(f"{3.0 * expected:.2g}")
+    if not 0.0 < up_to < math.inf:
+        raise UserError(f"--up-to {up_to:g} is no size: give a number above 0.")
+    if relative and up_to >= 1.0:
+        raise UserError(
+            f"--up-to {up_to:g} would take all of the reading away: errors are fractions of it, so "
+            "give less than 1."
+        )
+    return up_to
+
+
+def _places(
+    system: System, fault: AnyFault, against: tuple[str, ...], variants: Sequence[Variant]
+) -> tuple[tuple[str, str], tuple[str, ...]]:
+    """Return the two modules, and the other readers of what the fault acts on."""
+    if len(against) != 2 or len(set(against)) < 2 or not all(against):
+        raise UserError(
+            "--against needs two modules that read the faulty source, as in "
+            "--against reconstruction,predictor."
+        )
+    present = frozenset[str]().union(*(variant.consumers for variant in variants))
+
+    def readers(of: AnyFault) -> set[str]:
+        parts = of.resolved(system.interface, present)
+        return {consumer for part in parts for consumer in part.consumers}
+
+    reached = [readers(fault.striking(name)) for name in against]
+    for name, found in zip(against, reached, strict=True):
+        if not found:
+            both = " nor ".join(f"'{variant.name}'" for variant in variants)
+            raise UserError(
+                f"--against: neither {both} has '{name}' read what the fault ({fault.describe()}) "
+                "acts on: name another module."
+            )
+    if both := reached[0] & reached[1]:
+        raise UserError(f"--against: both names hold {min(both)}: name two that share no place.")
+    others = sorted({module_of(c) for c in readers(fault) - reached[0] - reached[1]})
+    return (against[0], against[1]), tuple(others)
 
 
 def _two(option: str, values: Sequence[float]) -> tuple[float, float]:
-    if len(values) not in (1, 2) or any(value - value != 0.0 for value in values):
+    if len(values) not in (1, 2) or not all(map(math.isfinite, values)):
         raise UserError(
             f"{option} needs one finite number, or one for each module: 0.1 or 0.1,0.2."
         )

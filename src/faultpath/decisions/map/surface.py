@@ -1,16 +1,29 @@
-"""What is decided on the map: paired differences of scenes, combined, with one critical value.
+"""What is decided on the map, with one critical value, and which points come next.
 
 Everything looked at is a weighted sum of the differences that scenes show at the sampled points, so
 scenes stay the sample and all points of the map depend on each other as they do.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.decisions.map.lattice import Point
+from faultpath.decisions.map.lattice import (
+    COARSE,
+    FINE,
+    Point,
+    along,
+    corners,
+    cut,
+    first_turn,
+    lattice,
+    rays,
+    sizes,
+)
+from faultpath.statistics import Sign
 from faultpath.statistics.contrast import MIN_SCENES, ROUNDING
 from faultpath.statistics.distributions import binomial_cdf, normal_p_value
 from faultpath.statistics.inputs import Floats
@@ -21,6 +34,11 @@ Signs = NDArray[np.int64]
 RESAMPLES = 2000
 _DIGITS = 9
 """Of a combined value, so that values which cancel leave exactly 0."""
+
+
+def sign_of(value: float) -> Sign:
+    """Return 1, -1 or 0."""
+    return 1 if value > 0 else -1 if value < 0 else 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,12 +98,11 @@ class Combined:
             return np.zeros(len(self.values), dtype=np.int64)
         beyond = rejects(self.values, np.ones_like(self.values), 0.0, self.far, z)
         signs = np.sign(self.means).astype(np.int64) * beyond
-        return signs * (self._tested(z) == signs) if tested else signs
-
-    def _tested(self, z: float) -> Signs:
+        if not tested:
+            return signs
         first, second = (self.values > 0).sum(axis=1), (self.values < 0).sum(axis=1)
         p = 2.0 * binomial_cdf(np.minimum(first, second), first + second, 0.5)
-        return np.sign(first - second) * (p <= normal_p_value(z))
+        return signs * (np.sign(first - second) * (p <= normal_p_value(z)) == signs)
 
 
 def simultaneous(weights: Floats, found: Differences, label: str) -> float:
@@ -113,3 +130,40 @@ def simultaneous(weights: Floats, found: Differences, label: str) -> float:
 @lru_cache(maxsize=4)
 def _resamples(label: str, scenes: int) -> Resamples:
     return Resamples.draw(f"map/{label}", scenes, n_resamples=RESAMPLES)
+
+
+def next_points(
+    found: Differences, modules: Sequence[str], limit: int, label: str
+) -> tuple[Point, ...]:
+    """Return the points to add, none when the map is done: same data, same points.
+
+    First cells are cut in which the sign is not decided, the largest cells first, until there are
+    `limit` points or cells of the least size. Then, on each path of the fault, the first change of
+    the estimate's sign is bisected down to one unit.
+    """
+    every = np.eye(len(found.points))
+    decided = Combined.of(every, found).signs(simultaneous(every, found, label))
+    signs = dict(zip(found.points, decided.tolist(), strict=True))
+    means = dict(zip(found.points, found.values.mean(axis=1).tolist(), strict=True))
+
+    def urgency(cell: Point) -> tuple[bool, float, Point]:
+        values = [means[each] for each in corners(cell, spacing)]
+        return min(values) * max(values) >= 0.0, abs(sum(values)), cell
+
+    spacing, new = COARSE, dict[Point, None]()
+    while spacing > FINE and not new:
+        whole = [c for c in lattice(spacing) if all(e in signs for e in corners(c, spacing))]
+        cells = [c for c in whole if {signs[e] for e in corners(c, spacing)} not in ({1}, {-1})]
+        for cell in sorted(cells, key=urgency):
+            added = [point for point in cut(cell, spacing) if point not in signs]
+            if len(signs) + len({*new, *added}) <= limit:
+                new.update(dict.fromkeys(added))
+        spacing //= 2
+    if new:
+        return tuple(sorted(new))
+    for direction in rays(modules).values():
+        known = sizes(direction, found.points)
+        turn = first_turn(known, [found.mean(along(direction, size)) for size in known])
+        if turn is not None and turn[1] - turn[0] > 1:
+            new[along(direction, sum(turn) // 2)] = None
+    return tuple(new)
