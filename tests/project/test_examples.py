@@ -11,7 +11,7 @@ QUICK = {
 }
 """Arguments of examples that would take their time without."""
 ROOT = Path(__file__).resolve().parents[2]
-ELSEWHERE = {"learned_pendulum.py": "tests/repairs/test_learned_pendulum.py"}
+ELSEWHERE = {"learned_pendulum.py": "tests/learning/test_learned_pendulum.py"}
 """Examples that a test of their own runs from an empty directory, where it goes on with them."""
 EXAMPLES = sorted({*(ROOT / "examples").glob("*.py")} - {ROOT / "examples" / e for e in ELSEWHERE})
 

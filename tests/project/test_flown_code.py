@@ -27,7 +27,7 @@ def made(flown_code) -> RunProvenance:
     stored = ROOT / "docs" / "reference" / "toy" / "provenance.json"
     here = flown_code._state(TOY, ())
     assert "toy.py" in here.files
-    assert any(name.startswith("faultpath/taps") for name in here.files)
+    assert any(name.startswith("faultpath/loop/taps") for name in here.files)
     return RunProvenance.model_validate_json(stored.read_bytes()).model_copy(
         update={
             "commit": "0123456789abcdef",

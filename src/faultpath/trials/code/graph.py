@@ -17,7 +17,6 @@ from weakref import WeakKeyDictionary
 
 from faultpath.core.error_source import ours
 
-_OURS = "faultpath"
 _BY_NAME = frozenset({"import_module", "__import__"})
 _BY_PATH = frozenset({"spec_from_file_location", "SourceFileLoader", "exec_module"}) | frozenset(
     {"run_path", "run_module", "walk_packages", "iter_modules"}
@@ -91,7 +90,7 @@ class Graph:
         """Take in the packages that a module lies in, as an import does, and the module."""
         parts = name.split(".")
         for each in (".".join(parts[:end]) for end in range(1, len(parts) + 1)):
-            if each in self.seen or each == _OURS:  # its front door decides no result
+            if each in self.seen or (ours(each) and "." not in each):  # front doors decide nothing
                 continue
             self.seen.add(each)
             spec = locate(each)
