@@ -100,13 +100,10 @@ def test_a_folder_opens_again(run):
         faultpath.open_run("nowhere")
 
 
-def test_a_notebook_shows_verdict_effects_and_table(run):
-    shown = run._repr_html_()
+def test_a_notebook_shows_verdict_and_table(run):
+    shown = run._repr_markdown_()
     assert run.record.verdict.headline.partition(" ")[0] in shown
-    assert "<svg" in shown
     assert "Won:lost" in shown
-    assert "<script" not in shown
-    assert ":root" not in shown  # its colours are not those of the notebook
 
 
 def test_name_file_path_and_object_fly_the_same(run, toy):

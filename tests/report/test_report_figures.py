@@ -11,18 +11,8 @@ from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import pair_grid, pair_key, read_pairs
 from faultpath.report.svg import Axis, Svg, covering, number, shortened, text_width, wrapped
-from faultpath.report.taps import fork_panels, forks, tap_table
+from faultpath.report.taps import fork_panels, forks
 from faultpath.statistics import BreakEven, Region
-
-
-def test_taps_are_marked_by_receipts_in_the_arm_that_has_them(one_seed: ReportInput) -> None:
-    rows = {line.label: [e.text for e in line.entries] for line in tap_table(one_seed).lines}
-    head = "faulted: Reconstruction only, Shared fault"
-    assert rows["reconstruction.head"] == [head, head]
-    # The wind map also reads the wind, which the fault on the calibration leaves alone.
-    assert rows["predictor.wind_map"][0] in ("correct", "faulted: Predictor only, Shared fault")
-    assert any(label.startswith("mass, fed by mass_estimate") for label in rows)
-    assert not any(label.startswith("position") for label in rows)
 
 
 def test_all_figures_are_xml(one_seed: ReportInput) -> None:

@@ -15,8 +15,9 @@ from faultpath.api.saved import MAP, RECORD, parsed, read_provenance, read_run
 from faultpath.core.errors import UserError
 from faultpath.core.text import extra
 from faultpath.decisions import DecisionRecord, RunProvenance
-from faultpath.report.html import notebook_view, write_report
+from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
+from faultpath.report.tables import markdown_table
 from faultpath.trials import Status
 from faultpath.trials.store.folder import OUTCOMES
 from faultpath.trials.store.sealed import AGAIN, unseal
@@ -34,7 +35,7 @@ MAP_MADE_FROM = (MAP, OUTCOMES)
 class Run:
     """A finished audit: what was decided, from which trials, and where its files are.
 
-    A notebook shows it as verdict, effects and table.
+    A notebook shows it as the table of its effects, with the verdict below.
     """
 
     kind: ClassVar[str] = "audit"
@@ -91,8 +92,8 @@ class Run:
         """Return folder and headline."""
         return f"<Run in {self.folder}: {self.headline}>"
 
-    def _repr_html_(self) -> str:
-        return notebook_view(self.record)
+    def _repr_markdown_(self) -> str:
+        return markdown_table(self.record)
 
 
 @dataclass(frozen=True, repr=False, eq=False)

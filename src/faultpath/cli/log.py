@@ -21,7 +21,7 @@ def command(
         str, typer.Option(help="Calibration errors: mass (1 + e), thrust (1 - e).")
     ] = "0.1,-0.1",
     out: Annotated[
-        Path | None, typer.Option(parser=path, help="Folder for report.html and compensation.json.")
+        Path | None, typer.Option(parser=path, help="Folder for compensation.json.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
 ) -> None:
@@ -36,7 +36,7 @@ def command(
         said = said.model_copy(update={"mass_kg": mass})
     found = compensation(read_flight(log, said), _sizes(errors))
 
-    from faultpath.report.compensation import CAVEAT, page, sentences, table
+    from faultpath.report.compensation import CAVEAT, sentences, table
     from faultpath.trials.store import write_text
     from faultpath.trials.store.atomic import make_folder
 
@@ -44,7 +44,6 @@ def command(
     if out is not None:
         make_folder(out)
         write_text(out / "compensation.json", text, out)
-        write_text(out / "report.html", page(found, log.name), out)
     if as_json:
         typer.echo(text, nl=False)
         return

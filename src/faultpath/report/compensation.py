@@ -1,13 +1,9 @@
-"""What a recorded flight shows of compensation, as sentences, a table and a page."""
+"""What a recorded flight shows of compensation, as sentences and a table."""
 
 from math import exp
 
-from markupsafe import Markup
-
 from faultpath.decisions.tables import MISSING, Table, line
-from faultpath.decisions.tables.html import html
 from faultpath.decisions.wording import counted, interval, plain
-from faultpath.report.frame import render
 from faultpath.statistics import Estimate
 from faultpath.systems.flightlog import Combination, Compensation
 
@@ -72,17 +68,4 @@ def table(found: Compensation) -> Table:
             f"{counted(found.gaps, 'gap')}; mass {found.mass_kg:g} kg, {drag}. "
             "Intervals resample blocks.",
         ),
-    )
-
-
-def page(found: Compensation, log: str) -> str:
-    """Return all of it as one page that opens without a network."""
-    return render(
-        "compensation.html.j2",
-        ("tokens.css", "svg.css", "page.css"),
-        (),
-        log=log,
-        sentences=sentences(found),
-        caveat=CAVEAT,
-        table=Markup(html(table(found))),
     )

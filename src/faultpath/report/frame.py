@@ -34,11 +34,6 @@ def render(page: str, styles: Sequence[str], scripts: Sequence[str], **content: 
     )
 
 
-def fragment(name: str, **content: object) -> str:
-    """Return the template `name`, which is a part of a page that is not ours."""
-    return _environment().get_template(name).render(**content)
-
-
 def _policy(style: str, script: str) -> str:
     # `data:` is the empty icon, without which a browser asks the server of the page for one.
     return (

@@ -6,17 +6,16 @@ from pathlib import Path
 from markupsafe import Markup
 
 from faultpath.decisions import wording
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.decisions.phrases import change
 from faultpath.decisions.summary import answers, in_short
 from faultpath.decisions.tables import Table
 from faultpath.decisions.tables.html import html
 from faultpath.report.adding import adding, adding_panels, line_key
 from faultpath.report.effects import forest, frequency_panels
-from faultpath.report.frame import fragment, render
+from faultpath.report.frame import render
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Kind, pair_grid, pair_key, read_pairs
-from faultpath.report.svg import template
 from faultpath.report.tables import (
     SHOWN,
     by_path,
@@ -26,7 +25,7 @@ from faultpath.report.tables import (
     markdown_table,
     secondary,
 )
-from faultpath.report.taps import fork_panels, forks, tap_table
+from faultpath.report.taps import fork_panels, forks
 from faultpath.report.viewer import viewer_data
 from faultpath.trials.store import make_folder, write_text
 
@@ -56,7 +55,8 @@ def report_page(source: ReportInput) -> str:
             for name, title in titles.items()
         ],
         plain=answers(record),
-        changes=[(each, change(record, each)) for each in record.changes],
+        finding=_finding(record),
+        changes=[(each.turn, change(record, each)) for each in record.changes],
         adding=why,
         adding_key=[(Markup(sample), name) for sample, name in line_key(why)] if why else (),
         adding_panels=list(map(Markup, adding_panels(why))) if why else (),
@@ -68,7 +68,6 @@ def report_page(source: ReportInput) -> str:
         or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.variants, strict=True)),
         forks=list(map(Markup, fork_panels(forks(source)))),
-        taps=Markup(html(tap_table(source), "taps")),
         frequency=list(map(Markup, frequency_panels(record))),
         grids=[
             Markup(
@@ -88,19 +87,6 @@ def report_page(source: ReportInput) -> str:
     )
 
 
-def notebook_view(record: DecisionRecord) -> str:
-    """Return HTML for one cell's output; its colours and rules stay within it."""
-    styles = template("tokens.css").replace(":root", ".faultpath") + template("svg.css")
-    return fragment(
-        "notebook.html.j2",
-        styles=Markup(styles + template("notebook.css")),
-        record=record,
-        table=Markup(html(by_path(record, SHOWN), caption=False)),
-        forest=Markup(forest(record)),
-        w=wording,
-    )
-
-
 def write_report(source: ReportInput, folder: Path) -> list[Path]:
     """Write `report.html`, `table.tex` and `table.md` into `folder` and return their paths.
 
@@ -115,6 +101,17 @@ def write_report(source: ReportInput, folder: Path) -> list[Path]:
     for name, text in made.items():
         write_text(folder / name, text, folder)
     return [folder / name for name in made]
+
+
+def _finding(record: DecisionRecord) -> list[tuple[Effect, str]]:
+    """Return the effects of which sharing the fault reverses, or at least changes, the first one,
+    each with where it holds; nothing where no change is detected."""
+    effects = {effect.path: effect for effect in record.effects}
+    for turn in ("reversal", "interaction"):
+        for each in record.changes:
+            if each.turn == turn and {each.isolated, each.shared} <= effects.keys():
+                return [(effects[p], wording.where(p)) for p in (each.isolated, each.shared)]
+    return []
 
 
 def _outcomes(record: DecisionRecord) -> Iterator[Table]:

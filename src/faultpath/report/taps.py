@@ -1,4 +1,4 @@
-"""Who gets the fault: the taps that it concerns, as a picture of each path and as a table.
+"""Who gets the fault: a picture of each path.
 
 Which taps had the fault in force comes from receipts, who reads from the wiring of the variants.
 """
@@ -6,13 +6,11 @@ Which taps had the fault in force comes from receipts, who reads from the wiring
 from dataclasses import dataclass
 
 from faultpath.decisions import CORRECT
-from faultpath.decisions.model import DecisionRecord, Path
-from faultpath.decisions.tables import Entry, Line, Table, line
+from faultpath.decisions.model import Path
 from faultpath.decisions.wording import series
-from faultpath.interface import Channel, module_of
+from faultpath.interface import module_of
 from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import Svg, shortened
-from faultpath.trials import VariantShown
 
 Tap = tuple[str, str]
 """A channel and the consumer that reads it."""
@@ -161,57 +159,12 @@ def _branch(svg: Svg, x: float, y: float, reader: Reader, everywhere: bool) -> N
     name = _named(reader.module)
     svg.text(x + _BOX + 6, y - 3, shortened(name, room, 12), f"bold {soft}".strip(), tip=name)
     state = "small struck" if reader.struck else "small soft"
-    svg.text(x + _BOX + 6, y + 12, shortened(reader.state, room, 11), state)
+    read = (
+        f"{channel} at {consumer}" for channel, consumer in sorted(reader.struck or reader.taps)
+    )
+    tip = f"{reader.state}: {', '.join(read)}"
+    svg.text(x + _BOX + 6, y + 12, shortened(reader.state, room, 11), state, tip=tip)
 
 
 def _named(module: str) -> str:
     return module.replace("_", " ")
-
-
-def tap_table(source: ReportInput) -> Table:
-    """Return the taps of the channels that the fault is on and of those that the faulted modules
-    reconstruct: what feeds each channel, and at which taps the fault was in force on which path."""
-    record, interface = source.record, source.interface
-    struck = {tap for path in record.paths for side in struck_taps(path) for tap in side}
-    wanted = {channel for channel, _ in struck} | {f.channel for f in record.question.faults}
-    faulted = {module_of(consumer) for _, consumer in struck}
-    made = {name for module, name in interface.reconstructions if module in faulted}
-    lines: list[Line] = []
-    for channel in interface.channels:
-        fed = [_feeds(channel, variant) for variant in source.variants]
-        if channel.name not in wanted and made.isdisjoint(fed):
-            continue
-        lines.append(line(f"{channel.name}, fed by {' or '.join(dict.fromkeys(fed))}"))
-        lines += [
-            line(consumer, *_entries(record, source.variants, (channel.name, consumer)), name=True)
-            for consumer in channel.consumers
-            if any(consumer in variant.consumers for variant in source.variants)
-        ]
-    asked = record.question
-    columns = (f"baseline {asked.baseline}", f"repair {asked.repair}")
-    return Table(
-        title="Taps at which receipts show the fault in force",
-        corner="Tap",
-        columns=columns,
-        words=columns,
-        lines=tuple(lines),
-    )
-
-
-def _feeds(channel: Channel, variant: VariantShown) -> str:
-    return variant.bindings.get(channel.name, channel.sources[0])
-
-
-def _entries(record: DecisionRecord, variants: tuple[VariantShown, ...], tap: Tap) -> list[Entry]:
-    entries: list[Entry] = []
-    for side, variant in enumerate(variants):
-        on = [path.title for path in record.paths if tap in struck_taps(path)[side]]
-        if on:
-            entries.append(Entry(text=f"faulted: {', '.join(on)}", tone="bad"))
-        elif tap[1] in variant.consumers:
-            entries.append(Entry(text="correct"))
-        elif module_of(tap[1]) in map(module_of, variant.consumers):
-            entries.append(Entry(text="not read", tone="faint"))
-        else:
-            entries.append(Entry(text="no such module", tone="faint"))
-    return entries
