@@ -26,7 +26,7 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
-from faultpath.trials.code import Graph, Kind, Root, file_of, kind_of, locate
+from faultpath.trials.code import Graph, Root, file_of, kind_of, locate
 from faultpath.trials.options import Factory, Option, call, options_of
 from faultpath.trials.system import System
 
@@ -223,7 +223,7 @@ def _check_own(root: Root, folder: Path) -> None:
         own = next((file for file in files if os.path.isfile(file)), None)
         if own is None or found is None or ours(name):
             continue
-        if os.path.realpath(own) != os.path.realpath(found) and kind_of(found) is Kind.LOCAL:
+        if os.path.realpath(own) != os.path.realpath(found) and kind_of(found) == "local":
             raise UserError(
                 f"{root.file or root.module} imports {name!r}, which is {found} in this process "
                 f"and not its own {own}: rename one of the two, or load them in processes of "
@@ -244,7 +244,7 @@ def _undone_on_failure() -> Generator[None]:
             file = getattr(module, "__file__", None)
             if module is modules.get(name) or not file or ours(name):
                 continue
-            if kind_of(Path(file)) is Kind.LOCAL:
+            if kind_of(Path(file)) == "local":
                 del sys.modules[name]
                 if name in modules:
                     sys.modules[name] = modules[name]

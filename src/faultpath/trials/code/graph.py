@@ -6,31 +6,31 @@ import sys
 import sysconfig
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import Enum, auto
 from functools import cache
 from hashlib import sha256
 from importlib.machinery import ModuleSpec
 from importlib.metadata import PackageNotFoundError, distribution, packages_distributions
 from pathlib import Path
 from types import ModuleType
+from typing import Literal
 from weakref import WeakKeyDictionary
 
 from faultpath.core.error_source import ours
 
-_BY_NAME = frozenset({"import_module", "__import__"})
-_BY_PATH = frozenset({"spec_from_file_location", "SourceFileLoader", "exec_module"}) | frozenset(
-    {"run_path", "run_module", "walk_packages", "iter_modules"}
+_COMPUTED = tuple(
+    word.encode()
+    for word in (
+        *("import_module", "__import__", "spec_from_file_location", "SourceFileLoader"),
+        *("exec_module", "run_path", "run_module", "walk_packages", "iter_modules"),
+    )
 )
+"""What imports, in a source, by a name or path that may be known only when it runs."""
 _INSTALLED = frozenset({"site-packages", "dist-packages"})
 _NO_SOURCE = frozenset({"__pycache__", "node_modules"})
 
 
-class Kind(Enum):
-    """Whose a file is: part of Python, of an installed package, or the user's own."""
-
-    STANDARD = auto()
-    INSTALLED = auto()
-    LOCAL = auto()
+Kind = Literal["standard", "installed", "local"]
+"""Whose a file is: part of Python, of an installed package, or the user's own."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Contents:
     imports: tuple[tuple[str, int, tuple[str, ...]], ...] = ()
     """Module, leading dots, and names taken from it, of each import anywhere in the file."""
     computed: bool = False
-    """Whether it also imports by a name that is known only when it runs."""
+    """Whether it may also import by a name that is known only when it runs."""
 
 
 class Graph:
@@ -99,9 +99,9 @@ class Graph:
                 continue
             if not ours(each):
                 kind = kind_of(path)
-                if kind is Kind.STANDARD:
+                if kind == "standard":
                     continue
-                if kind is Kind.INSTALLED and parts[0] not in self._entered:
+                if kind == "installed" and parts[0] not in self._entered:
                     version = self.packages.get(parts[0]) or release(parts[0])
                     if version is not None:
                         self.packages[parts[0]] = version
@@ -187,9 +187,7 @@ def file_of(spec: ModuleSpec | None) -> Path | None:
     """Return the file of a module, `None` for a built-in one or a package without a file."""
     if spec is None or not spec.has_location or spec.origin is None:
         return None
-    path = Path(spec.origin)
-    archive = getattr(spec.loader, "archive", None)
-    return path if path.is_file() or archive is None else Path(archive)
+    return Path(spec.origin)
 
 
 @cache
@@ -198,17 +196,14 @@ def _folders(*names: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(os.path.realpath(path) + os.sep for path in paths if path))
 
 
+@cache
 def kind_of(path: Path) -> Kind:
     """Return whose a file is, by where it lies."""
-    return _kind_in(path.parent)
-
-
-@cache
-def _kind_in(folder: Path) -> Kind:
+    folder = path.parent
     real = os.path.realpath(folder) + os.sep
     if not _INSTALLED.isdisjoint(folder.parts) or real.startswith(_folders("purelib", "platlib")):
-        return Kind.INSTALLED
-    return Kind.STANDARD if real.startswith(_folders("stdlib", "platstdlib")) else Kind.LOCAL
+        return "installed"
+    return "standard" if real.startswith(_folders("stdlib", "platstdlib")) else "local"
 
 
 @cache
@@ -248,18 +243,15 @@ def contents(name: str, path: Path) -> Contents:
     """
     module = sys.modules.get(name)
     file = getattr(module, "__file__", None)
-    if module is None or file is None or os.path.realpath(file) != os.path.realpath(path):
-        return _contents(path)
-    if module not in _loaded:
-        _loaded[module] = _contents(path)
-    return _loaded[module]
-
-
-def _contents(path: Path) -> Contents:
+    mine = module if file and os.path.realpath(file) == os.path.realpath(path) else None
+    if mine is not None and mine in _loaded:
+        return _loaded[mine]
     data = path.read_bytes()
     digest = sha256(data).hexdigest()
     if digest not in _read:
         _read[digest] = _taken_apart(data, digest) if path.suffix == ".py" else Contents(digest)
+    if mine is not None:
+        _loaded[mine] = _read[digest]
     return _read[digest]
 
 
@@ -283,17 +275,4 @@ def _taken_apart(source: bytes, digest: str) -> Contents:
         for inner in ("body", "orelse", "finalbody", "handlers", "cases"):
             children = () if typed and inner == "body" else getattr(node, inner, ())
             waiting += children if isinstance(children, list) else ()
-    computed = False
-    if any(word.encode() in source for word in _BY_NAME | _BY_PATH):
-        for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
-            function = call.func
-            called = getattr(function, "attr", "") or getattr(function, "id", "")
-            first = call.args[0] if call.args else None
-            if called not in _BY_NAME:
-                computed |= called in _BY_PATH
-            elif isinstance(first, ast.Constant) and isinstance(first.value, str):
-                module = first.value.lstrip(".")
-                found.append((module, len(first.value) - len(module), ()))
-            else:
-                computed = True
-    return Contents(digest, tuple(found), computed)
+    return Contents(digest, tuple(found), any(word in source for word in _COMPUTED))

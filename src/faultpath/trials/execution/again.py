@@ -8,7 +8,7 @@ import hashlib
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -47,21 +47,23 @@ def difference(first: Sequence[Outcome], reply: Reply) -> str:
     for name in dict.fromkeys(name for gaps in found.values() for name in gaps if name != "status"):
         most = max(gaps.get(name, 0.0) for gaps in found.values())
         parts.append(f"{name} by up to {most:.3g}" if math.isfinite(most) else f"{name} too")
-    return f"differs in {len(found)} of {len(first)}, {next(iter(found))!r} for one " + (
-        f"({', '.join(parts)})"
-    )
+    said = ", ".join(parts)
+    return f"differs in {len(found)} of {len(first)}, {next(iter(found))!r} for one ({said})"
 
 
 def _gaps(one: Outcome, two: Outcome) -> dict[str, float]:
     """Return how far two outcomes lie apart, by name; infinity for what is no number."""
-    mine, theirs = ({**vars(each), **each.metrics} for each in (one, two))
+    mine: dict[str, Any] = {**vars(one), **one.metrics}
+    theirs: dict[str, Any] = {**vars(two), **two.metrics}
     found: dict[str, float] = {}
     for name in dict.fromkeys((*mine, *theirs)):
-        a, b = mine.get(name), theirs.get(name)
+        a: Any = mine.get(name)
+        b: Any = theirs.get(name)
         if name in ("metrics", "error") or np.array_equal(a, b):
             continue
-        numbers = isinstance(a, int | float) and isinstance(b, int | float)
-        found[name] = abs(a - b) if numbers else math.inf
+        found[name] = math.inf
+        if isinstance(a, int | float) and isinstance(b, int | float):
+            found[name] = abs(a - b)
     return found
 
 

@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, TypeVar
 
 from faultpath.core.errors import UserError
 from faultpath.trials.attempt import Died, Wrong
@@ -30,16 +30,7 @@ def block_limit_s(system: System, asked_s: float | None) -> float:
     return asked_s or system.time_limit_s or LONGEST_S
 
 
-class Scened(Protocol):
-    """Some scenes to run."""
-
-    @property
-    def scenes(self) -> tuple[str, ...]:
-        """Scene ids."""
-        ...
-
-
-T = TypeVar("T", bound=Scened)
+T = TypeVar("T")
 
 
 @dataclass

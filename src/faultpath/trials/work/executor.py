@@ -117,13 +117,10 @@ class Executor(ABC):
     retries = 0
     """How often a call is worth handing out again whose worker was lost: machines come and go, and
     only where a call loses one after the other is it the call's fault."""
-    name = ""
+    count: int = 0
+    """Number of workers, started or not; 0 for this process."""
+    name: str = ""
     """On what calls run, in words, where that is not this machine."""
-
-    @property
-    @abstractmethod
-    def count(self) -> int:
-        """Number of workers; 0 for this process."""
 
     @abstractmethod
     def free(self) -> Sequence[int]:
@@ -230,11 +227,6 @@ class Here(Executor):
 
     def __init__(self) -> None:
         self._waiting: tuple[Call, OnMessage] | None = None
-
-    @property
-    def count(self) -> int:
-        """No worker beside this process."""
-        return 0
 
     def free(self) -> Sequence[int]:
         """Return 0 unless a call waits."""

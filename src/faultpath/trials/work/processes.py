@@ -1,11 +1,15 @@
-"""Worker processes on this machine, seen from the parent."""
+"""Worker processes on this machine: what their parent sees, and what runs in them."""
 
+import faulthandler
 import multiprocessing.connection as connections
 import os
+import pickle
 import signal
 import socket
 import subprocess
 import sys
+import threading
+import traceback
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -13,6 +17,7 @@ from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from faultpath.core.errors import Notice, UserError
+from faultpath.core.prints import show_warning
 from faultpath.trials.work.executor import (
     ONE_THREAD,
     Call,
@@ -23,7 +28,9 @@ from faultpath.trials.work.executor import (
     Lost,
     OnMessage,
     Returned,
+    ended,
     ignore,
+    tell,
 )
 
 KEEP_MEMORY = {
@@ -38,7 +45,7 @@ _MOST = 4096
 """Processes of one machine; more is a slip of the keyboard."""
 
 _BOOT = (
-    "import sys; from faultpath.trials.work.process import main; "
+    "import sys; from faultpath.trials.work.processes import main; "
     "main(int(sys.argv[1]), int(sys.argv[2]))"
 )
 
@@ -65,18 +72,13 @@ class Processes(Executor):
     """Runs calls in processes of their own, started when they are needed."""
 
     def __init__(self, count: int) -> None:
-        self._count = count
+        self.count = count
         self._processes: dict[int, _Process] = {}
         self._busy: dict[int, OnMessage] = {}
 
-    @property
-    def count(self) -> int:
-        """Number of processes, started or not."""
-        return self._count
-
     def free(self) -> Sequence[int]:
         """Return the workers without a call, started or not."""
-        return [worker for worker in range(self._count) if worker not in self._busy]
+        return [worker for worker in range(self.count) if worker not in self._busy]
 
     def submit(self, worker: int, call: Call, on_message: OnMessage = ignore) -> None:
         """Send the call, to a new process where there is none that lives."""
@@ -179,3 +181,57 @@ class _Process:
             return f"the worker process ended by itself with status {code}"
         hint = ", often for want of memory" if code == -signal.SIGKILL else ""
         return f"the worker process was ended by {signal.Signals(-code).name}{hint}"
+
+
+def main(channel: int, lifeline: int) -> None:
+    """Serve the parent over the socket `channel` until it is closed.
+
+    Nothing is ever written to the pipe `lifeline`. It ends when the parent is gone, however it
+    went, and this process then ends as well, in the middle of its work.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what Ctrl-C means
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    faulthandler.enable()
+    warnings.showwarning = show
+    sys.stdout = sys.stderr
+    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
+    with connections.Connection(channel) as parent, suppress(EOFError, ConnectionError):
+        while True:
+            packed = parent.recv_bytes()
+            parent.send_bytes(served(packed, lambda message: parent.send((message,))))
+
+
+def show(message: Warning | str, *more: Any, **named: Any) -> None:
+    """Hand a notice to the parent, which shows it once; show other warnings in a line."""
+    if isinstance(message, Notice):
+        tell(message)
+    else:
+        show_warning(message, *more, **named)
+
+
+def served(packed: bytes, on_message: OnMessage) -> memoryview:
+    """Run a packed call and return its end, packed; `on_message` gets what it tells."""
+    try:
+        call = pickle.loads(packed)  # of the parent, on a way that nobody else has: no file
+    except Exception as error:
+        return _packed(Failed(error))
+    return _packed(ended(call, on_message))
+
+
+def _packed(end: Returned | Failed) -> memoryview:
+    try:
+        if isinstance(end, Failed):
+            # A traceback is not sent, and not every error that can be packed can be unpacked.
+            end.error.add_note("".join(traceback.format_exception(end.error)))
+            pickle.loads(ForkingPickler.dumps(end))
+        return ForkingPickler.dumps(end)
+    except Exception as error:
+        said = end.error if isinstance(end, Failed) else error
+        instead = RuntimeError(f"{type(said).__name__}: {said}")
+        instead.__notes__ = getattr(said, "__notes__", [])
+        return ForkingPickler.dumps(Failed(instead))
+
+
+def _end_with(lifeline: int) -> None:
+    os.read(lifeline, 1)
+    os._exit(1)

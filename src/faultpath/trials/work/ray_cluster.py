@@ -33,8 +33,7 @@ from faultpath.trials.work.executor import (
     ignore,
     live_on,
 )
-from faultpath.trials.work.process import served, show
-from faultpath.trials.work.processes import KEEP_MEMORY, passed_on
+from faultpath.trials.work.processes import KEEP_MEMORY, passed_on, served, show
 
 _ray: Any = ray
 _QUIET = {"logging_level": "ERROR", "log_to_driver": False}
@@ -137,23 +136,12 @@ class RayWorkers(Executor):
                 "a CPU"
             )
         self._ours = _connect(address, count)
-        self._count = count or max(1, int(_ray.cluster_resources().get("CPU", 0)))
+        self.count = count or max(1, int(_ray.cluster_resources().get("CPU", 0)))
         self._nodes: set[str] = set()
         self._false_starts = 0
         options = {"num_cpus": 1, "runtime_env": {"env_vars": _ENVIRONMENT}}
         self._kind = _ray.remote(OnNode).options(**options)
-        self._workers = {number: self._started() for number in range(self._count)}
-
-    @property
-    def count(self) -> int:
-        """Number of workers, whether they run yet or not."""
-        return self._count
-
-    @property
-    def name(self) -> str:
-        """Say on what calls ran."""
-        nodes = len(self._nodes)
-        return f"Ray {_ray.__version__}, {nodes} {'node' if nodes == 1 else 'nodes'}"
+        self._workers = {number: self._started() for number in range(self.count)}
 
     def free(self) -> Sequence[int]:
         """Return the workers that run and have no call; wait for one where none has a call."""
@@ -245,6 +233,8 @@ class RayWorkers(Executor):
             )
         worker.starting, self._false_starts = None, 0
         self._nodes.add(node)
+        nodes = len(self._nodes)
+        self.name = f"Ray {_ray.__version__}, {nodes} {'node' if nodes == 1 else 'nodes'}"
 
 
 def _connect(address: str, count: int | None) -> bool:
