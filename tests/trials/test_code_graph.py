@@ -160,8 +160,7 @@ def test_an_installed_system_is_entered_and_what_it_uses_is_not(tmp_path, monkey
         ("if x:\n    pass\nelse:\n    import zz_d", {"zz_d.py"}),
         ("match x:\n    case 1:\n        import zz_d", {"zz_d.py"}),
         ("if TYPE_CHECKING:\n    import zz_d\nelse:\n    import zz_a.zz_b", {"zz_a/zz_b.py"}),
-        ("importlib.import_module('zz_a.zz_b')", {"zz_a/zz_b.py"}),
-        ("f = lambda: __import__('zz_d')", {"zz_d.py"}),
+        ("f = lambda: __import__('zz_' + x)", {"zz_a/zz_b.py", "zz_d.py"}),
         ('"""import zz_d"""  # import zz_d', set()),
         ("import", set()),
         ("runpy.run_path(place)", {"zz_a/zz_b.py", "zz_d.py"}),
@@ -174,3 +173,19 @@ def test_every_import_is_found_wherever_it_stands(source, found, files):
         for path in read_code([Root("zz_main", root / "zz_start.py")]).sources.values()
     }
     assert seen - {"zz_start.py", "zz_a/__init__.py"} == found
+
+
+def test_a_distribution_that_carries_our_name_is_entered_by_whoever_imports_it(
+    tmp_path, monkeypatch
+):
+    """As `faultpath_quadrotor` is: it may be edited where it lies, and counts by content."""
+    place = tmp_path / "site-packages" / "faultpath_yy"
+    place.mkdir(parents=True)
+    (place / "__init__.py").write_text("__import__(__name__ + '.late')\n")
+    (place / "used.py").touch()
+    (place / "late.py").touch()
+    (tmp_path / "zz_start.py").write_text("import faultpath_yy.used\n")
+    monkeypatch.setattr(sys, "path", [*sys.path, str(place.parent)])
+    found = _state(tmp_path)
+    assert set(found.files) == {"zz_start.py", "faultpath_yy/__init__.py", "faultpath_yy/used.py"}
+    assert found.packages == {}

@@ -1,0 +1,29 @@
+"""Whose an error is, where a distribution carries faultpath's name."""
+
+import sys
+
+import pytest
+
+from faultpath.core.error_source import ours, place
+
+
+def test_a_distribution_that_carries_our_name_answers_for_its_own_mistakes(tmp_path, monkeypatch):
+    (tmp_path / "site-packages" / "faultpath_zz").mkdir(parents=True)
+    (tmp_path / "site-packages" / "faultpath_zz" / "__init__.py").write_text(
+        "def f(): return [][0]"
+    )
+    (tmp_path / "mine_zz.py").write_text("def g(): return [][0]")
+    monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path), str(tmp_path / "site-packages")])
+    import faultpath_zz
+    import mine_zz
+
+    said = []
+    for fails in (faultpath_zz.f, mine_zz.g):
+        with pytest.raises(IndexError) as found:
+            fails()
+        found.value.__traceback__ = found.value.__traceback__.tb_next  # without this test's own
+        said.append(place(found.value))
+    assert said[0] == ""
+    assert said[1].endswith("mine_zz.py, line 1")
+    assert ours("faultpath_zz")
+    assert not ours("faultpath_system_mine_12ab34cd")
