@@ -4,8 +4,9 @@ import pytest
 from audit_toys import INTERFACE, Paper, planned
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.plain import yaml_text
 from faultpath.decisions.planning import Audit
-from faultpath.interface import interface_yaml, read_interface
+from faultpath.interface import read_interface
 from faultpath.trials import Status, Variant
 
 
@@ -128,7 +129,9 @@ def test_scenes_that_the_library_does_not_have(count):
 
 
 def test_a_module_may_not_be_called_like_a_path(monkeypatch):
-    document = interface_yaml(INTERFACE).replace("observer.model", "shared.model")
+    document = yaml_text(INTERFACE.model_dump(mode="json")).replace(
+        "observer.model", "shared.model"
+    )
     monkeypatch.setattr(Paper, "interface", read_interface(document))
     reads = frozenset({"planner.cost", "shared.model"})
     monkeypatch.setitem(Paper.variants, "observed", Variant("observed", "", reads))

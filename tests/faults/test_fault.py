@@ -1,4 +1,4 @@
-"""Faults as data: who is struck, when, in words and in JSON."""
+"""Faults as data: who gets them, when, in words and in JSON."""
 
 import re
 from typing import Any
@@ -22,11 +22,9 @@ from faultpath.faults import (
     Fault,
     Freeze,
     Hold,
-    Intermittence,
     Noise,
     Offset,
     Quantise,
-    Replace,
     Scale,
     Sequence,
     Shuffle,
@@ -53,7 +51,6 @@ simple = st.one_of(
         probability=st.floats(0, 1),
         substitute=st.none() | st.builds(Erase, default=st.none() | reals),
     ),
-    st.builds(Replace, value=constants),
     st.builds(Shuffle, axis=st.integers(1, 3)),
 )
 interventions = st.recursive(
@@ -61,7 +58,6 @@ interventions = st.recursive(
     lambda inner: st.builds(Sequence, parts=st.lists(inner, min_size=1, max_size=2).map(tuple)),
     max_leaves=3,
 )
-times = st.floats(0.1, 9)
 faults = st.builds(
     Fault,
     channel=st.just("mass"),
@@ -70,7 +66,6 @@ faults = st.builds(
     onset_step=counts,
     duration_steps=counts,
     recovery_steps=st.integers(0, 9),
-    intermittence=st.none() | st.builds(Intermittence, mean_on_s=times, mean_off_s=times),
     cause=st.none() | st.just("storm"),
 )
 
@@ -90,15 +85,15 @@ def test_json_round_trip_is_exact(fault: Fault | Coupled) -> None:
 SCALE = Fault(channel="mass", intervention=Scale(factor=1.1))
 
 
-def struck(fault: Fault | Coupled, present: Any = None) -> dict[str, tuple[str, ...]]:
+def reached(fault: Fault | Coupled, present: Any = None) -> dict[str, tuple[str, ...]]:
     return {f.channel: f.consumers for f in fault.resolved(INTERFACE, present)}
 
 
-def test_a_coupled_fault_strikes_whoever_reads_either_channel() -> None:
-    assert struck(calibration(0.1).striking("observer.wind_map")) == {
+def test_a_coupled_fault_reaches_whoever_reads_either_channel() -> None:
+    assert reached(calibration(0.1).aimed_at("observer.wind_map")) == {
         "mass": ("observer.wind_map",)
     }
-    assert struck(calibration(0.1).striking("observer")) == {
+    assert reached(calibration(0.1).aimed_at("observer")) == {
         "mass": ("observer.wind_map",),
         "thrust": ("observer.model",),
     }
@@ -106,17 +101,17 @@ def test_a_coupled_fault_strikes_whoever_reads_either_channel() -> None:
 
 def test_consumers_that_a_variant_lacks_are_left_out() -> None:
     plain = {"predictor.dynamics", "predictor.trim", "predictor.wind_map"}
-    assert struck(calibration(0.1), plain) == {
+    assert reached(calibration(0.1), plain) == {
         "mass": ("predictor.dynamics", "predictor.trim"),
         "thrust": ("predictor.dynamics",),
     }
-    assert struck(calibration(0.1).striking("observer"), plain) == {}
+    assert reached(calibration(0.1).aimed_at("observer"), plain) == {}
 
 
 def test_faults_of_one_cause_share_it() -> None:
     assert {f.drawn_from for f in calibration(0.1).resolved(INTERFACE)} == {"calibration"}
     assert SCALE.resolved(INTERFACE)[0].drawn_from == "mass:scale"
-    assert SCALE.striking("observer").drawn_from == SCALE.drawn_from
+    assert SCALE.aimed_at("observer").drawn_from == SCALE.drawn_from
 
 
 def test_erasure_takes_the_channels_default() -> None:
@@ -132,17 +127,17 @@ def test_erasure_takes_the_channels_default() -> None:
             "interface toy: unknown channel 'mas'; did you mean 'mass'? known: mass, thrust, wind",
         ),
         (
-            SCALE.striking("predicter"),
+            SCALE.aimed_at("predicter"),
             "channel 'mass': unknown consumer 'predicter'; did you mean 'predictor'? known: "
             "observer, observer.wind_map, predictor, predictor.dynamics, predictor.trim",
         ),
         (
-            SCALE.striking("observer.model"),
+            SCALE.aimed_at("observer.model"),
             "channel 'mass': 'observer.model' does not read it; its readers: observer, "
             "observer.wind_map, predictor, predictor.dynamics, predictor.trim",
         ),
         (
-            calibration(0.1).striking("predictor.wind_map"),
+            calibration(0.1).aimed_at("predictor.wind_map"),
             "channel 'mass' and channel 'thrust': 'predictor.wind_map' does not read it; its "
             "readers: observer, observer.model, observer.wind_map, predictor, predictor.dynamics, "
             "predictor.trim",
@@ -163,7 +158,7 @@ def test_a_fault_that_cannot_act_is_a_users_mistake(fault: Fault | Coupled, sent
 
 def test_a_window_begins_ends_and_recovers() -> None:
     def weights(fault: Fault, steps: int) -> list[float]:
-        return [fault.window.weight(step) for step in range(steps)]
+        return [fault.weight(step) for step in range(steps)]
 
     fault = Fault(channel="mass", intervention=Freeze(), onset_step=2)
     assert weights(fault, 5) == [0, 0, 1, 1, 1]
@@ -171,4 +166,4 @@ def test_a_window_begins_ends_and_recovers() -> None:
     assert weights(fault, 6) == [0, 0, 1, 1, 0, 0]
     fault = fault.model_copy(update={"recovery_steps": 3})
     assert weights(fault, 8) == [0, 0, 1, 1, 0.75, 0.5, 0.25, 0]
-    assert [fault.window.over(step) for step in (6, 7)] == [False, True]
+    assert [fault.over(step) for step in (6, 7)] == [False, True]

@@ -1,4 +1,4 @@
-"""Laws of errors that last, that go together, and that come and go."""
+"""Laws of errors that last and that go together."""
 
 from typing import Any
 
@@ -6,18 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from faultpath.faults import (
-    Bias,
-    Draws,
-    Fault,
-    Freeze,
-    Intermittence,
-    Moment,
-    Noise,
-    Phases,
-    Scale,
-    Sequence,
-)
+from faultpath.faults import Bias, Draws, Fault, Moment, Noise, Scale, Sequence
 
 SCENES = tuple(f"scene-{i}" for i in range(4000))
 DT_S = 0.05
@@ -86,41 +75,3 @@ def test_parts_of_a_sequence_are_correlated_each_with_its_like_and_not_with_the_
         parts.apply(np.zeros(len(SCENES)), None, Moment(0, 0, DT_S, each))[0] for each in draws
     ]
     assert np.corrcoef(whole)[0, 1] == pytest.approx(0.5, abs=0.05)
-
-
-def phases(what: Intermittence, steps: int) -> np.ndarray[Any, Any]:
-    made = Phases.of(what, np.full(len(SCENES), 5), DT_S, Draws(SCENES, 0, "cause"))
-    return np.stack([made.elapsed(step) for step in range(steps)])
-
-
-def test_an_intermittent_fault_begins_on_at_the_onset() -> None:
-    elapsed = phases(Intermittence(mean_on_s=0.5, mean_off_s=0.25), 6)
-    assert (elapsed[:5] == -1).all()
-    assert (elapsed[5] == 0).all()
-
-
-def test_phases_have_the_mean_times_and_the_share_that_they_say() -> None:
-    elapsed = phases(Intermittence(mean_on_s=0.5, mean_off_s=0.25), 205)[5:]
-    on = elapsed >= 0
-    ends = on[:-1] & ~on[1:]
-    begins = ~on[:-1] & on[1:]
-    assert on[:-1].sum() / ends.sum() * DT_S == pytest.approx(0.5, rel=0.06)
-    assert (~on[:-1]).sum() / begins.sum() * DT_S == pytest.approx(0.25, rel=0.12)
-    assert on[100:].mean() == pytest.approx(2 / 3, abs=0.02)
-    assert (elapsed[1:][begins] == 0).all()
-
-
-def test_every_phase_is_an_onset_of_its_own() -> None:
-    """A sensor that freezes now and then holds what it showed when it froze."""
-    draws = Draws(("a",), 3, "cause")
-    made = Phases.of(Intermittence(mean_on_s=0.3, mean_off_s=0.2), np.zeros(1, int), DT_S, draws)
-    memory = Freeze().begin(np.zeros(1), Moment(0, 0, DT_S, draws))
-    holds, starts = 0.0, 0
-    for step in range(60):
-        elapsed = made.elapsed(step)
-        reading = np.full(1, float(step))
-        value, memory = Freeze().apply(reading, memory, Moment(step, elapsed, DT_S, draws))
-        if elapsed[0] == 0:
-            holds, starts = float(step), starts + 1
-        assert value[0] == (step if elapsed[0] < 0 else holds)
-    assert starts > 3

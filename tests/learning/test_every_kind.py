@@ -13,12 +13,10 @@ from faultpath.faults import (
     Fault,
     Freeze,
     Hold,
-    Intermittence,
     Intervention,
     Noise,
     Offset,
     Quantise,
-    Replace,
     Scale,
     Sequence,
     Shuffle,
@@ -49,11 +47,9 @@ KINDS: tuple[Intervention, ...] = (
     Hold(every=3),
     Freeze(),
     Dropout(probability=0.4),
-    Replace(value=2.0),
     Shuffle(axis=1),
     Sequence(parts=(Scale(factor=1.1), Noise(std=0.1))),
 )
-COMES_AND_GOES = Intermittence(mean_on_s=0.2, mean_off_s=0.1)
 
 
 def test_no_kind_is_missing() -> None:
@@ -64,16 +60,13 @@ def test_no_kind_is_missing() -> None:
 def test_a_window_gets_what_a_flight_of_its_name_and_seed_gets(kind: Intervention) -> None:
     images = np.random.default_rng(0).uniform(size=(WINDOWS, STEPS, 6, 8)).astype(np.float32)
     data = Windows(INTERFACE, "encoder", {"image": images}, targets=np.zeros(WINDOWS), dt_s=DT_S)
-    for fault in (
-        Fault(channel="image", intervention=kind, onset_step=1),
-        Fault(channel="image", intervention=kind, intermittence=COMES_AND_GOES),
-    ):
-        got, counts = delivered(data, (fault,), data.readings, range(WINDOWS), 0, epoch=2)
-        (seen,) = got.values()
-        taps = Taps(INTERFACE, (fault,), scenes=data.ids, dt_s=DT_S, seed=2)
-        flown = [
-            taps.deliver("image", "encoder.pixels", Reading(images[:, step], "camera", step), step)
-            for step in range(STEPS)
-        ]
-        np.testing.assert_array_equal(seen, np.stack(flown, axis=1))
-        assert sum(count.altered_steps for count in counts)
+    fault = Fault(channel="image", intervention=kind, onset_step=1)
+    got, counts = delivered(data, (fault,), data.readings, range(WINDOWS), 0, epoch=2)
+    (seen,) = got.values()
+    taps = Taps(INTERFACE, (fault,), scenes=data.ids, dt_s=DT_S, seed=2)
+    flown = [
+        taps.deliver("image", "encoder.pixels", Reading(images[:, step], "camera", step), step)
+        for step in range(STEPS)
+    ]
+    np.testing.assert_array_equal(seen, np.stack(flown, axis=1))
+    assert sum(count.altered_steps for count in counts)

@@ -62,7 +62,7 @@ def test_places_of_one_channel_get_the_same_error_and_one_place_may_err_alone() 
     everywhere = errors({"gain": 0.1})
     both = relative_errors(everywhere, 20)
     assert (both[GAIN] == both[Port("gain", "scale")]).all()
-    alone = relative_errors(everywhere.striking("observer.scale"), 20)
+    alone = relative_errors(everywhere.aimed_at("observer.scale"), 20)
     assert not alone[GAIN].any()
     assert (alone[Port("gain", "scale")] == both[GAIN]).all()
 

@@ -20,7 +20,6 @@ from faultpath.faults import (
     Noise,
     Offset,
     Quantise,
-    Replace,
     Scale,
     Shuffle,
     UniformScale,
@@ -72,7 +71,6 @@ INTERVENTIONS: tuple[Intervention, ...] = (
     Freeze(),
     Dropout(probability=0.4),
     Dropout(probability=0.4, substitute=Erase()),
-    Replace(value=2.0),
     Shuffle(axis=1),
     InTurn(parts=(Scale(factor=1.1), Noise(std=0.1), Delay(steps=2))),
 )

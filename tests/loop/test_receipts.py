@@ -11,9 +11,9 @@ from tap_toys import make
 
 from faultpath.faults import Fault, Scale
 from faultpath.loop.taps import (
+    FaultedElsewhere,
     NotDelivered,
     Reading,
-    StruckElsewhere,
     Taps,
     check_delivered,
 )
@@ -39,25 +39,25 @@ def run(taps: Taps, to: Any = np.asarray, steps: Any = range(6), zero: int = -1)
 def test_counts_deliveries_and_steps(to: Any) -> None:
     taps = make([LATE])
     run(taps, to, range(2, 6))
-    struck = taps.receipts().at("mass", "observer.model")
-    assert struck.deliveries == 4
-    assert struck.steps_struck.tolist() == [2, 2]
-    assert struck.steps_altered.tolist() == [2, 2]
-    assert [s.fault for s in struck.strikes] == [
+    faulted = taps.receipts().at("mass", "observer.model")
+    assert faulted.deliveries == 4
+    assert faulted.steps_faulted.tolist() == [2, 2]
+    assert faulted.steps_altered.tolist() == [2, 2]
+    assert [s.fault for s in faulted.corruptions] == [
         "mass scaled by 2 at observer.model from step 3 for 2 steps"
     ]
     clean = taps.receipts().at("mass", "predictor.dynamics")
-    assert (clean.deliveries, clean.strikes, clean.steps_struck.tolist()) == (4, (), [0, 0])
+    assert (clean.deliveries, clean.corruptions, clean.steps_faulted.tolist()) == (4, (), [0, 0])
     silent = taps.receipts().at("wind", "planner.wind")
     assert silent.deliveries == 0
 
 
 @LIBRARIES
-def test_struck_is_not_yet_altered(to: Any) -> None:
+def test_faulted_is_not_yet_altered(to: Any) -> None:
     taps = make([LATE.model_copy(update={"onset_step": 1})])
     run(taps, to, zero=2)
     receipt = taps.receipts().at("mass", "observer.model")
-    assert receipt.steps_struck.tolist() == [2, 2]
+    assert receipt.steps_faulted.tolist() == [2, 2]
     assert receipt.steps_altered.tolist() == [1, 1]
 
 
@@ -79,15 +79,15 @@ def test_only_running_scenes_count(to: Any, mask_to: Any) -> None:
     run(taps, to, range(3, 5))
     taps.set_active(None)
     run(taps, to, range(5, 6))
-    assert taps.receipts().steps_struck.tolist() == [5, 3]
+    assert taps.receipts().steps_faulted.tolist() == [5, 3]
     assert taps.receipts().steps_altered.tolist() == [5, 3]
 
 
 @LIBRARIES
-def test_a_step_counts_once_for_the_run_however_many_taps_are_struck(to: Any) -> None:
-    taps = make([LATE.striking("*")])
+def test_a_step_counts_once_for_the_run_however_many_taps_are_faulted(to: Any) -> None:
+    taps = make([LATE.aimed_at("*")])
     run(taps, to)
-    assert taps.receipts().steps_struck.tolist() == [2, 2]
+    assert taps.receipts().steps_faulted.tolist() == [2, 2]
 
 
 def test_two_faults_at_a_tap_are_told_apart() -> None:
@@ -95,8 +95,8 @@ def test_two_faults_at_a_tap_are_told_apart() -> None:
     taps = make([early, LATE])
     run(taps)
     receipt = taps.receipts().at("mass", "observer.model")
-    assert [s.steps_in_force.tolist() for s in receipt.strikes] == [[4, 4], [2, 2]]
-    assert receipt.steps_struck.tolist() == [5, 5]
+    assert [s.steps_in_force.tolist() for s in receipt.corruptions] == [[4, 4], [2, 2]]
+    assert receipt.steps_faulted.tolist() == [5, 5]
 
 
 @pytest.mark.parametrize(
@@ -130,7 +130,7 @@ def test_a_fault_that_reached_another_is_an_error() -> None:
     run(taps)
     receipts = taps.receipts()
     last = np.array([5, 5])
-    with pytest.raises(StruckElsewhere, match=re.escape("tap mass -> observer.model altered a")):
+    with pytest.raises(FaultedElsewhere, match=re.escape("tap mass -> observer.model altered a")):
         check_delivered(receipts, frozenset(), last)
     named = frozenset({("mass", "observer.model")})
     check_delivered(receipts, named, last)
@@ -138,7 +138,7 @@ def test_a_fault_that_reached_another_is_an_error() -> None:
         replace(r, steps_altered=np.array([1, 0])) if r.channel == "wind" else r
         for r in receipts.taps
     )
-    with pytest.raises(StruckElsewhere, match=re.escape("tap wind -> predictor.wind altered a")):
+    with pytest.raises(FaultedElsewhere, match=re.escape("tap wind -> predictor.wind altered a")):
         check_delivered(replace(receipts, taps=strange), named, last)
 
 

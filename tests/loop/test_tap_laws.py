@@ -21,23 +21,22 @@ WINDOWS = pytest.mark.parametrize(
     [
         {},
         {"onset_step": 4, "duration_steps": 5, "recovery_steps": 3},
-        {"onset_step": 2, "intermittence": {"mean_on_s": 0.2, "mean_off_s": 0.1}},
     ],
-    ids=["always", "window", "intermittent"],
+    ids=["always", "window"],
 )
 
 
 def fault(intervention: Intervention, window: dict[str, Any], *consumers: str) -> Fault:
     given = {"channel": "wind", "intervention": intervention} | window
-    return Fault.model_validate(given).striking(*consumers)
+    return Fault.model_validate(given).aimed_at(*consumers)
 
 
 @EACH
 @WINDOWS
 def test_torch_gives_the_bits_of_numpy(intervention: Intervention, window: dict[str, Any]) -> None:
-    struck = fault(intervention, window)
-    on_torch = play([struck], SCENES, to=torch.asarray)
-    assert on_torch.tobytes() == play([struck], SCENES).tobytes()
+    faulted = fault(intervention, window)
+    on_torch = play([faulted], SCENES, to=torch.asarray)
+    assert on_torch.tobytes() == play([faulted], SCENES).tobytes()
 
 
 @EACH
@@ -45,17 +44,17 @@ def test_torch_gives_the_bits_of_numpy(intervention: Intervention, window: dict[
 def test_a_scene_does_not_depend_on_its_neighbours(
     intervention: Intervention, window: dict[str, Any]
 ) -> None:
-    struck = fault(intervention, window)
-    block = play([struck], SCENES, to=torch.asarray)
+    faulted = fault(intervention, window)
+    block = play([faulted], SCENES, to=torch.asarray)
     for order in (("c", "a", "d", "b"), ("b", "d"), ("c",)):
         rows = [SCENES.index(scene) for scene in order]
-        some = play([struck], order, to=torch.asarray)
+        some = play([faulted], order, to=torch.asarray)
         assert some.tobytes() == np.ascontiguousarray(block[:, rows]).tobytes()
 
 
 @EACH
 @WINDOWS
-def test_isolated_and_shared_agree_where_both_strike(
+def test_isolated_and_shared_agree_where_both_act(
     intervention: Intervention, window: dict[str, Any]
 ) -> None:
     alone = play([fault(intervention, window, "predictor")], SCENES)
@@ -116,7 +115,6 @@ def test_faults_that_meet_at_a_tap_act_in_order() -> None:
 def test_a_sequence_is_two_faults_with_one_window(window: dict[str, Any]) -> None:
     parts = (Scale(factor=2.0), Delay(steps=3))
     window = {key: value for key, value in window.items() if key != "recovery_steps"}
-    window["cause"] = "one"  # faults of one cause come and go together
     apart = play([fault(part, window) for part in parts], SCENES)
     assert play([fault(Sequence(parts=parts), window)], SCENES).tobytes() == apart.tobytes()
 

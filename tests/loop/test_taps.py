@@ -101,10 +101,10 @@ def test_steps_do_not_run_backwards() -> None:
         ),
         ({"privileged": {"oracle"}}, "unknown source 'oracle'"),
         ({"consumers": {"pilot.x"}}, "this variant's consumers: unknown consumer 'pilot.x'"),
-        ({"faults": [SCALE.striking("pilot")]}, "channel 'mass': unknown consumer 'pilot'"),
+        ({"faults": [SCALE.aimed_at("pilot")]}, "channel 'mass': unknown consumer 'pilot'"),
         (
             {"faults": [SCALE], "consumers": {"predictor.dynamics"}},
-            "fault 'mass scaled by 2 at observer' strikes nobody in this variant, which has no "
+            "fault 'mass scaled by 2 at observer' reaches nobody in this variant, which has no "
             "observer.model; leave the fault out or name other consumers",
         ),
     ],

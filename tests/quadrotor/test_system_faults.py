@@ -57,7 +57,7 @@ def test_an_identity_on_every_channel_is_no_fault_to_the_bit(kind, plain):
     assert bits(struck) == bits(plain)
     receipts = taps.receipts()
     assert _altered(receipts) == set()
-    assert all(tap.steps_struck.all() for tap in receipts.taps)
+    assert all(tap.steps_faulted.all() for tap in receipts.taps)
 
 
 @pytest.mark.parametrize("error", [0.1, -0.2])

@@ -136,7 +136,7 @@ def _study_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Study:
     ],
 )
 def test_an_audit_that_is_wrong_stops(tmp_path, variant, consumer, error, workers):
-    fault = FAULT.striking(consumer)
+    fault = FAULT.aimed_at(consumer)
     row = Row(variant=variant, path="p", seed=0, arm=Arm(variant=variant, faults=(fault,)))
     with pytest.raises(error, match=r"observer\.balance"):
         run_study(_study_of(row), tmp_path, workers=workers)

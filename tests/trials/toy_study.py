@@ -10,7 +10,7 @@ SCENES = tuple(f"s{i:02d}" for i in range(10))
 FAULT = Fault(channel="mass", intervention=Scale(factor=0.6), onset_step=3)
 PATHS = {
     "correct": (),
-    "planner": (FAULT.striking("planner.thrust"),),
+    "planner": (FAULT.aimed_at("planner.thrust"),),
     "shared": (FAULT,),
 }
 UNITS = 2 * len(PATHS) * 2 * 3 - 2 * 3

@@ -122,20 +122,9 @@ def rows(per_scene: Array, reading: Array) -> Array:
     return namespace(per_scene).reshape(per_scene, (-1,) + (1,) * (reading.ndim - 1))
 
 
-def pick(condition: Any, yes: Array, no: Array) -> Array:
-    """Return, scene by scene, `yes` where `condition` holds and `no` elsewhere.
-
-    `condition` is a bool for all scenes, and one of the two arrays comes back as it is, or a
-    boolean array `[B]`.
-    """
-    if isinstance(condition, bool):
-        return yes if condition else no
+def pick(condition: Array, yes: Array, no: Array) -> Array:
+    """Return, scene by scene, `yes` where `condition` `[B]` holds and `no` elsewhere."""
     return namespace(yes).where(rows(condition, yes), yes, no)
-
-
-def kept(condition: Any, reading: Array, held: Array) -> Array:
-    """Return `pick(condition, reading, held)` as an array that no later write can reach."""
-    return copy(reading) if condition is True else pick(condition, reading, held)
 
 
 def differs(value: Array, reading: Array) -> Array:

@@ -181,9 +181,9 @@ def _strikes(
             "audit: rename the module."
         )
     paths: dict[str, AnyFault | None] = {CORRECT: None}
-    paths |= {module: fault.striking(*by_module[module]) for module in sorted(by_module)}
+    paths |= {module: fault.aimed_at(*by_module[module]) for module in sorted(by_module)}
     if len(by_module) > 1:
-        paths[SHARED] = fault.striking(*(c for name in sorted(by_module) for c in by_module[name]))
+        paths[SHARED] = fault.aimed_at(*(c for name in sorted(by_module) for c in by_module[name]))
     return paths
 
 

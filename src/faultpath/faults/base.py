@@ -21,8 +21,8 @@ class Moment:
 
     step: int
     """Control step, from 0."""
-    elapsed: Any
-    """Steps since the onset, negative before it: an int for all scenes, or an int array `[B]`."""
+    elapsed: int
+    """Steps since the onset, negative before it."""
     dt_s: float
     """Length of a control step, s."""
     draws: Draws
@@ -30,11 +30,6 @@ class Moment:
     def part(self, index: int) -> "Moment":
         """Return the same moment with the independent draws of one part."""
         return replace(self, draws=self.draws.part(index))
-
-    @property
-    def before(self) -> bool:
-        """Whether the onset lies ahead in every scene, so far as the host can tell."""
-        return isinstance(self.elapsed, int) and self.elapsed < 0
 
 
 class Intervention(BaseModel, ABC):

@@ -1,4 +1,4 @@
-"""The random numbers of a fault, the same for everyone that the fault strikes."""
+"""The random numbers of a fault, the same for everyone that the fault reaches."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

@@ -1,7 +1,7 @@
-"""A fault: a channel, the consumers that it strikes, what is done to them, and when."""
+"""A fault: a channel, the consumers that get it, what is done to them, and when."""
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from math import inf
 from typing import Annotated, Literal, Self, TypeAlias
 
 from pydantic import Field, model_validator
@@ -10,38 +10,11 @@ from faultpath.core.errors import UserError
 from faultpath.core.frozen import Frozen
 from faultpath.core.text import listed, unknown
 from faultpath.faults.draws import Draws
-from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import AnyIntervention
 from faultpath.interface import Interface, module_of, modules
 
 ALL = "*"
 """Every consumer of the channel: the fault is shared."""
-
-
-@dataclass(frozen=True)
-class Window:
-    """From `onset` up to `end`, then `recovery` steps of linear return to the clean reading."""
-
-    onset: int
-    end: int | None
-    """`None` never comes."""
-    recovery: int
-
-    def over(self, step: int) -> bool:
-        """Return whether nothing is in force any more."""
-        return self.end is not None and step >= self.end + self.recovery
-
-    def weight(self, step: int) -> float:
-        """Return the share of the fault in the value: 1 in the window, 0 outside, between after it.
-
-        In recovery step k = 1 … n it is 1 - k / (n + 1), so the reading is clean again in step
-        n + 1.
-        """
-        if step < self.onset:
-            return 0.0
-        if self.end is None:
-            return 1.0
-        return min(max((self.recovery - (step - self.end)) / (self.recovery + 1), 0.0), 1.0)
 
 
 class Fault(Frozen):
@@ -62,16 +35,15 @@ class Fault(Frozen):
     """Steps in force; `None`: until the end."""
     recovery_steps: int = Field(default=0, ge=0)
     """Steps of linear return to the clean reading after `duration_steps`."""
-    intermittence: Intermittence | None = None
-    """How the fault comes and goes within that time; `None`: it is always on."""
+    intermittence: None = None
+    """A key of stored faults; always `null`."""
     cause: str | None = None
     """Faults of one cause draw the same random numbers; `None`: the channel and the kind."""
     loading: float = Field(default=1.0, ge=-1, le=1)
     """Share of the cause in the random numbers: two faults of one cause with the loadings a and b
     have errors of correlation a * b."""
-    own_cause: str | None = None
-    """What addresses the rest of the random numbers; `None`: the channel and the kind. Two faults
-    of one channel and kind, at two modules for instance, name one each."""
+    own_cause: None = None
+    """A key of stored faults; always `null`."""
 
     @model_validator(mode="after")
     def _recovers_from_an_end(self) -> Self:
@@ -91,16 +63,13 @@ class Fault(Frozen):
         return self.cause or f"{self.channel}:{self.intervention.kind}"
 
     def draws(self, scenes: tuple[str, ...], seed: int) -> Draws:
-        """Return the random numbers of the fault, which whoever it strikes shares."""
+        """Return the random numbers of the fault, which all of its consumers share."""
         if self.loading == 1.0:
             return Draws(scenes, seed, self.drawn_from)
-        return Draws(scenes, seed, self.drawn_from, self.loading, Draws(scenes, seed, self._own))
+        own = f"{self.drawn_from}/own/{self.channel}:{self.intervention.kind}"
+        return Draws(scenes, seed, self.drawn_from, self.loading, Draws(scenes, seed, own))
 
-    @property
-    def _own(self) -> str:
-        return self.own_cause or f"{self.drawn_from}/own/{self.channel}:{self.intervention.kind}"
-
-    def striking(self, *names: str) -> Self:
+    def aimed_at(self, *names: str) -> Self:
         """Return the same fault at other consumers: `module.place`, modules, or `*`."""
         return self.model_copy(update={"consumers": names or (ALL,)})
 
@@ -133,25 +102,34 @@ class Fault(Frozen):
         self, interface: Interface, present: Collection[str] | None
     ) -> tuple["Fault", ...]:
         channel = interface.channel(self.channel)
-        struck = tuple(
+        reached = tuple(
             consumer
             for consumer in channel.consumers
             if any(_matching(name, (consumer,)) for name in self.consumers)
             and (present is None or consumer in present)
         )
         intervention = self.intervention.resolved(channel)
-        update = {"consumers": struck, "intervention": intervention, "cause": self.drawn_from}
-        return (self.model_copy(update=update),) if struck else ()
+        update = {"consumers": reached, "intervention": intervention, "cause": self.drawn_from}
+        return (self.model_copy(update=update),) if reached else ()
 
     @property
-    def window(self) -> Window:
-        """When the fault is in force."""
-        end = None if self.duration_steps is None else self.onset_step + self.duration_steps
-        return Window(self.onset_step, end, self.recovery_steps)
+    def _end(self) -> float:
+        return inf if self.duration_steps is None else self.onset_step + self.duration_steps
 
-    def same_numbers(self, other: "Fault") -> bool:
-        """Return whether both have random numbers beside their cause's, and the same ones."""
-        return abs(self.loading) < 1 > abs(other.loading) and self._own == other._own
+    def over(self, step: int) -> bool:
+        """Return whether nothing is in force any more."""
+        return step >= self._end + self.recovery_steps
+
+    def weight(self, step: int) -> float:
+        """Return the share of the fault in the value: 1 in the window, 0 outside, between after it.
+
+        In recovery step k = 1 … n it is 1 - k / (n + 1), so the reading is clean again in step
+        n + 1.
+        """
+        if step < self.onset_step:
+            return 0.0
+        left = (self.recovery_steps - (step - self._end)) / (self.recovery_steps + 1)
+        return min(max(left, 0.0), 1.0)
 
     def describe(self) -> str:
         """Return the fault in a few words."""
@@ -163,7 +141,7 @@ class Fault(Frozen):
             words += f" for {self.duration_steps} steps"
         if self.recovery_steps:
             words += f", recovering over {self.recovery_steps}"
-        return words + (f", {self.intermittence.words()}" if self.intermittence else "")
+        return words
 
 
 class Coupled(Frozen):
@@ -176,9 +154,9 @@ class Coupled(Frozen):
     name: str
     faults: tuple[Fault, ...] = Field(min_length=1)
 
-    def striking(self, *names: str) -> Self:
+    def aimed_at(self, *names: str) -> Self:
         """Return the same faults at other consumers: `module.place`, modules, or `*`."""
-        return self.model_copy(update={"faults": tuple(f.striking(*names) for f in self.faults)})
+        return self.model_copy(update={"faults": tuple(f.aimed_at(*names) for f in self.faults)})
 
     def validate_against(self, interface: Interface) -> None:
         """Raise `UserError` unless the faults can act on `interface`."""
@@ -188,12 +166,12 @@ class Coupled(Frozen):
                 if not _matching(name, readers):
                     channels = tuple(f.channel for f in self.faults)
                     raise UserError(_no_reader(interface, channels, name))
-            fault.striking(ALL).validate_against(interface)
+            fault.aimed_at(ALL).validate_against(interface)
 
     def resolved(
         self, interface: Interface, present: Collection[str] | None = None
     ) -> tuple[Fault, ...]:
-        """Return the faults as `Fault.resolved` does, without those that strike nobody."""
+        """Return the faults as `Fault.resolved` does, without those that reach nobody."""
         self.validate_against(interface)
         shared = (f.model_copy(update={"cause": f.cause or self.name}) for f in self.faults)
         # The parts were validated together above: a consumer may read only one of the channels.

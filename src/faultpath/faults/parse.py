@@ -5,8 +5,6 @@
     wind:offset=1/0/0                   a vector
     velocity:noise=0.1,relative         more fields of the intervention after commas
     wind:freeze,onset=20,for=40         when, in control steps; onset_s= and for_s= in seconds
-    mass:scale=1.1,on_s=1,off_s=4       on and off for random times of these means
-    calibration:bias=0.1,correlation=0.5    errors of several channels that are correlated
     mass:scale=1.1@planner+predictor.trim   only these modules and consumers
 
 A correlation group may stand for its channels: `calibration:scale=1.1`.
@@ -14,7 +12,6 @@ A correlation group may stand for its channels: `calibration:scale=1.1`.
 
 import re
 from collections.abc import Callable, Mapping
-from math import sqrt
 from typing import Any, TypeAlias
 
 from pydantic import ValidationError
@@ -23,7 +20,6 @@ from faultpath.core.errors import UserError
 from faultpath.core.misfits import misfit_of
 from faultpath.core.text import listed, unknown
 from faultpath.faults.fault import Coupled, Fault
-from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import INTERVENTIONS, AnyIntervention
 from faultpath.faults.text import FaultText
 from faultpath.interface import Interface, groups
@@ -48,10 +44,7 @@ _WINDOW = {
     "recover": ("recovery_steps", 0),
 }
 """Options on time: the field of `Fault` and the least number of steps."""
-_PHASES = {"on": "mean_on_s", "off": "mean_off_s"}
-"""Options on intermittence: the field of `Intermittence`, for a mean time."""
-_CORRELATION = "correlation"
-_ANY_FAULT = (_CORRELATION, *(f"{name}{s}" for name in (*_WINDOW, *_PHASES) for s in ("", "_s")))
+_ANY_FAULT = tuple(f"{name}{unit}" for name in _WINDOW for unit in ("", "_s"))
 """Options that every fault takes."""
 
 
@@ -68,15 +61,18 @@ def parse_fault(
         if len(parts.sizes) > 1:
             raise UserError("it has several sizes: audit each with faultpath.audits")
         when, rest = _timing(parts.options, dt_s)
-        correlation = _correlation(rest)
         size = parts.sizes[0] if parts.sizes else None
         if parts.kind is None:
             fault = _preset(parts.name, size, rest, interface, presets)
         else:
             fault = _intervention(parts.name, parts.kind, size, rest, interface)
-        fault = _correlated(_at_time(fault, when), correlation)
+        if isinstance(fault, Coupled):
+            timed = tuple(each.model_copy(update=when) for each in fault.faults)
+            fault = fault.model_copy(update={"faults": timed})
+        else:
+            fault = fault.model_copy(update=when)
         if parts.consumers:
-            fault = fault.striking(*parts.consumers)
+            fault = fault.aimed_at(*parts.consumers)
         fault.validate_against(interface)
     except UserError as error:
         raise UserError(f"fault '{text}': {error}") from None
@@ -86,53 +82,19 @@ def parse_fault(
 def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], dict[str, str]]:
     """Return the fields of a fault that say when it is in force, and the other options."""
     when: dict[str, Any] = {}
-    means: dict[str, float] = {}
     rest: dict[str, str] = {}
     for key, given in options.items():
         plain = key.removesuffix("_s")
-        if plain not in _WINDOW and plain not in _PHASES:
+        if plain not in _WINDOW:
             rest[key] = given
             continue
-        field = _PHASES.get(plain) or _WINDOW[plain][0]
-        if field in when or field in means:
+        field, least = _WINDOW[plain]
+        if field in when:
             raise UserError(f"'{plain}' is given in steps and in seconds; drop one")
-        if plain in _WINDOW:
-            when[field] = _steps(key, given, _WINDOW[plain][1], dt_s if plain != key else None)
-            continue
-        means[field] = _number(key, given) * (dt_s if plain == key else 1.0)
-        if means[field] <= 0:
-            raise UserError(f"'{key}' needs a mean time above 0")
+        when[field] = _steps(key, given, least, dt_s if plain != key else None)
     if "recovery_steps" in when and "duration_steps" not in when:
         raise UserError("'recover' needs an end to recover from; add for=STEPS")
-    if len(means) == 1:
-        raise UserError("an intermittent fault needs both mean times; give on_s= and off_s=")
-    if means:
-        when["intermittence"] = Intermittence.model_validate(means)
     return when, rest
-
-
-def _correlation(options: dict[str, str]) -> float | None:
-    """Take the option out that says how far errors of several channels go together."""
-    if _CORRELATION not in options:
-        return None
-    value = _number(_CORRELATION, options.pop(_CORRELATION))
-    if not 0 <= value <= 1:
-        raise UserError(f"'{_CORRELATION}' needs a number from 0 to 1, not {value:g}")
-    return value
-
-
-def _correlated(fault: Fault | Coupled, correlation: float | None) -> Fault | Coupled:
-    if correlation is None:
-        return fault
-    if not isinstance(fault, Coupled):
-        raise UserError(
-            f"'{_CORRELATION}' needs several channels, and this fault has one; name a group"
-        )
-    if any(not each.intervention.is_random() for each in fault.faults):
-        raise UserError(f"'{_CORRELATION}' needs errors that are drawn, such as bias or noise")
-    loading = {"loading": sqrt(correlation)}
-    faults = tuple(each.model_copy(update=loading) for each in fault.faults)
-    return fault.model_copy(update={"faults": faults})
 
 
 def _steps(key: str, given: str, least: int, dt_s: float | None) -> int:
@@ -229,10 +191,3 @@ def _value(key: str, text: str) -> Any:
         return tuple(_number(key, part) for part in text.split("/"))
     # What is echoed in a refusal is what was written, -1 and not -1.0.
     return int(text) if re.fullmatch(r"[+-]?\d{1,15}", text) else _number(key, text)
-
-
-def _at_time(fault: Fault | Coupled, when: Mapping[str, Any]) -> Fault | Coupled:
-    if isinstance(fault, Coupled):
-        faults = tuple(each.model_copy(update=dict(when)) for each in fault.faults)
-        return fault.model_copy(update={"faults": faults})
-    return fault.model_copy(update=dict(when))

@@ -4,13 +4,11 @@ from typing import Annotated, Literal, Self, TypeAlias, get_args
 
 from pydantic import Discriminator, Field
 
-from faultpath.core.arrays import Array, pick
+from faultpath.core.arrays import Array
 from faultpath.faults.base import Intervention, Memory, Moment
-from faultpath.faults.drift import Bias, Drift
-from faultpath.faults.noise import Noise
-from faultpath.faults.probes import Replace, Shuffle
+from faultpath.faults.drawn import Bias, Drift, Noise, Shuffle, UniformScale
 from faultpath.faults.timing import Delay, Dropout, Freeze, Hold
-from faultpath.faults.values import Erase, Offset, Quantise, Scale, UniformScale
+from faultpath.faults.values import Erase, Offset, Quantise, Scale
 from faultpath.interface import Channel
 
 
@@ -32,7 +30,7 @@ class Sequence(Intervention):
             here = at.part(index)
             past = part.begin(value, here) if memory is None else memory[index]
             changed, past = part.apply(value, past, here)
-            value = pick(at.elapsed >= 0, changed, value)
+            value = changed if at.elapsed >= 0 else value
             carried = (*carried, past)
         return value, carried
 
@@ -67,7 +65,6 @@ Listed: TypeAlias = (
     | Hold
     | Freeze
     | Dropout
-    | Replace
     | Shuffle
     | Sequence
 )

@@ -7,7 +7,7 @@ from typing import ClassVar, Literal, Self
 
 from pydantic import Field
 
-from faultpath.core.arrays import Array, copy, kept, pick, place
+from faultpath.core.arrays import Array, copy, pick, place
 from faultpath.faults.base import Intervention, Memory, Moment, number
 from faultpath.faults.values import Erase
 from faultpath.interface import Channel
@@ -50,7 +50,8 @@ class Hold(Intervention):
         """Return the held reading, refreshed when its time has come."""
         held, turn = memory
         now = at.elapsed // self.every
-        held = kept((now != turn) | (at.elapsed < 0), reading, held)
+        if now != turn or at.elapsed < 0:
+            held = copy(reading)
         return held, (held, now)
 
 
@@ -69,7 +70,7 @@ class Freeze(Intervention):
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the held reading, which follows the readings up to the onset."""
-        held = kept(at.elapsed <= 0, reading, memory)
+        held = copy(reading) if at.elapsed <= 0 else memory
         return held, held
 
 
@@ -89,10 +90,10 @@ class Dropout(Intervention):
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the reading where it arrives and the substitute where it is lost."""
-        if at.before or not self.probability:
+        if at.elapsed < 0 or not self.probability:
             return reading, copy(reading)
         arrives = place(at.draws.uniform((), at.step) >= self.probability, reading)
-        last = pick(arrives | (at.elapsed < 0), reading, memory)
+        last = pick(arrives, reading, memory)
         if self.substitute is None:
             return last, last
         erased, _ = self.substitute.apply(reading, None, at)

@@ -4,8 +4,7 @@ from typing import ClassVar, Literal, Self
 
 from pydantic import Field
 
-from faultpath.core.arrays import Array, Constant, constant, filled, is_zero, like, namespace
-from faultpath.core.arrays import rows as as_rows
+from faultpath.core.arrays import Array, Constant, constant, filled, is_zero, namespace
 from faultpath.faults.base import Intervention, Memory, Moment, number
 from faultpath.interface import Channel
 
@@ -21,29 +20,6 @@ class Scale(Intervention):
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return `reading * factor`."""
         return reading * constant(self.factor, reading), None
-
-
-class UniformScale(Intervention):
-    """Multiply by a factor drawn once per scene, uniform in 1 ± half_range.
-
-    The calibration noise of DCC training (paper, "Interventions and Evidence": ± 20 %, one draw a
-    window, held throughout). Channels of different cause draw independently.
-    """
-
-    kind: Literal["uniform_scale"] = "uniform_scale"
-    said = "scaled by 1 ± {half_range}, one draw a scene"
-    value_field: ClassVar[str | None] = "half_range"
-    random: ClassVar[bool] = True
-    half_range: float = Field(ge=0, lt=1)
-
-    def begin(self, reading: Array, at: Moment) -> Memory:
-        """Return the factors, one a scene."""
-        unit = 2 * at.draws.uniform((), 0) - 1
-        return as_rows(like(1 + self.half_range * unit, reading), reading)
-
-    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return `reading * factor of the scene`."""
-        return reading * memory, memory
 
 
 class Offset(Intervention):

@@ -3,7 +3,7 @@
 from faultpath.interface.checks import Interface
 from faultpath.interface.graph import groups, module_of, modules, rank, transitive_consumers
 from faultpath.interface.model import Channel, Gap, Provenance, Source, Uncertainty
-from faultpath.interface.yaml_io import interface_yaml, read_interface
+from faultpath.interface.yaml_io import read_interface
 
 __all__ = [
     "Channel",
@@ -13,7 +13,6 @@ __all__ = [
     "Source",
     "Uncertainty",
     "groups",
-    "interface_yaml",
     "module_of",
     "modules",
     "rank",

@@ -1,4 +1,4 @@
-"""Interfaces as YAML, written so that reading gives the same."""
+"""Interfaces read from YAML and from data."""
 
 import copy
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
-from faultpath.core.files.plain import Misread, read_yaml, yaml_text
+from faultpath.core.files.plain import Misread, read_yaml
 from faultpath.core.misfits import misfit_of
 from faultpath.interface.checks import Interface
 
@@ -53,12 +53,6 @@ def read_interface(
         return document.fill(Interface)
     except Misread as error:
         raise UserError(error.at(where)) from None
-
-
-def interface_yaml(interface: Interface) -> str:
-    """Return the interface as YAML text; what equals its default is left out."""
-    data = interface.model_dump(mode="json", exclude_defaults=True)
-    return yaml_text(data, width=100)
 
 
 def _complete(

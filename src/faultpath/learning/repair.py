@@ -79,7 +79,7 @@ def uncertainty_training(*q_eps: AnyFault | str) -> Repair:
 
     Samples and targets stay as they are (paper, Eq. 1). `q_eps` are the faults of an audit, as
     objects or as text: `"mass:uniform_scale=0.2"` is the paper's. What they draw once a scene is
-    drawn once a window; a window's first step is step 0, so onset, drift and intermittence go by
+    drawn once a window; a window's first step is step 0, so onset and drift go by
     the steps of the window. `errors` makes the usual Gaussian ones.
     """
     if not q_eps:

@@ -34,7 +34,7 @@ class Part(ABC):
 
     name: str
     """Under which the interface lists its consumers, `name.place`. Parts may share it: a fault at
-    that module then strikes them all."""
+    that module then reaches them all."""
     reads: frozenset[Port] = frozenset()
     """Ports that get what their source holds at this step."""
     reads_past: frozenset[Port] = frozenset()

@@ -10,7 +10,7 @@ from faultpath.loop.taps import IllegalRead, UndeclaredReader
 class Port(NamedTuple):
     """A channel and the place in the module where it enters: one tap.
 
-    The same channel at two places is two ports, for a fault may strike one of them alone.
+    The same channel at two places is two ports, for a fault may reach one of them alone.
     """
 
     channel: str

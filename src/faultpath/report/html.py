@@ -64,7 +64,7 @@ def report_page(source: ReportInput) -> str:
         pairs=pairs,
         forest=Markup(forest(record)),
         effects=Markup(html(by_path(record, SHOWN, "Effects; bold is decided"))),
-        fault="; ".join(each.striking("*").describe() for each in asked.faults)
+        fault="; ".join(each.aimed_at("*").describe() for each in asked.faults)
         or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.variants, strict=True)),
         forks=list(map(Markup, fork_panels(forks(source)))),

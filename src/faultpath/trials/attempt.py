@@ -119,7 +119,7 @@ def _run(
     noted = tuple(
         replace(
             outcome,
-            struck_steps=int(receipts.steps_struck[i]),
+            struck_steps=int(receipts.steps_faulted[i]),
             altered_steps=int(receipts.steps_altered[i]),
         )
         for i, outcome in enumerate(outcomes)

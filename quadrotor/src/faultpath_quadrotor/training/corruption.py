@@ -29,7 +29,7 @@ def dcc(consumers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> Coupled
         for channel in CALIBRATION
     )
     readers = {name for channel in CALIBRATION for name in interface.channel(channel).consumers}
-    return Coupled(name="dcc", faults=faults).striking(*sorted(readers & set(consumers)))
+    return Coupled(name="dcc", faults=faults).aimed_at(*sorted(readers & set(consumers)))
 
 
 def corrupted(

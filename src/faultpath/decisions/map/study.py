@@ -87,7 +87,7 @@ class MapPlan:
             part
             for units, modules in by_size.items()
             for part in _sized(self.system, self.question.fault, self.size(units))
-            .striking(*modules)
+            .aimed_at(*modules)
             .resolved(self.system.interface, variant.consumers)
         )
 
@@ -229,7 +229,7 @@ def _places(
         parts = of.resolved(system.interface, present)
         return {consumer for part in parts for consumer in part.consumers}
 
-    reached = [readers(fault.striking(name)) for name in against]
+    reached = [readers(fault.aimed_at(name)) for name in against]
     for name, found in zip(against, reached, strict=True):
         if not found:
             both = " nor ".join(f"'{variant.name}'" for variant in variants)

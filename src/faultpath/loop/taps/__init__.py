@@ -1,11 +1,11 @@
 """Where a source's reading becomes what a consumer gets."""
 
 from faultpath.loop.taps.errors import (
+    FaultedElsewhere,
     IllegalRead,
     MalformedReading,
     NotDelivered,
     NotFinite,
-    StruckElsewhere,
     TapError,
     UndeclaredReader,
     WrittenTo,
@@ -21,6 +21,7 @@ from faultpath.loop.taps.receipts import (
 from faultpath.loop.taps.taps import ModuleTaps, Taps
 
 __all__ = [
+    "FaultedElsewhere",
     "IllegalRead",
     "MalformedReading",
     "ModuleTaps",
@@ -30,7 +31,6 @@ __all__ = [
     "Query",
     "Reading",
     "Receipts",
-    "StruckElsewhere",
     "TapCount",
     "TapError",
     "Taps",

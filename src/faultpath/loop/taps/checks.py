@@ -23,11 +23,16 @@ from faultpath.loop.taps.tap import Tap
 
 def check_draws(faults: Sequence[Fault]) -> None:
     """Raise `UserError` for two faults whose own random numbers are the same."""
-    for one, other in combinations(faults, 2):
-        if one.same_numbers(other):
+    apart = [fault for fault in faults if abs(fault.loading) < 1]
+    for one, other in combinations(apart, 2):
+        if [one.drawn_from, one.channel, one.intervention.kind] == [
+            other.drawn_from,
+            other.channel,
+            other.intervention.kind,
+        ]:
             raise UserError(
                 f"faults '{one.describe()}' and '{other.describe()}' have a loading and draw the "
-                "same numbers nevertheless: give each an `own_cause`"
+                "same numbers nevertheless: give them different causes"
             )
 
 

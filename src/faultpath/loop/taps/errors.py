@@ -29,8 +29,8 @@ class WrittenTo(TapError):
 
 
 class NotDelivered(TapError):
-    """A fault never reached a consumer that it strikes, although a scene ran past its onset."""
+    """A fault never reached a consumer that it names, although a scene ran past its onset."""
 
 
-class StruckElsewhere(TapError):
+class FaultedElsewhere(TapError):
     """A consumer that no fault names got an altered reading."""

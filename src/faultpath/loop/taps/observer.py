@@ -20,5 +20,5 @@ class Observer:
     ) -> None:
         """See what a query answered to a request, and what the consumer got of that answer."""
 
-    def struck(self, step: int, held: Any) -> None:
+    def faulted(self, step: int, held: Any) -> None:
         """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""

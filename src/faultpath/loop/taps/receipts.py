@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.loop.taps.errors import NotDelivered, StruckElsewhere, UndeclaredReader
+from faultpath.loop.taps.errors import FaultedElsewhere, NotDelivered, UndeclaredReader
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +37,12 @@ def added(counts: Iterable[TapCount]) -> tuple[TapCount, ...]:
 
 
 @dataclass(frozen=True)
-class StrikeReceipt:
+class CorruptionReceipt:
     """One fault at one tap."""
 
     fault: str
     """The fault in words."""
-    onset_step: NDArray[np.int64]
-    """`[B]`"""
+    onset_step: int
     steps_in_force: NDArray[np.int64]
     """`[B]`: deliveries in the window, or in recovery after it, while the scene ran."""
 
@@ -59,8 +58,8 @@ class Receipt:
     """Control steps at which the consumer got the channel."""
     asks: int
     """Answers that it got of a query; 0 for a channel with one reading a step."""
-    strikes: tuple[StrikeReceipt, ...]
-    steps_struck: NDArray[np.int64]
+    corruptions: tuple[CorruptionReceipt, ...]
+    steps_faulted: NDArray[np.int64]
     """`[B]`: deliveries with a fault in force while the scene ran."""
     steps_altered: NDArray[np.int64]
     """`[B]`: those in which the value differed from the reading."""
@@ -72,7 +71,7 @@ class Receipts:
 
     scenes: tuple[str, ...]
     taps: tuple[Receipt, ...]
-    steps_struck: NDArray[np.int64]
+    steps_faulted: NDArray[np.int64]
     """`[B]`: control steps with a fault in force at some tap that delivered."""
     steps_altered: NDArray[np.int64]
     """`[B]`: control steps at which some consumer got something else than the reading."""
@@ -84,7 +83,7 @@ class Receipts:
                 tap.channel,
                 tap.consumer,
                 tap.deliveries * len(self.scenes),
-                int(tap.steps_struck.sum()),
+                int(tap.steps_faulted.sum()),
                 int(tap.steps_altered.sum()),
             )
             for tap in self.taps
@@ -100,28 +99,28 @@ class Receipts:
 
 def check_delivered(
     receipts: Receipts,
-    struck: frozenset[tuple[str, str]],
+    faulted: frozenset[tuple[str, str]],
     last_step: NDArray[np.int64],
 ) -> None:
     """Compare receipts with the taps `(channel, consumer)` that the faults name.
 
     `last_step` `[B]` is the last control step at which each scene ran. Raises `NotDelivered` where
-    a fault missed every scene of a tap although one ran past the onset, and `StruckElsewhere`
+    a fault missed every scene of a tap although one ran past the onset, and `FaultedElsewhere`
     where another tap altered a reading.
     """
     for receipt in receipts.taps:
         tap = f"{receipt.channel} -> {receipt.consumer}"
-        if (receipt.channel, receipt.consumer) not in struck:
-            if receipt.strikes or receipt.steps_struck.any() or receipt.steps_altered.any():
-                raise StruckElsewhere(f"tap {tap} altered a reading, but no fault names it")
+        if (receipt.channel, receipt.consumer) not in faulted:
+            if receipt.corruptions or receipt.steps_faulted.any() or receipt.steps_altered.any():
+                raise FaultedElsewhere(f"tap {tap} altered a reading, but no fault names it")
             continue
-        if not receipt.strikes:
+        if not receipt.corruptions:
             raise NotDelivered(f"tap {tap}: a fault names it, but none acted there")
-        for strike in receipt.strikes:
-            ran = last_step >= strike.onset_step
-            if ran.any() and not strike.steps_in_force.any():
+        for one in receipt.corruptions:
+            ran = last_step >= one.onset_step
+            if ran.any() and not one.steps_in_force.any():
                 raise NotDelivered(
-                    f"tap {tap}: '{strike.fault}' never reached it, although "
+                    f"tap {tap}: '{one.fault}' never reached it, although "
                     f"{int(ran.sum())} of {len(receipts.scenes)} scenes ran past the onset; the "
                     f"consumer got the channel in {receipt.deliveries} steps"
                 )

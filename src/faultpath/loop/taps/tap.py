@@ -1,16 +1,156 @@
-"""One consumer's end of one channel, and how a variant's taps come about."""
+"""One consumer's end of one channel: the faults that act there, and what is counted."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
-from faultpath.core.arrays import Array
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.core.arrays import Array, copy, differs, namespace, place, to_numpy, together
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
+from faultpath.faults import Draws, Fault, Moment
+from faultpath.faults.base import Memory
 from faultpath.interface import Interface, Provenance
-from faultpath.loop.taps.guard import Guard
-from faultpath.loop.taps.receipts import Receipt, StrikeReceipt
-from faultpath.loop.taps.strike import Strike
-from faultpath.loop.taps.tally import Tally
+from faultpath.loop.taps.receipts import CorruptionReceipt, Receipt
+
+
+class Tally:
+    """Steps at which something held in a scene.
+
+    Counts stay on the device of the masks, so that counting costs no host wait. Several taps may
+    report the same step; it counts once.
+    """
+
+    __slots__ = ("_done", "_pending", "_step")
+
+    def __init__(self) -> None:
+        self._done: Any = 0
+        self._pending: Any = False
+        self._step = -1
+
+    def note(self, step: int, held: Any) -> None:
+        """Report that the bool or boolean array `[B]` `held` at `step`."""
+        if step != self._step:
+            self._done, self._pending, self._step = self._total(), held, step
+        elif self._pending is False:
+            self._pending = held
+        elif held is not False:
+            one, other = together(self._pending, held)
+            self._pending = one | other
+
+    def _total(self) -> Any:
+        if self._pending is False:
+            return self._done
+        done, pending = together(self._done, self._pending)
+        return done + pending
+
+    def counts(self, n_scenes: int) -> NDArray[np.int64]:
+        """Return the counts `[B]`; this waits for the device."""
+        total = to_numpy(self._total()).astype(np.int64)
+        return np.broadcast_to(total, (n_scenes,)).copy()
+
+
+class Running:
+    """Which scenes are still running, at hand on the device of any reading."""
+
+    __slots__ = ("_mask", "_placed")
+
+    def __init__(self, mask: Array | None) -> None:
+        self._mask = mask
+        self._placed: Array = mask
+
+    def among(self, held: Any, reading: Array) -> Any:
+        """Return `held`, a bool or boolean array `[B]`, where the scene runs."""
+        if self._mask is None or held is False:
+            return held
+        placed = self._placed
+        if namespace(placed) is not namespace(reading) or placed.device != reading.device:
+            placed = self._placed = place(to_numpy(self._mask), reading)
+        return placed if held is True else held & placed
+
+
+class Guard:
+    """Hands out copies of a tap's values and sees whether somebody wrote into them.
+
+    NumPy arrays are read-only views and need none of this. A tensor tells by its version counter;
+    one that keeps none (inference mode) is compared with what it was.
+    """
+
+    __slots__ = ("_given", "_mark", "_written")
+
+    def __init__(self) -> None:
+        self._given: Array = None
+        self._mark: Any = None
+        self._written: Any = False
+
+    def hand_out(self, value: Array) -> Array:
+        """Return a copy for the consumer, after a look at the last one."""
+        self._look()
+        self._given = copy(value)
+        try:
+            self._mark = int(self._given._version)
+        except (AttributeError, RuntimeError):
+            self._mark = copy(self._given)
+        return self._given
+
+    def written(self) -> bool:
+        """Return whether a consumer wrote; this waits for the device."""
+        self._look()
+        return bool(to_numpy(self._written))
+
+    def _look(self) -> None:
+        if self._given is None:
+            return
+        if isinstance(self._mark, int):
+            changed = bool(self._given._version != self._mark)
+        else:
+            unequal = differs(self._given, self._mark)
+            changed = namespace(unequal).any(unequal)
+        self._written = self._written | changed
+
+
+class Corruption:
+    """A resolved fault as it acts on the deliveries of one tap."""
+
+    __slots__ = ("_draws", "_dt_s", "_memories", "fault", "in_force")
+
+    def __init__(self, fault: Fault, draws: Draws, dt_s: float) -> None:
+        self.fault = fault
+        self.in_force = Tally()
+        self._draws = draws
+        self._dt_s = dt_s
+        self._memories: dict[int, Memory] = {}
+        """By ask within a step; a reading that is no query is ask 0."""
+
+    def act(self, reading: Array, step: int, ask: int = 0) -> tuple[Array, bool]:
+        """Return the value and whether the fault is in force.
+
+        Raises `UserError` where the intervention cannot act on such a reading.
+        """
+        fault, doing = self.fault, self.fault.intervention
+        if fault.over(step):
+            self._memories.clear()
+            return reading, False
+        at = Moment(step, step - fault.onset_step, self._dt_s, self._draws.of_ask(ask))
+        if ask not in self._memories:
+            self._memories[ask] = doing.begin(reading, at)
+        value, self._memories[ask] = doing.apply(reading, self._memories[ask], at)
+        refused = f"fault on channel '{fault.channel}': {doing.kind}"
+        if value is not reading and (value.dtype != reading.dtype or value.shape != reading.shape):
+            raise UserError(
+                f"{refused} turns {reading.dtype} {list(reading.shape)} into {value.dtype} "
+                f"{list(value.shape)}; choose one that keeps them"
+            )
+        weight = fault.weight(step)
+        if weight in (0.0, 1.0):
+            return (value, True) if weight else (reading, False)
+        if not namespace(reading).isdtype(reading.dtype, "real floating"):
+            raise UserError(
+                f"{refused} cannot recover step by step in {reading.dtype}; leave recovery out"
+            )
+        return reading + (value - reading) * weight, True
 
 
 @dataclass(slots=True, eq=False)
@@ -23,7 +163,7 @@ class Tap:
     legal: bool
     shape: tuple[int, ...]
     """Of every reading, scenes first."""
-    strikes: tuple[Strike, ...] = ()
+    corruptions: tuple[Corruption, ...] = ()
     deliveries: int = 0
     asks: int = 0
     """Answers of a query, over all steps."""
@@ -37,16 +177,16 @@ class Tap:
     finite: Array = None
     """Where the first reading was finite, until that has been looked at."""
     guard: Guard | None = None
-    struck: Tally = field(default_factory=Tally)
+    faulted: Tally = field(default_factory=Tally)
     altered: Tally = field(default_factory=Tally)
 
     def __str__(self) -> str:
         return f"{self.channel} -> {self.consumer}"
 
-    def add(self, strike: Strike) -> None:
-        """Let a fault strike here; a fault that is alone counts for the whole tap."""
-        self.strikes = (*self.strikes, strike)
-        self.struck = strike.in_force if len(self.strikes) == 1 else Tally()
+    def add(self, corruption: Corruption) -> None:
+        """Let a fault act here; a fault that is alone counts for the whole tap."""
+        self.corruptions = (*self.corruptions, corruption)
+        self.faulted = corruption.in_force if len(self.corruptions) == 1 else Tally()
 
     def receipt(self, n_scenes: int) -> Receipt:
         """Return what passed here so far; this waits for the device that holds the counts."""
@@ -56,15 +196,13 @@ class Tap:
             source=self.source,
             deliveries=self.deliveries,
             asks=self.asks,
-            strikes=tuple(
-                StrikeReceipt(
-                    fault=strike.fault.describe(),
-                    onset_step=strike.onsets(n_scenes),
-                    steps_in_force=strike.in_force.counts(n_scenes),
+            corruptions=tuple(
+                CorruptionReceipt(
+                    each.fault.describe(), each.fault.onset_step, each.in_force.counts(n_scenes)
                 )
-                for strike in self.strikes
+                for each in self.corruptions
             ),
-            steps_struck=self.struck.counts(n_scenes),
+            steps_faulted=self.faulted.counts(n_scenes),
             steps_altered=self.altered.counts(n_scenes),
         )
 

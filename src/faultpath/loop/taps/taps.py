@@ -28,13 +28,10 @@ from faultpath.loop.taps.errors import (
     UndeclaredReader,
     WrittenTo,
 )
-from faultpath.loop.taps.guard import Guard
 from faultpath.loop.taps.observer import Observer
 from faultpath.loop.taps.reading import Query, Reading
 from faultpath.loop.taps.receipts import Receipts, check_delivered
-from faultpath.loop.taps.strike import Strike
-from faultpath.loop.taps.tally import Running, Tally
-from faultpath.loop.taps.tap import Tap, wire
+from faultpath.loop.taps.tap import Corruption, Guard, Running, Tally, Tap, wire
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +60,7 @@ class Taps:
         observer: Sees what is delivered.
 
     Raises:
-        UserError: A name is unknown, a fault does not fit, or it strikes nobody in this variant.
+        UserError: A name is unknown, a fault does not fit, or it reaches nobody in this variant.
     """
 
     def __init__(
@@ -84,7 +81,7 @@ class Taps:
         self._observer = observer
         self._scenes = tuple(scenes)
         self._running = Running(None)
-        self._struck, self._altered = Tally(), Tally()
+        self._faulted, self._altered = Tally(), Tally()
         self._open: Array = None
         self._closed: Array = None
         self._taps = wire(interface, bindings or {}, consumers, privileged, len(scenes))
@@ -92,9 +89,9 @@ class Taps:
             tap.guard = Guard()
         first = {channel.name: channel.sources[0] for channel in interface.channels}
         self._bindings = MappingProxyType(first | dict(bindings or {}))
-        self._strike(tuple(faults), dt_s, seed)
+        self._add(tuple(faults), dt_s, seed)
 
-    def _strike(self, faults: tuple[Fault | Coupled, ...], dt_s: float, seed: int) -> None:
+    def _add(self, faults: tuple[Fault | Coupled, ...], dt_s: float, seed: int) -> None:
         present = {consumer for _, consumer in self._taps}
         draws: dict[tuple[str, float, str | None], Draws] = {}
         resolved = [declared.resolved(self._interface) for declared in faults]
@@ -103,7 +100,7 @@ class Taps:
             if not declared.resolved(self._interface, present):
                 names = {consumer for fault in everywhere for consumer in fault.consumers}
                 raise UserError(
-                    f"fault '{declared.describe()}' strikes nobody in this variant, which has no "
+                    f"fault '{declared.describe()}' reaches nobody in this variant, which has no "
                     f"{listed(names)}; leave the fault out or name other consumers"
                 )
             for fault in everywhere:
@@ -113,7 +110,7 @@ class Taps:
                 )
                 for consumer in fault.consumers:
                     if tap := self._taps.get((fault.channel, consumer)):
-                        tap.add(Strike(fault, drawn, dt_s))
+                        tap.add(Corruption(fault, drawn, dt_s))
 
     @property
     def bindings(self) -> Mapping[str, str]:
@@ -165,8 +162,8 @@ class Taps:
         if isinstance(value, Query):
             tap.asked = 0
             return partial(self._answer, tap, value, step)
-        if tap.strikes:
-            value = self._struck_value(tap, value, step)
+        if tap.corruptions:
+            value = self._corrupted(tap, value, step)
         if isinstance(value, np.ndarray):
             if value is not self._open:  # consumers of one array share the view of it
                 self._open, self._closed = value, read_only(value)
@@ -183,12 +180,12 @@ class Taps:
         ask, first = tap.asked, not tap.asks
         tap.asked, tap.asks = ask + 1, tap.asks + 1
         got = answer
-        if first or tap.strikes or tap.guard:
+        if first or tap.corruptions or tap.guard:
             given = value = query.value(answer)
             if first:
                 check_first(tap, value, self._scenes)
-            if tap.strikes:
-                value = self._struck_value(tap, value, step, ask)
+            if tap.corruptions:
+                value = self._corrupted(tap, value, step, ask)
             if tap.guard is not None:
                 value = tap.guard.hand_out(value)
             if value is not given:
@@ -197,20 +194,20 @@ class Taps:
             self._observer.answered(tap, query, step, request, answer, got)
         return got
 
-    def _struck_value(self, tap: Tap, reading: Array, step: int, ask: int = 0) -> Array:
+    def _corrupted(self, tap: Tap, reading: Array, step: int, ask: int = 0) -> Array:
         check_shape(tap, reading)
-        value, struck = reading, False
-        for strike in tap.strikes:
-            value, in_force = strike.act(value, step, ask)
+        value, faulted = reading, False
+        for each in tap.corruptions:
+            value, in_force = each.act(value, step, ask)
             in_force = self._running.among(in_force, reading)
-            strike.in_force.note(step, in_force)
-            struck = in_force if struck is False else struck | in_force
-        if len(tap.strikes) > 1:
-            tap.struck.note(step, struck)
-        self._struck.note(step, struck)
+            each.in_force.note(step, in_force)
+            faulted = in_force if faulted is False else faulted | in_force
+        if len(tap.corruptions) > 1:
+            tap.faulted.note(step, faulted)
+        self._faulted.note(step, faulted)
         if self._observer is not None:
-            self._observer.struck(step, struck)
-        if value is not reading and struck is not False:
+            self._observer.faulted(step, faulted)
+        if value is not reading and faulted is not False:
             altered = self._running.among(differs(value, reading), reading)
             tap.altered.note(step, altered)
             self._altered.note(step, altered)
@@ -236,7 +233,7 @@ class Taps:
         return Receipts(
             scenes=self._scenes,
             taps=tuple(tap.receipt(n) for tap in self._taps.values()),
-            steps_struck=self._struck.counts(n),
+            steps_faulted=self._faulted.counts(n),
             steps_altered=self._altered.counts(n),
         )
 
@@ -254,9 +251,9 @@ class Taps:
                     f"tap {tap}: the consumer wrote into the reading, which others may read too; "
                     "copy it before writing"
                 )
-        struck = frozenset(name for name, tap in self._taps.items() if tap.strikes)
+        faulted = frozenset(name for name, tap in self._taps.items() if tap.corruptions)
         last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
-        check_delivered(self.receipts(), struck, last)
+        check_delivered(self.receipts(), faulted, last)
 
     def _undeclared(self, channel: str, consumer: str) -> UndeclaredReader:
         declared = self._interface.channel(channel).consumers

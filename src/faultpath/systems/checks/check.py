@@ -7,7 +7,7 @@ from typing import Literal
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
 from faultpath.core.text import unknown
-from faultpath.faults import AnyFault, Fault, Offset, Replace, Scale
+from faultpath.faults import AnyFault, Erase, Fault, Offset, Scale
 from faultpath.faults import Sequence as InTurn
 from faultpath.systems.checks import judging
 from faultpath.systems.checks.flights import Flight, Flown, Read, fly, fly_here, lost
@@ -139,6 +139,6 @@ def _again(seen: Seen) -> Iterator[Flight]:
             if "float" in read.dtype:
                 doing = InTurn(parts=(Scale(factor=1.5), Offset(by=0.25)))
             else:  # keeps whole numbers and truths what they are
-                doing = Replace(value=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
+                doing = Erase(default=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
             alone = Fault(channel=channel, intervention=doing, consumers=(consumer,))
             yield Flight("tap", faulted(alone), seen.scenes, read.step + _AFTER, read.tap)

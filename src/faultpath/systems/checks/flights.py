@@ -14,6 +14,7 @@ from faultpath.core.arrays import to_numpy
 from faultpath.core.error_source import described
 from faultpath.core.errors import UserError
 from faultpath.loop.taps import (
+    FaultedElsewhere,
     IllegalRead,
     MalformedReading,
     NotDelivered,
@@ -21,7 +22,6 @@ from faultpath.loop.taps import (
     Observer,
     Query,
     Reading,
-    StruckElsewhere,
     TapCount,
     UndeclaredReader,
 )
@@ -33,7 +33,7 @@ from faultpath.trials.execution.worker import Job, building
 MISTAKES: dict[str, tuple[type[Exception], ...]] = {
     "declared reads": (UndeclaredReader, IllegalRead),
     "shape and unit": (MalformedReading, NotFinite),
-    "fault delivery": (NotDelivered, StruckElsewhere),
+    "fault delivery": (NotDelivered, FaultedElsewhere),
 }
 """What taps refuse, by the check that reports it; all else keeps trials from their end."""
 TRIALS = "trials end"

@@ -73,7 +73,7 @@ class Recording(Observer):
         self.asked.setdefault(tap.source, request)
 
     @override
-    def struck(self, step: int, held: Any) -> None:
+    def faulted(self, step: int, held: Any) -> None:
         mask = np.array(to_numpy(held) if is_array(held) else held)
         self.force[step] = self.force.get(step, False) | mask
 

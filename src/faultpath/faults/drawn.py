@@ -1,0 +1,179 @@
+"""Errors that are drawn: anew at every step, once a scene, wandering slowly, or growing."""
+
+from math import exp, sqrt
+from typing import ClassVar, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from faultpath.core.arrays import Array, Constant, is_zero, like, namespace, place, rows
+from faultpath.faults.base import Intervention, Memory, Moment, check_std, number, with_error
+
+
+class Noise(Intervention):
+    """Add Gaussian noise, drawn anew at every step and for every number of the reading."""
+
+    kind: Literal["noise"] = "noise"
+    value_field: ClassVar[str | None] = "std"
+    random: ClassVar[bool] = True
+    std: Constant
+    """In the reading's unit, or as a fraction of the reading when `relative`."""
+    relative: bool = False
+
+    @model_validator(mode="after")
+    def _not_negative(self) -> Self:
+        check_std(self.std)
+        return self
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return `reading + std * n`, or `reading * (1 + std * n)` when relative."""
+        if at.elapsed < 0 or is_zero(self.std):
+            return reading, None
+        error = np.asarray(self.std) * at.draws.normal(tuple(reading.shape[1:]), at.step)
+        return with_error(reading, error, self.relative), None
+
+    def words(self) -> str:
+        """Return `noise of std STD`."""
+        return f"{'relative ' if self.relative else ''}noise of std {number(self.std)}"
+
+
+class UniformScale(Intervention):
+    """Multiply by a factor drawn once per scene, uniform in 1 ± half_range.
+
+    The calibration noise of DCC training (paper, "Interventions and Evidence": ± 20 %, one draw a
+    window, held throughout). Channels of different cause draw independently.
+    """
+
+    kind: Literal["uniform_scale"] = "uniform_scale"
+    said = "scaled by 1 ± {half_range}, one draw a scene"
+    value_field: ClassVar[str | None] = "half_range"
+    random: ClassVar[bool] = True
+    half_range: float = Field(ge=0, lt=1)
+
+    def begin(self, reading: Array, at: Moment) -> Memory:
+        """Return the factors, one a scene."""
+        unit = 2 * at.draws.uniform((), 0) - 1
+        return rows(like(1 + self.half_range * unit, reading), reading)
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return `reading * factor of the scene`."""
+        return reading * memory, memory
+
+
+class Bias(Intervention):
+    """Add a Gaussian error, constant in a scene or wandering as an Ornstein-Uhlenbeck process.
+
+    The error is stationary: it has the deviation `std` at every step, and after `time_constant_s`
+    a correlation of 1/e with itself (first-order Gauss-Markov, as for the biases of an IMU).
+    """
+
+    kind: Literal["bias"] = "bias"
+    value_field: ClassVar[str | None] = "std"
+    random: ClassVar[bool] = True
+    std: Constant
+    """In the reading's unit, or as a fraction of the reading when `relative`."""
+    relative: bool = False
+    time_constant_s: float | None = Field(default=None, gt=0)
+    """`None`: constant in a scene."""
+
+    @model_validator(mode="after")
+    def _not_negative(self) -> Self:
+        check_std(self.std)
+        return self
+
+    def begin(self, reading: Array, at: Moment) -> Memory:
+        """Return the process on the host in units of `std`, and the step that it stands at."""
+        return at.draws.part(0).normal(tuple(reading.shape[1:]), 0), 0
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return `reading + std * x(t)`, or `reading * (1 + std * x(t))` when relative."""
+        if at.elapsed < 0 or is_zero(self.std):
+            return reading, memory
+        process, done = memory
+        if self.time_constant_s is not None:
+            stays = exp(-at.dt_s / self.time_constant_s)
+            for step in range(done + 1, at.step + 1):
+                draw = at.draws.normal(process.shape[1:], step)
+                process = stays * process + sqrt(1 - stays**2) * draw
+        error = np.asarray(self.std) * process
+        return with_error(reading, error, self.relative), (process, at.step)
+
+    def words(self) -> str:
+        """Return `bias of std STD`, and how long it lasts."""
+        what = f"{'relative ' if self.relative else ''}bias of std {number(self.std)}"
+        if self.time_constant_s is None:
+            return f"{what}, one draw a scene"
+        return f"{what}, wandering with a time constant of {number(self.time_constant_s)} s"
+
+
+class Drift(Intervention):
+    """Add an error that is zero at the onset and grows: a ramp, a random walk, or both."""
+
+    kind: Literal["drift"] = "drift"
+    value_field: ClassVar[str | None] = "rate_per_s"
+    random: ClassVar[bool] = True
+    rate_per_s: Constant = 0.0
+    """Ramp, in the reading's unit per second."""
+    walk_per_sqrt_s: float = Field(default=0.0, ge=0)
+    """Random walk: standard deviation after one second, in the reading's unit."""
+
+    def begin(self, reading: Array, at: Moment) -> Memory:
+        """Return the walk so far, zero, and the last step that it holds."""
+        return namespace(reading).zeros_like(reading), 0
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return `reading + rate * t + walk(t)`, where t is the time since the onset."""
+        walk, done = memory
+        if at.elapsed <= 0:
+            return reading, (walk, at.step)
+        value = reading
+        if not is_zero(self.rate_per_s):
+            seconds = np.asarray(at.elapsed * at.dt_s)
+            value = value + like(np.asarray(self.rate_per_s) * seconds, reading)
+        if self.walk_per_sqrt_s:
+            deviation = self.walk_per_sqrt_s * sqrt(at.dt_s)
+            onset = at.step - at.elapsed
+            for step in range(max(done, onset) + 1, at.step + 1):
+                draw = at.draws.normal(tuple(reading.shape[1:]), step)
+                walk = walk + like(deviation * draw, reading)
+            value = value + walk
+        return value, (walk, at.step)
+
+    def words(self) -> str:
+        """Return the growth in words."""
+        ramp = f"drift of {number(self.rate_per_s)} per s"
+        walk = f"random walk of {number(self.walk_per_sqrt_s)} per sqrt(s)"
+        if not self.walk_per_sqrt_s:
+            return ramp
+        return walk if is_zero(self.rate_per_s) else f"{ramp} and {walk}"
+
+
+class Shuffle(Intervention):
+    """Permute a reading along one of its own axes, for instance the steps of a history.
+
+    The permutation is drawn per scene and step. Scenes are never exchanged: a result would then
+    depend on which other scenes run beside it.
+    """
+
+    kind: Literal["shuffle"] = "shuffle"
+    said = "shuffled along axis {axis}"
+    value_field: ClassVar[str | None] = "axis"
+    axis: int = Field(default=1, ge=1)
+    """Axis of `[B, ...]`; 1 is the first axis of one scene's reading."""
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return the permuted reading."""
+        if at.elapsed < 0:
+            return reading, None
+        xp = namespace(reading)
+        order = place(at.draws.permutation(reading.shape[self.axis], at.step), reading)
+        ones = [1] * (reading.ndim - 1)
+        ones[self.axis - 1] = -1
+        order = xp.broadcast_to(xp.reshape(order, (order.shape[0], *ones)), reading.shape)
+        return xp.take_along_axis(reading, order, axis=self.axis), None
+
+    def misfit(self, shape: tuple[int, ...]) -> str | None:
+        """Refuse an axis that the reading does not have."""
+        if self.axis <= len(shape):
+            return None
+        return f"axis {self.axis} does not exist: the reading of one scene has {len(shape)} axes"
