@@ -5,12 +5,11 @@ from functools import cache
 from pathlib import Path
 
 from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed
-from faultpath_quadrotor.paper.answers import Reproduction
+from faultpath_quadrotor.paper.answers import RUN, Reproduction
 from faultpath_quadrotor.paper.cells import SYSTEM, Setting
 from faultpath_quadrotor.paper.central import ELSEWHERE, central, of_run, state
-from faultpath_quadrotor.paper.report.sweep import sweep_plot
+from faultpath_quadrotor.paper.report.page import sweep_plot
 from faultpath_quadrotor.paper.report.terminal import ledger_markdown
-from faultpath_quadrotor.paper.shipped import RUN
 from flown_code import flown_by
 from pictures import IMAGES, standing
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from cli_runs import ROOT, faultpath
 from faultpath_quadrotor import checkpoint
-from faultpath_quadrotor.training import catalogue, job_pools
+from faultpath_quadrotor.training import catalogue, jobs
 
 from faultpath.cli.main import INTERRUPTED
 from faultpath.learning.model_card import read_card
@@ -86,7 +86,7 @@ def test_flights_that_are_missing_are_collected_first(monkeypatch: pytest.Monkey
         progress(1.0, 2.0)
         asked.append((folder, pools, workers))
 
-    monkeypatch.setattr(job_pools, "collect", collect)
+    monkeypatch.setattr(jobs, "collect", collect)
     monkeypatch.setattr(
         catalogue,
         "ALL",
@@ -108,7 +108,7 @@ def test_data_that_models_fly_are_collected_when_those_are_fitted(
     needy = catalogue.Entry(
         "needy", entry("needy").factory, ("flown",), "", 9.0, seeds=(0,), after=("one",)
     )
-    monkeypatch.setattr(job_pools, "collect", collect)
+    monkeypatch.setattr(jobs, "collect", collect)
     monkeypatch.setattr(catalogue, "ALL", (needy, entry("one")))
     ended = _train("needy", "one")
     assert ended.status == 0, ended.err

@@ -1,9 +1,8 @@
 """The central claim is displayed with its numbers, its state and where it holds."""
 
 import pytest
-from faultpath_quadrotor.paper.answers import Reproduction
+from faultpath_quadrotor.paper.answers import RUN, Reproduction
 from faultpath_quadrotor.paper.central import CLAIM, central, of_page, of_run, state
-from faultpath_quadrotor.paper.shipped import RUN
 
 from faultpath.decisions.tables import line
 

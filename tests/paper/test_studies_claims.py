@@ -3,13 +3,11 @@
 import pytest
 from faultpath_quadrotor.evidence.table import EvidenceTable, Measured
 from faultpath_quadrotor.paper.answers import ClaimVerdict
-from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.cells import Cell, published_claims
 from faultpath_quadrotor.paper.claims import STATEMENTS, evaluate, ledger
 from faultpath_quadrotor.paper.claims.rules import ABOVE, BELOW
-from faultpath_quadrotor.paper.claims.statement import Statement, answered, verdict
-from faultpath_quadrotor.paper.claims.turning import TurnsDown
+from faultpath_quadrotor.paper.claims.statement import Statement, TurnsDown, answered, verdict
 from faultpath_quadrotor.paper.pages import table_1, table_4
-from faultpath_quadrotor.paper.published import published_claims
 from faultpath_quadrotor.paper.quantities.differences import together
 from faultpath_quadrotor.paper.results import Results
 from study_toys import SCENES, as_published, mirrored, outcomes, whole, windows, without

@@ -20,7 +20,7 @@ from faultpath_quadrotor.paper.claims.rules import (
     less_than,
     within,
 )
-from faultpath_quadrotor.paper.claims.turning import Turned
+from faultpath_quadrotor.paper.claims.statement import Turned
 from faultpath_quadrotor.paper.results import decisive
 
 from faultpath.statistics import (

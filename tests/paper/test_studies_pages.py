@@ -7,9 +7,8 @@ from typing import Any
 import pytest
 from faultpath_quadrotor.evidence.table import EvidenceTable
 from faultpath_quadrotor.paper.answers import Sweep
-from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.cells import Cell, published
 from faultpath_quadrotor.paper.pages import PAGES
-from faultpath_quadrotor.paper.published import published
 from toy_runs import (
     CELLS,
     EMPTY,

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 from faultpath_quadrotor.paper.answers import ClaimVerdict
+from faultpath_quadrotor.paper.cells import Printed
 from faultpath_quadrotor.paper.claims import STATEMENTS, evaluate
 from faultpath_quadrotor.paper.claims.statement import Statement, size
-from faultpath_quadrotor.paper.published import Printed
 from faultpath_quadrotor.paper.results import Results
 from study_toys import as_published, outcomes, whole
 

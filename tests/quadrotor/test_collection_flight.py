@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import torch
-from faultpath_quadrotor.flight_settings import (
+from faultpath_quadrotor.platform import (
     ControllerSettings,
     FlightSettings,
     PerturbationSettings,

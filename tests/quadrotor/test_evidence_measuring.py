@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import torch
 from faultpath_quadrotor.evidence import recording
-from faultpath_quadrotor.evidence.measuring import measure
+from faultpath_quadrotor.evidence.quantities import measure
 from faultpath_quadrotor.evidence.table import Measurement, Recording
 from faultpath_quadrotor.scenes.library import Library, as_text
 from flights import hall

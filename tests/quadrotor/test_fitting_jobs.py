@@ -7,12 +7,11 @@ import time
 from pathlib import Path
 
 import pytest
-from faultpath_quadrotor.training import catalogue, job_pools, jobs, trajectories
+from faultpath_quadrotor.training import catalogue, jobs, trajectories
 from faultpath_quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
 from faultpath_quadrotor.training.collection import EPISODES, recipe
 from faultpath_quadrotor.training.fitting import fit, journal_path
-from faultpath_quadrotor.training.job_pools import missing_pools
-from faultpath_quadrotor.training.jobs import Failure, Overview, run_jobs
+from faultpath_quadrotor.training.jobs import Failure, Overview, missing_pools, run_jobs
 from faultpath_quadrotor.training.provenance import Provenance
 from fitting_toys import Toy, entry
 
@@ -84,7 +83,7 @@ def test_a_pool_of_other_code_is_not_fitted_on(pool: str, tmp_path: Path) -> Non
     )
     path = tmp_path / f"{pool}.json"
     path.write_bytes(found.encode())
-    job_pools.check_pools(wanted, tmp_path)
+    jobs.check_pools(wanted, tmp_path)
     path.write_bytes(found.model_copy(update={"code_sha256": "other"}).encode())
     with pytest.raises(UserError, match=rf"{pool}\.parquet was collected by other code"):
         run_jobs(wanted, tmp_path, tmp_path / "out", 0, print, print)

@@ -20,7 +20,7 @@ from faultpath_quadrotor.predictors import (
     Predictor,
 )
 from faultpath_quadrotor.predictors.compiled import HorizonLoop, uncovered
-from faultpath_quadrotor.predictors.drag import LinearDrag
+from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.predictors.rollout import Rollout, rolling, rollout
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS

@@ -3,7 +3,7 @@
 import pytest
 import torch
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.predictors.drag import LinearDrag
+from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.reconstruction import DisturbanceObserver, Sensed
 from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
 

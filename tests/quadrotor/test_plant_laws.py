@@ -5,7 +5,7 @@ import math
 import pytest
 import torch
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.plant import PlantState, TorchPlant, rigid_body
+from faultpath_quadrotor.plant import PlantState, TorchPlant, motors
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2, VehicleParameters
@@ -48,13 +48,13 @@ def spinning(dt_s: float) -> tuple[State, torch.Tensor]:
     """Turn three free bodies for a second; return the end state and the inertia."""
     inertias = [(0.010, 0.010, 0.018), (0.008, 0.012, 0.018), (0.013, 0.009, 0.014)]
     vehicle = Vehicle.stack([VehicleParameters(inertia_kgm2=i) for i in inertias])
-    coupling = rigid_body.gyroscopic_coupling(vehicle)
+    coupling = motors.gyroscopic_coupling(vehicle)
     rate = column(4.0, -3.0, 5.0).expand(3, 3).clone()
     rotation = so3.exp(column(0.3, 0.2, -0.5)).expand(3, 3, 3).clone()
     for _ in range(round(1 / dt_s)):
-        free = rigid_body.gyroscopic(coupling, rate)
+        free = motors.gyroscopic(coupling, rate)
         still = torch.zeros_like(rate)
-        rotation, rate = rigid_body.turn(rotation, rate, still, coupling, free, dt_s)
+        rotation, rate = motors.turn(rotation, rate, still, coupling, free, dt_s)
     return State(rate, rate, rotation, rate), vehicle.inertia_kgm2
 
 

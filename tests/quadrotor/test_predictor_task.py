@@ -8,8 +8,7 @@ from faultpath_quadrotor.predictors import KinematicIntegrator, TrueParameter
 from faultpath_quadrotor.training.collection import collect
 from faultpath_quadrotor.training.fitting import fit
 from faultpath_quadrotor.training.predictor_task import RECIPES, PredictorTask
-from faultpath_quadrotor.training.replay import correct, predict
-from faultpath_quadrotor.training.windows import windows_of
+from faultpath_quadrotor.training.windows import correct, predict, windows_of
 
 from faultpath.learning.model_card import Schedule
 

@@ -9,12 +9,12 @@ from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath_quadrotor.predictors import PredictorInputs
 from faultpath_quadrotor.predictors import module as prediction
 from faultpath_quadrotor.system import Quadrotor
-from faultpath_quadrotor.training import replay
-from faultpath_quadrotor.training.closed_loop import record_flights
+from faultpath_quadrotor.training import windows as replay
 from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.playback import at_present
 from faultpath_quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath_quadrotor.training.reconstruction_task import _calibration, _history
+from faultpath_quadrotor.training.trajectories import record_flights
 from faultpath_quadrotor.training.windows import HISTORY, Windows, cut, places
 
 torch.set_num_threads(1)

@@ -8,14 +8,13 @@ from collections import Counter
 from itertools import pairwise
 
 import pytest
-from faultpath_quadrotor.scenes.draw import floor_plan
 from faultpath_quadrotor.scenes.library import (
     FROZEN,
     Library,
     frozen_file,
     load_library,
 )
-from faultpath_quadrotor.scenes.prisms import prism
+from faultpath_quadrotor.scenes.prisms import floor_plan, prism
 from faultpath_quadrotor.scenes.scene import Scene, Topology
 
 from faultpath.core.errors import UserError
@@ -139,5 +138,5 @@ def test_a_floor_plan_has_every_solid_and_the_free_variant_none(libraries):
 
 
 def test_drawing_does_not_load_torch():
-    code = "import sys, faultpath_quadrotor.scenes.draw; sys.exit('torch' in sys.modules)"
+    code = "import sys, faultpath_quadrotor.scenes.prisms; sys.exit('torch' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 import torch
+from faultpath_quadrotor.choices import STATE_NOISE_STD
 from faultpath_quadrotor.models import predictor, reconstruction
 from faultpath_quadrotor.predictors import History
 from faultpath_quadrotor.predictors.history import STEPS as HISTORY
-from faultpath_quadrotor.presets import STATE_NOISE_STD
 from faultpath_quadrotor.variants import setups
 from flights import fault, fly, quadrotor
 

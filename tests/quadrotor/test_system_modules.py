@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import torch
-from faultpath_quadrotor.estimators.exact import ExactEstimator
+from faultpath_quadrotor.estimators.protocol import ExactEstimator
 from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath_quadrotor.system import Quadrotor

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.system import Quadrotor
-from faultpath_quadrotor.training import clearance_data, closed_loop, flight
+from faultpath_quadrotor.training import clearance_data, flight, trajectories
 from faultpath_quadrotor.training.pool import encode_episodes, encode_rows, write_flights
 
 from faultpath.trials.code import Root, read_code
@@ -22,7 +22,7 @@ def _pool(folder: Path) -> None:
 def _closed_loop(folder: Path) -> None:
     system = Quadrotor.parse(wind="L1", clearance="true", environment="free-space")
     scene = system.library("selection").scenes[0].id
-    flights = closed_loop.record_flights(system, "wm-a-wind/true-wind", (scene,), 0)
+    flights = trajectories.record_flights(system, "wm-a-wind/true-wind", (scene,), 0)
     encode_episodes(range(1), flights)
     encode_rows(range(1), flights)
 

@@ -5,8 +5,7 @@ from html.parser import HTMLParser
 
 import pytest
 from faultpath_quadrotor.paper.report import words
-from faultpath_quadrotor.paper.report.page import reproduction_page
-from faultpath_quadrotor.paper.report.sweep import sweep_plot
+from faultpath_quadrotor.paper.report.page import reproduction_page, sweep_plot
 from faultpath_quadrotor.paper.report.terminal import ledger_markdown, ledger_view
 from reproduction_toys import NASTY, ledger, reproduction, sweep, tables
 from rich.console import Console

@@ -17,7 +17,7 @@ from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, 
 from faultpath.trials.metrics import VEHICLE
 from faultpath_quadrotor import native
 from faultpath_quadrotor.checkpoint import shipped_folder
-from faultpath_quadrotor.choices import ClearanceName, DeviceName
+from faultpath_quadrotor.choices import ClearanceName, DeviceName, calibration, noisy_state
 from faultpath_quadrotor.device import arithmetic, describe
 from faultpath_quadrotor.estimators import Estimator
 from faultpath_quadrotor.estimators.protocol import SENSORS, with_estimators
@@ -31,10 +31,9 @@ from faultpath_quadrotor.plant import TorchPlant
 from faultpath_quadrotor.plant.module import VehiclePlant
 from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.platform import PLATFORM
-from faultpath_quadrotor.presets import calibration, noisy_state
-from faultpath_quadrotor.scenes.draw import floor_plan
 from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.scenes.prisms import floor_plan
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.user_parts import bring
 from faultpath_quadrotor.variants import modelled, setups

@@ -1,6 +1,5 @@
 """Estimators: what the controller knows of the vehicle, and where it has that from."""
 
-from faultpath_quadrotor.estimators.exact import ExactEstimator
-from faultpath_quadrotor.estimators.protocol import Estimator
+from faultpath_quadrotor.estimators.protocol import Estimator, ExactEstimator
 
 __all__ = ["Estimator", "ExactEstimator"]

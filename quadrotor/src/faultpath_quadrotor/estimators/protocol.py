@@ -1,6 +1,6 @@
 """What an estimator is to the loop, and the raw sensors that it may read."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from types import MappingProxyType
@@ -11,7 +11,7 @@ from torch import Tensor
 
 from faultpath.core.streams import generator
 from faultpath.interface import Channel, Interface, Provenance, Source
-from faultpath.loop import Module
+from faultpath.loop import Inputs, Memory, Module, Outputs
 
 STATE_SOURCES = {
     "position": "position_estimate",
@@ -120,3 +120,23 @@ class Errors:
             for scene in self._scenes
         ]
         return torch.from_numpy(self._size * np.stack(drawn)).to(like)
+
+
+class ExactEstimator(Estimator):
+    """Estimates without error (the paper's): the one module that takes the plant's truth past all
+    taps.
+
+    Args:
+        besides: Sources that another estimator writes.
+    """
+
+    truths = ("vehicle",)
+
+    def __init__(self, besides: Collection[str] = ()) -> None:
+        self._names = {name: s for name, s in SOURCES.items() if s not in besides}
+        self.writes = tuple(self._names.values())
+
+    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
+        """Return the truth, `[B, ...]` each."""
+        truth: dict[str, Tensor] = inputs.truth("vehicle")
+        return {source: truth[name] for name, source in self._names.items()}, memory

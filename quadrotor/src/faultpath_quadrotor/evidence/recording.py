@@ -13,9 +13,9 @@ from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.state import system_code
 from faultpath_quadrotor.evidence.table import Recording
 from faultpath_quadrotor.system import Quadrotor
-from faultpath_quadrotor.training.closed_loop import record_flights
 from faultpath_quadrotor.training.pool import FlightData, join_flights, write_flights
 from faultpath_quadrotor.training.provenance import code_of
+from faultpath_quadrotor.training.trajectories import record_flights
 from faultpath_quadrotor.training.windows import HISTORY, Windows, cut, places
 
 BLOCK = 25
@@ -96,7 +96,7 @@ def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
         library.content_hash,
         recording.variant,
         recording.seed,
-        code_of("training.closed_loop", "training.pool"),
+        code_of("training.trajectories", "training.pool"),
     )
     found: list[Block] = []
     for first in range(0, len(scenes[:count]), BLOCK):

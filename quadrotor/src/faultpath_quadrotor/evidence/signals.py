@@ -13,7 +13,7 @@ from faultpath.trials.store.signals import Signal
 from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.lanes import Chunk
 from faultpath_quadrotor.platform import PLATFORM
-from faultpath_quadrotor.predictors.drag import LinearDrag
+from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.system import Quadrotor
 
 _CANDIDATES = 8

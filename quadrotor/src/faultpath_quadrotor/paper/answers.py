@@ -1,5 +1,6 @@
 """Everything that a reproduction concludes, claims and tables and figures: pages are made of it."""
 
+from pathlib import Path
 from typing import Literal
 
 from pydantic import ConfigDict
@@ -116,3 +117,11 @@ class Reproduction(_Frozen):
     figures: tuple[Sweep, ...]
     trials: int
     failed_trials: int
+
+
+RUN = Path(__file__).parent / "paper" / "run"
+
+
+def shipped_ledger() -> Ledger:
+    """Return what the run answered; a test holds it to what the code answers from its tables."""
+    return Reproduction.model_validate_json((RUN / "reproduction.json").read_bytes()).ledger

@@ -116,7 +116,7 @@ def measure_all(
 
     Raises as `measure` does.
     """
-    from faultpath_quadrotor.evidence.measuring import measure  # it loads torch
+    from faultpath_quadrotor.evidence.quantities import measure  # it loads torch
 
     wanted = plan.measurements()
     made = tuple(dict.fromkeys(wanted.values()))

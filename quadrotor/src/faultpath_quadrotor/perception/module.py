@@ -12,7 +12,7 @@ from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
 from faultpath.loop.taps import Query
 from faultpath_quadrotor.lanes import Chunk
 from faultpath_quadrotor.perception import DepthClearance, mounted
-from faultpath_quadrotor.predictors.candidates import Predicted
+from faultpath_quadrotor.predictors.rollout import Predicted
 from faultpath_quadrotor.scenes.field import DistanceField
 
 Measure = Callable[[Tensor, Chunk], Tensor]

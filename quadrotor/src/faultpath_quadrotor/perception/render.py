@@ -4,7 +4,7 @@ Along a ray every solid occupies one interval: a yawed box by the slab test in i
 pillar by the chord of its circle, both cut by their slab of heights. The image is the least entry
 over all solids and the exit from the arena.
 
-The compiled kernel (`compiled_camera.py`) does the same scene by scene, and works on the part of
+The compiled kernel (`compiled.py`) does the same scene by scene, and works on the part of
 the image that a solid can cover. This is its reference, and draws where there is none.
 
 Every pixel is an elementwise function of its own scene, and an image's rows are whole vectors, so
@@ -21,7 +21,7 @@ from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU, host_readable
 from faultpath_quadrotor.native.lending import covered
 from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, slopes
-from faultpath_quadrotor.perception.compiled_camera import CompiledRenderer
+from faultpath_quadrotor.perception.compiled import CompiledRenderer
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State

@@ -12,7 +12,7 @@ from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
 from faultpath_quadrotor.device import host_readable, send
 from faultpath_quadrotor.lanes import Chunk, chunks, lanes_last, lanes_of
 from faultpath_quadrotor.planners import Planner, Scored, shift
-from faultpath_quadrotor.predictors.candidates import Candidates, Predicted
+from faultpath_quadrotor.predictors.rollout import Candidates, Predicted
 
 ROLLOUT = Port("rollout", "candidates")
 HOVER = Port("hover", "reference")

@@ -1,16 +1,18 @@
-"""Four motors in cross configuration: what they exert together, and their first-order lag.
-
-Body frame x forward, y left, z up. Motors, in order: front left, rear left, rear right, front
-right; the first and third turn so that their drag torque is positive about body z.
-"""
+"""How a vehicle moves: its motors, rate loop, rotation and drag."""
 
 import math
 
 import torch
 from torch import Tensor
 
+from faultpath_quadrotor import so3
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
-from faultpath_quadrotor.vehicle import ARM_LENGTH_M, TORQUE_COEFFICIENT_M
+from faultpath_quadrotor.vehicle import (
+    ARM_LENGTH_M,
+    MOTOR_THRUST_MAX_N,
+    RATE_GAIN_PER_S,
+    TORQUE_COEFFICIENT_M,
+)
 
 _ARM = ARM_LENGTH_M * math.sqrt(0.5)
 WRENCH_PER_THRUST = (
@@ -52,3 +54,87 @@ def lag_weights(time_constant_s: Tensor, dt_s: float) -> tuple[Tensor, Tensor]:
 def respond(thrusts: Tensor, commands: Tensor, left: Tensor) -> Tensor:
     """Return the thrusts [4, *b] N once only `left` [*b] of their gap to `commands` is left."""
     return torch.lerp(commands, thrusts, left)
+
+
+def gyroscopic_coupling(vehicle: Vehicle) -> Tensor:
+    """Return (Iy - Iz) / Ix and its cyclic companions, [3, *b]."""
+    x, y, z = vehicle.inertia_kgm2.unbind(0)
+    return torch.stack(((y - z) / x, (z - x) / y, (x - y) / z))
+
+
+def gyroscopic(coupling: Tensor, rate: Tensor) -> Tensor:
+    """Return the torque-free angular acceleration -I^-1 (rate x I rate), [3, *b] rad/s^2."""
+    cyclic = torch.cat((rate, rate[:2]))
+    return (cyclic[1:4] * cyclic[2:5]).mul_(coupling)
+
+
+def turn(
+    rotation: Tensor, rate: Tensor, torque: Tensor, coupling: Tensor, free: Tensor, dt_s: float
+) -> tuple[Tensor, Tensor]:
+    """Return attitude and body rate after `dt_s`: explicit midpoint, exponential map.
+
+    `torque` [3, *b] is the step's mean angular acceleration from torque, `free` [3, *b] the
+    gyroscopic one at its start, both rad/s^2. Second order.
+    """
+    middle = torch.add(rate, torque + free, alpha=0.5 * dt_s)
+    end = torch.add(rate, gyroscopic(coupling, middle).add_(torque), alpha=dt_s)
+    return so3.compose(rotation, so3.exp(middle.mul_(dt_s))), end
+
+
+class RateLoop:
+    """Proportional rate control with gyroscopic feed-forward, a mixer and per-motor limits.
+
+    Wanted torque: I K (command - rate) + rate x I rate. The controller knows the vehicle's
+    inertia but neither its scales nor its motor lag, so the loop's true gain is the torque scale
+    times K. Where motors cannot give it all, yaw gives way first, as its motor strokes are the
+    longest (Faessler et al. 2017, "Thrust Mixing, Saturation, and Body-Rate Control"); then each
+    motor is clipped by itself.
+    """
+
+    per_acceleration: Tensor
+    """Thrust of each motor per wanted angular acceleration about each axis, [3, 4, *b]."""
+
+    def __init__(self, vehicle: Vehicle) -> None:
+        like = vehicle.mass_kg
+        wrench = column(WRENCH_PER_THRUST, like)
+        inverse = wrench / (wrench * wrench).sum(1, keepdim=True)
+        self.per_acceleration = inverse[1:] * vehicle.inertia_kgm2[:, None]
+        self._gain = column(RATE_GAIN_PER_S, like)
+        self._roll, self._pitch = self.per_acceleration[0], self.per_acceleration[1]
+        self._yaw = self.per_acceleration[2, 0]
+        self._ceiling = column((MOTOR_THRUST_MAX_N,), like)
+        self._spin = column(WRENCH_PER_THRUST[3], like).sign()
+
+    def target(self, rate_command: Tensor) -> Tensor:
+        """Return K times the command [3, *b]: constant while the command is."""
+        return self._gain * rate_command
+
+    def motor_commands(
+        self, level: Tensor, target: Tensor, rate: Tensor, gyroscopic: Tensor
+    ) -> Tensor:
+        """Return the four motors' commands, [4, *b] N, each within its limits.
+
+        `level` [*b] is a quarter of the collective command in N, `target` [3, *b] comes from
+        `target`, `rate` [3, *b] is the body rate and `gyroscopic` [3, *b] the angular
+        acceleration that it causes by itself, rad/s^2.
+        """
+        wanted = torch.addcmul(target, self._gain, rate, value=-1.0).sub_(gyroscopic)
+        roll, pitch, yaw = wanted.unbind(0)
+        thrusts = torch.addcmul(level, self._roll, roll).addcmul_(self._pitch, pitch)
+        thrusts = thrusts.clamp_(0.0, MOTOR_THRUST_MAX_N)
+        room = torch.minimum(thrusts, self._ceiling - thrusts).amin(0)
+        stroke = torch.clamp(self._yaw * yaw, -room, room)
+        return thrusts.addcmul_(self._spin, stroke)
+
+
+def relaxation(vehicle: Vehicle, dt_s: float) -> Tensor:
+    """Return the part of the air-relative velocity that drag takes in one step, [3, *b].
+
+    Exact for a fixed attitude: 1 - exp(-c dt / m) along each body axis.
+    """
+    return -torch.expm1(vehicle.drag_kgps * (-dt_s / vehicle.mass_kg))
+
+
+def velocity_change(rotation: Tensor, air_velocity: Tensor, relaxed: Tensor) -> Tensor:
+    """Return the world-frame velocity [3, *b] that drag adds for air-relative w - v [3, *b]."""
+    return so3.rotate(rotation, so3.rotate_back(rotation, air_velocity).mul_(relaxed))

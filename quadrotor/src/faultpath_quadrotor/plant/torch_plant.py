@@ -9,11 +9,10 @@ from torch import Tensor
 
 from faultpath_quadrotor import native
 from faultpath_quadrotor.native.lending import covered
-from faultpath_quadrotor.plant import aerodynamics, motors, rigid_body
+from faultpath_quadrotor.plant import motors
 from faultpath_quadrotor.plant.compiled import CompiledPlant, watch
-from faultpath_quadrotor.plant.contact import Contact, Progress
-from faultpath_quadrotor.plant.protocol import Plant, PlantState
-from faultpath_quadrotor.plant.rate_loop import RateLoop
+from faultpath_quadrotor.plant.motors import RateLoop
+from faultpath_quadrotor.plant.protocol import Contact, Plant, PlantState, Progress
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import (
@@ -47,12 +46,12 @@ class TorchPlant(Plant):
         self._rate_limit = motors.column(RATE_LIMIT_RADPS, like)
         self._loop = RateLoop(vehicle)
         self._left_end, self._left_mean = motors.lag_weights(vehicle.motor_time_constant_s, dt_s)
-        self._coupling = rigid_body.gyroscopic_coupling(vehicle)
+        self._coupling = motors.gyroscopic_coupling(vehicle)
         # The attitude in mid step is taken as the mean of both ends, which is second order. The
         # step below uses their sum; the halves that this leaves out are in these constants.
         self._acceleration = motors.acceleration_per_thrust(vehicle)
         self._acceleration[0] *= 0.5 * dt_s * 0.5
-        self._relaxed = aerodynamics.relaxation(vehicle, dt_s) * 0.25
+        self._relaxed = motors.relaxation(vehicle, dt_s) * 0.25
         self._gravity_kick = motors.column((0.0, 0.0, -GRAVITY_MPS2 * 0.5 * dt_s), like)
         kernels = native.kernels_on(like.device)
         fits = like.ndim == 1 and like.dtype == torch.float64
@@ -107,19 +106,19 @@ class TorchPlant(Plant):
 
     def _step(self, now: PlantState, level: Tensor, target: Tensor, wind_mps: Tensor) -> PlantState:
         state, dt_s = now.state, self._dt_s
-        free = rigid_body.gyroscopic(self._coupling, state.rate)
+        free = motors.gyroscopic(self._coupling, state.rate)
         commands = self._loop.motor_commands(level, target, state.rate, free)
         thrusts = motors.respond(now.thrusts, commands, self._left_end)
         mean = motors.respond(now.thrusts, commands, self._left_mean)
         kick_and_torque = (self._acceleration * mean).sum(1)
 
-        rotation, rate = rigid_body.turn(
+        rotation, rate = motors.turn(
             state.rotation, state.rate, kick_and_torque[1:], self._coupling, free, dt_s
         )
         twice_middle = state.rotation + rotation
         kick = (twice_middle[:, 2] * kick_and_torque[0]).add_(self._gravity_kick)
         velocity = state.velocity + kick
-        drag = aerodynamics.velocity_change(twice_middle, wind_mps - velocity, self._relaxed)
+        drag = motors.velocity_change(twice_middle, wind_mps - velocity, self._relaxed)
         velocity = velocity.add_(drag).add_(kick)
         position = torch.add(state.position, state.velocity + velocity, alpha=0.5 * dt_s)
         return PlantState(State(position, velocity, rotation, rate), thrusts)

@@ -10,7 +10,7 @@ from torch import Tensor
 
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant import Plant, TorchPlant
-from faultpath_quadrotor.plant.contact import Contact, Progress
+from faultpath_quadrotor.plant.protocol import Contact, Progress
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.scenes.geometry import Geometry

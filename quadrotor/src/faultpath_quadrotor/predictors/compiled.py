@@ -32,8 +32,7 @@ from faultpath_quadrotor.predictors.anchored import (
     AnchoredPredictor,
 )
 from faultpath_quadrotor.predictors.base import Predictor, PredictorInputs
-from faultpath_quadrotor.predictors.drag import LinearDrag
-from faultpath_quadrotor.predictors.kinematic import KinematicIntegrator
+from faultpath_quadrotor.predictors.kinematic import KinematicIntegrator, LinearDrag
 from faultpath_quadrotor.predictors.network import (
     ACTION_EMBEDDING,
     ACTION_FEATURES,

@@ -1,7 +1,7 @@
 """The differentiable kinematic integrator: a double integrator with a rate-loop lag."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import torch
@@ -9,9 +9,36 @@ from torch import Tensor
 
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.predictors.base import Memory, Predictor, PredictorInputs
-from faultpath_quadrotor.predictors.drag import LinearDrag
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2
+
+
+class LinearDrag:
+    """Force of the air on the vehicle, linear in the air's velocity relative to it."""
+
+    def __init__(self, coefficients_kgps: Sequence[float]) -> None:
+        self.coefficients_kgps = tuple(coefficients_kgps)
+        # With equal coefficients the rotations cancel: c R R^T v = c v.
+        self._isotropic = len(set(self.coefficients_kgps)) == 1
+
+    def force(self, rotation: Tensor, air_velocity: Tensor) -> Tensor:
+        """Return the force in the world frame, N, for `air_velocity` `[3, *batch]` (wind - v)."""
+        if self._isotropic:
+            return air_velocity * self.coefficients_kgps[0]
+        body = so3.rotate_back(rotation, air_velocity)
+        return so3.rotate(rotation, self._along_axes(body, torch.mul))
+
+    def inverse(self, rotation: Tensor, force: Tensor) -> Tensor:
+        """Return the air velocity that would cause `force` `[3, *batch]`, N."""
+        if self._isotropic:
+            return force / self.coefficients_kgps[0]
+        body = so3.rotate_back(rotation, force)
+        return so3.rotate(rotation, self._along_axes(body, torch.div))
+
+    def _along_axes(self, body: Tensor, how: Callable[[Tensor, float], Tensor]) -> Tensor:
+        # Numbers, no tensor of them: laid on a device at every step, that would wait for the host.
+        return torch.stack([how(*each) for each in zip(body, self.coefficients_kgps, strict=True)])
+
 
 RATE_LAG_S = 0.05
 """Time constant of the closed rate loop: the inverse of its gain of 20 1/s."""

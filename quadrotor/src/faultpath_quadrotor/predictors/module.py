@@ -6,9 +6,8 @@ from faultpath.loop import Batch, Inputs, Memory, Module, Outputs
 from faultpath.loop.taps import Query
 from faultpath_quadrotor.lanes import lanes_of, scenes_first
 from faultpath_quadrotor.predictors import Predictor
-from faultpath_quadrotor.predictors.candidates import Candidates, Predicted
 from faultpath_quadrotor.predictors.places import ports, predictor_inputs, taking
-from faultpath_quadrotor.predictors.rollout import rolling
+from faultpath_quadrotor.predictors.rollout import Candidates, Predicted, rolling
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
 
 

@@ -10,7 +10,7 @@ from typing_extensions import override
 
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.predictors import Calibration
-from faultpath_quadrotor.predictors.drag import LinearDrag
+from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.reconstruction.base import Delivered, Memory, Read, Reconstruction
 from faultpath_quadrotor.vehicle import (
     CONTROL_DT_S,

@@ -5,10 +5,18 @@ prism with its sign turned round, because there the inside is free. Distances of
 taken here; `geometry` takes those of batches, with the same formula. Needs no torch.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from math import cos, hypot, sin
+from typing import TYPE_CHECKING
 
+from faultpath.trials import declared
 from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Point, Scene
+
+if TYPE_CHECKING:
+    from faultpath_quadrotor.scenes.scene import Scene
+
 
 _BURIED_M = 10.0
 """How far a solid that touches the floor or the ceiling goes on beyond it. What lies beyond is
@@ -92,3 +100,33 @@ def prism(solid: Box | Cylinder, bounds: Bounds | None = None) -> Prism:
 
 def _corner(first: float, second: float) -> float:
     return hypot(max(first, 0.0), max(second, 0.0)) + min(max(first, second), 0.0)
+
+
+def floor_plan(scene: Scene, free_space: bool = False) -> declared.FloorPlan:
+    """Return the floor plan of a scene, lowest shapes first, so that what hangs is drawn on top.
+
+    Args:
+        scene: The scene.
+        free_space: Keep only the arena, as the free-space variant does.
+    """
+    prisms = [
+        declared.Prism(
+            corners=prism(box).corners_m,
+            bottom=round(box.centre_m[2] - box.half_extents_m[2], 6),
+            top=round(box.centre_m[2] + box.half_extents_m[2], 6),
+        )
+        for box in scene.boxes
+    ]
+    pillars = [
+        declared.Pillar(*pillar.centre_m, pillar.radius_m, pillar.low_m, pillar.high_m)
+        for pillar in scene.cylinders
+    ]
+    return declared.FloorPlan(
+        low=scene.bounds.low_m,
+        high=scene.bounds.high_m,
+        prisms=() if free_space else tuple(sorted(prisms, key=lambda shape: shape.bottom)),
+        pillars=() if free_space else tuple(sorted(pillars, key=lambda shape: shape.bottom)),
+        start=scene.start_m,
+        goal=scene.goal_m,
+        title=f"{scene.id} {scene.topology}",
+    )

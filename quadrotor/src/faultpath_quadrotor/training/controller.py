@@ -15,8 +15,8 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.flight_settings import ControllerSettings
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.platform import ControllerSettings
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.training.perturbation import Perturbation
 from faultpath_quadrotor.vehicle import (

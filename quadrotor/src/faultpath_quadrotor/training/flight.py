@@ -11,10 +11,9 @@ from torch import Tensor
 
 from faultpath.core.streams import generator
 from faultpath_quadrotor import native, so3
-from faultpath_quadrotor.flight_settings import FlightSettings
 from faultpath_quadrotor.plant import TorchPlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
-from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.platform import PLATFORM, FlightSettings
 from faultpath_quadrotor.state import State, padded_lanes
 from faultpath_quadrotor.training import perturbation
 from faultpath_quadrotor.training.controller import Course, WaypointController

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from faultpath_quadrotor.flight_settings import PerturbationSettings
+from faultpath_quadrotor.platform import PerturbationSettings
 from faultpath_quadrotor.vehicle import CONTROL_RATE_HZ
 
 Array = NDArray[np.float64]

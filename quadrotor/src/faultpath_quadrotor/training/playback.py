@@ -32,7 +32,7 @@ from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.lanes import Chunk
 from faultpath_quadrotor.plant.module import ACTION
 from faultpath_quadrotor.predictors import KinematicIntegrator, Predictor
-from faultpath_quadrotor.predictors.candidates import Candidates, Predicted
+from faultpath_quadrotor.predictors.rollout import Candidates, Predicted
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.state import padded_lanes
 from faultpath_quadrotor.training.windows import HISTORY, HORIZON, Windows

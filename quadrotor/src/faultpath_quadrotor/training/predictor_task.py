@@ -28,8 +28,15 @@ from faultpath_quadrotor.state import State
 from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
 from faultpath_quadrotor.training.fitting import ModelTask
 from faultpath_quadrotor.training.provenance import rows_sha256
-from faultpath_quadrotor.training.replay import DeliveredInputs, correct, predict
-from faultpath_quadrotor.training.windows import HISTORY, HORIZON, Windows, windows_of
+from faultpath_quadrotor.training.windows import (
+    HISTORY,
+    HORIZON,
+    DeliveredInputs,
+    Windows,
+    correct,
+    predict,
+    windows_of,
+)
 
 DCC = "+dcc"
 BATCH_SIZE = 256  # paper, Section IV-A

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -11,7 +11,9 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.predictors import Physics
+from faultpath_quadrotor.predictors import Physics, Predictor
+from faultpath_quadrotor.predictors.places import Take, history, predictor_inputs
+from faultpath_quadrotor.predictors.rollout import unroll
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.training.pool import FlightData, read_pool
 from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS
@@ -175,3 +177,56 @@ def cut(pool: FlightData, stride: int = STRIDE) -> Windows:
 def _unit(name: str) -> float:
     digest = hashlib.blake2b(name.encode(), digest_size=8, person=b"validation").digest()
     return int.from_bytes(digest, "little") / 2**64
+
+
+DeliveredInputs = Mapping[tuple[str, str], Tensor]
+"""The calibration that taps delivered to windows, `[W]`, by channel and consumer; it is held over
+history and horizon."""
+
+
+def correct(model: Predictor, windows: Windows) -> DeliveredInputs:
+    """Return the true calibration at every place at which a model reads it."""
+    return {
+        (channel, consumer): value
+        for channel, value in windows.calibration.items()
+        for consumer in model.consumers()
+    }
+
+
+def predict(predictor: Predictor, windows: Windows, delivered: DeliveredInputs) -> Iterator[State]:
+    """Yield the predicted states 13 to 32 of every window, batch `[W, 1]`.
+
+    The true wind of the present is held over the horizon.
+    """
+    past = _taking(windows, delivered, slice(0, HISTORY))
+    now = _taking(windows, delivered, HISTORY)
+
+    def take(channel: str, place: str) -> Tensor:
+        if channel != "history_code":
+            return now(channel, place)
+        code = predictor.encode(history(predictor.reads, past))
+        assert code is not None
+        return code
+
+    inputs = predictor_inputs(predictor.reads, take)
+    commands = windows.command[:, HISTORY:].movedim(1, 0)[..., None]
+    return unroll(predictor, inputs, commands)
+
+
+def _taking(windows: Windows, delivered: DeliveredInputs, k: int | slice) -> Take:
+    def take(channel: str, place: str) -> Tensor:
+        if channel in windows.calibration:
+            return delivered[channel, f"predictor.{place}"]
+        if channel == "physics":
+            return windows.physics(HISTORY).reading()
+        recorded = {
+            "position": windows.position,
+            "velocity": windows.velocity,
+            "attitude": windows.rotation,
+            "body_rate": windows.rate,
+            "action": windows.command,
+            "wind": windows.wind_mps,
+        }
+        return recorded[channel][..., k, :]
+
+    return take

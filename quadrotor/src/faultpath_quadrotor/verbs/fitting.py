@@ -61,8 +61,7 @@ def train(request: TrainRequest) -> int:
     """
     from faultpath.trials.store import make_folder
     from faultpath_quadrotor.training.catalogue import choose, stages
-    from faultpath_quadrotor.training.job_pools import check_pilots
-    from faultpath_quadrotor.training.jobs import Failure
+    from faultpath_quadrotor.training.jobs import Failure, check_pilots
 
     console = SafeConsole()
     failed = 0
@@ -107,7 +106,7 @@ def _line(card: ModelCard) -> Line:
 
 
 def _collect(console: SafeConsole, jobs: Sequence[Job], request: TrainRequest) -> None:
-    from faultpath_quadrotor.training.job_pools import (
+    from faultpath_quadrotor.training.jobs import (
         check_pools,
         collect_missing,
         missing_pools,

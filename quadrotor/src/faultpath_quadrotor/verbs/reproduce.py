@@ -79,7 +79,7 @@ def command(
 def _judge(folder: Path | None, as_json: bool) -> int:
     """Show the claims; those of a run that did not ship are judged by the code that is here."""
     if folder is None:
-        from faultpath_quadrotor.paper.shipped import shipped_ledger
+        from faultpath_quadrotor.paper.answers import shipped_ledger
 
         answers, profile = shipped_ledger(), "paper"
     else:

@@ -1,6 +1,6 @@
 """C05 to C15: calibration errors and training on them (paper, Table II, Figure 3 and text)."""
 
-from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.cells import Cell, Printed, published
 from faultpath_quadrotor.paper.claims.rules import (
     ABOVE,
     BELOW,
@@ -12,11 +12,14 @@ from faultpath_quadrotor.paper.claims.rules import (
     less_than,
 )
 from faultpath_quadrotor.paper.claims.statement import Statement, Statements
-from faultpath_quadrotor.paper.claims.sweep import above_worst, range_gained, worst_difference
 from faultpath_quadrotor.paper.pages import figure_3, in_text, table_2
-from faultpath_quadrotor.paper.published import Printed, published
 from faultpath_quadrotor.paper.quantities.differences import combined, success
-from faultpath_quadrotor.paper.quantities.summaries import at_lower_success
+from faultpath_quadrotor.paper.quantities.summaries import (
+    above_worst,
+    at_lower_success,
+    range_gained,
+    worst_difference,
+)
 from faultpath_quadrotor.paper.quantities.windows import ratio
 
 FAULTS = (0.1, -0.1)

@@ -1,5 +1,6 @@
 """C30, C31, C34, C35: how a biased reconstruction makes up for a wrong model (paper, Table VI)."""
 
+from faultpath_quadrotor.paper.cells import Printed, published
 from faultpath_quadrotor.paper.claims.rules import (
     BELOW,
     NO_LOSS,
@@ -11,7 +12,6 @@ from faultpath_quadrotor.paper.claims.rules import (
 )
 from faultpath_quadrotor.paper.claims.statement import Statement, Statements
 from faultpath_quadrotor.paper.pages import in_text, table_4, table_6
-from faultpath_quadrotor.paper.published import Printed, published
 from faultpath_quadrotor.paper.quantities.summaries import rank_correlation
 from faultpath_quadrotor.paper.quantities.windows import (
     Subject,

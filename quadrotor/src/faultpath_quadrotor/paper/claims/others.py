@@ -2,10 +2,10 @@
 
 from itertools import permutations
 
+from faultpath_quadrotor.paper.cells import Printed, published
 from faultpath_quadrotor.paper.claims.rules import BELOW, NO_GAIN, NO_LOSS, at_least, less_than
 from faultpath_quadrotor.paper.claims.statement import Statement, Statements
 from faultpath_quadrotor.paper.pages import in_text, table_4, table_6
-from faultpath_quadrotor.paper.published import Printed, published
 from faultpath_quadrotor.paper.quantities.differences import Pair, combined, success
 from faultpath_quadrotor.paper.quantities.summaries import in_all, in_none, share
 

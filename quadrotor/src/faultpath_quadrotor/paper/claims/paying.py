@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from faultpath.statistics import BreakEven, break_even
 from faultpath.statistics.contrast import MIN_SCENES
 from faultpath_quadrotor.paper.answers import Part
+from faultpath_quadrotor.paper.cells import Printed, published
 from faultpath_quadrotor.paper.claims.rules import (
     CONFIRMED,
     FEW_FOR_POINTS,
@@ -18,7 +19,6 @@ from faultpath_quadrotor.paper.claims.rules import (
 )
 from faultpath_quadrotor.paper.claims.statement import Statements, beside, size
 from faultpath_quadrotor.paper.pages import table_5
-from faultpath_quadrotor.paper.published import Printed, published
 from faultpath_quadrotor.paper.quantities.differences import together
 from faultpath_quadrotor.paper.results import Results
 

@@ -2,11 +2,10 @@
 
 from itertools import combinations
 
-from faultpath_quadrotor.paper.cells import Cell, of_seed
+from faultpath_quadrotor.paper.cells import Cell, Printed, of_seed, published
 from faultpath_quadrotor.paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_LOSS, at_least
 from faultpath_quadrotor.paper.claims.statement import Statement, Statements
 from faultpath_quadrotor.paper.pages import table_1
-from faultpath_quadrotor.paper.published import Printed, published
 from faultpath_quadrotor.paper.quantities.differences import crashes, success, time, timeouts
 from faultpath_quadrotor.paper.quantities.windows import Subject, difference_of_quantiles, ratio
 

@@ -1,12 +1,16 @@
 """C23 to C29 and C32: errors at the reconstruction alone, and shared (paper, Tables IV and VI)."""
 
-from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.cells import Cell, Printed, published
 from faultpath_quadrotor.paper.claims.rules import ABOVE, BELOW, NO_LOSS, Rule, by_point
-from faultpath_quadrotor.paper.claims.statement import Statement, Statements
-from faultpath_quadrotor.paper.claims.turning import ALL_SEEDS, TurnsDown, seeds_that_turn
+from faultpath_quadrotor.paper.claims.statement import (
+    ALL_SEEDS,
+    Statement,
+    Statements,
+    TurnsDown,
+    seeds_that_turn,
+)
 from faultpath_quadrotor.paper.pages.table_4 import cell, change, paper_contrast, paper_rate
 from faultpath_quadrotor.paper.pages.table_6 import negative, paper_negative
-from faultpath_quadrotor.paper.published import Printed, published
 from faultpath_quadrotor.paper.quantities.differences import success, terminal_distance
 
 CORRECT, ISOLATED, SHARED = "correct", "reconstruction-only", "shared"

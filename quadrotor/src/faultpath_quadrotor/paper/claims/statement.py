@@ -3,14 +3,23 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot
-from typing import Any, Protocol, TypeAlias
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
-from faultpath.statistics import Contrast
+from faultpath.statistics import Contrast, change, decide_family, turn, with_test
 from faultpath.statistics.contrast import ROUNDING
 from faultpath_quadrotor.paper.answers import Answer, ClaimVerdict, Part, Size
-from faultpath_quadrotor.paper.claims.rules import Ends, Judged, Rule, points_decide
-from faultpath_quadrotor.paper.published import Printed, PublishedClaim
-from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable
+from faultpath_quadrotor.paper.cells import Printed, PublishedClaim
+from faultpath_quadrotor.paper.claims.rules import (
+    CONFIRMED,
+    FEW_SCENES,
+    REFUTED,
+    Ends,
+    Judged,
+    Rule,
+    points_decide,
+)
+from faultpath_quadrotor.paper.quantities.differences import Pair, together
+from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable, decisive
 
 NO_EFFECT = {"pp": 0.0, "s": 0.0, "m": 0.0, "m/s^2": 0.0, "times": 1.0}
 """By unit, its value. What has another unit, as a share of scenes has, has no sign."""
@@ -175,3 +184,70 @@ def _together(answers: Sequence[Answer]) -> Answer:
     if "refuted" in answers:
         return "refuted"
     return "undecided" if "undecided" in answers else "confirmed"
+
+
+ALL_SEEDS = 3
+"""Trainings that the paper speaks of."""
+
+
+class Turned(NamedTuple):
+    """The change of an effect, second condition minus first, with the effect in both."""
+
+    change: Contrast
+    before: Contrast
+    after: Contrast
+
+    def judge(self) -> Judged:
+        """Answer that the effect turns from above 0 to below 0.
+
+        Refuted when the change, or either effect, is detected on the other side. The family that
+        is decided together are both effects and their change.
+        """
+        moved, before, after = self
+        if moved.interval is None:
+            return FEW_SCENES
+        if moved.detected > 0 or before.detected < 0 or after.detected > 0:
+            return REFUTED
+        one, two, both = decide_family(
+            {"before": before, "after": after, "change": with_test(moved, "exact")}
+        ).values()
+        if turn(one, two, both) == "reversal":
+            return CONFIRMED
+        why = "the change is detected, but not both effects" if moved.detected else ""
+        return Judged("undecided", why)
+
+
+@dataclass(frozen=True)
+class TurnsDown:
+    """The effect is detected above 0 before and below 0 after."""
+
+    subject: str
+    before: Pair
+    after: Pair
+    paper: Printed | None = None
+    """The change that the paper's figures give."""
+
+    @property
+    def words(self) -> str:
+        """The statement."""
+        return f"{self.subject} turns from above 0 to below 0"
+
+    def part(self, results: Results) -> Part:
+        """Answer it from a run."""
+        one, two = together(results, self.before, self.after)
+        turned = Turned(decisive(change(one, two)), one, two)
+        counts = f"{one.counts}, then {two.counts}"
+        return shown(self.words, turned.judge(), turned.change, self.paper, 0.0, counts)
+
+
+def seeds_that_turn(before: Pair, after: Pair) -> Quantity:
+    """Return in how many seeds the difference is above 0 before and below 0 after."""
+
+    def found(results: Results) -> Contrast:
+        one, two = together(results, before, after)
+        if one.n_seeds < ALL_SEEDS:
+            raise Undecidable(f"run with {one.n_seeds} of {ALL_SEEDS} seeds")
+        turning = sum(b > 0 > a for b, a in zip(one.per_seed, two.per_seed, strict=True))
+        return Contrast(float(turning), "seeds", one.n_scenes, against_zero=False)
+
+    return found

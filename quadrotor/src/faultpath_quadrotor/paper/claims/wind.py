@@ -1,6 +1,6 @@
 """C16 to C22: wind that no sensor measures (paper, Table III and text)."""
 
-from faultpath_quadrotor.paper.cells import of_seed
+from faultpath_quadrotor.paper.cells import Printed, of_seed, published
 from faultpath_quadrotor.paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_GAIN
 from faultpath_quadrotor.paper.claims.statement import Statement, Statements
 from faultpath_quadrotor.paper.pages import in_text
@@ -15,7 +15,6 @@ from faultpath_quadrotor.paper.pages.table_3 import (
     cell,
     paper_rate,
 )
-from faultpath_quadrotor.paper.published import Printed, published
 from faultpath_quadrotor.paper.quantities.differences import success
 from faultpath_quadrotor.paper.quantities.windows import difference_of_quantiles
 

@@ -2,10 +2,9 @@
 
 from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.answers import Point, Series, Sweep
-from faultpath_quadrotor.paper.cells import SELECTION, Cell, Setting
+from faultpath_quadrotor.paper.cells import SELECTION, Cell, Setting, published
 from faultpath_quadrotor.paper.page import Page, flown
 from faultpath_quadrotor.paper.pages.table_2 import NAMES, faults
-from faultpath_quadrotor.paper.published import published
 from faultpath_quadrotor.paper.results import NotRun, Results
 
 FREE = Setting(library=SELECTION, environment="free-space")

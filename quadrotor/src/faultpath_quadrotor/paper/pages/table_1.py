@@ -2,14 +2,13 @@
 
 from faultpath.trials import Status
 from faultpath_quadrotor.evidence.table import Measurement, Recording
-from faultpath_quadrotor.paper.cells import SEEDS, Cell, Setting
+from faultpath_quadrotor.paper.cells import SEEDS, Cell, Setting, published
 from faultpath_quadrotor.paper.entries import (
     centimetres,
     ended,
     time,
 )
 from faultpath_quadrotor.paper.page import WINDOWS, Page, Row, TableSpec
-from faultpath_quadrotor.paper.published import published
 
 STILL = Setting()
 SEEN_THROUGH = Setting(others=(("clearance", "true"),))

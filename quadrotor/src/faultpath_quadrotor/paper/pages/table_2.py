@@ -2,7 +2,7 @@
 
 from faultpath.decisions import wording
 from faultpath_quadrotor.evidence.table import Measurement
-from faultpath_quadrotor.paper.cells import SEEDS, Cell, calibration, of_seed
+from faultpath_quadrotor.paper.cells import SEEDS, Cell, Printed, calibration, of_seed, published
 from faultpath_quadrotor.paper.entries import (
     Group,
     PublishedContrast,
@@ -21,7 +21,6 @@ from faultpath_quadrotor.paper.page import (
     rates,
 )
 from faultpath_quadrotor.paper.pages.table_1 import COMMON, STILL
-from faultpath_quadrotor.paper.published import Printed, published
 from faultpath_quadrotor.paper.quantities.windows import quantile
 
 ERRORS = (-0.1, 0.0, 0.1)

@@ -3,9 +3,8 @@
 The paper averages some rows over three seeds; all others use the first.
 """
 
-from faultpath_quadrotor.paper.cells import SEEDS, Cell, Setting
+from faultpath_quadrotor.paper.cells import SEEDS, Cell, Setting, published
 from faultpath_quadrotor.paper.page import EVERY_NOISE, Page, Row, Rows, TableSpec, rates
-from faultpath_quadrotor.paper.published import published
 
 LEVELS = ("L0", "L2", "L3")
 ENVIRONMENTS = ("free-space", "obstacles")

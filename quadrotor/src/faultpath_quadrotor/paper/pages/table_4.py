@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from faultpath.decisions import wording
-from faultpath_quadrotor.paper.cells import SEEDS, Cell, Setting, calibration
+from faultpath_quadrotor.paper.cells import SEEDS, Cell, Printed, Setting, calibration, published
 from faultpath_quadrotor.paper.entries import (
     Group,
     PublishedContrast,
@@ -24,7 +24,6 @@ from faultpath_quadrotor.paper.page import (
     differences,
     rates,
 )
-from faultpath_quadrotor.paper.published import Printed, published
 from faultpath_quadrotor.paper.quantities.differences import (
     Effect,
     combined,

@@ -2,11 +2,10 @@
 
 from faultpath.decisions import wording
 from faultpath.statistics import break_even
-from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.cells import Cell, published
 from faultpath_quadrotor.paper.entries import Group, Made, decided
 from faultpath_quadrotor.paper.page import INTERVALS, Page, Row, TableSpec
 from faultpath_quadrotor.paper.pages import table_2, table_4
-from faultpath_quadrotor.paper.published import published
 from faultpath_quadrotor.paper.quantities.differences import together
 from faultpath_quadrotor.paper.results import Results
 

@@ -4,12 +4,11 @@ from collections.abc import Callable
 
 from faultpath.decisions import wording
 from faultpath_quadrotor.evidence.table import Measurement
-from faultpath_quadrotor.paper.cells import SEEDS, Cell, calibration
+from faultpath_quadrotor.paper.cells import SEEDS, Cell, calibration, published
 from faultpath_quadrotor.paper.entries import BLANK, Group, PublishedContrast, difference, measured
 from faultpath_quadrotor.paper.page import Columns, Page, Row, TableSpec, rates
 from faultpath_quadrotor.paper.pages.table_1 import recording
 from faultpath_quadrotor.paper.pages.table_4 import ERROR, METHODS, NAMES, PATHS, WINDY
-from faultpath_quadrotor.paper.published import published
 
 INTERFACES: dict[str, tuple[str, ...]] = {
     "correct": PATHS["correct"],

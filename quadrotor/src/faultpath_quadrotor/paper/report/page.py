@@ -1,14 +1,109 @@
 """A reproduction as one page that opens without a network."""
 
+from collections.abc import Sequence
+
 from markupsafe import Markup
 
 from faultpath.decisions import RunProvenance, wording
 from faultpath.decisions.tables import Table
 from faultpath.decisions.tables.html import html
 from faultpath.report.frame import render
-from faultpath_quadrotor.paper.answers import Reproduction
+from faultpath.report.svg import Axis, Svg, draw_levels, draw_tick, text_width, tick_label
+from faultpath_quadrotor.paper.answers import Point, Reproduction, Series, Sweep
 from faultpath_quadrotor.paper.report import words
-from faultpath_quadrotor.paper.report.sweep import sweep_plot
+
+LOOKS = 4
+"""Looks that lines take in turn: colour, dashes and mark differ together."""
+_KEY_ROW, _SAMPLE = 20.0, 28.0
+
+
+def sweep_plot(sweep: Sweep) -> str:
+    """Return the lines of a sweep with their bands."""
+    width, height = 560.0, 250.0
+    key = _key_rows(sweep.series, width)
+    top = _KEY_ROW * len(key) + 34
+    told = "; ".join(f"{line.label}: {', '.join(map(_told, line.points))}" for line in sweep.series)
+    svg = Svg(width, top + height + 42, sweep.title, told)
+    _key(svg, key)
+    x = _across(sweep.series).at(34, width - 10)
+    y = _upward(sweep.series).at(top + height, top)
+    svg.text(0, top - 12, sweep.y_title, "small soft")
+    draw_levels(svg, x, y, 6)
+    for tick in x.ticks(6):
+        if tick == 0:
+            svg.line((x(0.0), y.start), (x(0.0), y.end), "axis")
+        draw_tick(svg, x, y, tick, tick_label(round(tick, 9)))
+    svg.text((x.start + x.end) / 2, top + height + 36, sweep.x_title, "small soft", "middle")
+    for i, line in enumerate(sweep.series):
+        _band(svg, line, x, y, f"spread s{i % LOOKS}")
+    for i, line in enumerate(sweep.series):
+        svg.polyline([(x(p.x), y(p.y)) for p in line.points], f"curve s{i % LOOKS}")
+        for point in line.points:
+            _mark(svg, x(point.x), y(point.y), i % LOOKS, f"{line.label}, {_told(point)}")
+    return svg.render()
+
+
+def _told(point: Point) -> str:
+    ends = ""
+    if point.low is not None and point.high is not None:
+        ends = f" [{wording.plain(point.low)}, {wording.plain(point.high)}]"
+    return f"{tick_label(point.x)}: {wording.plain(point.y)}{ends}"
+
+
+def _across(series: Sequence[Series]) -> Axis:
+    values = [p.x for line in series for p in line.points] or [0.0, 1.0]
+    low, high = min(values), max(values)
+    pad = 0.03 * (high - low) or 0.5
+    return Axis(low - pad, high + pad, 0.0, 1.0)
+
+
+def _upward(series: Sequence[Series]) -> Axis:
+    points = [p for line in series for p in line.points]
+    values = [0.0, *(v for p in points for v in (p.y, p.low, p.high) if v is not None)]
+    low, high = min(values), max(values)
+    return Axis(low, high + (0.04 * (high - low) or 1.0), 0.0, 1.0)
+
+
+def _band(svg: Svg, line: Series, x: Axis, y: Axis, look: str) -> None:
+    ends = [(p.x, p.low, p.high) for p in line.points if p.low is not None and p.high is not None]
+    if len(ends) > 1:
+        upper = [(x(at), y(high)) for at, _, high in ends]
+        svg.polygon([*upper, *((x(at), y(low)) for at, low, _ in reversed(ends))], look)
+
+
+def _mark(svg: Svg, x: float, y: float, look: int, tip: str) -> None:
+    cls = f"spot s{look}"
+    match look:
+        case 0:
+            svg.circle((x, y), 3.6, cls, tip)
+        case 1:
+            svg.rect(x - 3.4, y - 3.4, 6.8, 6.8, cls, tip=tip)
+        case 2:
+            svg.polygon([(x - 4.4, y + 3.4), (x + 4.4, y + 3.4), (x, y - 4.6)], cls, tip)
+        case _:
+            svg.polygon([(x - 4.8, y), (x, y - 4.8), (x + 4.8, y), (x, y + 4.8)], cls, tip)
+
+
+def _key_rows(series: Sequence[Series], width: float) -> list[list[tuple[int, str, float]]]:
+    rows: list[list[tuple[int, str, float]]] = [[]]
+    left = 0.0
+    for i, line in enumerate(series):
+        room = _SAMPLE + 8 + text_width(line.label, 12) + 22
+        if rows[-1] and left + room > width:
+            rows.append([])
+            left = 0.0
+        rows[-1].append((i % LOOKS, line.label, left))
+        left += room
+    return rows
+
+
+def _key(svg: Svg, rows: Sequence[Sequence[tuple[int, str, float]]]) -> None:
+    for row, entries in enumerate(rows):
+        y = _KEY_ROW * row + 9
+        for look, label, left in entries:
+            svg.line((left, y), (left + _SAMPLE, y), f"curve s{look}")
+            _mark(svg, left + _SAMPLE / 2, y, look, label)
+            svg.text(left + _SAMPLE + 8, y + 4, label)
 
 
 def reproduction_page(
