@@ -1,8 +1,8 @@
 """An estimator as a user would bring it: gyroscope, specific force and position fixes, filtered."""
 
 import torch
-from faultpath_quadrotor import so3
 from faultpath_quadrotor.estimators import Estimator
+from faultpath_quadrotor.so3 import exp
 
 from faultpath.loop import Port
 
@@ -25,7 +25,7 @@ class Filter(Estimator):
             position, velocity, attitude = fix, start["velocity"], start["attitude"]
         else:
             position, velocity, attitude, old_rate, old_force = memory
-            turn = so3.exp(0.5 * DT_S * (old_rate + rate).T).movedim(-1, 0)
+            turn = exp(0.5 * DT_S * (old_rate + rate).T).movedim(-1, 0)
             turned = attitude @ turn
             world = 0.5 * (attitude @ old_force[..., None] + turned @ force[..., None])[..., 0]
             ahead = velocity + DT_S * (world + GRAVITY)
