@@ -118,12 +118,27 @@ def fit(
         initial = weights_sha256(net)
         first_loss = task.mean_loss(net, task.training[minibatches(task, 0)[0].numpy()], ())
         history = run(task, net)
+    structure = [str(net)]
+    for place, part in net.named_modules():
+        plain = {
+            name: value
+            for name, value in sorted(vars(part).items())
+            if isinstance(value, bool | int | float | str | tuple) and name != "training"
+        }
+        structure.append(f"{place or type(net).__name__}: {plain}")
     record = FitRecord(
         name=task.name,
         seed=seed,
         repairs=repairs,
         reads=tuple(f"{port.channel} -> {consumer}" for port, consumer in data.ports.items()),
-        architecture=_architecture(net),
+        architecture=Architecture(
+            name=type(net).__name__,
+            structure="\n".join(structure),
+            tensors={
+                name: f"{str(value.dtype).removeprefix('torch.')} {list(value.shape)}"
+                for name, value in net.state_dict().items()
+            },
+        ),
         parameters=parameter_count(net),
         data=data.digested(task.host_targets, task.training),
         loss=_name_of(loss),
@@ -144,10 +159,11 @@ def fit(
         ),
         duration_s=round(history.duration_s, 3),
     )
-    if folder is None:
-        return Fit(net.eval(), record)
-    make_folder(Path(folder))
-    return Fit(net.eval(), record, save(net, record, Path(folder)))
+    path = None
+    if folder is not None:
+        make_folder(Path(folder))
+        path = save(net, record, Path(folder))
+    return Fit(net.eval(), record, path)
 
 
 def evaluate(
@@ -263,25 +279,6 @@ class _WindowTask(Task):
             what = f"of shape {list(loss.shape)}" if hasattr(loss, "shape") else _name_of(loss)
             raise UserError(f"fit: the loss must be a tensor of one number, not {what}")
         return loss, counts
-
-
-def _architecture(net: nn.Module) -> Architecture:
-    lines = [str(net)]
-    for place, part in net.named_modules():
-        plain = {
-            name: value
-            for name, value in sorted(vars(part).items())
-            if isinstance(value, bool | int | float | str | tuple) and name != "training"
-        }
-        lines.append(f"{place or type(net).__name__}: {plain}")
-    return Architecture(
-        name=type(net).__name__,
-        structure="\n".join(lines),
-        tensors={
-            name: f"{str(value.dtype).removeprefix('torch.')} {list(value.shape)}"
-            for name, value in net.state_dict().items()
-        },
-    )
 
 
 def _name_of(thing: Any) -> str:

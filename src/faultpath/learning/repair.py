@@ -32,12 +32,15 @@ class Repair(Frozen):
     @property
     def words(self) -> str:
         """The repair in a few words."""
-        said = "; ".join(map(_said, self.faults))
         if self.kind == "reconstruction":
             return f"reconstruction of {self.channel}"
-        if self.kind == "withholding":
-            return f"withholding: {said}"
-        return f"uncertainty training: {said}"
+        said: list[str] = []
+        for each in self.faults:
+            text = each if isinstance(each, str) else each.describe()
+            if isinstance(each, Fault) and each.loading != 1.0:
+                text += f", with a loading of {each.loading:g} on {each.drawn_from}"
+            said.append(text)
+        return f"{self.kind.replace('_', ' ')}: {'; '.join(said)}"
 
     def against(self, interface: Interface, dt_s: float, present: Collection[str]) -> "Repair":
         """Return the repair as it acts on the consumers that are `present`, all spelled out.
@@ -48,8 +51,15 @@ class Repair(Frozen):
             interface.channel(self.channel)
         found: list[AnyFault] = []
         for fault in understood(self.faults, interface, dt_s):
-            if self.kind == "withholding":
-                _check_shaped(fault, interface)
+            if isinstance(fault, Fault) and isinstance(fault.intervention, Erase):
+                # It would be laid along a reading, and nothing says its shape in a loop.
+                shape = interface.source(interface.channel(fault.channel).sources[0]).shape
+                value = fault.intervention.default
+                if self.kind == "withholding" and value is not None and np.shape(value) != shape:
+                    raise UserError(
+                        f"withholding '{fault.channel}': its reading has the shape {list(shape)}, "
+                        f"and the value {list(np.shape(value))}: give one number for each"
+                    )
             faults = fault.resolved(interface, present)
             if not faults:
                 raise UserError(
@@ -124,9 +134,18 @@ def errors(
                 f"errors: channel '{channel}' has magnitude {std} and loading {loading}: the first "
                 "must not be negative, the second is from -1 to 1"
             )
-        faults.append(
-            Fault(channel=channel, intervention=_law(std, persistence, relative), loading=loading)
-        )
+        if persistence == "step":
+            law: Bias | Noise = Noise(std=std, relative=relative)
+        elif persistence == "window":
+            law = Bias(std=std, relative=relative)
+        elif isinstance(persistence, str) or not persistence > 0:
+            raise UserError(
+                f"errors: a persistence of {persistence!r} is none: give 'window', 'step' or "
+                "seconds"
+            )
+        else:
+            law = Bias(std=std, relative=relative, time_constant_s=persistence)
+        faults.append(Fault(channel=channel, intervention=law, loading=loading))
     if not faults:
         raise UserError("errors: magnitude names no channel")
     return Coupled(name=f"q_eps of {listed(magnitude)}", faults=tuple(faults))
@@ -157,36 +176,3 @@ def reconstruction(channel: str) -> Repair:
     perturbed by a further repair. The downstream modules stay as they are.
     """
     return Repair(kind="reconstruction", channel=channel)
-
-
-def _said(fault: AnyFault | str) -> str:
-    if isinstance(fault, str):
-        return fault
-    if isinstance(fault, Coupled) or fault.loading == 1.0:
-        return fault.describe()
-    return f"{fault.describe()}, with a loading of {fault.loading:g} on {fault.drawn_from}"
-
-
-def _law(std: float, persistence: Persistence, relative: bool) -> Bias | Noise:
-    if persistence == "step":
-        return Noise(std=std, relative=relative)
-    if persistence == "window":
-        return Bias(std=std, relative=relative)
-    if isinstance(persistence, str) or not persistence > 0:
-        raise UserError(
-            f"errors: a persistence of {persistence!r} is none: give 'window', 'step' or seconds"
-        )
-    return Bias(std=std, relative=relative, time_constant_s=persistence)
-
-
-def _check_shaped(fault: AnyFault, interface: Interface) -> None:
-    """Refuse a value that would be laid along a reading: in flight nothing says its shape."""
-    if not isinstance(fault, Fault) or not isinstance(fault.intervention, Erase):
-        return
-    shape = interface.source(interface.channel(fault.channel).sources[0]).shape
-    value = fault.intervention.default
-    if value is not None and np.shape(value) != shape:
-        raise UserError(
-            f"withholding '{fault.channel}': its reading has the shape {list(shape)}, and the "
-            f"value {list(np.shape(value))}: give one number for each"
-        )

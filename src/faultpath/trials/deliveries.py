@@ -34,7 +34,7 @@ class Deliveries(Result):
         study: Study,
         arms: Mapping[str, tuple[TapCount, ...]],
         table: OutcomeTable,
-        findings: tuple[str, ...] = (),
+        findings: tuple[str, ...],
     ) -> Self:
         """Lay the counts, by arm key, out in the order of the study's rows.
 
@@ -42,12 +42,9 @@ class Deliveries(Result):
         """
         rows = tuple(
             RowDeliveries(
-                variant=row.variant,
-                path=row.path,
-                seed=row.seed,
-                taps=arms.get(row.arm.key(), ()),
+                variant=r.variant, path=r.path, seed=r.seed, taps=arms.get(r.arm.key(), ())
             )
-            for row in study.rows
+            for r in study.rows
         )
         reads = [(row.variant, tap) for row in rows for tap in row.taps]
         return cls(
@@ -82,16 +79,13 @@ def unread(counts: Iterable[tuple[str, TapCount]]) -> tuple[str, ...]:
 
 def unproven(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
     """Say so where the hashes are the same in all scenes, and so prove nothing about the pairs."""
-    sound = [outcome for outcome in outcomes if not outcome.failed]
-    scenes = {outcome.scene for outcome in sound}
-    if len(scenes) < 2 or len({_conditions(outcome) for outcome in sound}) > 1:
+    sound = [each for each in outcomes if not each.failed]
+    scenes = {each.scene for each in sound}
+    met = {(each.initial_hash, each.disturbance_hash, each.planner_noise_hash) for each in sound}
+    if len(scenes) < 2 or len(met) > 1:
         return ()
     return (
         f"All {len(scenes)} scenes carry the same hashes of initial state, disturbance and planner "
-        f"noise ({', '.join(map(repr, _conditions(sound[0])))}), so nothing proves that two trials "
-        "met the same conditions: hash what each scene begins with and meets.",
+        f"noise ({', '.join(map(repr, met.pop()))}), so nothing proves that two trials met the "
+        "same conditions: hash what each scene begins with and meets.",
     )
-
-
-def _conditions(outcome: Outcome) -> tuple[str, str, str]:
-    return outcome.initial_hash, outcome.disturbance_hash, outcome.planner_noise_hash

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from faultpath.trials.declared import shown
+
 
 class Status(StrEnum):
     """How a trial ended."""
@@ -82,18 +84,18 @@ def checked(outcome: Outcome, metrics: Collection[str] = ()) -> Outcome:
         return failed_outcome(outcome.scene, outcome.error or "the system said that it failed")
     try:
         if not isinstance(status, Status):
-            raise _Malformed(f"status is {_shown(status)}: give a faultpath.trials.Status")
+            raise _Malformed(f"status is {shown(status)}: give a faultpath.trials.Status")
         time_s = _number("time_s", outcome.time_s)
         if time_s <= 0:
             raise _Malformed(f"time_s is {time_s}: a trial takes at least one control step")
         if odd := [name for name in outcome.metrics if name not in metrics]:
             raise _Malformed(
-                f"metric {_shown(odd[0])} is not declared: name it in the system's `metrics`"
+                f"metric {shown(odd[0])} is not declared: name it in the system's `metrics`"
             )
         for name in ("initial_hash", "disturbance_hash", "planner_noise_hash"):
             value: Any = getattr(outcome, name)
             if not isinstance(value, str) or _text(value) != value[:_LONGEST_ERROR]:
-                raise _Malformed(f"{name} is {_shown(value)}: give text")
+                raise _Malformed(f"{name} is {shown(value)}: give text")
             if not value:
                 raise _Malformed(
                     f"{name} is empty and proves no pairing: give a hash, or the word none"
@@ -113,7 +115,7 @@ def checked(outcome: Outcome, metrics: Collection[str] = ()) -> Outcome:
 
 def _number(name: str, value: Any) -> float:
     if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
-        raise _Malformed(f"{name} is {_shown(value)}: give a number")
+        raise _Malformed(f"{name} is {shown(value)}: give a number")
     try:
         number = float(value)
     except OverflowError:
@@ -135,12 +137,3 @@ def _path(trace: Any) -> NDArray[np.float32]:
     if lost.size:
         raise _Malformed(f"trace is not finite at step {lost[0]}")
     return path
-
-
-def _shown(value: Any) -> str:
-    try:
-        text = ascii(value)
-    except Exception:  # whatever a system's own object does when it is printed
-        return f"a {type(value).__name__}"
-    short = text if len(text) <= 60 else text[:57] + "..."
-    return f"{short} ({type(value).__name__})"

@@ -153,8 +153,14 @@ def pair(
     same seeds and scenes.
     """
     seeds = table.seeds(first.variant, first.path) if seeds is None else tuple(seeds)
-    ones = [_arm(table, first, seed) for seed in seeds]
-    twos = [_arm(table, second, seed) for seed in seeds]
+
+    def arm(side: Side, seed: int) -> tuple[TrialRow, ...]:
+        try:
+            return table.arm(side.variant, side.path, seed)
+        except KeyError:
+            raise PairingRefused(f"the table has no trial of {side} with seed {seed}") from None
+
+    ones, twos = ([arm(side, seed) for seed in seeds] for side in (first, second))
     if not ones:
         raise PairingRefused(f"cannot pair {first} with {second}: the table has no trial of it")
     for seed, one, two in zip(seeds, ones, twos, strict=True):
@@ -162,13 +168,17 @@ def pair(
         _check_scenes(one, two, first, second, seed)
     hashes = [name for name in _HASHES if name != "planner_noise_hash" or not other_noise]
     mismatches: list[Mismatch] = []
-    void = _flags(ones, Status.FAILED) | _flags(twos, Status.FAILED)
+    ends = [
+        Ended(_flags(arms, Status.SUCCESS), _flags(arms, Status.FAILED)) for arms in (ones, twos)
+    ]
+    void = ends[0].failed | ends[1].failed
     for at, (seed, one, two) in enumerate(zip(seeds, ones, twos, strict=True)):
         for scene, (a, b) in enumerate(zip(one, two, strict=True)):
             if found := unlike(a.outcome, b.outcome, hashes):
                 mismatches.append(Mismatch(first, second, a.outcome.scene, seed, found))
                 void[scene, at] = True
     keep: Bools = np.asarray(~void.any(axis=1), dtype=np.bool_)
+    every = [row.outcome.scene for row in ones[0]]
     kept = [row for row, stays in zip(ones[0], keep, strict=True) if stays]
     return Pairs(
         scenes=tuple(row.outcome.scene for row in kept),
@@ -178,24 +188,11 @@ def pair(
         first=_trials(ones, keep),
         second=_trials(twos, keep),
         void=int(void.sum()),
-        void_scenes=tuple(
-            row.outcome.scene for row, stays in zip(ones[0], keep, strict=True) if not stays
-        ),
+        void_scenes=tuple(s for s, stays in zip(every, keep, strict=True) if not stays),
         mismatches=tuple(mismatches),
-        all_scenes=tuple(row.outcome.scene for row in ones[0]),
-        ended=(_ended(ones), _ended(twos)),
+        all_scenes=tuple(every),
+        ended=(ends[0], ends[1]),
     )
-
-
-def _ended(arms: Sequence[Sequence[TrialRow]]) -> Ended:
-    return Ended(_flags(arms, Status.SUCCESS), _flags(arms, Status.FAILED))
-
-
-def _arm(table: OutcomeTable, side: Side, seed: int) -> tuple[TrialRow, ...]:
-    try:
-        return table.arm(side.variant, side.path, seed)
-    except KeyError:
-        raise PairingRefused(f"the table has no trial of {side} with seed {seed}") from None
 
 
 def _check_scenes(

@@ -5,7 +5,6 @@ import sys
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
 
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import fingerprint_of, paths_of
@@ -25,19 +24,24 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     nothing can build again, that is the file of its class, or its source where it was typed into a
     notebook. `UserError` for a data file that cannot be read.
     """
-    given = fingerprint_of(system)
-    if not spec.is_object:
-        root = factory_root(spec)
-    else:
-        name = type(system).__module__
-        file = _file(sys.modules.get(name))
-        root = None if file is None else Root(name, file)
-        if root is None:
-            with suppress(OSError, TypeError):
-                given = inspect.getsource(type(system)) + given
+    given, root = fingerprint_of(system), None if spec.is_object else factory_root(spec)
+    classes: dict[str, Root] = {}
+    for each in type(system).__mro__:
+        module, name = sys.modules.get(each.__module__), each.__module__
+        file = getattr(module, "__file__", None)
+        if not file or not Path(file).is_file():
+            continue
+        if each is type(system) and spec.is_object:
+            root = Root(name, Path(file))
+        elif root is None or name != root.module:
+            findable = getattr(module, "__spec__", None) is not None
+            classes[name] = Root(name, None if findable else Path(file), of_system=False)
+    if root is None:
+        with suppress(OSError, TypeError):
+            given = inspect.getsource(type(system)) + given
     parts = (factory_root(SystemSpec(name=str(name))) for name in paths_of(system, "parts"))
     code = read_code(
-        ((root,) if root else ()) + (*_classes(system, root), *parts, _FLIES),
+        ((root,) if root else ()) + (*classes.values(), *parts, _FLIES),
         data=map(Path, paths_of(system, "data_files")),
         base=root.path.parent if root and root.path else None,
         given=given,
@@ -45,24 +49,6 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     return code if root else replace(code, main=None)
 
 
-def _file(module: ModuleType | None) -> Path | None:
-    name = getattr(module, "__file__", None)
-    return Path(name) if name and Path(name).is_file() else None
-
-
 def source_state(spec: SystemSpec) -> CodeState:
     """Return the state of the code that building `spec` will load, without loading it."""
     return read_code((factory_root(spec), _FLIES)).state
-
-
-def _classes(system: System, root: Root | None) -> tuple[Root, ...]:
-    found: dict[str, Root] = {}
-    for each in type(system).__mro__:
-        module = sys.modules.get(each.__module__)
-        file = _file(module)
-        if module is None or file is None or (root and each.__module__ == root.module):
-            continue
-        findable = getattr(module, "__spec__", None) is not None
-        name = each.__module__
-        found[name] = Root(name, None if findable else file, of_system=False)
-    return tuple(found.values())
