@@ -68,7 +68,7 @@ def test_json_is_the_plan_and_nothing_else_on_the_standard_output() -> None:
     [
         ({"repair": "calibrated"}, "name two different variants"),
         ({"repair": "bland"}, "did you mean 'blind'"),
-        ({"fault": "gain:scale=1.1@observer"}, "strikes every module by itself"),
+        ({"fault": "gain:scale=1.1@observer"}, "faults every module by itself"),
         ({"fault": "odometer"}, "unknown"),
         ({"module": "nobody"}, "unknown module 'nobody'"),
         ({"scenes": 0}, "choose 1 to 100"),

@@ -11,9 +11,8 @@ from faultpath.api.display import Display
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
-from faultpath.decisions.plan.plan import Plan, Proposal
+from faultpath.decisions.plan.plan import Plan, make_plan, sentences
 from faultpath.decisions.plan.study import StudyFile, check_arms
-from faultpath.decisions.plan.words import sentences
 from faultpath.decisions.planning import plan_audit
 from faultpath.trials import System, library_of
 from faultpath.trials.question import PlanQuestion, Question
@@ -34,7 +33,7 @@ class Planned:
     @property
     def sentences(self) -> tuple[str, ...]:
         """Why the first source is first, what is left open, trials and time."""
-        return sentences(self.plan)
+        return tuple(sentences(self.plan))
 
     def write(self, file: str | PathLike[str]) -> Path:
         """Write the study file and return its path; `UserError` where another one stands."""
@@ -91,13 +90,12 @@ def plan(
             "a study file cannot hold an object: put what builds the system into a file and name "
             "that, as 'my_system.py:create'."
         )
-    proposal = Proposal(chosen.system, chosen.spec, asked, begun.library)
     with told.progress("Planning") as show:
 
         def note(done: int, total: int) -> None:
             show(Progress(done, total, f"{done} of {total} runs"))
 
-        return Planned(proposal.make(note))
+        return Planned(make_plan(chosen.system, chosen.spec, asked, begun.library, note))
 
 
 def check_new(file: Path) -> None:

@@ -1,6 +1,5 @@
 """The tables of a plan: sources in order, and the audits that are proposed."""
 
-from faultpath.decisions.plan.order import placed
 from faultpath.decisions.plan.plan import Plan
 from faultpath.decisions.plan.sources import Candidate
 from faultpath.decisions.tables import MISSING, Line, Table, line
@@ -9,22 +8,22 @@ from faultpath.decisions.tables import MISSING, Line, Table, line
 def by_rank(plan: Plan) -> Table:
     """Return the uncertain sources in order, with who reads them and how far they may err."""
     columns = ("read by", "expected error")
-    notes = ["Order: number of consumers, then the larger probe response; equal ones share a rank."]
-    if not all(placed(each, plan.candidates) for each in plan.candidates):
-        notes.append("?: no response is known, so among as many consumers the place is open.")
+    notes = (
+        "Order: number of consumers, then the larger probe response, one that is not known last; "
+        "equal ones share a rank.",
+    )
     return Table(
         title="Uncertain sources by rank",
         corner="source",
         columns=columns,
         words=columns,
         lines=tuple(_source(plan, each) for each in plan.candidates),
-        notes=tuple(notes),
+        notes=notes,
     )
 
 
 def _source(plan: Plan, each: Candidate) -> Line:
     mark = "=" if sum(other.rank == each.rank for other in plan.candidates) > 1 else ""
-    mark += "" if placed(each, plan.candidates) else "?"
     fault = each.fault or "none known"
     return line(f"{each.rank}{mark} {each.name}", "\n".join(each.consumers), fault)
 
@@ -41,7 +40,7 @@ def by_response(plan: Plan) -> Table:
             lines.append(line(path, *(MISSING if r is None else f"{r:.3g}" for r in found)))
     return Table(
         title="Probe responses",
-        corner="struck",
+        corner="faulted",
         columns=variants,
         lines=tuple(lines),
         notes=(
@@ -52,7 +51,7 @@ def by_response(plan: Plan) -> Table:
 
 
 def by_audit(plan: Plan) -> Table:
-    """Return the proposed audits with their arms, which fly with both variants."""
+    """Return the proposed audits with their arms, which run with both variants."""
     columns = ("why", "arms", "trials")
     return Table(
         title=f"Proposed: {plan.study.repair} against {plan.study.baseline}",
@@ -71,5 +70,4 @@ def by_audit(plan: Plan) -> Table:
             )
             for each, trials in zip(plan.study.audits, plan.trials, strict=True)
         ),
-        notes=("Arms that an audit shares with the first one fly once.",),
     )

@@ -19,7 +19,7 @@ def ranked(found: Sequence[Candidate]) -> tuple[Candidate, ...]:
 
     This is the paper's rule, Section III-C. It compares point estimates: sources that are equal in
     both share a rank, and stand in the order of declaration, those without a fault last. A response
-    that is not known counts as the smallest, and `placed` tells where that decides.
+    that is not known counts as the smallest.
     """
 
     def key(each: Candidate) -> tuple[int, float]:
@@ -30,12 +30,6 @@ def ranked(found: Sequence[Candidate]) -> tuple[Candidate, ...]:
         rank = len(out) + 1
         out += [each.model_copy(update={"rank": rank}) for each in alike]
     return tuple(out)
-
-
-def placed(each: Candidate, found: Sequence[Candidate]) -> bool:
-    """Return whether the rule places a candidate, beside others with as many consumers."""
-    known = [other.response for other in found if len(other.consumers) == len(each.consumers)]
-    return each.response is not None or not any(response is not None for response in known)
 
 
 def repaired_modules(
@@ -80,16 +74,17 @@ def _differ(one: Any, two: Any, seen: set[tuple[int, int]]) -> bool:
         return not np.array_equal(to_numpy(one), to_numpy(two))
     if isinstance(one, int | float | complex):
         return one != two
-    mine, theirs = _parts(one), _parts(two)
+    mine, theirs = (
+        dict(enumerate(cast("Sequence[Any]", of)))
+        if isinstance(of, list | tuple)
+        else cast("Mapping[Any, Any]", of if isinstance(of, Mapping) else vars(of))
+        if isinstance(of, Mapping) or hasattr(of, "__dict__")
+        else {}
+        for of in (one, two)
+    )
     return mine.keys() != theirs.keys() or any(
         _differ(part, theirs[name], seen) for name, part in mine.items()
     )
-
-
-def _parts(of: Any) -> Mapping[Any, Any]:
-    if isinstance(of, list | tuple):
-        return dict(enumerate(cast("Sequence[Any]", of)))
-    return cast("Mapping[Any, Any]", of if isinstance(of, Mapping) else getattr(of, "__dict__", {}))
 
 
 def makers(interface: Interface, variants: Sequence[Variant]) -> dict[str, tuple[str, ...]]:

@@ -1,7 +1,6 @@
-"""A plan: sources in order, the audits of a study, how many trials they take and how long."""
+"""A plan: sources in order, the audits of a study, how many trials they take, and why."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
@@ -9,14 +8,15 @@ from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_m
 from faultpath.decisions.plan.probing import command_responses
 from faultpath.decisions.plan.sources import Candidate, candidates
 from faultpath.decisions.plan.study import StudyAudit, StudyFile, arms_of
-from faultpath.decisions.planning import Audit, plan_audit, two_variants
-from faultpath.trials import Arm, Library, LoopSystem, System, SystemSpec, Variant
+from faultpath.decisions.planning import plan_audit, two_variants
+from faultpath.decisions.wording import counted, series
+from faultpath.trials import Library, LoopSystem, System, SystemSpec
 from faultpath.trials.question import PlanQuestion
 
 PROBED_SCENES = 5
 """A probe is a look at where to begin, and no result."""
 Note = Callable[[int, int], None]
-"""Takes how many flights are done, and of how many."""
+"""Takes how many runs are done, and of how many."""
 
 
 class Plan(Result):
@@ -33,118 +33,84 @@ class Plan(Result):
     probed: int
     """Scenes of the probe; 0 where there was none."""
     trials: tuple[int, ...]
-    """Of each audit, beyond those that an earlier one flies."""
+    """Of each audit."""
 
 
-@dataclass(frozen=True)
-class Proposal:
-    """What is asked for, and the system that is asked."""
+def make_plan(
+    system: System,
+    spec: SystemSpec,
+    asked: PlanQuestion,
+    library: Library,
+    note: Note = lambda done, total: None,
+) -> Plan:
+    """Rank, probe and lay the audits out.
 
-    system: System
-    spec: SystemSpec
-    asked: PlanQuestion
-    library: Library
-    variants: tuple[Variant, Variant] = field(init=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "variants", two_variants(self.system, self.asked))
-
-    def make(self, note: Note = lambda done, total: None) -> Plan:
-        """Rank, probe and lay the audits out.
-
-        `UserError` for anything that `plan_audit` refuses, where no source has a fault, and for a
-        variant that does not run.
-        """
-        found = candidates(self.system, self.variants, self.asked.fault)
-        if not any(each.fault for each in found):
-            raise UserError(_nothing_sized(self.system, found))
-        repaired = repaired_modules(self.system, *self.variants, self.asked.module)
-        chosen = self._audit(next(each for each in found if each.fault)).study.scenes
-        probes = isinstance(self.system, LoopSystem) and sum(bool(c.fault) for c in found) > 1
-        if isinstance(self.system, LoopSystem) and probes:
-            for done, variant in enumerate(self.variants):
-                note(done, len(self.variants))
-                found = self._probed(self.system, found, variant.name, chosen[:PROBED_SCENES])
-        order = ranked(found)
-        first, why = self._reasons(order, repaired)
-        named = [each for each in order if each.fault and each.name in why]
-        named.sort(key=lambda each: each.name != first)
-        laid = [self._audit(each) for each in named]
-        fresh = _fresh(laid)
-        return Plan(
-            study=StudyFile(
-                system=self.spec.name,
-                options=self.spec.options,
-                baseline=self.asked.baseline,
-                repair=self.asked.repair,
-                library=self.library.name,
-                library_hash=self.library.content_hash,
-                scenes=len(chosen),
-                seeds=self.asked.seeds,
-                audits=tuple(
-                    StudyAudit(
-                        name=each.name,
-                        fault=each.fault,
-                        why=why[each.name],
-                        arms=arms_of(audit, repaired),
-                    )
-                    for each, audit in zip(named, laid, strict=True)
-                ),
+    `UserError` for anything that `plan_audit` refuses, where no source has a fault, and for a
+    variant that does not run.
+    """
+    variants = two_variants(system, asked)
+    found = candidates(system, variants, asked.fault)
+    laid = {
+        each.name: plan_audit(system, spec, asked.audit_of(each.fault), library)
+        for each in found
+        if each.fault
+    }
+    if not laid:
+        raise UserError(_nothing_sized(system, found))
+    repaired = repaired_modules(system, *variants, asked.module)
+    scenes = next(iter(laid.values())).study.scenes
+    probed = 0
+    if isinstance(system, LoopSystem) and len(laid) > 1:
+        probed = min(len(scenes), PROBED_SCENES)
+        for done, variant in enumerate(variants):
+            note(done, len(variants))
+            arms = {
+                (name, row.path): row.arm.faults
+                for name, audit in laid.items()
+                for row in audit.study.rows
+                if row.variant == variant.name and row.arm.faults
+            }
+            moved = command_responses(system, variant.name, arms, scenes[:probed], asked.seeds[0])
+            responses = {each.name: dict[str, float]() for each in found}
+            for (name, path), value in moved.items():
+                responses[name][path] = value
+            found = tuple(
+                c.model_copy(update={"responses": c.responses | {variant.name: responses[c.name]}})
+                for c in found
+            )
+    order = ranked(found)
+    first = next(each for each in order if each.fault)
+    reached = tuple(dict.fromkeys(c.partition(".")[0] for c in first.consumers))
+    why = recursion(order, makers(system.interface, variants), (*repaired, *reached))
+    why[first.name] = "first by rank" if first is order[0] else "first with an expected error"
+    named = [each for each in order if each.fault and each.name in why]
+    named.sort(key=lambda each: each is not first)
+    return Plan(
+        study=StudyFile(
+            system=spec.name,
+            options=spec.options,
+            baseline=asked.baseline,
+            repair=asked.repair,
+            library=library.name,
+            library_hash=library.content_hash,
+            scenes=len(scenes),
+            seeds=asked.seeds,
+            audits=tuple(
+                StudyAudit(
+                    name=each.name,
+                    fault=each.fault,
+                    why=why[each.name],
+                    arms=arms_of(laid[each.name], repaired),
+                )
+                for each in named
             ),
-            candidates=order,
-            repaired=repaired,
-            unplanned={c.name: why[c.name] for c in order if c.name in why and not c.fault},
-            probed=min(len(chosen), PROBED_SCENES) if probes else 0,
-            trials=tuple(len(arms) * len(chosen) for arms in fresh),
-        )
-
-    def _audit(self, each: Candidate) -> Audit:
-        asked = self.asked.audit_of(each.fault)
-        return plan_audit(self.system, self.spec, asked, self.library)
-
-    def _probed(
-        self,
-        system: LoopSystem,
-        found: Sequence[Candidate],
-        variant: str,
-        scenes: Sequence[str],
-    ) -> tuple[Candidate, ...]:
-        arms = {
-            (each.name, row.path): row.arm.faults
-            for each in found
-            if each.fault
-            for row in self._audit(each).study.rows
-            if row.variant == variant and row.arm.faults
-        }
-        moved = command_responses(system, variant, arms, scenes, self.asked.seeds[0])
-
-        def responses(name: str) -> dict[str, float]:
-            return {path: value for (source, path), value in moved.items() if source == name}
-
-        return tuple(
-            each.model_copy(update={"responses": each.responses | {variant: responses(each.name)}})
-            for each in found
-        )
-
-    def _reasons(
-        self, order: Sequence[Candidate], repaired: tuple[str, ...]
-    ) -> tuple[str, dict[str, str]]:
-        first = next(each for each in order if each.fault)
-        by_rank = "first by rank" if first is order[0] else "first with an expected error"
-        struck = tuple(dict.fromkeys(c.partition(".")[0] for c in first.consumers))
-        made_by = makers(self.system.interface, self.variants)
-        more = recursion(order, made_by, (*repaired, *struck))
-        return first.name, {first.name: by_rank} | {
-            name: why for name, why in more.items() if name != first.name
-        }
-
-
-def _fresh(laid: Sequence[Audit]) -> list[list[Arm]]:
-    """Return the arms of each audit that the first one has not got: those it shares are taken
-    over."""
-    held = {arm.key() for arm in laid[0].study.arms()}
-    more = ([a for a in each.study.arms() if a.key() not in held] for each in laid[1:])
-    return [list(laid[0].study.arms()), *more]
+        ),
+        candidates=order,
+        repaired=repaired,
+        unplanned={c.name: why[c.name] for c in order if c.name in why and not c.fault},
+        probed=probed,
+        trials=tuple(len(laid[c.name].study.arms()) * len(scenes) for c in named),
+    )
 
 
 def _nothing_sized(system: System, found: Sequence[Candidate]) -> str:
@@ -156,3 +122,56 @@ def _nothing_sized(system: System, found: Sequence[Candidate]) -> str:
         f"{system.name}: no source says how large its errors are ({why}): declare it in the "
         f"interface, or give the expected error, for example --fault {channel}:scale=1.1"
     )
+
+
+def sentences(plan: Plan) -> Iterator[str]:
+    """Say why the first source is first, what the plan leaves open, and what it will take.
+
+    Ranks compare point estimates, and the words say no more.
+    """
+    first, *others = plan.candidates
+    count = counted(len(first.consumers), "consumer")
+    tied = [each.name for each in others if each.rank == first.rank]
+    alike = [each.name for each in others if len(each.consumers) == len(first.consumers)]
+    if not others:
+        yield f"{first.name} ({count}) is the only uncertain source: no rank is due."
+    elif not alike:
+        yield f"{first.name} comes first: {count}, more than any other source."
+    elif tied:
+        named = series([first.name, *tied])
+        yield f"{named} tie: {count} each, and nothing tells them apart."
+    else:
+        yield (
+            f"{first.name} comes first: {count}, as {series(alike)}, and the largest known probe "
+            f"response ({first.response:.3g}), a point estimate from "
+            f"{counted(plan.probed, 'scene')} that no test compares."
+        )
+    if not first.fault:
+        audited = next(each.name for each in plan.candidates if each.fault)
+        yield (
+            f"{first.name} cannot be audited without an expected error; {audited} is the first in "
+            "the ranking that has one."
+        )
+    elif tied:
+        yield f"{first.name} is audited first: it has an expected error and is declared first."
+    if unsized := [f"{each.name} ({each.unsized})" for each in plan.candidates if not each.fault]:
+        yield (
+            f"Without an expected error, and so without an audit: {series(unsized)}. Declare it in "
+            "the interface, or give it with --fault."
+        )
+    if plan.unplanned:
+        due = "; ".join(f"{name} ({why})" for name, why in plan.unplanned.items())
+        yield f"Of these the recursion leads to the following, where the same audit is due: {due}."
+    if plan.repaired:
+        yield f"Taken as changed by the repair: {series(plan.repaired)}."
+    else:
+        yield (
+            "Which module the repair changes cannot be seen: every module is faulted alone all the "
+            "same; --module names it."
+        )
+    audits = {audit.name for audit in plan.study.audits}
+    yield from (each.note for each in plan.candidates if each.name in audits and each.note)
+    yield "Each fault has one size and sign, and lasts; `faultpath map` covers both signs."
+    if len(audits) > 1:
+        yield "Each audit decides by itself: no correction is made for their number."
+    yield f"{counted(sum(plan.trials), 'trial')} in all."

@@ -1,11 +1,11 @@
 """How far a variant's commands move when one source errs and everything else stays.
 
 The probe of the paper, Section III-B, asked of the whole controller: `A_s = median |u(s') - u(s)|`.
-A loop flies under correct inputs. Beside it, step by step, its modules run again on what its plant
+A loop runs under correct inputs. Beside it, step by step, its modules run again on what its plant
 senses and on the commands that it has executed, with the fault in force: histories are those of the
-flight, and only what modules make of the faulty input differs, what they carry from step to step
+first run, and only what modules make of the faulty input differs, what they carry from step to step
 included. The median is over the steps of all scenes while they run, of the distance between both
-commands, each component as a fraction of its root mean square in the flight.
+commands, each component as a fraction of its root mean square in the first run.
 """
 
 import warnings
@@ -39,72 +39,77 @@ def command_responses(
 ) -> dict[Key, float]:
     """Return the response to each arm's faults that do not stop the variant's modules.
 
-    Empty where nothing that faultpath sees reaches the plant. Raises what the flight raises.
+    Empty where nothing that faultpath sees reaches the plant. Raises what the run raises.
     """
-    beside = _Beside(system, variant, faults, scenes, seed)
+    probe = _Probe(system, variant, faults, tuple(scenes), seed)
     loop = system.loop(variant, seed)
-    heard = _with_plant(loop, _Heard(loop.graph.plant, beside))
-    beside.past = {
+    probe.past = {
         (port.channel, f"{part.name}.{port.place}")
         for part in loop.graph.parts
         for port in part.reads_past
     }
-    system.fly(heard, scenes, beside.taps((), leads=True), seed)
-    return beside.medians()
+    observed = _with_plant(loop, _Observed(loop.graph.plant, probe))
+    system.fly(observed, scenes, _Taps(probe, (), first=True), seed)
+    if not probe.commands or probe.commands[0].shape[1] == 0:
+        return {}
+    commands, running = np.stack(probe.commands), np.stack(probe.running)
+    size = np.sqrt(np.mean(commands[running] ** 2, axis=0))
+    size[size == 0.0] = 1.0
+    found: dict[Key, float] = {}
+    for key, moved in probe.moved.items():
+        apart = (np.stack(moved) - commands)[running] / size
+        median = float(np.median(np.sqrt(np.mean(apart**2, axis=1))))
+        if np.isfinite(median):
+            found[key] = float(f"{median:.6g}")  # what rounding parts is equal
+    return found
 
 
-class _Beside:
-    """What the flight shows of itself, and the modules that run beside it."""
+class _Probe:
+    """What the first run shows of itself, and the modules that run beside it."""
 
     def __init__(
         self,
         system: LoopSystem,
         variant: str,
         faults: Mapping[Key, Sequence[AnyFault]],
-        scenes: Sequence[str],
+        scenes: tuple[str, ...],
         seed: int,
     ) -> None:
-        self._system, self._variant, self._faults = system, variant, faults
-        self._scenes, self._seed = tuple(scenes), seed
+        self.system, self.variant, self.scenes, self.seed = system, variant, scenes, seed
         self.past: set[tuple[str, str]] = set()
         """Taps, by channel and consumer, at which a port reads what was held one step before."""
         self.readings: dict[tuple[str, str], Reading] = {}
-        """Of the past, at the flight's present step."""
+        """Of the past, at the first run's present step."""
         self.sensed: Mapping[str, Any] = {}
         self.progress: Progress | None = None
+        self.moved: dict[Key, list[Floats]] = {key: [] for key in faults}
+        self.commands: list[Floats] = []
+        self.running: list[NDArray[np.bool_]] = []
+        self._faults = faults
         self._others: dict[Key, Any] = {}
-        self._moved: dict[Key, list[Floats]] = {key: [] for key in faults}
-        self._commands: list[Floats] = []
-        self._running: list[NDArray[np.bool_]] = []
-
-    def taps(self, faults: Sequence[AnyFault], leads: bool) -> "_Taps":
-        arm = Arm(variant=self._variant, faults=tuple(faults), seed=self._seed)
-        return _Taps(taps_of(self._system, arm, self._scenes), self, leads)
 
     def step(self, inputs: Inputs) -> None:
-        """Take in a command of the flight, and let the others make theirs."""
-        if not self._commands:
-            self._others = {key: self._begin(faults) for key, faults in self._faults.items()}
+        """Take in a command of the first run, and let the others make theirs."""
+        if not self.commands:
+            batch = Batch(self.scenes, self.seed, self.system.control_dt_s)
+            for key, faults in self._faults.items():
+                loop = self.system.loop(self.variant, self.seed)
+                beside = _with_plant(loop, _Copied(loop.graph.plant, self))
+                self._others[key] = beside.execute(batch, _Taps(self, faults, first=False))
         assert self.progress is not None
-        self._commands.append(self._command(inputs))
-        self._running.append(np.array(to_numpy(self.progress.running), dtype=bool))
+        self.commands.append(self._command(inputs))
+        self.running.append(np.array(to_numpy(self.progress.running), dtype=bool))
         for key in list(self._others):
             try:
-                self._moved[key].append(self._command(next(self._others[key]).inputs))
+                self.moved[key].append(self._command(next(self._others[key]).inputs))
             except Exception as error:  # what modules raise that were not made for such an input
-                del self._others[key], self._moved[key]
-                told = f"{' '.join(map(str, key))}, {self._variant}: no probe response, since its "
-                told += f"modules stop at such an input ({described(error)})."
-                warnings.warn(Notice(told), stacklevel=1)
-
-    def _begin(self, faults: Sequence[AnyFault]) -> Any:
-        loop = self._system.loop(self._variant, self._seed)
-        batch = Batch(self._scenes, self._seed, self._system.control_dt_s)
-        told = _with_plant(loop, _Told(loop.graph.plant, self))
-        return told.execute(batch, self.taps(faults, leads=False))
+                del self._others[key], self.moved[key]
+                said = f"{' '.join(map(str, key))}, {self.variant}: no probe response, since its "
+                said += f"modules stop at such an input ({described(error)})."
+                warnings.warn(Notice(said), stacklevel=1)
 
     def _command(self, inputs: Inputs) -> Floats:
-        n = len(self._scenes)
+        n = len(self.scenes)
         parts = [
             np.array(to_numpy(inputs[port]), dtype=np.float64).reshape(n, -1)
             for port in inputs
@@ -112,35 +117,24 @@ class _Beside:
         ]
         return np.concatenate(parts, axis=1) if parts else np.empty((n, 0))
 
-    def medians(self) -> dict[Key, float]:
-        """Return the median distances, where they are finite."""
-        if not self._commands or self._commands[0].shape[1] == 0:
-            return {}
-        commands, running = np.stack(self._commands), np.stack(self._running)
-        size = np.sqrt(np.mean(commands[running] ** 2, axis=0))
-        size[size == 0.0] = 1.0
-        found: dict[Key, float] = {}
-        for key, moved in self._moved.items():
-            apart = (np.stack(moved) - commands)[running] / size
-            median = float(np.median(np.sqrt(np.mean(apart**2, axis=1))))
-            found[key] = float(f"{median:.6g}")  # what rounding parts is equal
-        return {key: value for key, value in found.items() if np.isfinite(value)}
-
 
 class _Taps:
-    """Taps that note the flight's readings of the past, or deliver these in place of their own."""
+    """Taps that note the first run's readings of the past, or deliver these instead of their
+    own."""
 
-    def __init__(self, taps: Taps, beside: _Beside, leads: bool) -> None:
-        self._taps, self._beside, self._leads = taps, beside, leads
-        self.set_active = taps.set_active
+    def __init__(self, probe: _Probe, faults: Sequence[AnyFault], first: bool) -> None:
+        arm = Arm(variant=probe.variant, faults=tuple(faults), seed=probe.seed)
+        self._taps: Taps = taps_of(probe.system, arm, probe.scenes)
+        self._probe, self._first = probe, first
+        self.set_active = self._taps.set_active
 
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
         """Deliver as `Taps` does."""
         tap = (channel, consumer)
-        if tap in self._beside.past:
-            if self._leads:
-                self._beside.readings[tap] = reading
-            reading = self._beside.readings[tap]
+        if tap in self._probe.past:
+            if self._first:
+                self._probe.readings[tap] = reading
+            reading = self._probe.readings[tap]
         return self._taps.deliver(channel, consumer, reading, step)
 
 
@@ -148,29 +142,29 @@ def _with_plant(loop: Loop, plant: Plant) -> Loop:
     return replace(loop, graph=replace(loop.graph, plant=plant))
 
 
-class _Heard(Plant):
-    """The plant of the flight; others hear what it senses, and run before it moves."""
+class _Observed(Plant):
+    """The plant of the first run; others get what it senses, and run before it moves."""
 
-    def __init__(self, plant: Plant, beside: _Beside) -> None:
+    def __init__(self, plant: Plant, probe: _Probe) -> None:
         self.name, self.steps = plant.name, plant.steps
         self.reads, self.reads_past = plant.reads, plant.reads_past
         self.senses, self.shows = plant.senses, plant.shows
-        self._plant, self._beside = plant, beside
+        self._plant, self._probe = plant, probe
 
     def start(self, batch: Batch) -> Any:
         return self._plant.start(batch)
 
     def sense(self, state: Any) -> Mapping[str, Any]:
-        self._beside.sensed = self._plant.sense(state)
-        return self._beside.sensed
+        self._probe.sensed = self._plant.sense(state)
+        return self._probe.sensed
 
     def advance(self, state: Any, inputs: Inputs) -> Any:
-        self._beside.step(inputs)
+        self._probe.step(inputs)
         return self._plant.advance(state, inputs)
 
     def progress(self, state: Any) -> Progress:
-        self._beside.progress = self._plant.progress(state)
-        return self._beside.progress
+        self._probe.progress = self._plant.progress(state)
+        return self._probe.progress
 
     def conditions(self, state: Any) -> tuple[Sequence[str], Sequence[str]]:
         return self._plant.conditions(state)
@@ -182,21 +176,21 @@ class _Heard(Plant):
         return self._plant.position(state)
 
 
-class _Told(_Heard):
-    """In place of a plant: what the flight's senses at the same step, whatever is commanded."""
+class _Copied(_Observed):
+    """In place of a plant: what the first run's senses at the same step, whatever is commanded."""
 
     def start(self, batch: Batch) -> Any:
         return None
 
     def sense(self, state: Any) -> Mapping[str, Any]:
-        return self._beside.sensed
+        return self._probe.sensed
 
     def advance(self, state: Any, inputs: Inputs) -> Any:
         return state
 
     def progress(self, state: Any) -> Progress:
-        assert self._beside.progress is not None
-        return self._beside.progress
+        assert self._probe.progress is not None
+        return self._probe.progress
 
     def over(self, state: Any, step: int) -> bool:
         return False

@@ -40,18 +40,13 @@ class Candidate(Frozen, allow_inf_nan=False):
         return max(moved, default=None)
 
 
-def parsed(system: System, text: str) -> AnyFault:
-    """Return a fault from its text; `UserError` for a wrong one."""
-    return system.fault(text)
-
-
 def candidates(
     system: System, variants: Sequence[Variant], given: Sequence[str]
 ) -> tuple[Candidate, ...]:
     """Return the uncertain sources that a variant reads, in the order of declaration.
 
     Uncertain is what is measured, estimated or reconstructed, or declares an uncertainty. The
-    faults `given` take the place of declared sizes. `UserError` for one that strikes nobody, and
+    faults `given` take the place of declared sizes. `UserError` for one that reaches nobody, and
     for two of one source.
     """
     members: dict[str, list[Source]] = {}
@@ -59,7 +54,7 @@ def candidates(
         uncertain = source.provenance in _UNCERTAIN or source.uncertainty is not None
         if uncertain and _channels(system.interface, variants, source.name):
             members.setdefault(source.correlation_group or source.name, []).append(source)
-    found = [_candidate(system, variants, name, sources) for name, sources in members.items()]
+    found = [_declared(system, variants, name, sources) for name, sources in members.items()]
     for text in given:
         made = _given(system, variants, text)
         replaced = [each for each in found if set(each.channels) <= set(made.channels)]
@@ -88,26 +83,23 @@ def _channels(interface: Interface, variants: Sequence[Variant], source: str) ->
     }
 
 
-def _candidate(
+def _declared(
     system: System, variants: Sequence[Variant], name: str, sources: Sequence[Source]
 ) -> Candidate:
     interface = system.interface
-    channels = {c: None for each in sources for c in _channels(interface, variants, each.name)}
-    text, unsized = _expected(system, name, sources, tuple(channels))
-    consumers = {
-        consumer: None
-        for channel in channels
-        for consumer in interface.channel(channel).consumers
-        if any(consumer in variant.consumers for variant in variants)
-    }
+    every = [c for each in sources for c in _channels(interface, variants, each.name)]
+    channels = tuple(dict.fromkeys(every))
+    text, unsized = _expected(system, name, sources, channels)
+    read = (c for channel in channels for c in interface.channel(channel).consumers)
+    present = {c: None for c in read if any(c in variant.consumers for variant in variants)}
     return Candidate(
         name=name,
         sources=tuple(each.name for each in sources),
-        channels=tuple(channels),
-        consumers=_struck(system, variants, parsed(system, text)) if text else tuple(consumers),
+        channels=channels,
+        consumers=_reached(system, variants, system.fault(text)) if text else tuple(present),
         fault=text,
         unsized=unsized,
-        note=_note(interface, variants, tuple(channels)),
+        note=_note(interface, variants, channels),
     )
 
 
@@ -115,16 +107,16 @@ def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
     asked = FaultText.read(text)
     if len(asked.sizes) > 1 or asked.consumers:
         raise UserError(
-            f"fault '{text}': a plan takes one size, and strikes every module by itself: leave "
+            f"fault '{text}': a plan takes one size, and faults every module by itself: leave "
             "further sizes and '@' out."
         )
-    fault = parsed(system, text)
+    fault = system.fault(text)
     parts = fault.faults if fault.kind == "coupled" else (fault,)
     channels = tuple(dict.fromkeys(part.channel for part in parts))
     sources = {bound(each, system.interface, c): None for each in variants for c in channels}
-    consumers = _struck(system, variants, fault)
+    consumers = _reached(system, variants, fault)
     if not consumers:
-        raise UserError(f"fault '{text}' strikes nobody in either variant: neither reads it there.")
+        raise UserError(f"fault '{text}' reaches nobody in either variant: neither reads it there.")
     return Candidate(
         name=asked.name,
         sources=tuple(sources),
@@ -135,7 +127,7 @@ def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
     )
 
 
-def _struck(system: System, variants: Sequence[Variant], fault: AnyFault) -> tuple[str, ...]:
+def _reached(system: System, variants: Sequence[Variant], fault: AnyFault) -> tuple[str, ...]:
     parts = (p for each in variants for p in fault.resolved(system.interface, each.consumers))
     return tuple(dict.fromkeys(consumer for part in parts for consumer in part.consumers))
 
@@ -148,20 +140,16 @@ def _expected(
     That is the half-range, or one standard deviation, upward, and lasting.
     """
     together = sources[0].correlation_group is not None
-    sizes = {
-        (each.uncertainty.relative, each.uncertainty.half_range or each.uncertainty.std or 0.0)
-        if each.uncertainty is not None
-        else None
-        for each in sources
-    }
-    if None in sizes:
+    declared = [each.uncertainty for each in sources if each.uncertainty is not None]
+    if len(declared) < len(sources):
         return "", "declares no uncertainty"
+    sizes = {(each.relative, each.half_range or each.std or 0.0) for each in declared}
     if len(sizes) > 1:
         return "", "has sources of different uncertainties, which one fault cannot have"
     if len(channels) > 1 and not together:
         feeds = " and ".join(channels)
-        return "", f"feeds {feeds}, which one fault strikes only with a correlation_group"
-    ((relative, size),) = (each for each in sizes if each is not None)
+        return "", f"feeds {feeds}, which one fault reaches only with a correlation_group"
+    ((relative, size),) = sizes
     if size == 0.0:
         return "", "declares that it has no error"
     if together and relative and name in system.fault_presets:
@@ -175,7 +163,7 @@ def _note(interface: Interface, variants: Sequence[Variant], channels: Sequence[
         one, two = (bound(variant, interface, channel) for variant in variants)
         if one != two:
             return (
-                f"A fault on '{channel}' strikes {one} in {variants[0].name} and {two} in "
+                f"A fault on '{channel}' is one of {one} in {variants[0].name} and of {two} in "
                 f"{variants[1].name}, which feed it there."
             )
     return ""
