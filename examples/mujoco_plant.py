@@ -2,7 +2,7 @@
 
     faultpath audit quadrotor --plant examples/mujoco_plant.py:create
 
-It flies the same vehicle (extra `[mujoco]`): what an audit finds on it does not hang on how the
+It flies the same vehicle (extra `[mujoco]`): what an audit finds on it does not depend on how the
 reference plant is written, and a test holds the two together. MuJoCo integrates the free body, the
 motors' lag and the drag. Rate loop and mixer are written again, from force balance at the motors'
 places. MuJoCo's own wind is another fluid model and stays off, and so do its contacts: what touches

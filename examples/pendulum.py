@@ -93,9 +93,9 @@ def setup(env, rng):
     return {"motor_gain": gain}
 
 
-def offset_m(flown):
+def offset_m(episode):
     """Return how far from the middle of its rail the cart came to rest."""
-    return abs(flown["encoders"][-25:, 0].mean())
+    return abs(episode["encoders"][-25:, 0].mean())
 
 
 # --- system ---
@@ -106,7 +106,7 @@ def create():
         action="command",
         steps=200,
         setup=setup,
-        succeeded=lambda flown: not flown.terminated and offset_m(flown) <= 0.05,
+        succeeded=lambda episode: not episode.terminated and offset_m(episode) <= 0.05,
         metrics={"offset_m": Measure(Metric(unit="m", better="less"), offset_m)},
     )
     return ComposedSystem(

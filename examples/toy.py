@@ -6,8 +6,8 @@ A cart accelerates by `gain * push + slope`. Two modules read the same estimate 
     observer     estimated slope = measured acceleration - gain estimate * push
 
 Baseline `calibrated`: the observer uses the gain estimate. Repair `blind`: it uses the typical
-gain 1 instead, so a wrong estimate cannot mislead it. Strike the observer alone and the repair
-wins. Strike both, as one wrong estimate would, and the baseline wins: its two errors cancel.
+gain 1 instead, so a wrong estimate cannot mislead it. Corrupt the observer alone and the repair
+wins. Corrupt both, as one wrong estimate would, and the baseline wins: its two errors cancel.
 
     faultpath audit examples/toy.py:create --baseline calibrated --repair blind \
         --fault gain:scale=0.6 --library carts
@@ -159,7 +159,7 @@ def gain_error(trial):
 
 
 def slope_error(trial):
-    """Return by how much the slope that it is told is wrong, m/s^2."""
+    """Return by how much the slope that it is given is wrong, m/s^2."""
     speed, push = trial.held("speedometer"), trial.held("command")
     moved = np.diff(speed, axis=0, append=np.nan) / DT_S
     return trial.got("slope", "controller.feedforward") - (

@@ -1,4 +1,4 @@
-"""New systems from templates: a file that flies as it is, and its test."""
+"""New systems from templates: a file that runs as it is, and its test."""
 
 import sys
 from importlib.resources import files
@@ -11,7 +11,7 @@ from faultpath.core.errors import UserError
 TEMPLATES = {
     "numpy": ("calibrated", "gain"),
     "torch": ("calibrated", "gain"),
-    "gymnasium": ("told", "mass"),
+    "gymnasium": ("known", "mass"),
 }
 """By what the system is written with: its baseline, and the channel that its audit faults."""
 
