@@ -48,12 +48,6 @@ def test_a_page_flies_and_measures_exactly_what_it_reads(name: str) -> None:
     assert read == flown or name == "text"
 
 
-def test_names_of_pages_and_of_their_parts_are_unique() -> None:
-    parts = [part.name for each in PAGES for part in each.build(EMPTY)]
-    assert len(set(parts)) == len(parts)
-    assert len(set(NAMES)) == len(NAMES)
-
-
 # What was not run
 
 

@@ -1,14 +1,12 @@
 """Sizes: how an estimate stands to the paper's figure, beside answers that do not know it."""
 
-from dataclasses import replace
-
 import pytest
 from faultpath_quadrotor.paper.answers import ClaimVerdict
 from faultpath_quadrotor.paper.cells import Printed
 from faultpath_quadrotor.paper.claims import STATEMENTS, evaluate
-from faultpath_quadrotor.paper.claims.statement import Statement, size
+from faultpath_quadrotor.paper.claims.statement import size
 from faultpath_quadrotor.paper.results import Results
-from study_toys import as_published, outcomes, whole
+from study_toys import whole
 
 EXACT, MEASURED = Printed(10.0), Printed(10.0, (4.0, 16.0))
 UNPRINTED = {
@@ -57,18 +55,6 @@ def test_an_estimate_stands_to_a_figure(
     low, high = interval
     ends = paper.interval and (-paper.interval[1], -paper.interval[0])
     assert size(-value, (-high, -low), 100, Printed(-paper.value, ends), 0.0) == expected
-
-
-@pytest.mark.parametrize("n_scenes", [0, 1, 2, 4, 10, 49])
-def test_few_scenes_compare_no_size(n_scenes: int) -> None:
-    assert size(12.0, (8.0, 16.0), n_scenes, EXACT, 0.0) == "not comparable"
-    assert size(-99.0, (-99.0, -99.0), n_scenes, EXACT, 0.0) == "not comparable"
-
-
-def test_without_figure_estimate_or_interval_nothing_is_compared() -> None:
-    assert size(12.0, (8.0, 16.0), 100, None, 0.0) == "not comparable"
-    assert size(12.0, None, 100, EXACT, 0.0) == "not comparable"
-    assert size(None, None, 100, EXACT, 0.0) == "not comparable"
 
 
 def test_a_ratio_has_its_sides_about_1_and_a_share_has_none() -> None:
@@ -121,22 +107,3 @@ def test_the_paper_has_the_sign_that_a_claim_states() -> None:
                     assert statement.paper.value * sign > 0, statement.words
                     checked += 1
     assert checked > 25
-
-
-def test_no_answer_depends_on_the_papers_figure(
-    published_run: Results, answers: tuple[ClaimVerdict, ...]
-) -> None:
-    hidden = {"paper", "paper_interval", "size"}
-    for claim in answers:
-        for statement, part in zip(STATEMENTS[claim.id], claim.parts, strict=True):
-            if isinstance(statement, Statement):
-                other = replace(statement, paper=Printed(-1e9)).part(published_run)
-                assert other.model_dump(exclude=hidden) == part.model_dump(exclude=hidden)
-
-
-def test_a_run_of_few_scenes_carries_figures_and_compares_none() -> None:
-    for scenes in (1, 4, 49):
-        few = Results(outcomes(as_published, scenes=scenes), None, "toy")
-        parts = [part for claim in evaluate(few) for part in claim.parts]
-        assert {part.size for part in parts} == {"not comparable"}
-        assert sum(part.paper is not None for part in parts) > 70

@@ -4,8 +4,8 @@ import copy
 
 import pytest
 import torch
-from faultpath_quadrotor import native, so3
-from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH
+from faultpath_quadrotor import native
+from faultpath_quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH
 from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 from faultpath_quadrotor.perception.seen import (
@@ -68,29 +68,6 @@ def test_clearance_is_bounded_and_is_what_training_sees_between_the_bounds(model
     torch.testing.assert_close(found, free.clamp(LOWEST_M, HIGHEST_M), atol=1e-5, rtol=1e-5)
 
 
-def captured(
-    model: ClearanceModel, count: int
-) -> tuple[DepthClearance, torch.Tensor, torch.Tensor]:
-    with native.using(native.PORTABLE):  # the reference; test_native_planner.py holds kernels to it
-        perception = DepthClearance(model)
-    position = torch.randn(count, 3, generator=draws(3), dtype=torch.float64)
-    rotation = so3.exp(torch.randn(3, count, generator=draws(4), dtype=torch.float64))
-    perception.capture(images(count), position, rotation.movedim(-1, 0))
-    return perception, position, rotation
-
-
-def test_points_are_taken_from_the_world_into_the_frame_of_the_capture(model: ClearanceModel):
-    perception, position, rotation = captured(model, 4)
-    local = points(2)
-    chosen = [3, 1]
-    world = so3.rotate(rotation[..., chosen, None], local.double()) + position.T[:, chosen, None]
-    found = perception.query(world.float(), chosen)
-    expected = model.query(model.encode(images(4))[:, chosen].contiguous(), local)
-    shown = in_view(local) | near(local, NEAR_M)
-    assert shown.any()
-    torch.testing.assert_close(found[shown], expected[shown], atol=1e-3, rtol=0)
-
-
 def test_what_no_pixel_can_show_has_little_clearance_and_what_one_shows_keeps_its_own(
     model: ClearanceModel,
 ):
@@ -109,19 +86,3 @@ def test_what_no_pixel_can_show_has_little_clearance_and_what_one_shows_keeps_it
     assert (found[capped] == UNSEEN_M).all()
     assert torch.equal(found[~capped], free[~capped]), "less is kept, inside and outside the view"
     assert (found[shown] > UNSEEN_M).any()
-
-
-def test_the_view_is_the_images_pyramid_and_the_vehicles_own_place_needs_no_pixel():
-    inside = torch.tensor([2.0, 0.0, 0.0])
-    left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
-    for point, expected in (
-        (inside, True),
-        (torch.tensor([2.0, 2 * left - 0.01, 2 * up - 0.01]), True),
-        (torch.tensor([2.0, 2 * left + 0.01, 0.0]), False),
-        (torch.tensor([2.0, 0.0, -2 * up - 0.01]), False),
-        (-inside, False),
-    ):
-        assert bool(in_view(point)) is expected
-    behind = torch.tensor([-1.0, 0.0, 0.0])
-    assert near(behind * (NEAR_M - 0.01), NEAR_M)
-    assert not near(behind * (NEAR_M + 0.01), NEAR_M)

@@ -5,8 +5,6 @@ from pathlib import Path
 
 import pytest
 import torch
-from faultpath_quadrotor.checkpoint import checkpoint_path, load_checkpoint
-from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.labels import (
     HIGHEST_M,
     LOWEST_M,
@@ -20,7 +18,6 @@ from faultpath_quadrotor.training.clearance_task import (
     VALIDATION_FROM,
     ClearanceTask,
     censored_loss,
-    predict,
 )
 
 from faultpath.core.errors import UserError
@@ -95,16 +92,6 @@ def test_validation_scenes_are_never_trained_on(task: ClearanceTask):
     assert len(set(topologies)) == 5
 
 
-def test_an_epoch_draws_the_same_augmentation_whatever_came_before(task: ClearanceTask):
-    task.begin_epoch(3)
-    mirrored, chosen = task._mirrored, task._chosen
-    task.begin_epoch(4)
-    assert not torch.equal(chosen, task._chosen)
-    task.begin_epoch(3)
-    assert torch.equal(mirrored, task._mirrored)
-    assert torch.equal(chosen, task._chosen)
-
-
 def test_beyond_a_bound_that_the_truth_is_at_an_estimate_costs_nothing():
     truth = torch.tensor([HIGHEST_M, LOWEST_M, 0.5])
     right = torch.tensor([HIGHEST_M + 1, LOWEST_M - 1, 0.5])
@@ -113,14 +100,3 @@ def test_beyond_a_bound_that_the_truth_is_at_an_estimate_costs_nothing():
         changed = right.clone()
         changed[i] = wrong
         assert censored_loss(changed, truth) > 0
-
-
-def test_the_shipped_model_tells_clearance_in_scenes_it_never_saw():
-    model = ClearanceModel()
-    card = load_checkpoint(model, checkpoint_path("clearance", 0))
-    assert card.final["error_m"] < 0.08
-    scenes = load_library("selection").scenes[:3]
-    drawn = [clearance_data.draw(Recipe(library="selection", images=4), each) for each in scenes]
-    unseen = clearance_data.join(drawn)
-    error = predict(model.eval(), unseen) - unseen.clearance
-    assert error.abs().median() < 0.06

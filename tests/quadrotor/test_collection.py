@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import numpy as np
-import pyarrow.parquet as pq
 import pytest
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.training import collection, flight
@@ -39,29 +38,6 @@ def contents(paths):
 
 def channel(pool, name):
     return pool.values[COMPONENTS.index(name)]
-
-
-def test_a_pool_has_a_row_for_each_control_instant_in_single_precision(pools):
-    for name, path in pools.items():
-        table = pq.ParquetFile(path).read(use_threads=False)
-        pool = read_pool(path)
-        assert table.column_names == ["episode", "step", *COMPONENTS]
-        assert {str(table.schema.field(name).type) for name in COMPONENTS} == {"float"}
-        assert len(pool.steps) == SMALL[name]
-        assert table.num_rows == (pool.steps + 1).sum()
-        expected = np.concatenate([np.arange(steps + 1) for steps in pool.steps])
-        assert np.array_equal(table.column("step").to_numpy(), expected)
-        assert (np.diff(table.column("episode").to_numpy()[expected == 0]) == 1).all()
-
-
-def test_every_state_and_command_is_finite_and_only_an_episode_s_end_has_no_command(pools):
-    for path in pools.values():
-        pool = read_pool(path)
-        last = pool.first_row + pool.steps
-        for name in COMPONENTS:
-            missing = np.flatnonzero(np.isnan(channel(pool, name)))
-            has_none = "command" in name or name == "thrust_n"
-            assert missing.tolist() == (last.tolist() if has_none else [])
 
 
 def test_the_nominal_pool_is_still_and_the_wind_pool_has_the_collection_s_wind(pools):

@@ -4,17 +4,14 @@ import numpy as np
 import pytest
 import torch
 from faultpath_quadrotor.platform import (
-    ControllerSettings,
     FlightSettings,
-    PerturbationSettings,
 )
 from faultpath_quadrotor.training import flight
-from faultpath_quadrotor.training.flight import EPISODE_STEPS, fly
+from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS
 from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
     CONTROL_RATE_HZ,
-    GRAVITY_MPS2,
     RATE_LIMIT_RADPS,
 )
 
@@ -29,11 +26,6 @@ def signal(flights, name):
 def shorten(monkeypatch, steps):
     monkeypatch.setattr(flight, "EPISODE_STEPS", steps)
     monkeypatch.setattr(flight, "EPISODE_S", steps / CONTROL_RATE_HZ)
-
-
-def within(flights):
-    """Which control instants [N + 1, B] belong to an episode."""
-    return np.arange(EPISODE_STEPS + 1)[:, None] <= flights.steps
 
 
 @pytest.fixture(scope="module", params=["nominal", "wind"])
@@ -75,20 +67,6 @@ def test_commands_respect_the_vehicle_s_limits(flights):
         assert np.abs(command[axis + 1]).max() <= limit
 
 
-def test_nearly_all_episodes_last_and_what_is_kept_had_not_diverged(flights):
-    settings = FlightSettings()
-    assert (flights.steps == EPISODE_STEPS).mean() > 0.93
-    inside = within(flights)
-    inside[0] = False  # the start is not asked
-    speed = np.linalg.norm(signal(flights, "velocity"), axis=0)[inside]
-    assert speed.max() < settings.speed_limit_mps
-    lowest = np.cos(np.radians(settings.tilt_limit_deg))
-    assert signal(flights, "rotation")[8][inside].min() > lowest - 1e-6
-    for place, (low, high) in zip(signal(flights, "position"), settings.volume_m, strict=True):
-        assert low < place[inside].min()
-        assert place[inside].max() < high
-
-
 def test_an_episode_ends_with_its_last_state_in_bounds(monkeypatch):
     shorten(monkeypatch, 40)
     tight = FlightSettings(tilt_limit_deg=35.0)
@@ -99,20 +77,3 @@ def test_an_episode_ends_with_its_last_state_in_bounds(monkeypatch):
     for lane in short:
         beyond = np.flatnonzero(up[1:, lane] <= np.cos(np.radians(35.0)))
         assert flights.steps[lane] == beyond[0]
-
-
-def test_an_undisturbed_vehicle_comes_to_rest_at_its_last_waypoint_on_its_hover_thrust():
-    calm = PerturbationSettings(clean_share=1.0, clean_strength=0.0, pulses_per_s=0.0)
-    settings = FlightSettings(controller=ControllerSettings(waypoints=1), perturbation=calm)
-    flights = fly("nominal", range(64), 0, settings)
-    hover = np.array([v.mass_kg * GRAVITY_MPS2 / v.thrust_scale for v in flights.vehicles])
-    assert (flights.steps == EPISODE_STEPS).all()
-    at_rest = np.linalg.norm(signal(flights, "velocity")[:, -1], axis=0) < 0.3
-    hovering = np.abs(signal(flights, "command")[0, -2] / hover - 1) < 0.03
-    spinning = np.abs(signal(flights, "motor_thrust_n")[0, -1] / hover - 1) < 0.03
-    # A few vehicles have so little torque and such slow motors that they never quite settle.
-    assert (at_rest & hovering & spinning).mean() > 0.95
-    end = signal(flights, "position")[:, -1]
-    for axis, (low, high) in enumerate(settings.controller.arena_m):
-        assert low - 0.3 < end[axis].min()
-        assert end[axis].max() < high + 0.3

@@ -15,9 +15,7 @@ from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.plant.module import ACTION
 from faultpath_quadrotor.system import Quadrotor
 from flights import HELD_OUT, STEPS, fault, fly, quadrotor, trace
-from simulated_gpu import GPU, HostWaited, SimulatedGPU, simulated_gpu
-from torch import Tensor
-from torch._subclasses.fake_tensor import DataDependentOutputException, DynamicOutputShapeException
+from simulated_gpu import GPU, SimulatedGPU, simulated_gpu
 
 from faultpath.core import arrays
 from faultpath.core.errors import UserError
@@ -105,22 +103,6 @@ def test_control_steps_stay_on_the_device_and_never_wait(options, variant, texts
     for part in (*vars(world.state).values(), *vars(world.progress).values(), world.wind_mps):
         assert part.device == GPU
     assert gpu.operations > 1000
-
-
-SINS: dict[str, tuple[Callable[[Tensor], object], type[Exception]]] = {
-    "a look at a value": (lambda x: bool(x.any()), DataDependentOutputException),
-    "a number": (lambda x: float(x[0, 0]), DataDependentOutputException),
-    "a list": (lambda x: x.tolist(), DataDependentOutputException),
-    "a mask as an index": (lambda x: x[x > 0], DynamicOutputShapeException),
-    "a copy to the host": (lambda x: x.cpu(), HostWaited),
-    "new numbers": (lambda x: x.new_tensor([1.0, 2.0]), HostWaited),
-    "new numbers there": (lambda x: torch.tensor([1.0], device=x.device), HostWaited),
-    "a list as an index": (lambda x: x[[0, 1]], HostWaited),
-    "memory that is not pinned": (lambda x: x.copy_(torch.ones(3, 3)), HostWaited),
-    "singular values": (torch.linalg.svd, HostWaited),
-    "an index of the host": (lambda x: x[torch.tensor([0])], AssertionError),
-    "a tensor of the host": (lambda x: x + torch.ones(3), AssertionError),
-}
 
 
 @pytest.fixture

@@ -32,29 +32,6 @@ def found(count=30, seed=0) -> Measured:
     )
 
 
-def test_a_recording_s_name_says_all_that_makes_it_another_one():
-    assert RECORDING.name == "held-out:gru:0:wind-L3"
-    others = [
-        RECORDING.model_copy(update=change)
-        for change in ({"library": "x"}, {"variant": "dob"}, {"seed": 1}, {"options": {}})
-    ]
-    assert len({RECORDING.name, *(other.name for other in others)}) == 5
-
-
-def test_equal_measurements_are_one_key_and_any_change_is_another():
-    options = {"wind": "L3", "environment": "free-space"}
-    turned = dict(reversed(options.items()))
-    one, other = (
-        asked(recording=RECORDING.model_copy(update={"options": given}))
-        for given in (options, turned)
-    )
-    assert one == other
-    assert one.key() == other.key()
-    assert hash(one) == hash(other)
-    changes = ({"seed": 1}, {"subject": "gru"}, {"faults": ("mass:scale=2",)}, {})
-    assert len({asked(**change).key() for change in changes}) == 4
-
-
 def test_an_unknown_quantity_or_field_is_refused():
     with pytest.raises(ValidationError):
         asked(quantity="beauty")
@@ -78,12 +55,6 @@ def test_a_table_comes_back_as_it_went_with_the_same_bytes(tmp_path):
     assert (tmp_path / "again.parquet").read_bytes() == path.read_bytes()
     with pytest.raises(KeyError):
         back.values(asked(seed=2))
-
-
-def test_a_hundred_measurements_of_1500_windows_stay_small(tmp_path):
-    table = EvidenceTable({asked(seed=i): found(1500, i) for i in range(100)})
-    write_evidence(tmp_path / "many.parquet", table)
-    assert (tmp_path / "many.parquet").stat().st_size < 1_500_000
 
 
 def test_a_missing_or_damaged_table_is_the_user_s_to_see(tmp_path):

@@ -45,15 +45,6 @@ def spread(scenes: list[Scene], count: int, margin: float = 0.5) -> torch.Tensor
     return torch.from_numpy(rng.uniform(low, high, (3, len(scenes), count)))
 
 
-def test_yaw_turns_a_box_from_x_towards_y():
-    angle = math.radians(30)
-    scene = scene_of(Box(centre_m=(1.0, 0.5, 1.5), half_extents_m=(0.8, 0.1, 1.5), yaw_rad=angle))
-    along, across = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
-    tip = (1.0 + 1.2 * along[0], 0.5 + 1.2 * along[1], 1.0)
-    beside = (1.0 + 0.35 * across[0], 0.5 + 0.35 * across[1], 1.0)
-    assert at(scene, tip, beside) == pytest.approx([0.4, 0.25], abs=1e-12)
-
-
 def test_a_pillar_is_round_and_a_short_one_has_a_top():
     scene = scene_of(
         Cylinder(centre_m=(1.0, 0.0), radius_m=0.3, low_m=0.0, high_m=3.0),
@@ -140,13 +131,3 @@ def test_neither_neighbours_nor_place_nor_padding_change_a_bit():
     shuffled = Geometry.stack([scenes[k] for k in order.tolist()]).distance(points[:, order])
     assert torch.equal(shuffled, together[order])
     assert len({len(scene.boxes) + len(scene.cylinders) for scene in scenes}) > 1
-
-
-def test_free_space_keeps_only_the_arena():
-    scene = load_library("training")[5]
-    points = spread([scene], 500)
-    empty = scene.model_copy(update={"boxes": (), "cylinders": ()})
-    free = Geometry.stack([scene], free_space=True).distance(points)
-    assert torch.equal(free, Geometry.stack([empty]).distance(points))
-    assert (Geometry.stack([scene]).distance(points) <= free).all()
-    assert (Geometry.stack([scene]).distance(points) < free).any()

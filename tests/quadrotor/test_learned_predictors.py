@@ -8,7 +8,6 @@ from faultpath_quadrotor import so3
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
     Calibration,
-    History,
     KinematicIntegrator,
     PredictorInputs,
     UnanchoredPredictor,
@@ -68,18 +67,6 @@ def commands(scenes=SCENES, candidates=512, horizon=20, seed=1):
     return drawn
 
 
-def history(lanes=32, steps=12, seed=2, conditioned=True):
-    draw = torch.Generator().manual_seed(seed)
-    return History(
-        velocity_mps=torch.randn(3, steps, lanes, generator=draw),
-        rotation=so3.exp(0.3 * torch.randn(3, steps, lanes, generator=draw)),
-        rate_radps=torch.randn(3, steps, lanes, generator=draw),
-        commands=torch.randn(4, steps, lanes, generator=draw) + 5,
-        mass_kg=0.7 + torch.rand(lanes, generator=draw),
-        conditioning=Calibration(torch.ones(lanes), torch.ones(lanes)) if conditioned else None,
-    )
-
-
 @pytest.mark.parametrize(
     ("kind", "published"), [(AnchoredPredictor, 17e3), (UnanchoredPredictor, 35e3)]
 )
@@ -131,9 +118,3 @@ def test_every_declared_place_matters_and_no_other(kind):
     assert _moved(model, given, **wind) == ("wind_map" in model.reads)
     mass = {"wind_map_mass_kg": given.wind_map_mass_kg * 1.1}
     assert _moved(model, given, **mass) == ("wind_map" in model.reads)
-
-
-def test_the_history_code_follows_the_supplied_mass():
-    model, past = predictor(AnchoredPredictor), history(conditioned=False)
-    heavier = replace(past, mass_kg=past.mass_kg * 1.1)
-    assert not torch.equal(model.encode(past), model.encode(heavier))

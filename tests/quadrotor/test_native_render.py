@@ -9,7 +9,7 @@ from faultpath_quadrotor import native
 from faultpath_quadrotor.perception.camera import HEIGHT, WIDTH, mounted
 from faultpath_quadrotor.perception.render import DepthRenderer
 from faultpath_quadrotor.scenes.library import load_library
-from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
+from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State
 from kernel_sets import COMPILED, FUSED, PORTABLE
 from test_perception_render import flown
@@ -49,10 +49,6 @@ def test_fused_sets_draw_the_same_bits() -> None:
     state = flown(SCENES)
     first, *others = [drawn(isa, SCENES, state) for isa in FUSED] or [torch.zeros(0)]
     assert all(torch.equal(first, other) for other in others)
-
-
-BOX = Box(centre_m=(0.0, 0.4, 1.0), half_extents_m=(0.5, 0.3, 0.4), yaw_rad=0.5)
-PILLAR = Cylinder(centre_m=(1.0, -1.0), radius_m=0.3, low_m=0.0, high_m=2.2)
 
 
 @pytest.mark.parametrize("isa", COMPILED)

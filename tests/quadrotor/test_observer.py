@@ -8,7 +8,6 @@ from faultpath_quadrotor.reconstruction import DisturbanceObserver, Sensed
 from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 LANES = 32
-DT = 0.05
 
 
 def delivered(seed, velocity=None, mass=1.0, scale=1.0, map_mass=None):
@@ -61,38 +60,3 @@ def test_unfiltered_estimate_recombines_to_the_observed_acceleration(mass, scale
         observer.nominal(start, second) + LinearDrag(NOMINAL_DRAG_KGPS).force(middle, wind) / mass
     )
     torch.testing.assert_close(recombined, observer.observed(start, second))
-
-
-def test_estimate_starts_at_zero_and_is_low_pass_filtered():
-    first, second = delivered(1), delivered(2)
-    raw, half = (
-        DisturbanceObserver(low_pass=1.0, drag_kgps=NOMINAL_DRAG_KGPS),
-        DisturbanceObserver(drag_kgps=NOMINAL_DRAG_KGPS),
-    )
-    assert not half.wind(half.begin(first)).any()
-    once = raw.wind(raw.update(raw.begin(first), second))
-    torch.testing.assert_close(half.wind(half.update(half.begin(first), second)), 0.5 * once)
-
-
-def test_thrust_lag_of_the_first_interval():
-    """57 % of a thrust step is missing from its first 50 ms at a lag of 40 ms."""
-    observer = DisturbanceObserver(drag_kgps=NOMINAL_DRAG_KGPS)
-    level = torch.eye(3, dtype=torch.float64)[..., None].expand(3, 3, LANES)
-    rest = torch.zeros(3, LANES, dtype=torch.float64)
-    one = torch.ones(LANES, dtype=torch.float64)
-
-    def at_rest(thrust):
-        command = torch.zeros(4, LANES, dtype=torch.float64)
-        command[0] = thrust
-        return {
-            ("velocity", "velocity_difference"): rest,
-            ("attitude", "nominal_model"): level,
-            ("action", "nominal_model"): command,
-            ("mass", "nominal_model"): one,
-            ("thrust_scale", "nominal_model"): one,
-            ("mass", "wind_map"): one,
-        }
-
-    memory = observer.begin(at_rest(9.81))
-    explained = observer.nominal(memory, Sensed.of(at_rest(9.81 + 1.0)))
-    assert float(explained[2, 0]) == pytest.approx(1 - 0.57, abs=0.005)

@@ -10,7 +10,6 @@ from faultpath_quadrotor.perception.camera import (
     HEIGHT,
     WIDTH,
     CaptureFrame,
-    mounted,
     rays,
 )
 
@@ -40,14 +39,3 @@ def test_the_capture_frame_is_the_bodys_pose_and_there_and_back_is_the_same():
     torch.testing.assert_close(
         chosen.from_world(points[:, [2, 0]]), frame.from_world(points)[:, [2, 0]]
     )
-
-
-def test_the_mount_keeps_the_heading_of_the_body_and_stays_level():
-    draws = torch.Generator().manual_seed(4)
-    yaw, pitch, roll = torch.rand(3, 32, generator=draws, dtype=torch.float64) * 2 - 1
-    zero = torch.zeros_like(yaw)
-    body = so3.compose(so3.from_yaw(3 * yaw), so3.exp(torch.stack((zero, pitch, zero))))
-    body = so3.compose(body, so3.exp(torch.stack((roll, zero, zero))))
-    camera = mounted(body)
-    torch.testing.assert_close(camera, so3.from_yaw(3 * yaw), msg="roll and pitch are taken out")
-    torch.testing.assert_close(mounted(camera), camera)

@@ -4,7 +4,7 @@ import numpy as np
 import torch
 from faultpath_quadrotor.perception import labels
 from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, rays
-from faultpath_quadrotor.perception.labels import between_pixels, visible_distance
+from faultpath_quadrotor.perception.labels import visible_distance
 from faultpath_quadrotor.perception.render import DepthRenderer
 from faultpath_quadrotor.scenes.library import load_library
 from test_perception_render import flown
@@ -45,17 +45,6 @@ def test_an_occlusion_frontier_counts_like_a_surface():
     # The frontier runs along the ray between columns 31 and 32, whose directions differ by a pixel.
     assert 0.2 - 1 / FOCAL_PX < beside < 0.2 + 1 / FOCAL_PX
     assert -0.2 - 1 / FOCAL_PX < behind < -0.2 + 1 / FOCAL_PX
-
-
-def test_outside_the_view_only_what_is_seen_counts():
-    left = torch.tensor([[0.5, 0.0, -2.0], [1.5, 0.3, 0.0], [0.0, 0.0, 0.0]])
-    assert not between_pixels(left).any()
-    torch.testing.assert_close(visible_distance(WALL, left), torch.ones(3).double())
-    near = torch.full((HEIGHT, WIDTH), 0.5)
-    edge = 0.5 * (WIDTH - 1) / 2 / FOCAL_PX  # how far to the left the near wall is seen
-    beyond = torch.tensor([[0.5, 0.7], [edge + 0.3, edge + 0.4], [0.0, 0.0]])
-    expected = torch.tensor([0.3, np.hypot(0.2, 0.4)]).double()
-    torch.testing.assert_close(visible_distance(near, beyond), expected, atol=1e-6, rtol=0)
 
 
 def test_the_distance_is_that_of_the_nearest_of_all_triangles():

@@ -10,8 +10,6 @@ from faultpath_quadrotor.state import State, padded_lanes
 from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
     GRAVITY_MPS2,
-    MOTOR_THRUST_MAX_N,
-    RATE_GAIN_PER_S,
     VehicleParameters,
     draw,
 )
@@ -61,21 +59,6 @@ def test_thrust_scale_multiplies_realised_thrust(scale):
     assert end.state.velocity[2].item() == pytest.approx(expected, rel=1e-6)
 
 
-@pytest.mark.parametrize("axis", [0, 1, 2])
-@pytest.mark.parametrize("scale", [0.5, 1.0, 1.5])
-def test_torque_scale_multiplies_the_rate_loop_s_gain(axis, scale):
-    parameters = VehicleParameters(torque_scale=scale, motor_time_constant_s=1e-9)
-    vehicle = Vehicle.stack([parameters])
-    command = vehicle.hover_command()
-    command[1 + axis] = 0.8
-    plant = TorchPlant(vehicle)
-    end = plant.advance(plant.start(hovering(1)), command, calm(20, 1))
-    # Sampled proportional control of an integrator: each 2 ms takes the same part of the error.
-    left = (1 - scale * RATE_GAIN_PER_S[axis] * 0.002) ** 20
-    expected = [0.8 * (1 - left) if i == axis else 0.0 for i in range(3)]
-    assert end.state.rate[:, 0].tolist() == pytest.approx(expected, rel=1e-5, abs=1e-12)
-
-
 def test_commands_are_clipped_to_the_vehicle_s_limits():
     plant = TorchPlant(drawn_vehicles(2))
     start = plant.start(moving(2, 0))
@@ -87,19 +70,6 @@ def test_commands_are_clipped_to_the_vehicle_s_limits():
     assert torch.equal(clipped.state.rate, plant.advance(start, limit, calm(25, 2)).state.rate)
     inside = plant.advance(start, 0.9 * limit, calm(25, 2))
     assert not torch.allclose(inside.state.rate, clipped.state.rate, rtol=1e-3)
-
-
-def test_motors_stay_within_their_limits_and_reach_them():
-    plant = TorchPlant(drawn_vehicles(32))
-    now = plant.start(moving(32, 1))
-    generator = torch.Generator().manual_seed(2)
-    low, high = torch.inf, -torch.inf
-    for _ in range(20):
-        command = torch.randn(4, 32, dtype=F64, generator=generator) * 40
-        now = plant.advance(now, command, calm(25, 32))
-        low, high = min(low, now.thrusts.min().item()), max(high, now.thrusts.max().item())
-    assert 0.0 <= low < 0.1
-    assert 0.97 * MOTOR_THRUST_MAX_N < high <= MOTOR_THRUST_MAX_N
 
 
 def bits(state: PlantState) -> list[bytes]:

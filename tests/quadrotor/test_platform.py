@@ -3,12 +3,10 @@
 import json
 
 import pytest
-import torch
 from faultpath_quadrotor import models
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.platform import PLATFORM, Platform
-from faultpath_quadrotor.scenes.library import load_library
 
 from faultpath.core.errors import UserError
 
@@ -36,18 +34,3 @@ def test_weights_of_another_platform_are_refused(monkeypatch):
     monkeypatch.setattr(models, "PLATFORM", Platform(drag_kgps=(0.3, 0.3, 0.3)))
     with pytest.raises(UserError, match=r"wm-a-0 .* another platform .* fit them again"):
         models.predictor("wm-a", 0)
-
-
-def test_scenes_fly_the_vehicle_drawn_for_them_but_for_its_drag():
-    for scene in load_library("selection").scenes[:20]:
-        flown = PLATFORM.scene(scene).vehicle
-        assert flown.drag_kgps == PLATFORM.drag_kgps
-        assert flown.model_copy(update={"drag_kgps": scene.vehicle.drag_kgps}) == scene.vehicle
-
-
-def test_predictors_and_observers_assume_the_platform_s_drag():
-    for name in ("dki", "dki-drag"):
-        assert models.predictor(name, None).air.coefficients_kgps == PLATFORM.drag_kgps
-    level, still = torch.eye(3)[..., None], torch.ones(3, 1)
-    force = models.reconstruction("dob", None)._air.force(level, still)
-    assert force[:, 0].tolist() == pytest.approx(PLATFORM.drag_kgps)

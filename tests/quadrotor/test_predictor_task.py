@@ -4,11 +4,9 @@ from pathlib import Path
 
 import pytest
 import torch
-from faultpath_quadrotor.predictors import KinematicIntegrator, TrueParameter
 from faultpath_quadrotor.training.collection import collect
 from faultpath_quadrotor.training.fitting import fit
-from faultpath_quadrotor.training.predictor_task import RECIPES, PredictorTask
-from faultpath_quadrotor.training.windows import correct, predict, windows_of
+from faultpath_quadrotor.training.predictor_task import PredictorTask
 
 from faultpath.learning.model_card import Schedule
 
@@ -63,30 +61,3 @@ def test_noise_reaches_every_place_with_one_draw_a_window(data):
     assert torch.corrcoef(torch.stack([off, other]))[0, 1].abs() < 0.35
     noisy.begin_epoch(1)
     assert not torch.equal(noisy._delivered["mass", "predictor.history"], mass[0])
-
-
-@pytest.mark.parametrize("name", RECIPES)
-def test_a_few_steps_of_descent_lower_the_loss(name, data):
-    ready = loaded(name, data)
-    model = ready.module()
-    descent = torch.optim.Adam(model.parameters(), lr=3e-3)
-    index = torch.arange(ready.count)
-    first = ready.loss(model, index)
-    loss = first
-    for _ in range(8):
-        descent.zero_grad()
-        loss.backward()
-        descent.step()
-        loss = ready.loss(model, index)
-    assert loss < 0.9 * first
-
-
-def test_the_true_parameters_predict_recorded_flights_best(data):
-    """In still air only integration and motor limits are left; in wind, that it changes."""
-    windows = windows_of(data / "nominal.parquet")
-
-    def missed(predictor):
-        *_, last = predict(predictor, windows, correct(predictor, windows))
-        return float((last.position[..., 0] - windows.position[:, -1]).norm(dim=0).median())
-
-    assert missed(TrueParameter()) < 0.25 * missed(KinematicIntegrator(wind=False))

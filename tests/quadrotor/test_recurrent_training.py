@@ -58,11 +58,6 @@ def weights(made):
     return torch.cat([value.flatten() for value in made.module().state_dict().values()])
 
 
-@torch.no_grad()
-def metrics(made, module):
-    return made.validate(module)
-
-
 def test_repair_shares_initial_weights_order_and_short_histories():
     plain, repair = task("gru"), task("gru+dcc")
     assert torch.equal(weights(plain), weights(repair))
@@ -87,17 +82,6 @@ def test_noise_reaches_the_loss_and_is_drawn_anew_each_epoch():
     assert not (made._delivered == first).any()
 
 
-@pytest.mark.parametrize("name", ["gru-withheld", "gru-trajectory"])
-def test_withheld_models_never_see_calibration(name):
-    one, two = task(name), task(name)
-    shifted = windows()
-    shifted = Windows(**{**vars(shifted), "mass_kg": 3 * shifted.mass_kg})
-    two.use(shifted, windows(seed=1))
-    assert not one.module().calibrated
-    assert torch.equal(weights(one), weights(two))
-    assert loss(one) == loss(two)
-
-
 def test_loss_reads_no_future_state_command_or_wind():
     plain, other = windows(), windows(seed=5)
 
@@ -115,26 +99,6 @@ def test_loss_reads_no_future_state_command_or_wind():
     changed.use(Windows(**{**vars(plain), **future}), windows(seed=1))
     assert torch.equal(weights(made), weights(changed))
     assert loss(made) == loss(changed)
-
-
-def test_a_share_of_histories_is_short():
-    made = task("gru")
-    made.use(windows(count=3200), windows(seed=1))
-    made.begin_epoch(0)
-    short = made._known[made._known < 12]
-    assert 0.11 < len(short) / 3200 < 0.17
-    assert set(short.tolist()) == set(range(1, 12))
-
-
-def test_the_validation_metric_is_the_length_of_the_error_vector():
-    made = task("gru")
-    module = made.module()
-    with torch.no_grad():
-        module.head.weight.zero_()
-        module.head.bias.zero_()
-    error = (windows(seed=1).wind_mps[:, 12] - module.wind_mean).norm(dim=0)
-    expected = float(error.square().mean().sqrt())
-    assert metrics(made, module)["wind_rmse_mps"] == pytest.approx(expected, rel=1e-5)
 
 
 def test_unknown_model_is_a_users_mistake():

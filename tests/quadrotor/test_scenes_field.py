@@ -74,12 +74,3 @@ def test_leaving_through_any_face_never_pays(scenes, field):
             points[axis] = torch.tensor(edge)[:, None] + sign * way
             steps = field.query(points).diff(dim=-1)
             assert (steps < 0).all()
-
-
-@pytest.mark.parametrize("count", [1, 7, 512 * 20])
-def test_a_scene_does_not_feel_its_neighbours(scenes, field, count):
-    points = spread(scenes, count, margin=0.4)
-    together = field.query(points)
-    for row, scene in enumerate(scenes):
-        alone = DistanceField.bake(scene).query(points[:, row : row + 1])
-        assert torch.equal(alone[0], together[row])

@@ -4,7 +4,6 @@ import json
 import math
 import subprocess
 import sys
-from collections import Counter
 from itertools import pairwise
 
 import pytest
@@ -15,7 +14,6 @@ from faultpath_quadrotor.scenes.library import (
     load_library,
 )
 from faultpath_quadrotor.scenes.prisms import floor_plan, prism
-from faultpath_quadrotor.scenes.scene import Scene, Topology
 
 from faultpath.core.errors import UserError
 
@@ -25,34 +23,6 @@ NAMES = list(FROZEN)
 @pytest.fixture(scope="module")
 def libraries() -> dict[str, Library]:
     return {name: load_library(name) for name in NAMES}
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_frozen_library_has_its_mix_in_any_twenty(libraries, name):
-    library = libraries[name]
-    assert [scene.id for scene in library] == [f"{name}/{i:03d}" for i in range(100)]
-    assert all(scene.topology == list(Topology)[scene.index % 5] for scene in library)
-    assert Counter(scene.occluded for scene in library) == {True: 25, False: 75}
-    assert Counter(scene.topology for scene in library if scene.occluded) == dict.fromkeys(
-        Topology, 5
-    )
-    assert 0.5 <= sum(scene.obstacles for scene in library) / len(library) <= 0.7
-    for first in range(0, 100, 20):
-        part = library.scenes[first : first + 20]
-        assert Counter(scene.occluded for scene in part)[True] == 5
-        assert {scene.obstacles for scene in part} == {True, False}
-
-
-def test_libraries_share_no_geometry_and_no_vehicle(libraries):
-    scenes = [scene for library in libraries.values() for scene in library]
-    assert len({scene.id for scene in scenes}) == 300
-    assert (
-        len({(scene.boxes, scene.cylinders, scene.bounds, scene.start_m) for scene in scenes})
-        == 300
-    )
-    assert len({scene.vehicle for scene in scenes}) == 300
-    assert len({scene.content_hash for scene in scenes}) == 300
-    assert len({library.content_hash for library in libraries.values()}) == 3
 
 
 def test_asking_for_an_unknown_library_lists_what_there_is():
@@ -97,29 +67,6 @@ def test_a_damaged_file_is_refused_in_one_sentence(tmp_path, damage, reason):
         load_library(path)
     assert "scenes.json" in str(caught.value)
     assert "\n" not in str(caught.value)
-
-
-def test_the_hash_sees_every_field(libraries):
-    scene = libraries["training"][0]
-    changes: dict[str, object] = {
-        "id": "x",
-        "index": 1,
-        "library": "x",
-        "topology": Topology.ROOMS,
-        "obstacles": not scene.obstacles,
-        "occluded": not scene.occluded,
-        "bounds": libraries["training"][1].bounds,
-        "boxes": scene.boxes[1:],
-        "cylinders": scene.cylinders[1:],
-        "start_m": scene.goal_m,
-        "goal_m": scene.start_m,
-        "start_yaw_rad": 9.0,
-        "vehicle": libraries["training"][1].vehicle,
-    }
-    assert set(changes) == set(Scene.model_fields)
-    same = scene.content_hash
-    hashes = {scene.model_copy(update={key: new}).content_hash for key, new in changes.items()}
-    assert len(hashes - {same}) == len(changes)
 
 
 def test_a_floor_plan_has_every_solid_and_the_free_variant_none(libraries):

@@ -98,8 +98,3 @@ def test_project_returns_the_nearest_rotation():
     polar = so3.compose(nearest.transpose(0, 1), matrix)
     assert close(polar, polar.transpose(0, 1))
     assert not close(matrix, nearest, atol=1e-2)
-
-
-def test_project_never_returns_a_reflection():
-    mirror = torch.diag(torch.tensor([1.0, 1.0, -0.9], dtype=F64))[..., None]
-    assert torch.linalg.det(so3.project(mirror)[..., 0]) > 0

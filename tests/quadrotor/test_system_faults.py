@@ -2,11 +2,8 @@
 
 import numpy as np
 import pytest
-from faultpath_quadrotor.predictors import module as prediction
 from flights import HELD_OUT, STEPS, bits, fault, fly, quadrotor, trace
 
-from faultpath.faults import Fault
-from faultpath.faults.values import Erase
 from faultpath.loop.taps import Receipts
 from faultpath.trials import Outcome
 
@@ -127,49 +124,3 @@ def test_a_fault_of_any_channel_flies_and_tells(text, plain):
     assert set() < _altered(taps.receipts()) <= named
     for hashes in ("initial_hash", "disturbance_hash", "planner_noise_hash"):
         assert getattr(struck, hashes) == getattr(plain, hashes)
-
-
-def test_a_noisy_attitude_is_a_rotation_again_before_it_is_rolled_out(monkeypatch):
-    seen = []
-    rolling = prediction.rolling
-
-    def watched(predictor, place):
-        roll = rolling(predictor, place)
-
-        def rolled(inputs, commands):
-            seen.append(inputs.state.rotation[..., 0].double())
-            return roll(inputs, commands)
-
-        return rolled
-
-    monkeypatch.setattr(prediction, "rolling", watched)
-    system = quadrotor()
-    (outcome,), taps = fly(system, faults=[fault("attitude:noise=0.1", system)])
-    delivered = taps.delivered("attitude", "predictor.initial_state")[:, 0]
-    gram = delivered.swapaxes(-1, -2) @ delivered
-    assert np.abs(gram - np.eye(3)).max() > 0.05
-    assert len(seen) == len(delivered)
-    for step, rotations in enumerate(seen):
-        matrix = rotations.movedim(-1, 0).numpy()
-        assert np.allclose(matrix.swapaxes(-1, -2) @ matrix, np.eye(3), atol=1e-5)
-        assert np.allclose(np.linalg.det(matrix), 1.0, atol=1e-5)
-        left, _, right = np.linalg.svd(delivered[step])
-        assert np.allclose(matrix[0], left @ right, atol=1e-5)
-    assert np.isfinite(trace(outcome)).all()
-
-
-def test_what_reaches_the_motors_is_the_struck_command_and_the_observer_hears_the_other():
-    """An erased actuator is not an erased copy of the command."""
-    system = quadrotor()
-    declared = Fault(
-        channel="action",
-        consumers=("vehicle.actuators",),
-        intervention=Erase(default=(12.0, 0.0, 0.0, 0.0)),
-    )
-    _, taps = fly(system, faults=[declared])
-    actuated = taps.delivered("action", "vehicle.actuators")[:, 0]
-    assert np.array_equal(actuated, np.tile([12.0, 0.0, 0.0, 0.0], (STEPS, 1)))
-    commanded = np.stack([reading for reading, _ in taps.log["action", "vehicle.actuators"]])
-    heard = taps.delivered("action", "reconstruction.nominal_model")
-    assert np.array_equal(heard[1:], commanded[:-1])
-    assert not np.array_equal(heard[1:, 0], actuated[1:])

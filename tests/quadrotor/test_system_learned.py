@@ -52,13 +52,6 @@ def test_a_fault_at_the_predictor_reaches_its_history_too():
     }
 
 
-def test_the_withheld_reconstruction_has_no_calibration_to_strike():
-    system = quadrotor(**LEARNED)
-    consumers = system.variants["gru-withheld"].consumers
-    assert "reconstruction.head" not in consumers
-    assert "reconstruction.history" in consumers
-
-
 def test_a_noisy_state_is_late_and_the_same_for_everyone():
     system = quadrotor(**LEARNED)
     _, taps = fly(system, "gru", faults=[fault("noisy_state=1", system)])
@@ -102,14 +95,3 @@ def test_the_deployed_history_is_the_one_that_training_knows(monkeypatch):
     )
     deployed = taps.delivered("history_code", "predictor.latent")[now, 0]
     assert np.allclose(code[:, 0].numpy(), deployed, atol=1e-6)
-
-
-def test_perception_takes_the_pose_that_it_is_given():
-    system = quadrotor(**LEARNED)
-    _, plain = fly(system, "wm-a")
-    shifted = fault("position:offset=0/0/1.5@perception", system)
-    _, other = fly(system, "wm-a", faults=[shifted])
-    first = [t.delivered("clearance", "planner.risk_cost")[0] for t in (plain, other)]
-    assert not np.array_equal(*first)
-    positions = [t.delivered("position", "predictor.initial_state")[0] for t in (plain, other)]
-    assert np.array_equal(*positions)

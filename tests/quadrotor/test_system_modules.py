@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 import torch
 from faultpath_quadrotor.estimators.protocol import ExactEstimator
-from faultpath_quadrotor.interface import quadrotor_interface
-from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath_quadrotor.system import Quadrotor
 from flights import HELD_OUT, STEPS, fault, fly, quadrotor
 
-from faultpath.interface import Provenance
 from faultpath.loop import Batch, Graph, consumers
 from faultpath.systems.checks.flights import Trace
 from faultpath.trials import Arm
@@ -38,27 +35,6 @@ def systems() -> tuple[Quadrotor, ...]:
 def graphs(systems: tuple[Quadrotor, ...]) -> list[Graph]:
     """Return what every variant executes, with either clearance."""
     return [system.loop(name, None).graph for system in systems for name in system.variants]
-
-
-def test_variants_are_all_predictors_with_all_winds(systems):
-    """Otherwise the tests below would speak of some of them only."""
-    for system in systems:
-        flown = {(setup.predictor, setup.wind) for setup in system.setups.values()}
-        assert {predictor for predictor, _ in flown} == set(PREDICTORS)
-        winds = {wind for predictor, wind in flown if predictor == "wm-a-wind"}
-        assert winds == {"zero-wind", "true-wind", *RECONSTRUCTIONS}
-
-
-def test_the_declared_reconstructions_are_what_modules_write(systems):
-    declared = quadrotor_interface()
-    made = {
-        (module.name, source)
-        for graph in graphs(systems)
-        for module in graph.modules
-        for source in module.writes
-        if declared.source(source).provenance is Provenance.RECONSTRUCTED
-    }
-    assert set(declared.reconstructions) == made
 
 
 def test_a_variants_consumers_follow_from_its_ports(systems):

@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 import torch
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
-from faultpath_quadrotor.state import padded_lanes
 from faultpath_quadrotor.vehicle import VehicleParameters, VehicleRanges, draw
 from pydantic import ValidationError
 
@@ -57,9 +56,3 @@ def test_stack_keeps_order_and_puts_the_batch_last():
     swapped = vehicle.take(torch.tensor([4, 0]))
     assert torch.equal(swapped.drag_kgps, vehicle.drag_kgps[:, [4, 0]])
     assert swapped.to(torch.float64).mass_kg.dtype == torch.float64
-
-
-@pytest.mark.parametrize(("count", "size"), [(1, 32), (32, 32), (33, 64)])
-def test_padding_repeats_the_first_lane(count, size):
-    lanes = padded_lanes(count)
-    assert lanes.tolist() == list(range(count)) + [0] * (size - count)

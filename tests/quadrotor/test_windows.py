@@ -1,16 +1,11 @@
 """Windows: which states and commands they hold, and how they are parted."""
 
 from dataclasses import fields
-from itertools import pairwise
 
-import numpy as np
 import pytest
 import torch
-from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.training.collection import collect
-from faultpath_quadrotor.training.pool import read_pool
 from faultpath_quadrotor.training.windows import (
-    STRIDE,
     Windows,
     starts,
     windows_of,
@@ -40,14 +35,6 @@ def test_a_full_episode_has_four_windows_spread_from_end_to_end():
     assert starts(120) == [0, 29, 58, 88]
 
 
-@pytest.mark.parametrize("steps", range(121))
-def test_shorter_episodes_have_fewer_windows_and_none_reaches_beyond(steps):
-    first = starts(steps)
-    assert len(first) == (0 if steps < 32 else 1 + (steps - 32) // STRIDE)
-    assert all(b - a >= STRIDE for a, b in pairwise(first))
-    assert all(0 <= start <= steps - 32 for start in first)
-
-
 def test_command_k_acts_from_state_k_to_state_k_plus_1(nominal):
     """The motors' sum approaches the collective of command k, and of no other, with their lag.
 
@@ -62,16 +49,6 @@ def test_command_k_acts_from_state_k_to_state_k_plus_1(nominal):
     for k in (1, 11, 12, 30):
         assert error(k, k) < 1e-4
         assert min(error(k, k - 1), error(k, k + 1)) > 0.1
-
-
-def test_windows_hold_the_wind_of_their_place_in_the_episode(nominal, windy, pools):
-    assert not nominal.wind_mps.any()
-    steps = read_pool(pools["wind"]).steps
-    for w in (0, 5, len(windy) - 1):
-        episode, number = int(windy.episode[w]), int(windy.ids[w].rpartition("/")[2])
-        first = starts(int(steps[episode]))[number]
-        series = PLATFORM.winds.pool_series(0, episode, 6.1)[25 * first :: 25][:33]
-        assert np.array_equal(windy.wind_mps[..., w].T.numpy(), series.astype(np.float32))
 
 
 def test_no_episode_is_on_both_sides_of_the_split(nominal, windy):

@@ -14,7 +14,7 @@ from faultpath_quadrotor.predictors.module import Prediction
 from faultpath_quadrotor.predictors.places import PLACES, ports
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
 from faultpath_quadrotor.reconstruction.module import WindReconstruction
-from faultpath_quadrotor.reconstruction.recurrent import READS
+from faultpath_quadrotor.reconstruction.network import READS
 
 
 class _Declared(Part):

@@ -1,5 +1,3 @@
 """Estimators: what the controller knows of the vehicle, and where it has that from."""
 
 from faultpath_quadrotor.estimators.protocol import Estimator, ExactEstimator
-
-__all__ = ["Estimator", "ExactEstimator"]

@@ -17,17 +17,3 @@ from faultpath_quadrotor.native.library import (
     using,
     whole_vectors,
 )
-
-__all__ = [
-    "PORTABLE",
-    "Kernels",
-    "available",
-    "describe",
-    "kernels",
-    "kernels_for",
-    "kernels_on",
-    "load",
-    "numerics",
-    "using",
-    "whole_vectors",
-]

@@ -5,13 +5,3 @@ from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.labels import visible_distance
 from faultpath_quadrotor.perception.render import DepthRenderer
 from faultpath_quadrotor.perception.seen import DepthClearance, PerceptionSettings
-
-__all__ = [
-    "CaptureFrame",
-    "ClearanceModel",
-    "DepthClearance",
-    "DepthRenderer",
-    "PerceptionSettings",
-    "mounted",
-    "visible_distance",
-]

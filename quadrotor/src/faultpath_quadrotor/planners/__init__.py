@@ -7,16 +7,3 @@ from faultpath_quadrotor.planners.sampler import (
     BundledSampler,
     SamplerSettings,
 )
-
-__all__ = [
-    "MPPI",
-    "AutoregressiveSampler",
-    "BundledSampler",
-    "CostWeights",
-    "NavigationCost",
-    "Planner",
-    "SamplerSettings",
-    "Scored",
-    "Search",
-    "shift",
-]

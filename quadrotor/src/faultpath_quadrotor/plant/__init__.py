@@ -2,5 +2,3 @@
 
 from faultpath_quadrotor.plant.protocol import Plant, PlantState
 from faultpath_quadrotor.plant.torch_plant import TorchPlant
-
-__all__ = ["Plant", "PlantState", "TorchPlant"]

@@ -13,18 +13,3 @@ from faultpath_quadrotor.predictors.kinematic import KinematicIntegrator
 from faultpath_quadrotor.predictors.network import LatentNetwork
 from faultpath_quadrotor.predictors.true_parameter import TrueParameter
 from faultpath_quadrotor.predictors.unanchored import UnanchoredNetwork, UnanchoredPredictor
-
-__all__ = [
-    "AnchoredPredictor",
-    "Calibration",
-    "History",
-    "KinematicIntegrator",
-    "LatentNetwork",
-    "Memory",
-    "Physics",
-    "Predictor",
-    "PredictorInputs",
-    "TrueParameter",
-    "UnanchoredNetwork",
-    "UnanchoredPredictor",
-]

@@ -15,7 +15,7 @@ from faultpath_quadrotor.plant import TorchPlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.platform import PLATFORM, FlightSettings
 from faultpath_quadrotor.state import State, padded_lanes
-from faultpath_quadrotor.training import perturbation
+from faultpath_quadrotor.training import controller as perturbation
 from faultpath_quadrotor.training.controller import Course, WaypointController
 from faultpath_quadrotor.training.recorded import Flights, blank_values, record
 from faultpath_quadrotor.vehicle import (
