@@ -124,7 +124,6 @@ def test_comparing(toy: Path, tmp_path: Path) -> None:
     assert repr(compared) == f"<Comparison: {compared.headline}>"
     page = compared.report(tmp_path / "page.html")
     assert dock.record.question.fault in page.read_text()
-    assert dock.record.question.fault in compared._repr_markdown_()
 
 
 @pytest.mark.parametrize(

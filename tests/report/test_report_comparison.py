@@ -12,7 +12,6 @@ from faultpath.decisions import Path as FaultPath
 from faultpath.report.comparison.page import (
     effects,
     headline,
-    markdown,
     page,
     sentences,
 )
@@ -69,15 +68,12 @@ def test_sizes_of_one_fault_are_drawn_over_the_size_and_decided_as_one_family(
     assert "All 3 sizes are one family" in said
     assert "Correct inputs are the same trials at every size" in said
     assert "verdicts differ" not in said
-    assert "size alone" not in said
     mixed = together([*apart[:2], signed(apart[2], "shared", -1, p_value=0.04)])
     assert mixed[2].effect("shared").sign == 0, "its own audit decides it, all sizes do not"
     told = next(each for each in sentences(mixed) if "verdicts differ" in each)
     baseline = three[0].asked.baseline
     assert told.endswith(f"size: {baseline} ahead at −0.1 and 0.1; not decided at 0.2.")
     shared = titles(three)["shared"]
-    alone = next(each for each in sentences(mixed) if "size alone" in each)
-    assert f"{shared} at 0.2" in alone
     assert mixed[2].headline.startswith("By itself, and not over all sizes: ")
     assert mixed[2].headline in page(mixed)
     bold = [line.entries[1].detected for line in effects(mixed).lines if len(line.entries) > 1]
@@ -208,7 +204,6 @@ def test_hostile_names_are_text(one_seed: ReportInput) -> None:
     assert "<script>alert" not in text
     assert "\u202e" not in text
     assert "&lt;script&gt;" in text
-    assert "<script>" not in markdown(runs)
 
 
 @pytest.mark.browser

@@ -11,7 +11,7 @@ from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import pair_grid, pair_key, read_pairs
 from faultpath.report.svg import Axis, Svg, covering, number, shortened, text_width, wrapped
-from faultpath.report.taps import fork_panels, forks
+from faultpath.report.taps import fork_panel, forks
 from faultpath.statistics import BreakEven, Region
 
 
@@ -24,7 +24,7 @@ def test_all_figures_are_xml(one_seed: ReportInput) -> None:
         pair_grid("nothing", (), {}),
         *(sign for sign, _ in pair_key(pairs)),
         *frequency_panels(record),
-        *fork_panels(forks(one_seed)),
+        *map(fork_panel, forks(one_seed)),
     ]
     for picture in drawn:
         ElementTree.fromstring(picture)

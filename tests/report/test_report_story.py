@@ -10,7 +10,7 @@ import pytest
 from faultpath.decisions import DecisionRecord, Path
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
-from faultpath.report.taps import Fork, fork_panels, forks
+from faultpath.report.taps import Fork, fork_panel, forks
 
 TOY = FilePath(__file__).resolve().parents[2] / "examples" / "toy.py"
 IMPERATIVE = re.compile(r"\b(Ask|Do not|Don't|Choose|Prefer|Use|Take|Compare|Deploy|Keep)\b")
@@ -41,7 +41,7 @@ def test_each_path_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
     both = ["predictor: wrong readings", "reconstruction: wrong readings"]
     assert states(told["Shared fault"]) == [both, both]
     assert [fork.everywhere for fork in told.values()] == [False, False, True]
-    assert "wrong for all" in fork_panels(tuple(told.values()))[-1]
+    assert "wrong for all" in fork_panel(told["Shared fault"])
 
 
 def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> None:
@@ -85,7 +85,7 @@ def test_a_module_that_does_not_read_the_fault_is_grey_and_says_why(one_seed: Re
     (_, alone, shared) = forks(blind)
     assert states(alone)[1] == ["predictor: correct readings", "reconstruction: does not read it"]
     assert shared.everywhere
-    assert 'class="absent"' in fork_panels((alone,))[0]
+    assert 'class="absent"' in fork_panel(alone)
 
 
 def test_receipts_decide_what_is_drawn_as_struck(one_seed: ReportInput) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Comparison:
-    """Finished audits side by side; a notebook shows what differs, and the effects."""
+    """Finished audits side by side."""
 
     runs: "tuple[Compared, ...]"
     """Each with its `number`, `folder`, `record` and `provenance`."""
@@ -56,11 +56,6 @@ class Comparison:
     def __repr__(self) -> str:
         """Return the headline."""
         return f"<Comparison: {self.headline}>"
-
-    def _repr_markdown_(self) -> str:
-        from faultpath.report.comparison.page import markdown
-
-        return markdown(self.runs)
 
 
 def _folder_and_record(run: "Compared") -> dict[str, object]:

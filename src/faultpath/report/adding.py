@@ -145,12 +145,7 @@ def adding_panels(shown: Adding) -> list[str]:
     clock = Axis(0.0, longest, _LEFT, _WIDTH - _RIGHT)
     panels: list[str] = []
     for title, arms in shown.paths:
-        told = "; ".join(
-            f"{arm.name}, mean sizes "
-            + ", ".join(f"{n} {s:.2g}" for n, s in zip(shown.names, arm.sizes, strict=True))
-            + f" {shown.unit}, {arm.ended}"
-            for arm in arms
-        )
+        told = "; ".join(f"{arm.role} {arm.name}: {arm.ended}" for arm in arms)
         svg = Svg(_WIDTH, _TOP + _PITCH * len(arms) - 16, f"{title}: {shown.words} over time", told)
         svg.text(0, 14, shortened(title, _WIDTH, 13), "head", tip=title)
         for place, arm in enumerate(arms):
@@ -162,16 +157,6 @@ def adding_panels(shown: Adding) -> list[str]:
         svg.text(_WIDTH, bottom + 17, "s", "small soft", "end")
         panels.append(svg.render())
     return panels
-
-
-def line_key(shown: Adding) -> list[tuple[str, str]]:
-    """Return a sample of each line with what it stands for."""
-    found: list[tuple[str, str]] = []
-    for name, cls in zip(shown.names, _LINES, strict=True):
-        svg = Svg(34, 12, name)
-        svg.line((1, 6), (33, 6), cls)
-        found.append((svg.render(), name))
-    return found
 
 
 def _arm(svg: Svg, arm: Lines, x: Axis, y: Axis, shown: Adding) -> None:

@@ -1,7 +1,6 @@
 """Effects with their intervals, path by path, and over the frequency of the fault."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord, Effect, PathBreakEven
@@ -10,93 +9,75 @@ from faultpath.report.svg import (
     Point,
     Svg,
     covering,
-    draw_interval,
     draw_levels,
     draw_tick,
-    draw_uprights,
     shortened,
     text_width,
+    tick_label,
     wrapped,
 )
-from faultpath.statistics import Estimate
 
 _PITCH, _TOP = 48.0, 44.0
 _ROOM = 26.0  # pixels beside zero that a label of a side needs
 
 
-@dataclass(frozen=True)
-class EffectRow:
-    """One effect in a picture."""
-
-    label: str
-    effect: Estimate
-    sign: int
-    """Side that is decided for: 1 the repair, -1 the baseline, 0 neither."""
-    note: str
-    """Whether it is the primary contrast, and what keeps it out of a headline."""
-    band_pp: float | None
-    """Difference that is detected with 80 % power, where none is decided."""
-
-
-Rows = Sequence[tuple[str, EffectRow | str]]
-"""A label with its effect, or with why there is none."""
-
-
-def effect_row(label: str, effect: Effect, note: str = "") -> EffectRow:
-    """Return how an effect is drawn."""
-    return EffectRow(
-        label=label,
-        effect=effect.success,
-        sign=effect.sign,
-        note=", ".join(filter(None, (note, wording.reservation(effect)))),
-        band_pp=None if effect.detected else effect.minimum_detectable_pp,
-    )
+Row = tuple[str, str, Effect | str]
+"""A label, what stands beside it, and the effect or why there is none."""
 
 
 def forest(record: DecisionRecord) -> str:
     """Return the success differences of an audit, percentage points, one row a path."""
     titles, asked = {path.name: path.title for path in record.paths}, record.question
-    rows = [
-        effect_row(
-            titles.get(effect.path, effect.path),
-            effect,
-            "primary" if effect.path == asked.primary else "",
-        )
-        for effect in record.effects
+    rows: list[Row] = [
+        (titles.get(each.path, each.path), "primary" if each.path == asked.primary else "", each)
+        for each in record.effects
     ]
-    labelled = [(row.label, row) for row in rows]
-    return panel(f"{asked.repair} minus {asked.baseline}", labelled, shared_axis([labelled]), 480)
+    return panel(f"{asked.repair} minus {asked.baseline}", rows, shared_axis([rows]), 480)
 
 
-def shared_axis(panels: Sequence[Rows]) -> Axis:
+def shared_axis(panels: Sequence[Sequence[Row]]) -> Axis:
     """Return the axis that all panels have in common, percentage points."""
     ends: list[float] = []
-    for row in (row for rows in panels for _, row in rows if isinstance(row, EffectRow)):
-        e = row.effect
-        ends += [v for v in (e.value, e.low, e.high, *(e.per_seed or ())) if v is not None]
-        ends += [-row.band_pp, row.band_pp] if row.band_pp else []
+    for *_, effect in (row for rows in panels for row in rows):
+        if not isinstance(effect, str):
+            e, band = effect.success, _band(effect)
+            ends += [v for v in (e.value, e.low, e.high, *(e.per_seed or ())) if v is not None]
+            ends += [-band, band] if band else []
     return covering(ends, least=10.0)
 
 
-def panel(title: str, rows: Rows, axis: Axis, width: float = 350.0) -> str:
+def _band(effect: Effect) -> float | None:
+    """Return the difference that is detected with 80 % power, where none is decided."""
+    return None if effect.detected else effect.minimum_detectable_pp
+
+
+def panel(title: str, rows: Sequence[Row], axis: Axis, width: float = 350.0) -> str:
     """Return success of the repair minus success of the baseline, one row a label.
 
     A filled dot is a decided effect; the light band behind an open one reaches as far as the
     difference that is detected with 80 % power.
     """
-    values = [row if isinstance(row, str) else wording.with_interval(row.effect) for _, row in rows]
-    told = "; ".join(f"{label}: {value}" for (label, _), value in zip(rows, values, strict=True))
+    values = [e if isinstance(e, str) else wording.with_interval(e.success) for *_, e in rows]
+    described = "; ".join(f"{row[0]}: {value}" for row, value in zip(rows, values, strict=True))
     bottom = _TOP + _PITCH * len(rows)
     name = f"{title}: success of the repair minus success of the baseline, percentage points"
-    svg = Svg(width, bottom + 40, name, told)
+    svg = Svg(width, bottom + 40, name, described)
     svg.text(0, 14, shortened(title, width, 13), "head", tip=title)
     plot = axis.at(8, width - 8)
-    directions(svg, plot, 33)
-    draw_uprights(svg, plot, _TOP - 4, bottom, 6)
+    zero = plot(0.0)
+    if zero - plot.start > 96:
+        svg.text(zero - 8, 33, "← baseline better", "small baseline", "end")
+    if plot.end - zero > 88:
+        svg.text(zero + 8, 33, "repair better →", "small repair", "start")
+    for tick in plot.ticks(6):
+        svg.line((plot(tick), _TOP - 4), (plot(tick), bottom), "zero" if tick == 0 else "axis")
+        svg.text(plot(tick), bottom + 16, tick_label(tick), "small soft", "middle")
     svg.text(width / 2, bottom + 34, "repair minus baseline, pp", "small soft", "middle")
-    for index, ((label, row), value) in enumerate(zip(rows, values, strict=True)):
-        y = _TOP + _PITCH * index
-        note, sign = ("", 0) if isinstance(row, str) else (row.note, row.sign)
+    for index, ((label, note, effect), value) in enumerate(zip(rows, values, strict=True)):
+        y, sign = _TOP + _PITCH * index, 0
+        if not isinstance(effect, str):
+            note = ", ".join(filter(None, (note, wording.reservation(effect))))
+            sign = effect.sign
         room = width - text_width(value, 12) - text_width(note, 11) - 18
         short = shortened(label, room, 12)
         beside = text_width(short, 12) + (text_width(note, 11) + 12 if note else 6)
@@ -106,34 +87,25 @@ def panel(title: str, rows: Rows, axis: Axis, width: float = 350.0) -> str:
         if note:
             svg.text(text_width(short, 12) + 6, y + 16, note, "small soft")
         svg.text(width, y + 16, value, "bold" if sign else "", "end")
-        if isinstance(row, EffectRow):
-            mark(svg, plot, row.effect, y + 34, row.sign, row.band_pp)
+        if not isinstance(effect, str):
+            _mark(svg, plot, effect, y + 34)
     return svg.render()
 
 
-def directions(svg: Svg, plot: Axis, y: float) -> None:
-    """Say on which side of zero which arm is better."""
-    zero = plot(0.0)
-    if zero - plot.start > 96:
-        svg.text(zero - 8, y, "← baseline better", "small baseline", "end")
-    if plot.end - zero > 88:
-        svg.text(zero + 8, y, "repair better →", "small repair", "start")
-
-
-def mark(svg: Svg, plot: Axis, e: Estimate, y: float, winner: int, band_pp: float | None) -> None:
-    """Draw one interval in the colour of the arm that it speaks for.
-
-    Dot, whiskers, a tick for each seed, and the undetectable band where one is given. `winner` is
-    1 for the repair, -1 for the baseline, 0 where it is open.
-    """
-    side = {1: " repair", -1: " baseline", 0: ""}[winner]
-    if band_pp:
-        svg.rect(plot(-band_pp), y - 11, plot(band_pp) - plot(-band_pp), 22, "band", 2)
-        for edge in (-band_pp, band_pp):
+def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
+    """Draw dot, whiskers, a tick for each seed, and the undetectable band where one is given, in
+    the colour of the arm that is decided for."""
+    e, band = effect.success, _band(effect)
+    side = {1: " repair", -1: " baseline", 0: ""}[effect.sign]
+    if band:
+        svg.rect(plot(-band), y - 11, plot(band) - plot(-band), 22, "band", 2)
+        for edge in (-band, band):
             svg.line((plot(edge), y - 11), (plot(edge), y + 11), "band-edge")
         svg.line((plot(0), y - 11), (plot(0), y + 11), "zero")
     if e.low is not None and e.high is not None:
-        draw_interval(svg, plot, (e.low, e.high), y, 4, "range" + side)
+        svg.line((plot(e.low), y), (plot(e.high), y), "range" + side)
+        for end in (e.low, e.high):
+            svg.line((plot(end), y - 4), (plot(end), y + 4), "range" + side)
     if e.per_seed is not None and len(e.per_seed) > 1:
         for value in e.per_seed:
             svg.line((plot(value), y + 6), (plot(value), y + 11), "seed")

@@ -11,7 +11,7 @@ from faultpath.decisions.phrases import change
 from faultpath.decisions.summary import answers, in_short
 from faultpath.decisions.tables import Table
 from faultpath.decisions.tables.html import html
-from faultpath.report.adding import adding, adding_panels, line_key
+from faultpath.report.adding import adding, adding_panels
 from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.frame import render
 from faultpath.report.inputs import ReportInput
@@ -25,7 +25,7 @@ from faultpath.report.tables import (
     markdown_table,
     secondary,
 )
-from faultpath.report.taps import fork_panels, forks
+from faultpath.report.taps import fork_panel, forks
 from faultpath.report.viewer import viewer_data
 from faultpath.trials.store import make_folder, write_text
 
@@ -58,7 +58,6 @@ def report_page(source: ReportInput) -> str:
         finding=_finding(record),
         changes=[(each.turn, change(record, each)) for each in record.changes],
         adding=why,
-        adding_key=[(Markup(sample), name) for sample, name in line_key(why)] if why else (),
         adding_panels=list(map(Markup, adding_panels(why))) if why else (),
         void=[pair for pair in pairs if pair.kind is Kind.VOID],
         pairs=pairs,
@@ -67,7 +66,7 @@ def report_page(source: ReportInput) -> str:
         fault="; ".join(each.aimed_at("*").describe() for each in asked.faults)
         or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.variants, strict=True)),
-        forks=list(map(Markup, fork_panels(forks(source)))),
+        forks=[Markup(fork_panel(fork)) for fork in forks(source)],
         frequency=list(map(Markup, frequency_panels(record))),
         grids=[
             Markup(

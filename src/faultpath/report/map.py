@@ -1,6 +1,6 @@
 """A map as tables, pictures, terminal and page; all numbers are the record's."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 from markupsafe import Markup
@@ -133,18 +133,16 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
 
 def write_map(record: MapRecord, provenance: RunProvenance, folder: Path) -> list[Path]:
     """Write `report.html`, `map.svg`, `correlation.svg` and `table.md`; return their paths."""
+    made = {
+        "report.html": page(record, provenance),
+        "map.svg": map_picture(record).render(standalone=True) + "\n",
+        "correlation.svg": correlation_picture(record).render(standalone=True) + "\n",
+        "table.md": table_markdown(record),
+    }
     make_folder(folder)
-    made = dict(_files(record, provenance))
     for name, text in made.items():
         write_text(folder / name, text, folder)
     return [folder / name for name in made]
-
-
-def _files(record: MapRecord, provenance: RunProvenance) -> Iterator[tuple[str, str]]:
-    yield "report.html", page(record, provenance)
-    yield "map.svg", map_picture(record).render(standalone=True) + "\n"
-    yield "correlation.svg", correlation_picture(record).render(standalone=True) + "\n"
-    yield "table.md", table_markdown(record)
 
 
 def table_markdown(record: MapRecord) -> str:

@@ -21,6 +21,11 @@ class Kind(StrEnum):
     LEFT_OUT = "left-out"
     VOID = "void"
 
+    @property
+    def short(self) -> str:
+        """In two words."""
+        return self.value.replace("-", " ")
+
 
 WORDS = {
     Kind.BOTH: "both succeed",
@@ -65,15 +70,10 @@ class Pair:
             return Kind.VOID
         if self.left_out:
             return Kind.LEFT_OUT
-        match (self.baseline.status is Status.SUCCESS, self.repair.status is Status.SUCCESS):
-            case (True, True):
-                return Kind.BOTH
-            case (False, True):
-                return Kind.REPAIR_ONLY
-            case (True, False):
-                return Kind.BASELINE_ONLY
-            case _:
-                return Kind.NEITHER
+        one, two = (t.status is Status.SUCCESS for t in (self.baseline, self.repair))
+        if one is two:
+            return Kind.BOTH if one else Kind.NEITHER
+        return Kind.REPAIR_ONLY if two else Kind.BASELINE_ONLY
 
     @property
     def sign(self) -> int:
@@ -123,14 +123,6 @@ def _met(outcome: Outcome) -> tuple[str, str, str]:
 
 
 _WIDTH, _SIDE, _GAP, _MOST_COLUMNS = 390.0, 15.0, 2.0, 25
-_SHORT = {
-    Kind.BOTH: "both",
-    Kind.REPAIR_ONLY: "repair only",
-    Kind.BASELINE_ONLY: "baseline only",
-    Kind.NEITHER: "neither",
-    Kind.LEFT_OUT: "left out",
-    Kind.VOID: "void",
-}
 _ALWAYS = (Kind.BOTH, Kind.REPAIR_ONLY, Kind.BASELINE_ONLY, Kind.NEITHER)
 
 
@@ -149,10 +141,12 @@ def pair_grid(
     in the viewer.
     """
     counts = {kind: sum(p.kind is kind for p in pairs) for kind in Kind}
-    told = ", ".join(
-        f"{_SHORT[k]} {n}" for k, n in counts.items() if n or k not in (Kind.VOID, Kind.LEFT_OUT)
-    )
-    blocks = _blocks(pairs)
+    told = ", ".join(f"{k.short} {n}" for k, n in counts.items() if n or k in _ALWAYS)
+    ordered = sorted(pairs, key=lambda p: (p.topology, p.index, p.scene, p.seed))
+    blocks = [
+        (name, [list(stack) for _, stack in groupby(block, key=lambda p: (p.index, p.scene))])
+        for name, block in groupby(ordered, key=lambda p: p.topology)
+    ]
     n_seeds = max((len(stack) for _, stacks in blocks for stack in stacks), default=1)
     left = min(110.0, max((text_width(name, 12) + 10 for name, _ in blocks if name), default=0.0))
     columns = min(_MOST_COLUMNS, max((len(stacks) for _, stacks in blocks), default=1))
@@ -179,23 +173,13 @@ def pair_grid(
 
 def pair_key(pairs: Sequence[Pair]) -> list[tuple[str, str]]:
     """Return the key of the grids: a small picture and its word, for each kind that occurs."""
-    kinds = [k for k in Kind if k in _ALWAYS or any(p.kind is k for p in pairs)]
-    return [(_sign(kind), _SHORT[kind]) for kind in kinds]
-
-
-def _sign(kind: Kind) -> str:
-    svg = Svg(_SIDE, _SIDE, WORDS[kind])
-    svg.rect(0.5, 0.5, _SIDE - 1, _SIDE - 1, "void-cell" if kind is Kind.VOID else "cell", 2)
-    _glyph(svg, kind, _SIDE / 2, _SIDE / 2)
-    return svg.render()
-
-
-def _blocks(pairs: Sequence[Pair]) -> list[tuple[str, list[list[Pair]]]]:
-    ordered = sorted(pairs, key=lambda p: (p.topology, p.index, p.scene, p.seed))
-    return [
-        (name, [list(stack) for _, stack in groupby(block, key=lambda p: (p.index, p.scene))])
-        for name, block in groupby(ordered, key=lambda p: p.topology)
-    ]
+    found: list[tuple[str, str]] = []
+    for kind in (k for k in Kind if k in _ALWAYS or any(p.kind is k for p in pairs)):
+        svg = Svg(_SIDE, _SIDE, WORDS[kind])
+        svg.rect(0.5, 0.5, _SIDE - 1, _SIDE - 1, "void-cell" if kind is Kind.VOID else "cell", 2)
+        _glyph(svg, kind, _SIDE / 2, _SIDE / 2)
+        found.append((svg.render(), kind.short))
+    return found
 
 
 def address(pair: Pair) -> str:

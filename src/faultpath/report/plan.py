@@ -1,7 +1,6 @@
 """The tables of a plan: sources in order, and the audits that are proposed."""
 
 from faultpath.decisions.plan.plan import Plan
-from faultpath.decisions.plan.sources import Candidate
 from faultpath.decisions.tables import MISSING, Line, Table, line
 
 
@@ -12,20 +11,19 @@ def by_rank(plan: Plan) -> Table:
         "Order: number of consumers, then the larger probe response, one that is not known last; "
         "equal ones share a rank.",
     )
+    lines: list[Line] = []
+    for each in plan.candidates:
+        mark = "=" if sum(other.rank == each.rank for other in plan.candidates) > 1 else ""
+        said = ("\n".join(each.consumers), each.fault or "none known")
+        lines.append(line(f"{each.rank}{mark} {each.name}", *said))
     return Table(
         title="Uncertain sources by rank",
         corner="source",
         columns=columns,
         words=columns,
-        lines=tuple(_source(plan, each) for each in plan.candidates),
+        lines=tuple(lines),
         notes=notes,
     )
-
-
-def _source(plan: Plan, each: Candidate) -> Line:
-    mark = "=" if sum(other.rank == each.rank for other in plan.candidates) > 1 else ""
-    fault = each.fault or "none known"
-    return line(f"{each.rank}{mark} {each.name}", "\n".join(each.consumers), fault)
 
 
 def by_response(plan: Plan) -> Table:

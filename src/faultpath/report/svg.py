@@ -1,7 +1,7 @@
 """Pictures as SVG, and their axes; text and attribute values are escaped on the way in."""
 
 import math
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -18,7 +18,7 @@ _NARROW = dict.fromkeys("iljI.,:;'|!", 290) | dict.fromkeys('ft()[]/-r "', 350)
 _DIGITS = dict.fromkeys("0123456789", 640)  # they have one width, and a wide one in some fonts
 _WIDE = dict.fromkeys("mwMW%@→−+=<>", 880) | dict.fromkeys("ABCDEFGHKNOPQRSTUVXYZ&", 720)
 _ADVANCE = _NARROW | _DIGITS | _WIDE
-_SIZES = {"small": 11.0, "tiny": 10.0, "on-tag": 10.0, "head": 13.0, "rate": 17.0}
+_SIZES = {"small": 11.0, "head": 13.0}
 """Of text by its class, in pixels, as `svg.css` has them; 12 otherwise."""
 
 
@@ -238,23 +238,6 @@ def draw_tick(svg: Svg, x: Axis, y: Axis, value: float, label: str) -> None:
     """Draw a tick of the lower axis with its label below."""
     svg.line((x(value), y.start), (x(value), y.start + 4), "axis")
     svg.text(x(value), y.start + 17, label, "small soft", "middle")
-
-
-def draw_uprights(svg: Svg, x: Axis, top: float, bottom: float, about: int) -> None:
-    """Draw the round numbers of an axis from top to bottom, labels below."""
-    for tick in x.ticks(about):
-        svg.line((x(tick), top), (x(tick), bottom), "zero" if tick == 0 else "axis")
-        svg.text(x(tick), bottom + 16, tick_label(tick), "small soft", "middle")
-
-
-def draw_interval(
-    svg: Svg, x: Callable[[float], float], ends: Sequence[float], y: float, half: float, cls: str
-) -> None:
-    """Draw an interval with whiskers that reach `half` to either side."""
-    low, high = ends
-    svg.line((x(low), y), (x(high), y), cls)
-    for end in ends:
-        svg.line((x(end), y - half), (x(end), y + half), cls)
 
 
 def _round_step(raw: float) -> float:

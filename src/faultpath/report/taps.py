@@ -110,12 +110,8 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
     return tuple(found)
 
 
-def fork_panels(forks: tuple[Fork, ...]) -> list[str]:
-    """Return a picture of each path."""
-    return [_panel(fork) for fork in forks]
-
-
-def _panel(fork: Fork) -> str:
+def fork_panel(fork: Fork) -> str:
+    """Return the picture of a path."""
     told = " ".join(
         f"{role.capitalize()} {name}: "
         + series([f"{_named(reader.module)} {reader.state}" for reader in readers])

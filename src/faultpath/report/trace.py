@@ -1,7 +1,5 @@
 """A trace as a table."""
 
-from collections.abc import Iterable
-
 from faultpath.decisions.tables import Line, Table, line
 from faultpath.systems.checks.tracing import TracedRead, TraceReport
 
@@ -11,35 +9,26 @@ def trace_table(trace: TraceReport) -> Table:
     taps: dict[tuple[str, str], list[TracedRead]] = {}
     for read in trace.reads:
         taps.setdefault((read.consumer, read.channel), []).append(read)
-    columns = ("channel", "source", "at steps", "of steps", "made by")
+    columns = ["channel", "source", "at steps", "of steps", "made by"]
+    lines: list[Line] = []
+    for (consumer, channel), reads in taps.items():
+        source = reads[0].source
+        steps = (" ".join(str(r.step) for r in reads), " ".join(str(r.valid_step) for r in reads))
+        entries = [channel, source, *steps, trace.reconstructed.get(source, ("",))[0]]
+        if trace.fault:
+            by = (name for read in reads for name in read.altered_by)
+            entries.insert(1, ", ".join(dict.fromkeys(by)))
+        lines.append(line(consumer, *entries))
     if trace.fault:
-        columns = ("channel", "altered by", *columns[1:])
+        columns.insert(1, "altered by")
     return Table(
         title=f"{trace.variant} of {trace.system}, {trace.steps} steps in {trace.scene}",
         corner="who",
-        columns=columns,
-        words=columns,
-        lines=_lines(trace, taps.values()),
+        columns=tuple(columns),
+        words=tuple(columns),
+        lines=tuple(lines),
         notes=tuple(
             f"{source} is reconstructed by {module} from {', '.join(channels) or 'nothing'}."
             for source, (module, channels) in trace.reconstructed.items()
         ),
     )
-
-
-def _lines(trace: TraceReport, taps: Iterable[list[TracedRead]]) -> tuple[Line, ...]:
-    lines: list[Line] = []
-    for reads in taps:
-        first = reads[0]
-        entries = [
-            first.channel,
-            first.source,
-            " ".join(str(read.step) for read in reads),
-            " ".join(str(read.valid_step) for read in reads),
-            trace.reconstructed.get(first.source, ("",))[0],
-        ]
-        if trace.fault:
-            said = ", ".join(dict.fromkeys(w for read in reads for w in read.altered_by))
-            entries.insert(1, said)
-        lines.append(line(first.consumer, *entries))
-    return tuple(lines)

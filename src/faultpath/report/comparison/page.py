@@ -10,20 +10,18 @@ from rich.text import Text
 from faultpath.decisions import wording
 from faultpath.decisions.model import Effect
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
-from faultpath.decisions.tables.escapes import markdown as escaped
 from faultpath.decisions.tables.html import html
-from faultpath.decisions.tables.markdown import block
 from faultpath.decisions.tables.terminal import drawn
+from faultpath.decisions.wording import series
 from faultpath.report.comparison import sweep
 from faultpath.report.comparison.runs import (
     Compared,
     differing,
     facts_table,
-    joined,
     labels,
     titles,
 )
-from faultpath.report.effects import Rows, effect_row, panel, shared_axis
+from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
 from faultpath.report.tables import decided_for
 
@@ -38,7 +36,7 @@ def headline(runs: Sequence[Compared]) -> str:
     where = [title for path, title in titles(runs).items() if list(_opposite(runs, path))]
     found = sweep.swept(runs)
     count = f"{len(runs)} {f'sizes of {found.name}' if found else 'audits'} side by side"
-    return f"{count}: decided in opposite directions on {joined(where)}" if where else count
+    return f"{count}: decided in opposite directions on {series(where)}" if where else count
 
 
 def same(runs: Sequence[Compared]) -> str:
@@ -80,7 +78,7 @@ def _opposite(runs: Sequence[Compared], path: str) -> Iterator[str]:
             aside = wording.reservation(effect)
             told = f"{run.number} (at the {aside})" if aside else f"{run.number}"
             sides.setdefault(side, []).append(told)
-        yield ", ".join(f"for {side} in {joined(said)}" for side, said in sides.items())
+        yield ", ".join(f"for {side} in {series(said)}" for side, said in sides.items())
 
 
 def _arms(run: Compared) -> frozenset[str]:
@@ -130,20 +128,12 @@ def shown(runs: Sequence[Compared]) -> RenderableType:
     return Group(*parts, Text(""), *map(Text, sentences(runs)))
 
 
-def markdown(runs: Sequence[Compared]) -> str:
-    """Return the comparison as Markdown, for a notebook."""
-    found = differing(runs)
-    parts = (effects(runs), *([facts_table(runs, found)] if found else []))
-    said = (escaped(each) for each in (headline(runs), *sentences(runs)))
-    return "\n\n".join((*said, *map(block, parts)))
-
-
 def page(runs: Sequence[Compared]) -> str:
     """Return the comparison as one page."""
     found = differing(runs)
-    panels: dict[str, Rows] = {
+    panels: dict[str, list[Row]] = {
         title: [
-            (label, effect_row(label, effect) if (effect := run.effect(path)) else run.absent(path))
+            (label, "", run.effect(path) or run.absent(path))
             for label, run in zip(labels(runs), runs, strict=True)
         ]
         for path, title in titles(runs).items()

@@ -1,6 +1,6 @@
 """The audits that are set side by side, how each is called, and what differs between them."""
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -68,12 +68,6 @@ def titles(runs: Sequence[Compared]) -> dict[str, str]:
     }
 
 
-def joined(words: Sequence[str]) -> str:
-    """Return words as a list in a sentence: `1`, `1 and 3` or `1, 2 and 3`."""
-    *first, last = words
-    return f"{', '.join(first)} and {last}" if first else last
-
-
 _ASKED: Mapping[str, Callable[[Compared], str]] = {
     "Fault": lambda run: run.asked.fault,
     "Baseline": lambda run: run.asked.baseline,
@@ -128,21 +122,15 @@ def labels(runs: Sequence[Compared]) -> tuple[str, ...]:
 def facts_table(runs: Sequence[Compared], facts: Facts) -> Table:
     """Return what differs, each value with the runs that have it."""
 
-    def lines() -> Iterator[Line]:
-        for title, values in facts.items():
-            yield line(title)
-            for value in dict.fromkeys(values):
-                having = [
-                    str(run.number) for run, own in zip(runs, values, strict=True) if own == value
-                ]
-                yield line(value, joined(having))
-
+    lines: list[Line] = []
+    for title, values in facts.items():
+        lines.append(line(title))
+        for value in dict.fromkeys(values):
+            of = [str(r.number) for r, own in zip(runs, values, strict=True) if own == value]
+            lines.append(line(value, wording.series(of)))
+    columns = ("Runs",)
     return Table(
-        title="What differs",
-        corner="Value",
-        columns=("Runs",),
-        lines=tuple(lines()),
-        words=("Runs",),
+        title="What differs", corner="Value", columns=columns, words=columns, lines=tuple(lines)
     )
 
 

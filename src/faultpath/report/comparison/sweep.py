@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 from faultpath.decisions.family import ALPHA, CORRECT, alpha_shares
 from faultpath.decisions.model import DecisionRecord, Effect
-from faultpath.report.comparison.runs import Compared, asked_alike, joined, titles
+from faultpath.decisions.wording import series
+from faultpath.report.comparison.runs import Compared, asked_alike, titles
 from faultpath.report.svg import tick_label
 from faultpath.statistics import RULES, Sign
 from faultpath.statistics.decisions import holm
@@ -99,7 +100,7 @@ def sentences(runs: Sequence[Compared]) -> Iterator[str]:
             ahead = {1: f"{run.asked.repair} ahead", -1: f"{run.asked.baseline} ahead"}
             at.setdefault(ahead.get(sign, "not decided"), []).append(tick_label(size))
         if len(at) > 1:
-            said = "; ".join(f"{words} at {joined(where)}" for words, where in at.items())
+            said = "; ".join(f"{words} at {series(where)}" for words, where in at.items())
             yield f"{title}, verdicts differ with the size: {said}."
     if _same(runs):
         yield "Correct inputs are the same trials at every size, and count once."
@@ -107,7 +108,6 @@ def sentences(runs: Sequence[Compared]) -> Iterator[str]:
         f"All {len(runs)} sizes are one family here: what is called decided, and what is bold, is "
         f"wrong in at most {100 * ALPHA:g} % of such sweeps, all sizes together (Holm)."
     )
-    yield from _fallen(runs, sizes)
 
 
 def _same(runs: Sequence[Compared]) -> bool:
@@ -115,19 +115,3 @@ def _same(runs: Sequence[Compared]) -> bool:
     code = {run.provenance.system_fingerprint for run in runs}
     same = {(each.success.value, each.wins, each.losses) for each in found if each}
     return None not in found and len(same) == len(code) == 1
-
-
-def _fallen(runs: Sequence[Compared], sizes: Swept) -> Iterator[str]:
-    """Name what an audit decided by itself and all sizes together do not."""
-    told: list[str] = []
-    for path, title in titles(runs).items():
-        at = [
-            tick_label(size)
-            for run, size in zip(runs, sizes.sizes, strict=True)
-            if (effect := run.effect(path)) and not effect.sign
-            if any(own.sign for own in run.record.effects if own.path == path)
-        ]
-        if at:
-            told.append(f"{title} at {joined(at)}")
-    if told:
-        yield f"Decided in the record of its size alone, and not here: {'; '.join(told)}."
