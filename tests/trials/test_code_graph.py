@@ -181,11 +181,11 @@ def test_a_distribution_that_carries_our_name_is_entered_by_whoever_imports_it(
     """As `faultpath_quadrotor` is: it may be edited where it lies, and counts by content."""
     place = tmp_path / "site-packages" / "faultpath_yy"
     place.mkdir(parents=True)
-    (place / "__init__.py").write_text("__import__(__name__ + '.late')\n")
-    (place / "used.py").touch()
+    (place / "__init__.py").touch()  # a front door decides no result
+    (place / "used.py").write_text("__import__('faultpath_yy.' + x)\n")
     (place / "late.py").touch()
     (tmp_path / "zz_start.py").write_text("import faultpath_yy.used\n")
     monkeypatch.setattr(sys, "path", [*sys.path, str(place.parent)])
     found = _state(tmp_path)
-    assert set(found.files) == {"zz_start.py", "faultpath_yy/__init__.py", "faultpath_yy/used.py"}
+    assert set(found.files) == {"zz_start.py", "faultpath_yy/used.py"}
     assert found.packages == {}
