@@ -187,7 +187,7 @@ def _compared(
             if heard.error:
                 yield Replayed(at, before[at], f"failed: {heard.error}")
                 continue
-            differs = difference([before[at]], Done((heard.outcomes[place],), (), 0.0))
+            differs = difference([before[at]], Done((heard.outcomes[place],), ()))
             yield Replayed(at, before[at], differs, () if differs else heard.signals[place])
 
 

@@ -1,7 +1,6 @@
 """One attempt at running an arm over some scenes, and what can come of it."""
 
 import math
-import time
 import traceback
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -27,7 +26,6 @@ class Done:
 
     outcomes: tuple[Outcome, ...]
     taps: tuple[TapCount, ...]
-    seconds: float
 
 
 @dataclass(frozen=True)
@@ -91,7 +89,6 @@ def attempt(
 
     `guard` and `observer` are those of `Taps`.
     """
-    started = time.perf_counter()
     try:
         taps = taps_of(system, arm, scenes, guard, observer)
         outcomes, counts = _run(system, arm, scenes, taps)
@@ -105,7 +102,7 @@ def attempt(
         if isinstance(error, ValueError) and "read-only" in said:
             said += " (what a tap delivers cannot be written to: copy it first)"
         return Raised(said, traceback.format_exc())
-    return Done(outcomes, counts, time.perf_counter() - started)
+    return Done(outcomes, counts)
 
 
 def _run(

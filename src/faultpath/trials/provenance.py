@@ -12,13 +12,12 @@ Sha256 = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 
 
 class FlownAgain(Shown):
-    """Scenes of a finished unit that were flown a second time, and what that showed."""
+    """Scenes of a finished unit that ran a second time, and what that showed."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    why: Literal["sample", "guarded", "alone", "repeat"]
-    """A few scenes of the unit by themselves, one with guarded readings, that one without the
-    guard, or the whole unit. The last two are flown only where the first two show something."""
+    why: Literal["sample", "guarded"]
+    """A few scenes of the unit by themselves, or one alone with guarded readings."""
     unit: str
     """Key of the unit, which its shard is named after."""
     variant: str
@@ -73,6 +72,6 @@ class RunProvenance(Shown):
     library_hash: str
     outcomes_sha256: str
     flown_again: tuple[FlownAgain, ...] = ()
-    """What was flown a second time, to see whether results repeat."""
+    """What ran a second time, to see whether results repeat."""
     files: dict[FileName, Sha256] = Field(default_factory=dict[str, str])
     """The files beside this one that a report is made from, so that a change of one is seen."""

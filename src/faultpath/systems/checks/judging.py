@@ -79,7 +79,7 @@ class Seen:
         odd = [key for key, digest in again.readings(dt_s).items() if then.get(key) != digest]
         by_scene = {outcome.scene: outcome for outcome in first.outcomes}
         before = [by_scene[outcome.scene] for outcome in again.outcomes]
-        said = difference(before, Done(again.outcomes, (), 0.0))
+        said = difference(before, Done(again.outcomes, ()))
         if odd:
             scene, step, channel, consumer = min(odd, key=lambda key: key[1])
             said = said or "differs in its readings alone"
@@ -238,7 +238,7 @@ def _delivery(name: str, seen: Seen) -> Check:
         elif (
             not flown.error
             and all(then[key] == value for key, value in now.items())
-            and not (ends and difference(first.outcomes, Done(ends, (), 0.0)))
+            and not (ends and difference(first.outcomes, Done(ends, ())))
         ):
             remarks.append(
                 f"{said} changed nothing else, in no outcome and at no other tap; a consumer that "

@@ -129,7 +129,7 @@ def run_study(
         study=study,
     )
     run = RunFolder(Path(folder))
-    state = RunState(units, run, workers, Counter(row.arm.key() for row in study.rows))
+    state = RunState(units, run, Counter(row.arm.key() for row in study.rows))
     try:
         with run.open(manifest, notice, shared):
             schedule = Schedule(_missing(state, run, notice), study.look > 0)
@@ -143,11 +143,7 @@ def run_study(
                     return partial(work, task.unit.arm, task.scenes, task.recheck == "guarded")
 
                 def take(worker: int) -> Task | None:
-                    if looks.enough(state.outcomes):
-                        return None
-                    if task := schedule.take(worker):
-                        state.start(task)
-                    return task
+                    return None if looks.enough(state.outcomes) else schedule.take(worker)
 
                 def settle(task: Task, reply: Reply) -> None:
                     schedule.put(state.settle(task, reply))

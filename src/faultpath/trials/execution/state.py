@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from faultpath.core.errors import UserError
 from faultpath.loop.taps import TapCount, added
@@ -30,27 +30,24 @@ class NothingRuns(UserError):
 class _Partial:
     """A unit of which some scenes have an outcome."""
 
-    outcomes: dict[str, Outcome]
+    outcomes: dict[str, Outcome] = field(default_factory=dict[str, Outcome])
     taps: tuple[TapCount, ...] = ()
+    tracebacks: list[str] = field(default_factory=list[str])
 
 
 class RunState:
     """Stores each unit as soon as all its scenes have an outcome."""
 
-    def __init__(
-        self, units: Iterable[Unit], folder: RunFolder, workers: int, rows: Mapping[str, int]
-    ) -> None:
+    def __init__(self, units: Iterable[Unit], folder: RunFolder, rows: Mapping[str, int]) -> None:
         """`rows`: in how many rows of the outcome table an arm's trials stand, by its key."""
         self.units = tuple(units)
         self.outcomes: dict[tuple[str, str], Outcome] = {}
         self.kept = self.computed = 0
         """Units that were stored before, and those that this invocation ran."""
-        self._rows, self._folder, self._workers = rows, folder, workers
+        self._rows, self._folder = rows, folder
         self._taps: dict[str, tuple[TapCount, ...]] = {}
         self._partial: dict[str, _Partial] = {}
-        self._tracebacks: dict[str, list[str]] = {}
-        self._running: dict[tuple[str, tuple[str, ...]], float] = {}
-        self._seconds, self._timed = 0.0, 0
+        self._began, self._ended = time.monotonic(), 0
         self._failed, self._sound = 0, False
 
     def keep(self, unit: Unit, shard: Shard) -> None:
@@ -58,10 +55,6 @@ class RunState:
         self.kept += 1
         self._sound = True
         self._enter(unit, shard)
-
-    def start(self, task: Task) -> None:
-        """Note that a task runs now."""
-        self._running[task.unit.key, task.scenes] = time.monotonic()
 
     def settle(self, task: Task, reply: Reply) -> tuple[Task, ...]:
         """Take in a reply and return the tasks that follow from it.
@@ -72,13 +65,10 @@ class RunState:
         that follows would mean anything. `NothingRuns` after a few failures and no trial beside.
         """
         unit = task.unit
-        self._running.pop((unit.key, task.scenes), None)
         match reply:
             case Wrong():
                 raise reply.error
             case Done():
-                self._seconds += reply.seconds
-                self._timed += len(task.scenes)
                 outcomes, taps = reply.outcomes, reply.taps
                 details = {o.scene: o.error or "" for o in outcomes if o.failed}
             case Died() if not task.retried and not reply.late:
@@ -90,15 +80,15 @@ class RunState:
                 error = reply.error if isinstance(reply, Raised) else reply.how
                 outcomes, taps = (failed_outcome(scene, error),), ()
                 details = {scene: reply.traceback if isinstance(reply, Raised) else reply.how}
+        partial = self._partial.setdefault(unit.key, _Partial())
         for scene, said in details.items():
-            text = f"{scene}: {unit.arm.model_dump_json()}\n{said}\n"
-            self._tracebacks.setdefault(unit.key, []).append(text)
-        partial = self._partial.setdefault(unit.key, _Partial({}))
+            partial.tracebacks.append(f"{scene}: {unit.arm.model_dump_json()}\n{said}\n")
         partial.outcomes |= {outcome.scene: outcome for outcome in outcomes}
         partial.taps = added((*partial.taps, *taps))
+        self._ended += len(outcomes)
         self._failed += len(details)
         self._sound = self._sound or len(details) < len(outcomes)
-        tracebacks = "\n".join(sorted(self._tracebacks.get(unit.key, ())))
+        tracebacks = "\n".join(sorted(partial.tracebacks))
         if self._failed >= FEW and not self._sound:
             self._folder.save_failure(unit.key, tracebacks)
             last = next(o for o in reversed(partial.outcomes.values()) if o.failed)
@@ -130,7 +120,7 @@ class RunState:
         return {key: added(taps) for key, taps in counts.items()}
 
     def progress(self) -> Progress:
-        """Return how far the run is, with an estimate for the blocks that run now."""
+        """Return how far the run is, and how long it takes yet at the pace that it had."""
         trials = rows = done = rows_done = 0
         for unit in self.units:
             each, some = self._rows.get(unit.arm.key(), 1), len(unit.scenes)
@@ -139,14 +129,10 @@ class RunState:
                 partial = self._partial.get(unit.key)
                 some = len(partial.outcomes) if partial else 0
             done, rows_done = done + some, rows_done + each * some
-        estimated, left = float(done), None
-        if self._timed and self._seconds > 0:
-            pace = self._seconds / self._timed
-            now = time.monotonic()
-            for (_, scenes), since in self._running.items():
-                estimated += min(0.95 * len(scenes), (now - since) / pace)
-            left = (trials - estimated) * pace / max(1, self._workers)
-        return Progress(estimated, trials, f"{rows_done} of {rows} trials", left)
+        left = None
+        if self._ended:
+            left = (trials - done) * (time.monotonic() - self._began) / self._ended
+        return Progress(done, trials, f"{rows_done} of {rows} trials", left)
 
 
 class Looks:

@@ -89,7 +89,6 @@ class Progress:
     """How far work has come."""
 
     done: float
-    """With the likely share of what runs now."""
     total: float | None
     count: str
     """The same in words."""
