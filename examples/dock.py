@@ -17,7 +17,7 @@ import numpy as np
 
 from faultpath import UserError, generator
 from faultpath.interface import read_interface
-from faultpath.loop.taps import Reading, Taps
+from faultpath.loop import Reading, Taps
 from faultpath.trials import Library, Metric, Outcome, SceneRef, Status, System, Variant
 
 INTERFACE = read_interface("""

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.decisions import DecisionRecord, StruckTap
+from faultpath.decisions import DecisionRecord, FaultedTap
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.trials import Deliveries, SystemSpec, load_system
 from faultpath.trials.execution import run_study
@@ -26,12 +26,12 @@ def asked(text: str) -> Audit:
     )
 
 
-def struck(record: DecisionRecord) -> dict[str, tuple[tuple[StruckTap, ...], ...]]:
+def struck(record: DecisionRecord) -> dict[str, tuple[tuple[FaultedTap, ...], ...]]:
     return {path.name: (path.struck, path.baseline_struck) for path in record.paths}
 
 
-def tap(consumer: str, struck_steps: int, altered_steps: int) -> StruckTap:
-    return StruckTap(
+def tap(consumer: str, struck_steps: int, altered_steps: int) -> FaultedTap:
+    return FaultedTap(
         channel="gain",
         consumer=consumer,
         struck_steps=struck_steps,

@@ -61,7 +61,7 @@ def test_control_characters_are_refused_and_line_breaks_come_back(character: str
             "provenance: guessed",
             "line 5: sources[0].provenance: is 'guessed', and must be 'measured', 'estimated'",
         ),
-        ("unit: kg", "unti: kg", "(1 more to correct after it)"),
+        ("unit: kg", "unti: kg", "line 4: sources[0].unti: is no field; did you mean 'unit'?"),
         (
             "consumers:",
             "cnosumers:",

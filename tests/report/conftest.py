@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, sync_playwright
 
-from faultpath.decisions import Path, Question, StruckTap, decide
+from faultpath.decisions import FaultedTap, Path, Question, decide
 from faultpath.interface import Interface, read_interface
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown
@@ -167,10 +167,10 @@ def _variant(name: str) -> VariantShown:
     )
 
 
-def _struck(*consumers: str) -> tuple[StruckTap, ...]:
+def _struck(*consumers: str) -> tuple[FaultedTap, ...]:
     """Return the taps of a fault on the calibration at these consumers, as receipts name them."""
     return tuple(
-        StruckTap(channel=channel.name, consumer=consumer, struck_steps=9, altered_steps=9)
+        FaultedTap(channel=channel.name, consumer=consumer, struck_steps=9, altered_steps=9)
         for channel in interface().channels
         if channel.name in ("mass", "thrust_scale")
         for consumer in channel.consumers

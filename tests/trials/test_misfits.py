@@ -8,7 +8,6 @@ from pydantic import TypeAdapter, ValidationError
 
 from faultpath.core.error_source import described
 from faultpath.core.misfits import Misfit, misfit_of
-from faultpath.decisions.plan.study import StudyFile
 from faultpath.faults import Fault, Scale
 from faultpath.systems.flightlog.reading import ColumnMap
 
@@ -57,9 +56,8 @@ def test_a_field_what_is_wrong_and_what_is_allowed(changed: dict[str, object], s
     assert not PYDANTIC.search(str(found))
 
 
-def test_the_whole_and_what_else_is_wrong() -> None:
+def test_the_whole() -> None:
     assert str(misfit(ColumnMap, None)).startswith("is empty, and must be")
-    assert misfit(StudyFile, {}).more >= 3
     text = str(
         misfit(Fault, {"channel": "c", "intervention": Scale(factor=2), "recovery_steps": 3})
     )
@@ -94,4 +92,4 @@ def test_nothing_of_ours_reads_the_sentences_of_pydantic() -> None:
     found = [
         str(file.relative_to(SRC)) for file in SRC.rglob("*.py") if looks.search(file.read_text())
     ]
-    assert found == ["misfits.py"]
+    assert found == ["core/misfits.py"]

@@ -52,14 +52,12 @@ _SHOWN = 60
 
 @dataclass(frozen=True)
 class Misfit:
-    """What is wrong first, and how much more there is."""
+    """What is wrong first."""
 
     place: tuple[str | int, ...]
     """Keys and indices that lead to it."""
     says: str
     """In words that follow a colon; what is allowed is among them."""
-    more: int = 0
-    """How many other places are wrong too."""
     names_it: bool = False
     """Whether the words name the place themselves."""
 
@@ -78,7 +76,7 @@ def misfit_of(error: "ValidationError", model: "type[BaseModel] | None" = None) 
     found = error.errors(include_url=False)
     first = found[0]
     if where := first.get("ctx", {}).get("where"):  # a sentence of faultpath's own
-        return Misfit(tuple(where), str(first["msg"]), len(found) - 1, names_it=True)
+        return Misfit(tuple(where), str(first["msg"]), names_it=True)
     if first["type"] == "missing":
         # What is misspelt is missing as well; the word that stands there says more.
         beside = first["loc"][:-1]
@@ -86,8 +84,7 @@ def misfit_of(error: "ValidationError", model: "type[BaseModel] | None" = None) 
         first = next(strange, first)
     place = _place(first)
     same = [each for each in found if _place(each) == place]
-    rest = {_place(each) for each in found} - {place}
-    return Misfit(place, _said(same, _fields(model, place[:-1])), len(rest))
+    return Misfit(place, _said(same, _fields(model, place[:-1])))
 
 
 def _place(error: Mapping[str, Any]) -> tuple[str | int, ...]:

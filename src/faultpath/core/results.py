@@ -1,7 +1,6 @@
 """How results look in a console and in a notebook: a line, and a table of their fields."""
 
 from html import escape
-from typing import cast
 
 from pydantic import BaseModel
 
@@ -28,17 +27,10 @@ class Shown(BaseModel):
         return f"<table>{''.join(f'<tr>{each}</tr>' for each in cells)}</table>"
 
     def _texts(self) -> list[tuple[str, str]]:
-        found: list[tuple[str, str]] = []
-        for name in type(self).model_fields:
-            value: object = getattr(self, name)
-            if isinstance(value, float):
-                text = f"{value:.4g}"
-            elif isinstance(value, tuple) and len(cast("tuple[object, ...]", value)) > 4:
-                text = f"{len(cast('tuple[object, ...]', value))} of them"
-            else:
-                text = "" if value in (None, (), {}) else printable(str(cast("object", value)))
-            found.append((name, _cut(text, _CELL)))
-        return found
+        return [
+            (name, "" if value in (None, (), {}) else _cut(printable(str(value)), _CELL))
+            for name, value in self
+        ]
 
 
 class Result(Shown, Frozen):

@@ -1,7 +1,7 @@
 """The decision: effects, break-even frequency, verdict."""
 
 from faultpath.decisions.decide import decide, primary_path, stops
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Path, StruckTap
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, FaultedTap, Path
 from faultpath.decisions.question import Question, StopRule
 from faultpath.trials.provenance import RunProvenance
 
@@ -9,11 +9,11 @@ __all__ = [
     "CORRECT",
     "SHARED",
     "DecisionRecord",
+    "FaultedTap",
     "Path",
     "Question",
     "RunProvenance",
     "StopRule",
-    "StruckTap",
     "decide",
     "primary_path",
     "stops",

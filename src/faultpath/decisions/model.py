@@ -12,7 +12,7 @@ Extreme = Literal["floor", "ceiling"]
 """Both arms below 10 %, or both above 90 %."""
 
 
-class StruckTap(Result):
+class FaultedTap(Result):
     """A tap at which a fault was in force, by its receipts: all scenes and seeds together."""
 
     channel: str
@@ -34,9 +34,9 @@ class Path(Result):
     baseline_consumers: tuple[str, ...]
     """Taps faulted in the baseline. Where the baseline has no such consumer the fault cannot reach
     it, and its trials under correct inputs stand in."""
-    struck: tuple[StruckTap, ...] = ()
+    struck: tuple[FaultedTap, ...] = ()
     """What was faulted in the repaired system: from receipts, where `consumers` is the plan."""
-    baseline_struck: tuple[StruckTap, ...] = ()
+    baseline_struck: tuple[FaultedTap, ...] = ()
     """What was faulted in the baseline."""
 
 

@@ -10,10 +10,10 @@ from faultpath.decisions import (
     CORRECT,
     SHARED,
     DecisionRecord,
+    FaultedTap,
     Path,
     Question,
     StopRule,
-    StruckTap,
     decide,
     primary_path,
     stops,
@@ -69,10 +69,10 @@ class Audit:
         return stops(self.question, self.paths, table)
 
 
-def struck_taps(counts: Sequence[TapCount]) -> tuple[StruckTap, ...]:
+def struck_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
     """Return the taps at which receipts show a fault in force."""
     return tuple(
-        StruckTap(
+        FaultedTap(
             channel=tap.channel,
             consumer=tap.consumer,
             struck_steps=tap.struck_steps,

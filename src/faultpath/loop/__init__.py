@@ -15,6 +15,7 @@ from faultpath.loop.module import (
     consumers,
 )
 from faultpath.loop.ports import Inputs, Port
+from faultpath.loop.taps import Observer, Query, Reading, Taps
 
 __all__ = [
     "Batch",
@@ -25,12 +26,16 @@ __all__ = [
     "Loop",
     "Memory",
     "Module",
+    "Observer",
     "Outputs",
     "Part",
     "Plant",
     "Port",
     "Progress",
+    "Query",
+    "Reading",
     "State",
+    "Taps",
     "consumers",
     "graph",
     "interface_of",

@@ -113,13 +113,12 @@ class Document:
         return line
 
     def fill(self, model: type[_Model]) -> _Model:
-        """Return the data as a model; `Misread` for what does not fit, and how much more."""
+        """Return the data as a model; `Misread` for what does not fit."""
         try:
             return model.model_validate_json(json.dumps(self.data), strict=True)
         except ValidationError as error:
             found = misfit_of(error, model)
-            tail = f" ({found.more} more to correct after it)" if found.more else ""
-            raise Misread(f"{found}{tail}", self.line(found.place)) from None
+            raise Misread(str(found), self.line(found.place)) from None
 
 
 def read_yaml(data: bytes) -> Document:

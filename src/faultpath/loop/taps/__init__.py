@@ -1,17 +1,18 @@
 """Where a source's reading becomes what a consumer gets."""
 
-from faultpath.loop.taps.errors import (
+from faultpath.loop.taps.reading import (
     FaultedElsewhere,
     IllegalRead,
     MalformedReading,
     NotDelivered,
     NotFinite,
+    Observer,
+    Query,
+    Reading,
     TapError,
     UndeclaredReader,
     WrittenTo,
 )
-from faultpath.loop.taps.observer import Observer
-from faultpath.loop.taps.reading import Query, Reading
 from faultpath.loop.taps.receipts import (
     Receipts,
     TapCount,

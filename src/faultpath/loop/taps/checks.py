@@ -17,7 +17,7 @@ from faultpath.core.arrays import (
 )
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault
-from faultpath.loop.taps.errors import MalformedReading, NotFinite
+from faultpath.loop.taps.reading import MalformedReading, NotFinite
 from faultpath.loop.taps.tap import Tap
 
 

@@ -1,10 +1,14 @@
-"""A source's value at a step, and a source that its consumer asks as often as it wants."""
+"""What passes a tap, who may watch it, and what is a mistake there."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from faultpath.core.arrays import Array
+from faultpath.core.errors import SystemMistake
+
+if TYPE_CHECKING:
+    from faultpath.loop.taps.tap import Tap
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,3 +47,54 @@ class Query:
     called only where something looks at it."""
     changed: Callable[[Any, Array], Any] = _replaced
     """The answer with another such array in its place."""
+
+
+class Observer:
+    """Sees what passes the taps of one run; a subclass overrides what it wants to see.
+
+    Readings are those of the run itself: an observer copies what it keeps and writes to nothing.
+    """
+
+    def delivered(self, tap: "Tap", reading: Reading, step: int, got: Any) -> None:
+        """See that a consumer got `got` of a reading; of a query, the function that answers."""
+
+    def answered(
+        self, tap: "Tap", query: Query, step: int, request: Any, answer: Any, got: Any
+    ) -> None:
+        """See what a query answered to a request, and what the consumer got of that answer."""
+
+    def faulted(self, step: int, held: Any) -> None:
+        """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""
+
+
+class TapError(SystemMistake):
+    """A tap was used against what the interface declares; the sentence names the tap."""
+
+
+class UndeclaredReader(TapError):
+    """A consumer asked for a channel that it is not declared to read in this variant."""
+
+
+class IllegalRead(TapError):
+    """A reading came from another source, from a privileged one, or from the future."""
+
+
+class MalformedReading(TapError):
+    """A reading is not what its source declares, or steps ran backwards."""
+
+
+class NotFinite(Exception):
+    """The first reading at a tap is not finite. It costs its trial and not the study, because a
+    fault further up may have brought it about."""
+
+
+class WrittenTo(TapError):
+    """A consumer wrote into what a tap gave it, and others may have read that."""
+
+
+class NotDelivered(TapError):
+    """A fault never reached a consumer that it names, although a scene ran past its onset."""
+
+
+class FaultedElsewhere(TapError):
+    """A consumer that no fault names got an altered reading."""

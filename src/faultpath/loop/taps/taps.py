@@ -21,15 +21,16 @@ from faultpath.loop.taps.checks import (
     check_same,
     check_shape,
 )
-from faultpath.loop.taps.errors import (
+from faultpath.loop.taps.reading import (
     IllegalRead,
     MalformedReading,
+    Observer,
+    Query,
+    Reading,
     TapError,
     UndeclaredReader,
     WrittenTo,
 )
-from faultpath.loop.taps.observer import Observer
-from faultpath.loop.taps.reading import Query, Reading
 from faultpath.loop.taps.receipts import Receipts, check_delivered
 from faultpath.loop.taps.tap import Corruption, Guard, Running, Tally, Tap, wire
 
