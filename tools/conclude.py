@@ -12,7 +12,7 @@ from faultpath_quadrotor.paper.reproduction import write_pages
 from faultpath_quadrotor.paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
 
-from faultpath.api.saved import MAP, RECORD, SYSTEM, TRACES, as_text
+from faultpath.api.runs import MAP, RECORD, SYSTEM, TRACES, as_text
 from faultpath.decisions import DecisionRecord, Question, RunProvenance, decide
 from faultpath.decisions import Path as FaultPath
 from faultpath.decisions.tables import Table

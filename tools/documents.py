@@ -26,7 +26,7 @@ import paper_blocks
 from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images, name_of
 
-from faultpath.api.saved import MADE_FROM, MAP
+from faultpath.api.runs import MADE_FROM, MAP
 from faultpath.trials.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))

@@ -12,8 +12,8 @@ from flown_code import flown_by
 from pictures import IMAGES
 from rich.console import Console
 
-from faultpath.api.run import MAP_MADE_FROM as MADE_FROM
-from faultpath.api.saved import MAP
+from faultpath.api.runs import MAP
+from faultpath.api.runs import MAP_MADE_FROM as MADE_FROM
 from faultpath.decisions import RunProvenance
 from faultpath.decisions.map.decide import conclude as decide
 from faultpath.decisions.map.lattice import UNITS

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from faultpath.api.comparing import compare
     from faultpath.api.mapping import reversal_map
     from faultpath.api.planned import plan
-    from faultpath.api.run import Run, open_run
+    from faultpath.api.reviewing import check, trace
+    from faultpath.api.runs import Run, open_run
     from faultpath.api.systems import load_system
     from faultpath.core.errors import Stopped, UserError
     from faultpath.core.streams import generator
@@ -29,27 +30,31 @@ __all__ = [
     "__version__",
     "audit",
     "audits",
+    "check",
     "compare",
     "generator",
     "load_system",
     "open_run",
     "plan",
     "reversal_map",
+    "trace",
 ]
 
 _HOMES = {
-    "Run": "faultpath.api.run",
+    "Run": "faultpath.api.runs",
     "Stopped": "faultpath.core.errors",
     "System": "faultpath.trials.system",
     "UserError": "faultpath.core.errors",
     "audit": "faultpath.api.audit",
     "audits": "faultpath.api.audit",
+    "check": "faultpath.api.reviewing",
     "compare": "faultpath.api.comparing",
     "generator": "faultpath.core.streams",
     "load_system": "faultpath.api.systems",
-    "open_run": "faultpath.api.run",
+    "open_run": "faultpath.api.runs",
     "plan": "faultpath.api.planned",
     "reversal_map": "faultpath.api.mapping",
+    "trace": "faultpath.api.reviewing",
 }
 
 

@@ -1,16 +1,17 @@
 """After an audit: signals of the scenes that its report begins with, never an error."""
 
 import shutil
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import faultpath
-from faultpath.api import carrying_out
-from faultpath.api.saved import read_run
+from faultpath.api.runs import read_run
 from faultpath.trials.store.signals import SIGNALS, TOGETHER
 
+AUDIT_MODULE = import_module("faultpath.api.audit")
 FILE = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
 AUDIT = {
     "baseline": "calibrated",
@@ -29,9 +30,9 @@ def run(tmp_path_factory):
 
 
 def test_signals_of_the_first_scene_are_there_without_being_asked_for(run) -> None:
-    heard = read_run(run.folder)[0].signals
-    assert len({at.scene for at in heard}) == 1
-    assert {(at.variant, at.path) for at in heard} == {
+    recorded = read_run(run.folder)[0].signals
+    assert len({at.scene for at in recorded}) == 1
+    assert {(at.variant, at.path) for at in recorded} == {
         (variant, path)
         for variant in ("calibrated", "blind")
         for path in ("correct", "controller", "observer", "shared")
@@ -56,7 +57,7 @@ def test_a_second_call_flies_nothing_again_and_completes_what_is_missing(
     shutil.copytree(run.folder, place)
     kept = (place / SIGNALS).read_bytes()
     with monkeypatch.context() as without:
-        without.setattr(carrying_out, "fly_again", None)
+        without.setattr(AUDIT_MODULE, "run_again", None)
         again = faultpath.audit(FILE, **AUDIT, folder=place)
     assert (place / SIGNALS).read_bytes() == kept
     assert SIGNALS in again.provenance.files
@@ -69,7 +70,7 @@ def test_a_stop_while_signals_are_recorded_leaves_a_finished_audit(tmp_path, mon
     def stopped(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(carrying_out, "fly_again", stopped)
+    monkeypatch.setattr(AUDIT_MODULE, "run_again", stopped)
     run = faultpath.audit(FILE, **AUDIT, folder=tmp_path / "run")
     assert (run.folder / "report.html").is_file()
     assert not (run.folder / SIGNALS).exists()
@@ -106,6 +107,6 @@ def test_a_system_that_does_not_fly_again_is_a_finding(tmp_path, second) -> None
 
 
 def test_without_signals_nothing_is_flown_again(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(carrying_out, "fly_again", None)
+    monkeypatch.setattr(AUDIT_MODULE, "run_again", None)
     run = faultpath.audit(FILE, **AUDIT, folder=tmp_path / "run", signals=False)
     assert not (run.folder / SIGNALS).exists()

@@ -9,8 +9,8 @@ import pytest
 
 import faultpath
 from faultpath.api.replaying import chosen_scenes, keep_signals, replay
-from faultpath.api.saved import read_run
-from faultpath.cli.replay import command
+from faultpath.api.runs import read_run
+from faultpath.cli.finished import replay as command
 from faultpath.core.errors import UserError
 from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import IN_FORCE, SIGNALS, Signal
@@ -110,7 +110,7 @@ def test_an_object_cannot_be_flown_again(folder) -> None:
     held, _ = read_run(folder)
     question = held.record.question.model_copy(update={"system": "Toy object"})
     lost = replace(held, record=held.record.model_copy(update={"question": question}))
-    with pytest.raises(UserError, match="flew a Toy object, which only its own process had"):
+    with pytest.raises(UserError, match="is of a Toy object, which only its own process had"):
         replay(lost, (SCENE,))
 
 

@@ -3,7 +3,8 @@
 import pytest
 from cli_runs import TOY, audit, faultpath
 
-from faultpath.trials.question import names
+from faultpath.core.errors import UserError
+from faultpath.trials.question import CheckQuestion, ask
 
 
 @pytest.mark.parametrize("option", ["primary", "metric", "library", "thresholds", "out", "seeds"])
@@ -16,9 +17,9 @@ def test_an_empty_value_is_refused_by_the_name_of_its_option(option: str) -> Non
 
 @pytest.mark.parametrize("text", [",", "a,", ",a", "a,,b", " ", "a,b,a", "a, a"])
 def test_lists_of_names_hold_each_name_once_and_no_empty_one(text: str) -> None:
-    with pytest.raises(ValueError, match=r"empty name|'a' twice"):
-        names(text)
-    assert names("a, b") == ("a", "b")
+    with pytest.raises(UserError, match=r"empty name|'a' twice"):
+        ask(CheckQuestion, {"variants": text})
+    assert ask(CheckQuestion, {"variants": "a, b"}).variants == ("a", "b")
 
 
 @pytest.mark.parametrize("verb", ["check", "map"])
@@ -36,8 +37,8 @@ LIMITS = ["inf", "nan", "-1", "0", "-inf"]
 @pytest.mark.parametrize("value", LIMITS)
 @pytest.mark.parametrize("workers", [0, 1])
 def test_a_time_limit_that_limits_nothing(value: str, workers: int, tmp_path) -> None:
-    line = ["check", TOY, "--time-limit", value, "--workers", workers]
-    assert "time" in faultpath(*line).refused()
+    said = audit("--time-limit", value, workers=workers, out=tmp_path / "run").refused()
+    assert "time" in said
 
 
 def test_more_workers_than_any_machine_has_are_a_slip(tmp_path) -> None:

@@ -10,8 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 from cli_runs import HERE, ROOT, audit, faultpath, shards
 
-from faultpath.api.listing import runs
-from faultpath.api.run import open_run
+from faultpath.api.runs import open_run
 from faultpath.decisions import SHARED
 
 FILES = {
@@ -219,10 +218,10 @@ def test_after_an_edit_a_run_starts_anew_beside_the_other(tmp_path):
     (before,) = (tmp_path / "runs").iterdir()
     outcomes = (before / "outcomes.parquet").read_bytes()
     again = audit(system=f"{system}:create").out
-    (run,) = runs(tmp_path / "runs")
-    assert f"Kept {run.trials} of {run.trials} trials, from 20" in again
-    assert f"Running: {run.trials} of {run.trials} trials" in again
-    assert f"{run.trials} trials in 6 blocks, 0 of them" in (before / "report.html").read_text()
+    trials = open_run(before).table().num_rows
+    assert f"Kept {trials} of {trials} trials, from 20" in again
+    assert f"Running: {trials} of {trials} trials" in again
+    assert f"{trials} trials in 6 blocks, 0 of them" in (before / "report.html").read_text()
 
     system.write_text(
         system.read_text().replace("TOLERANCE_M = 0.1, 100, 0.25", "TOLERANCE_M = 0.1, 100, 9.0")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from cli_runs import ROOT, audit, faultpath
 
-from faultpath.api.run import open_run
+from faultpath.api.runs import open_run
 from faultpath.core.errors import Notice
 
 PARTS = ROOT / "tests" / "quadrotor" / "own_parts.py"

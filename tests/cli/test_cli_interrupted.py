@@ -99,7 +99,7 @@ def test_ctrl_c_outside_the_run_is_a_sentence_too(monkeypatch, tmp_path):
     def stopped(*_: object) -> None:
         os.kill(os.getpid(), signal.SIGINT)
 
-    monkeypatch.setattr("faultpath.api.run.write_report", stopped)
+    monkeypatch.setattr("faultpath.api.runs.write_report", stopped)
     ended = audit(out=tmp_path / "run")
     assert ended.status == INTERRUPTED
     (line,) = ended.err.splitlines()
@@ -114,7 +114,7 @@ STOPPED_WHILE_LOADING = """
 import os, signal, sys
 class Stop:
     def find_spec(self, name, *_):
-        if name == "faultpath.cli.audit":
+        if name == "faultpath.cli.audits":
             try:
                 os.kill(os.getpid(), signal.SIGINT)
                 signal.sigtimedwait([], 1)

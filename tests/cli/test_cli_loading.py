@@ -8,22 +8,23 @@ from pathlib import Path
 import pytest
 from cli_runs import TOY
 
+ENGINE = {"jinja2", "numpy", "pyarrow", "scipy"}
 HEAVY = {"jinja2", "mujoco", "numpy", "pyarrow", "scipy", "torch"}
 
 AUDIT = ["--baseline", "a", "--repair", "b", "--fault", "gain:scale=2"]
-MAP = ["--baseline", "calibrated", "--repair", "blind", "--fault", "gain", "--against", "observer"]
 
 MAY_LOAD = {
     "help": (["--help"], set[str]()),
     "help of a verb": (["audit", "--help"], set[str]()),
     "models": (["train", "quadrotor", "--list"], set[str]()),
-    "no such run": (["report", "nowhere"], {"jinja2", "numpy", "pyarrow", "scipy"}),
+    "no such run": (["report", "nowhere"], ENGINE),
     "help of the quadrotor": (["audit", "quadrotor", "--help"], {"numpy"}),
-    "no such system": (["audit", "quadcopter", *AUDIT], {"numpy"}),
-    "no such variant": (["audit", TOY, *AUDIT, "--library", "carts"], {"numpy"}),
-    "no such map": (["map", TOY, *MAP], {"numpy"}),
-    "nothing to check": (["check", TOY, "--variants", "a"], {"numpy", "pyarrow", "scipy"}),
-    "nothing to trace": (["trace", TOY, "--variant", "a"], {"numpy", "pyarrow", "jinja2", "scipy"}),
+    "no such system": (["audit", "quadcopter", *AUDIT], ENGINE),
+    "nothing to check": (
+        ["check", TOY, "--variants", "a"],
+        {"jinja2", "numpy", "pyarrow", "scipy"},
+    ),
+    "nothing to trace": (["trace", TOY, "--variant", "a"], ENGINE),
     "claims": (["reproduce", "--judge"], {"numpy", "pyarrow"}),
 }
 

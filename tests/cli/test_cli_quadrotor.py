@@ -7,7 +7,7 @@ from cli_runs import audit, faultpath
 from faultpath_quadrotor import native
 from faultpath_quadrotor.scenes.library import Library, as_text, load_library
 
-from faultpath.api.run import open_run
+from faultpath.api.runs import open_run
 from faultpath.trials import SystemSpec, load_system
 
 

@@ -8,12 +8,12 @@ from faultpath_quadrotor.paper.cells import QUICK
 from faultpath_quadrotor.paper.pages import table_4
 from faultpath_quadrotor.paper.reproduction import ReproductionRun, carry_out
 from faultpath_quadrotor.paper.run import Plan
-from faultpath_quadrotor.verbs.reproduce import tell
+from faultpath_quadrotor.verbs.reproduce import show
 
 import faultpath
+from faultpath.api.asking import Job
 from faultpath.api.display import Display
-from faultpath.api.job import Job
-from faultpath.cli import report
+from faultpath.cli.finished import report
 from faultpath.core.errors import UserError
 from faultpath.decisions.tables import MISSING
 from faultpath.trials.work import Here
@@ -80,9 +80,9 @@ def test_a_file_that_was_changed_since_is_named(
 
 def test_a_reproduction_is_not_reported_as_an_audit(done: ReproductionRun) -> None:
     with pytest.raises(UserError, match="pages of the reproduction"):
-        report.command([done.folder])
+        report([done.folder])
 
 
 def test_the_tables_are_printed(done: ReproductionRun, capsys: pytest.CaptureFixture[str]) -> None:
-    tell(done, whole=False)
+    show(done, whole=False)
     assert "Wins:losses" in capsys.readouterr().out

@@ -59,7 +59,7 @@ def test_help_shows_the_options_of_the_system_that_is_named(verb):
         assert "Options of" not in ended.out
         assert "uadrotor:" not in ended.out
         assert not any(f"--{name} " in ended.out for name in QUADROTOR)
-    mine = faultpath(verb, "--help", "mine.py:create").out
+    mine = faultpath(verb, "mine.py:create", "--help").out
     assert "Options of mine.py:create" in mine
     assert "Gear of the cart; default low." in mine
     assert "<low|high>" in mine

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.api.run import open_run
+from faultpath.api.runs import open_run
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from faultpath.api.run import read_map
+from faultpath.api.runs import read_map
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.svg import text_width
 

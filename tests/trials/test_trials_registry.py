@@ -70,7 +70,7 @@ def test_a_module_of_the_working_directory_is_found(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "sentence"),
     [
-        ("octopus", "there is no system 'octopus': use quadrotor"),
+        ("octopus", "there is no system 'octopus'; installed: quadrotor"),
         ("no_such_module:create", "there is no module 'no_such_module'"),
         ("faultpath.absent:create", r"there is no module 'faultpath\.absent'"),
         ("no/such/file.py:create", r"there is no file 'no/such/file\.py'"),

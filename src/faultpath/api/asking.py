@@ -1,19 +1,25 @@
-"""From a call or a command line to a question, the system that it is about, and who is told."""
+"""From a call or a command line to a question, its system, and a job that runs its trials."""
 
 import inspect
 import textwrap
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
 from os import PathLike
-from typing import Any, TypeVar
+from pathlib import Path
+from typing import Any, Generic, TypeVar
 
-from faultpath.api.display import Display, display
+from faultpath.api.display import Display, Show, display
 from faultpath.api.systems import Chosen, choose
-from faultpath.trials import Library, System, library_of
+from faultpath.decisions import RunProvenance
+from faultpath.trials import Library, Study, System, library_of
+from faultpath.trials.execution import Failure, RunResult, Stopwatch, run_provenance, run_study
 from faultpath.trials.question import Request, ask
+from faultpath.trials.work import Executor
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
 _Asked = TypeVar("_Asked", bound=Request)
+
+_ERRORS_SHOWN = 5
 
 
 def asks(model: type[Request]) -> Callable[[_Call], _Call]:
@@ -22,68 +28,114 @@ def asks(model: type[Request]) -> Callable[[_Call], _Call]:
     def described(function: _Call) -> _Call:
         signature = inspect.signature(function)
         kept = [each for each in signature.parameters.values() if each.kind != each.VAR_KEYWORD]
-        fields = [
-            inspect.Parameter(
-                name,
-                inspect.Parameter.KEYWORD_ONLY,
-                default=inspect.Parameter.empty
-                if field.is_required()
-                else field.get_default(call_default_factory=True),
-                annotation=field.annotation,
-            )
-            for name, field in model.model_fields.items()
-            if name not in signature.parameters
-        ]
-        told = "\n".join(
-            textwrap.fill(
-                f"{name}: {field.description}",
-                96,
-                initial_indent=" " * 8,
-                subsequent_indent=" " * 12,
-            )
-            for name, field in model.model_fields.items()
-            if name not in signature.parameters
-        )
-        vars(function)["__signature__"] = signature.replace(parameters=[*kept, *fields])
-        function.__doc__ = (function.__doc__ or "").replace("        **given: ...", told)
+        added: list[inspect.Parameter] = []
+        lines: list[str] = []
+        for name, each in model.model_fields.items():
+            default = inspect.Parameter.empty
+            if not each.is_required():
+                default = each.get_default(call_default_factory=True)
+            kind = inspect.Parameter.KEYWORD_ONLY
+            added.append(inspect.Parameter(name, kind, default=default, annotation=each.annotation))
+            said, more = f"{name}: {each.description}", " " * 12
+            lines.append(textwrap.fill(said, 96, initial_indent=" " * 8, subsequent_indent=more))
+        vars(function)["__signature__"] = signature.replace(parameters=[*kept, *added])
+        described = (function.__doc__ or "").replace("        **given: ...", "\n".join(lines))
+        function.__doc__ = described
         return function
 
     return described
 
 
 @dataclass(frozen=True)
-class Begun:
-    """A system that is built, with the scenes that were asked for."""
+class Begun(Generic[_Asked]):
+    """A question, with the system that it is about built and the scenes that were asked for."""
 
+    asked: _Asked
     chosen: Chosen
     library: Library
-    told: Display
+    display: Display
+
+    @property
+    def system(self) -> System:
+        """The system."""
+        return self.chosen.system
 
 
 def begin(
     call: str,
+    model: type[_Asked],
     system: str | PathLike[str] | System,
-    asked: Request,
+    given: Mapping[str, object],
     progress: bool | Display,
-) -> Begun:
-    """Build the system of a question.
+) -> Begun[_Asked]:
+    """Read a question and build its system; `call` is the name of the function.
 
-    Raises as `choose`, and for a library that does not exist. `call` is the name of the function.
+    `UserError` for what does not fit, named as its caller names it, for a library that does not
+    exist, and as `choose`.
     """
-    how: dict[str, Any] = vars(asked)
+    asked = ask(model, given, isinstance(progress, Display) and progress.is_command)
+    how = vars(asked)
     executor = how.get("executor", "local")
     chosen = choose(system, asked.options, how.get("workers"), asked.arms, executor)
     library = library_of(chosen.system, asked.library)
     said = {"system": chosen.spec.name, **asked.model_dump(exclude_unset=True)}
-    told = display(progress, call, said | {"options": chosen.spec.options})
-    return Begun(chosen, library, told)
+    shown = display(progress, call, said | {"options": chosen.spec.options})
+    if chosen.notice:
+        shown.say(chosen.notice)
+    return Begun(asked, chosen, library, shown)
 
 
-def commanded(progress: bool | Display) -> bool:
-    """Return whether the command line made a call."""
-    return isinstance(progress, Display) and progress.is_command
+@dataclass(frozen=True)
+class Job:
+    """Where and on what the trials of one call run, and who is shown how far it is."""
 
+    folder: Path
+    executor: Executor
+    display: Display
+    how: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    """What `run_study` takes besides, such as a time limit."""
+    stopwatch: Stopwatch = field(default_factory=Stopwatch)
 
-def asked_for(model: type[_Asked], given: Mapping[str, object], progress: bool | Display) -> _Asked:
-    """Return the question of a call; `UserError` for what does not fit, as its caller names it."""
-    return ask(model, given, commanded(progress))
+    def run(
+        self,
+        study: Study,
+        system: System,
+        show: Show,
+        folder: Path | None = None,
+        **how: Any,
+    ) -> RunResult:
+        """Run a study, into the job's folder unless another is given; see `run_study` for `how`.
+
+        Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run.
+        """
+        every: dict[str, Any] = {"notice": self.display.say, **self.how, **how}
+        place, executor = folder or self.folder, self.executor
+        return run_study(study, place, progress=show, system=system, executor=executor, **every)
+
+    def finish(
+        self, result: RunResult, system: System, names: Iterable[str], folder: Path | None = None
+    ) -> RunProvenance:
+        """Display failures and write the provenance, with digests of the files that `names` are.
+
+        A command shows findings with what was decided; a call from Python is shown them here.
+        """
+        say = self.display.say
+        if result.failures:
+            say(f"{len(result.failures)} trials failed and void their pairs.", "bold red")
+            alike: dict[str, list[Failure]] = {}
+            for failure in result.failures:
+                alike.setdefault(failure.error, []).append(failure)
+            for error, (first, *more) in list(alike.items())[:_ERRORS_SHOWN]:
+                rest = f" and {len(more)} more trials" if more else ""
+                details = f" ({first.details})" if first.details else ""
+                say(f"  {first.scene}{rest}: {' '.join(error.split())}{details}")
+            if len(alike) > _ERRORS_SHOWN:
+                others = len(alike) - _ERRORS_SHOWN
+                say(f"  and {others} other errors, in {self.folder / 'failures'}")
+        if not self.display.is_command:
+            for finding in result.findings:
+                say(finding)
+        place, command = folder or self.folder, self.display.command
+        return run_provenance(
+            place, names, result, self.stopwatch, command, self.executor, system.backend
+        )

@@ -2,34 +2,59 @@
 
 import hashlib
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from datetime import datetime
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from faultpath.api.asking import asked_for, asks, begin
+from faultpath.api.asking import Job, asks, begin
 from faultpath.api.display import Display
-from faultpath.api.systems import Chosen, hands
+from faultpath.api.replaying import Replayed, outcomes_at, run_again, shown_first
+from faultpath.api.runs import (
+    MADE_FROM,
+    RECORD,
+    SYSTEM,
+    Run,
+    as_text,
+    parsed,
+    read_provenance,
+)
+from faultpath.api.systems import Chosen, executor_of
 from faultpath.core.errors import UserError
-from faultpath.decisions.planning import plan_audit
+from faultpath.decisions import DecisionRecord
+from faultpath.decisions.decide import after_looks
+from faultpath.decisions.phrases import counted
+from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.faults import each_size
-from faultpath.statistics import IN_FORCE
-from faultpath.trials import System
+from faultpath.report.inputs import ReportInput, Traces
+from faultpath.statistics import IN_FORCE, RULES
+from faultpath.trials import System, system_shown
+from faultpath.trials.execution import RunResult
 from faultpath.trials.question import AuditQuestion, Running
 from faultpath.trials.state import system_code
-
-if TYPE_CHECKING:
-    from faultpath.api.run import Run
+from faultpath.trials.store import TrialAddress, read_table, write_text
+from faultpath.trials.store.atomic import write_file
+from faultpath.trials.store.folder import OUTCOMES
+from faultpath.trials.store.manifest import keyed
+from faultpath.trials.store.parquet import Unreadable
+from faultpath.trials.store.sealed import read_regular, seal
+from faultpath.trials.store.signals import SIGNALS, Signal, decode_signals, encode_signals
+from faultpath.trials.work import Progress
 
 _LONGEST_NAME = 180
 """Of a run folder; file systems take 255 bytes."""
+_SCENES_FOR_ONE = 20
+"""So many scenes of an audit, and one more is recorded: at most about a twentieth more trials."""
+
+_Signals = Mapping[TrialAddress, tuple[Signal, ...]]
 
 
 @asks(AuditQuestion)
 def audit(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
-) -> "Run":
+) -> Run:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault.
 
@@ -46,27 +71,23 @@ def audit(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    asked = asked_for(AuditQuestion, given, progress)
+    begun = begin("audit", AuditQuestion, system, given, progress)
+    asked, chosen = begun.asked, begun.chosen
     if len(each_size(asked.fault)) > 1:
         raise UserError(f"fault '{asked.fault}' has several sizes: use faultpath.audits.")
-    begun = begin("audit", system, asked, progress)
-    chosen, told = begun.chosen, begun.told
-    laid = plan_audit(chosen.system, chosen.spec, asked, begun.library)
-
-    # What runs, stores and draws takes a while to load, and no mistake so far waits for it.
-    from faultpath.api.carrying_out import carry_out
-    from faultpath.api.job import Job
-    from faultpath.api.run import Run
-    from faultpath.trials.store import read_table
-    from faultpath.trials.store.folder import OUTCOMES
-    from faultpath.trials.store.sealed import read_regular
-
-    place = run_folder(asked, chosen, _named(asked, laid.study.name))
-    if chosen.notice:
-        told.say(chosen.notice)
-    with hands(chosen.system, chosen.workers, chosen.executor) as workforce:
-        job = Job(place, workforce, told, asked.time_limit_s)
-        held = carry_out(chosen.system, laid, job, asked.signals)
+    laid = plan_audit(begun.system, chosen.spec, asked, begun.library)
+    named = [laid.study.name, asked.fault, Path(asked.library).stem]
+    if asked.metric:
+        named.append(f"{asked.metric}-{','.join(f'{each:g}' for each in asked.thresholds)}")
+    if asked.rule != IN_FORCE:
+        named.append(f"rule-{asked.rule}")
+    if asked.stop_when is not None:
+        small = "" if asked.margin_pp is None else f"-within-{asked.margin_pp:g}"
+        named.append(f"until-{asked.stop_when}{small}")
+    place = run_folder(asked, chosen, named)
+    with executor_of(begun.system, chosen.workers, chosen.executor) as executor:
+        job = Job(place, executor, begun.display, {"time_limit_s": asked.time_limit_s})
+        held = _carry_out(begun.system, laid, job, asked)
     run = Run(place, held, read_table(read_regular(place / OUTCOMES)))
     run.report()
     return run
@@ -75,7 +96,7 @@ def audit(
 @asks(AuditQuestion)
 def audits(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
-) -> "tuple[Run, ...]":
+) -> tuple[Run, ...]:
     """Audit a repair under each size of a fault.
 
     Each size is an audit with a record of its own, which holds within a size; `compare` decides all
@@ -93,16 +114,18 @@ def audits(
     Raises:
         UserError: As `audit`, and for a size given twice.
     """
+    texts = each_size(given["fault"]) if isinstance(given.get("fault"), str) else ()
+    if len(texts) < 2:
+        return (audit(system, progress=progress, **given),)
+    folder = given.pop("folder", None)
     runs: list[Run] = []
-    asked = asked_for(AuditQuestion, given, progress)
-    folder, texts = asked.folder, each_size(asked.fault)
     for number, text in enumerate(texts, 1):
-        place = folder / f"size-{number}" if folder and len(texts) > 1 else folder
+        place = None if folder is None else Path(folder) / f"size-{number}"
         runs.append(audit(system, progress=progress, **{**given, "fault": text, "folder": place}))
     return tuple(runs)
 
 
-def sweep_page(runs: "Sequence[Run]", folder: Path | None) -> Path:
+def sweep_page(runs: Sequence[Run], folder: Path | None) -> Path:
     """Return where the page over all sizes belongs: in `folder`, else beside the runs' own."""
     if folder is not None:
         return folder / "sweep.html"
@@ -114,13 +137,18 @@ def sweep_page(runs: "Sequence[Run]", folder: Path | None) -> Path:
 def run_folder(asked: Running, chosen: Chosen, named: Sequence[str]) -> Path:
     """Return the folder of a run.
 
-    Without a folder of the caller's it is that of the question, which `named` tells apart, and of
-    the code as it is. `UserError` for one that holds a run of an object, which may have been
-    another.
+    Without a folder of the caller's it is named after everything that makes it another study,
+    which begins with `named`, and after the code as it is. `UserError` for one that holds a run of
+    an object, which may have been another.
     """
-    from faultpath.trials.store.manifest import keyed
-
-    name = _name(asked, chosen, named)
+    parts = [*named, *(f"{key}-{value}" for key, value in sorted(chosen.spec.options.items()))]
+    if asked.scenes is not None:
+        parts.append(f"{asked.scenes}-scenes")
+    if asked.seeds != (0,):
+        parts.append(f"seeds-{','.join(map(str, asked.seeds))}")
+    name = re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", "-".join(parts)).strip("._")
+    if len(name) > _LONGEST_NAME:
+        name = f"{name[:_LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
     if asked.folder is None and not chosen.own:
         return keyed(Path("runs"), name, system_code(chosen.system, chosen.spec).state)
     now = datetime.now().strftime("%Y%m%d-%H%M%S-%f")
@@ -133,28 +161,106 @@ def run_folder(asked: Running, chosen: Chosen, named: Sequence[str]) -> Path:
     return place
 
 
-def _named(asked: AuditQuestion, study: str) -> list[str]:
-    named = [study, asked.fault, Path(asked.library).stem]
-    if asked.metric:
-        named.append(f"{asked.metric}-{','.join(f'{each:g}' for each in asked.thresholds)}")
-    if asked.rule != IN_FORCE:
-        named.append(f"rule-{asked.rule}")
-    if asked.stop_when is not None:
-        small = "" if asked.margin_pp is None else f"-within-{asked.margin_pp:g}"
-        named.append(f"until-{asked.stop_when}{small}")
-    return named
+def _carry_out(system: System, audit: Audit, job: Job, asked: AuditQuestion) -> ReportInput:
+    """Run, decide and write what the run folder's pages are made from; return that.
+
+    What was concluded before in the folder stands in the record: see `after_looks`. Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be
+    run or nothing is left to compare.
+    """
+    folder, display, question = job.folder, job.display, audit.question
+    if system.backend:
+        display.say(f"Computing with {system.backend}.")
+    before: tuple[DecisionRecord, ...] = ()
+    earlier = None
+    with suppress(UserError):  # nothing sound stands there: it is made anew
+        earlier = read_provenance(folder)
+    with suppress(UserError):
+        before = (parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord),)
+    for decided in (each.question for each in before):
+        rule = decided.rule
+        if not (decided.stop or question.stop) and rule != question.rule:
+            raise UserError(
+                f"{folder} was decided by the rule '{rule}' ({RULES[rule].words}), and a verdict "
+                f"is not redone by another: give --rule {rule}, or another folder."
+            )
+    shown = system_shown(system, (question.baseline, question.repair), audit.study.scenes)
+    with display.progress("Running") as show:
+        result = job.run(audit.study, system, show, stop=audit.stops)
+    record = audit.conclude(result.outcomes, result.deliveries)
+    record = after_looks(record, before)
+    traces = Traces(result.traces, system.control_dt_s)
+    held: _Signals = {}
+    if earlier is not None and SIGNALS in earlier.files:
+        same = (earlier.system_fingerprint, earlier.outcomes_sha256)
+        with suppress(OSError, UserError, Unreadable):
+            if same == (result.system_fingerprint, result.outcomes_sha256) and (
+                seal(folder, [SIGNALS])[SIGNALS] == earlier.files[SIGNALS]
+            ):  # of these very trials
+                held = decode_signals(read_regular(folder / SIGNALS))
+    if asked.signals:
+        held, finding = _recorded(system, audit, job, record, result, traces, held)
+        if finding:
+            display.say(finding)
+            record = record.model_copy(update={"findings": (*record.findings, finding)})
+    write_text(folder / RECORD, as_text(record), folder)
+    write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
+    if held:
+        write_file(folder / SIGNALS, encode_signals(dict(sorted(held.items()))), folder)
+    provenance = job.finish(result, system, (*MADE_FROM, *([SIGNALS] if held else ())))
+    return ReportInput(
+        record=record,
+        provenance=provenance,
+        interface=shown.interface,
+        variants=shown.variants,
+        outcomes=result.outcomes,
+        traces=traces,
+        plans=shown.plans,
+        signals=held,
+    )
 
 
-def _name(asked: Running, chosen: Chosen, named: Sequence[str]) -> str:
-    """Name the run folder after everything that makes it another study."""
-    drawn = ",".join(map(str, asked.seeds))
-    options = (f"{key}-{value}" for key, value in sorted(chosen.spec.options.items()))
-    parts = [*named, *options]
-    if asked.scenes is not None:
-        parts.append(f"{asked.scenes}-scenes")
-    if drawn != "0":
-        parts.append(f"seeds-{drawn}")
-    name = re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", "-".join(parts)).strip("._")
-    if len(name) > _LONGEST_NAME:
-        name = f"{name[:_LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
-    return name
+def _recorded(
+    system: System,
+    audit: Audit,
+    job: Job,
+    record: DecisionRecord,
+    result: RunResult,
+    traces: Traces,
+    held: _Signals,
+) -> tuple[_Signals, str]:
+    """Run the scenes that the report begins with once more; return signals and a finding.
+
+    What goes wrong here is a finding, never an error of the audit.
+    """
+    few = shown_first(record, result.outcomes, traces)[: 1 + record.scenes // _SCENES_FOR_ONE]
+    named = {path.name for path in record.paths}
+    before = outcomes_at(result.outcomes, traces)
+    wanted = [
+        at for at in before if (at.scene, at.seed) in few and at.path in named and at not in held
+    ]
+    if not wanted:
+        return held, ""
+    try:
+        with job.display.progress("Recording signals") as show:
+
+            def note(arm: object, done: int, total: int) -> None:
+                count = f"{done} of {total} arms, {counted(len(few), 'scene')}"
+                show(Progress(done, total, count))
+
+            library_hash = audit.question.library_hash
+            found = run_again(before, audit.study, library_hash, system, job.executor, wanted, note)
+    except UserError as error:
+        return held, f"No signals were recorded: {error}"
+    except KeyboardInterrupt:
+        called = job.display.called
+        job.display.say(f"No signals were recorded; run the same {called} again to have them.")
+        return held, ""
+    held = {**held, **{each.address: each.signals for each in found if each.signals}}
+    unlike: list[Replayed] = [each for each in found if each.differs]
+    if not unlike:
+        return held, ""
+    at, differs = unlike[0].address, unlike[0].differs
+    return held, (
+        f"Signals of {len(unlike)} of {counted(len(found), 'trial')} were not recorded: run again, "
+        f"it came out otherwise: {at.variant}, {at.path}, {at.scene}: {differs}."
+    )

@@ -5,29 +5,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from faultpath.api.saved import RECORD
+from faultpath.api.runs import RECORD, Run, open_run
 from faultpath.core.errors import UserError
+from faultpath.report.comparison.page import headline, page, sentences
+from faultpath.report.comparison.runs import Compared, differing
+from faultpath.report.comparison.sweep import together
+from faultpath.trials.store import write_text
 from faultpath.trials.store.sealed import read_regular
-
-if TYPE_CHECKING:
-    from faultpath.api.run import Run
-    from faultpath.report.comparison.runs import Compared
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Comparison:
     """Finished audits side by side."""
 
-    runs: "tuple[Compared, ...]"
+    runs: tuple[Compared, ...]
     """Each with its `number`, `folder`, `record` and `provenance`."""
 
     @property
     def headline(self) -> str:
         """How many audits there are, and where they are decided in opposite directions."""
-        from faultpath.report.comparison.page import headline
-
         return headline(self.runs)
 
     def report(self, path: str | PathLike[str]) -> Path:
@@ -35,17 +32,11 @@ class Comparison:
 
         `UserError` where it cannot be written.
         """
-        from faultpath.report.comparison.page import page
-        from faultpath.trials.store import write_text
-
         write_text(Path(path), page(self.runs))
         return Path(path)
 
     def as_json(self) -> dict[str, object]:
         """Return headline, sentences, what differs, and each record, for `json.dumps`."""
-        from faultpath.report.comparison.page import sentences
-        from faultpath.report.comparison.runs import differing
-
         return {
             "headline": self.headline,
             "sentences": sentences(self.runs),
@@ -58,7 +49,7 @@ class Comparison:
         return f"<Comparison: {self.headline}>"
 
 
-def _folder_and_record(run: "Compared") -> dict[str, object]:
+def _folder_and_record(run: Compared) -> dict[str, object]:
     """Return what `--json` prints of an audit, of sizes with what stands over all of them."""
     found = folder_and_record(Path(run.folder))
     if run.family is not None:
@@ -73,7 +64,7 @@ def folder_and_record(folder: Path) -> dict[str, object]:
     return {"folder": str(folder), "record": json.loads(read_regular(folder / RECORD))}
 
 
-def compare(runs: "Sequence[str | PathLike[str] | Run]") -> Comparison:
+def compare(runs: Sequence[str | PathLike[str] | Run]) -> Comparison:
     """Set finished audits side by side: effects path by path, what differs, who disagrees.
 
     Nothing is tested between them: each keeps the verdict that it reached by itself. Sizes of one
@@ -86,10 +77,6 @@ def compare(runs: "Sequence[str | PathLike[str] | Run]") -> Comparison:
         UserError: There are fewer than two, one is given twice, or a folder holds no finished
             audit, or one that was changed since.
     """
-    from faultpath.api.run import Run, open_run
-    from faultpath.report.comparison.runs import Compared
-    from faultpath.report.comparison.sweep import together
-
     if isinstance(runs, str | PathLike) or len(runs) < 2:
         raise UserError("comparing takes two or more runs: give the folders of finished audits.")
     found: list[Compared] = []

@@ -1,25 +1,33 @@
 """`faultpath.reversal_map`: run two errors of one source against each other, decide, report."""
 
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from faultpath.api.asking import asked_for, asks, begin
+from faultpath.api.asking import Job, asks, begin
 from faultpath.api.audit import run_folder
 from faultpath.api.display import Display
-from faultpath.api.systems import hands
-from faultpath.decisions.map.study import plan_map
+from faultpath.api.runs import MAP, MAP_MADE_FROM, MapRun
+from faultpath.api.systems import executor_of
+from faultpath.decisions.map.decide import conclude
+from faultpath.decisions.map.lattice import COARSE, lattice
+from faultpath.decisions.map.study import MapPlan, plan_map
+from faultpath.decisions.map.surface import next_points
 from faultpath.trials import System
+from faultpath.trials.execution import RunResult
 from faultpath.trials.question import MapQuestion
+from faultpath.trials.store import write_text
+from faultpath.trials.work import Progress
 
-if TYPE_CHECKING:
-    from faultpath.api.run import MapRun
+_BISECTING = 18
+"""Points that are typically added to bisect the paths of the fault."""
 
 
 @asks(MapQuestion)
 def reversal_map(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
-) -> "MapRun":
+) -> MapRun:
     """Map who is ahead over the error at one module and that at another, of the same source.
 
     Args:
@@ -33,23 +41,68 @@ def reversal_map(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    asked = asked_for(MapQuestion, given, progress)
-    begun = begin("reversal_map", system, asked, progress)
-    chosen, told = begun.chosen, begun.told
-    plan = plan_map(chosen.system, chosen.spec, asked, begun.library)
+    begun = begin("reversal_map", MapQuestion, system, given, progress)
+    asked, chosen = begun.asked, begun.chosen
+    plan = plan_map(begun.system, chosen.spec, asked, begun.library)
     found = plan.question
     named = [plan.name, asked.fault, *found.against, f"{found.up_to:g}", Path(asked.library).stem]
     place = run_folder(asked, chosen, named)
-    if chosen.notice:
-        told.say(chosen.notice)
-
-    # What runs and draws takes a while to load, and no mistake so far waits for it.
-    from faultpath.api.job import Job
-    from faultpath.api.map_flying import fly_map
-    from faultpath.api.run import MapRun
-
-    with hands(chosen.system, chosen.workers, chosen.executor) as workforce:
-        job = Job(place, workforce, told, asked.time_limit_s)
-        run = MapRun(place, *fly_map(plan, job))
+    with executor_of(begun.system, chosen.workers, chosen.executor) as executor:
+        run = _carry_out(plan, Job(place, executor, begun.display, {"time_limit_s": asked.time_limit_s}))
     run.report()
     return run
+
+
+def _carry_out(plan: MapPlan, job: Job) -> MapRun:
+    """Run the points of a map, round after round, each from what those before have shown; decide,
+    and write what its pages are made from.
+
+    Raises `Stopped` on Ctrl-C, and `UserError` where nothing is left to compare.
+    """
+    asked, points, computed, display = plan.question, list(lattice(COARSE)), 0, job.display
+    if plan.system.backend:
+        display.say(f"Computing with {plan.system.backend}.")
+    study = plan.study(points)
+    first = len(study.rows) * len(plan.scenes)
+    most = max(len(points), asked.points + _BISECTING) / len(points)
+    display.say(
+        f"{len(points)} pairs of errors first, {first} trials; then more where the sign is not "
+        f"decided, about {round(first * most)} trials at most."
+    )
+    said: set[str] = set()
+
+    def notice(text: str) -> None:
+        key = "Kept " if text.startswith("Kept ") else text
+        if key not in said:
+            said.add(key)
+            display.say(text)
+
+    with display.progress("Running") as show:
+
+        def note(now: Progress) -> None:
+            most = max(len(points), asked.points + _BISECTING) / len(points)
+            remark = f"{len(points)} pairs of errors"
+            show(now.within(max(now.done, (now.total or 0.0) * most), remark=remark))
+
+        def run(recheck: bool) -> RunResult:
+            return job.run(
+                plan.study(points), plan.system, note, notice=notice, shared=True, recheck=recheck
+            )
+
+        while True:
+            result = run(recheck=False)
+            said.add("Kept ")  # what later rounds keep, this call has run itself
+            computed += result.blocks_computed
+            found = plan.differences(points, plan.compared(points, result.outcomes))
+            new = next_points(found, asked.against, asked.points, asked.library_hash)
+            if not new:
+                break
+            points += new
+        result = run(recheck=True)
+        trials = len(result.outcomes.rows)
+        show(Progress(trials, trials, f"{len(points)} pairs of errors"))
+    blocks = result.blocks_kept + result.blocks_computed
+    result = replace(result, blocks_computed=computed, blocks_kept=blocks - computed)
+    record = conclude(plan, points, result.outcomes, result.findings)
+    write_text(job.folder / MAP, record.model_dump_json(indent=1) + "\n", job.folder)
+    return MapRun(job.folder, record, job.finish(result, plan.system, MAP_MADE_FROM))

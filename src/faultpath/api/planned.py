@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from faultpath.api.asking import asked_for, asks, begin
+from faultpath.api.asking import asks, begin
 from faultpath.api.audit import audit
 from faultpath.api.display import Display
+from faultpath.api.runs import Run
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
@@ -19,9 +20,6 @@ from faultpath.trials.question import PlanQuestion, Question
 from faultpath.trials.store import write_text
 from faultpath.trials.store.atomic import check_writable
 from faultpath.trials.work import Progress
-
-if TYPE_CHECKING:
-    from faultpath.api.run import Run
 
 
 @dataclass(frozen=True, repr=False)
@@ -49,7 +47,7 @@ class Planned:
         folder: str | PathLike[str] | None = None,
         workers: int | None = None,
         progress: bool | Display = True,
-    ) -> "tuple[Run, ...]":
+    ) -> tuple[Run, ...]:
         """Carry the study out, as `faultpath audit --study` does; the same call resumes."""
         return audit_study(self.plan.study, folder=folder, workers=workers, progress=progress)
 
@@ -82,20 +80,19 @@ def plan(
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
     """
-    asked = asked_for(PlanQuestion, given, progress)
-    begun = begin("plan", system, asked, progress)
-    chosen, told = begun.chosen, begun.told
-    if chosen.own:
+    begun = begin("plan", PlanQuestion, system, given, progress)
+    if begun.chosen.own:
         raise UserError(
             "a study file cannot hold an object: put what builds the system into a file and name "
             "that, as 'my_system.py:create'."
         )
-    with told.progress("Planning") as show:
+    with begun.display.progress("Planning") as show:
 
         def note(done: int, total: int) -> None:
             show(Progress(done, total, f"{done} of {total} runs"))
 
-        return Planned(make_plan(chosen.system, chosen.spec, asked, begun.library, note))
+        spec = begun.chosen.spec
+        return Planned(make_plan(begun.system, spec, begun.asked, begun.library, note))
 
 
 def check_new(file: Path) -> None:
@@ -111,7 +108,7 @@ def audit_study(
     folder: str | PathLike[str] | None = None,
     progress: bool | Display = True,
     **running: Any,
-) -> "tuple[Run, ...]":
+) -> tuple[Run, ...]:
     """Carry out the audits of a study, once all fit the system.
 
     `running` is what `audit` takes of how to run: workers and limits. Raises as `audit`, and for a

@@ -1,11 +1,11 @@
-"""Flying trials of a finished run again: whether they come out as they did, and what was heard."""
+"""Running trials of a finished run again: do they come out as they did, and what was read."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
-from faultpath.api.saved import read_run
+from faultpath.api.runs import read_run
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
@@ -32,26 +32,26 @@ from faultpath.trials.work import Executor, local
 
 @dataclass(frozen=True)
 class Replayed:
-    """One trial, flown again."""
+    """One trial, run again."""
 
     address: TrialAddress
     outcome: Outcome
     """Of the run."""
     differs: str
-    """How the second flight differs; empty where it is the same to the bit."""
+    """How the second trial differs; empty where it is the same to the bit."""
     signals: tuple[Signal, ...] = field(default=(), repr=False)
 
 
 def chosen_scenes(
     held: ReportInput, scenes: Sequence[str], paths: Sequence[str]
 ) -> tuple[str, ...]:
-    """Return the scenes to fly again, by default those that the report begins with.
+    """Return the scenes to run again, by default those that the report begins with.
 
     `UserError` for a scene or path that the run has not got.
     """
-    flown = list(dict.fromkeys(row.outcome.scene for row in held.outcomes.rows))
+    every = list(dict.fromkeys(row.outcome.scene for row in held.outcomes.rows))
     named = [path.name for path in held.record.paths]
-    for what, asked, known in (("scene", scenes, flown), ("path", paths, named)):
+    for what, asked, known in (("scene", scenes, every), ("path", paths, named)):
         for name in asked:
             if name not in known:
                 raise UserError(f"the run: {unknown(what, name, known)}")
@@ -72,9 +72,9 @@ def replay(
     held: ReportInput,
     scenes: Sequence[str],
     paths: Sequence[str] = (),
-    tell: Callable[[str], None] = lambda said: None,
+    say: Callable[[str], None] = lambda said: None,
 ) -> list[Replayed]:
-    """Fly the trials of some scenes again, on all paths or on some, in both arms.
+    """Run the trials of some scenes again, on all paths or on some, in both arms.
 
     Raises `UserError` where the system cannot be built, or no longer has the scenes and variants
     of the run.
@@ -82,7 +82,7 @@ def replay(
     asked = held.record.question
     if SystemSpec(name=asked.system).is_object:
         raise UserError(
-            f"the run flew a {asked.system}, which only its own process had: put what builds the "
+            f"the run is of a {asked.system}, which only its own process had: put what builds the "
             "system into a file, and audit that."
         )
     chosen = choose(asked.system, asked.options, None, (asked.baseline, asked.repair))
@@ -90,31 +90,25 @@ def replay(
     library = library_of(system, asked.library)
     if library.content_hash != asked.library_hash:
         raise UserError(
-            f"library '{asked.library}' has other scenes than the run flew: bring its file back."
+            f"library '{asked.library}' has other scenes than the run: bring its file back."
         )
     request = AuditQuestion(
-        baseline=asked.baseline,
-        repair=asked.repair,
-        fault=asked.fault,
-        seeds=asked.seeds,
+        baseline=asked.baseline, repair=asked.repair, fault=asked.fault, seeds=asked.seeds
     )
     study = plan_audit(system, chosen.spec, request, library).study
-    before = as_flown(held.outcomes, held.traces)
-    wanted = [
-        at
-        for at in before
-        if at.scene in scenes and at.path in (paths or {row.path for row in study.rows})
-    ]
+    before = outcomes_at(held.outcomes, held.traces)
+    named = paths or {row.path for row in study.rows}
+    wanted = [at for at in before if at.scene in scenes and at.path in named]
 
     def note(arm: Arm, done: int, total: int) -> None:
         faults = " and ".join(fault.describe() for fault in arm.faults) or "correct inputs"
-        tell(f"Flew {arm.variant}, seed {arm.seed}, again: {faults} ({done} of {total}).")
+        say(f"Ran {arm.variant}, seed {arm.seed}, again: {faults} ({done} of {total}).")
 
-    with local(0) as hands:
-        return fly_again(before, study, asked.library_hash, system, hands, wanted, note)
+    with local(0) as executor:
+        return run_again(before, study, asked.library_hash, system, executor, wanted, note)
 
 
-def as_flown(outcomes: OutcomeTable, traces: Traces) -> dict[TrialAddress, Outcome]:
+def outcomes_at(outcomes: OutcomeTable, traces: Traces) -> dict[TrialAddress, Outcome]:
     """Return the trials of a run that ran to their end, with their tracks."""
     return {
         (at := TrialAddress(row.variant, row.path, row.seed, row.outcome.scene)): replace(
@@ -125,7 +119,7 @@ def as_flown(outcomes: OutcomeTable, traces: Traces) -> dict[TrialAddress, Outco
     }
 
 
-def fly_again(
+def run_again(
     before: Mapping[TrialAddress, Outcome],
     study: Study,
     library_hash: str,
@@ -133,7 +127,6 @@ def fly_again(
     executor: Executor,
     asked: Iterable[TrialAddress],
     note: Callable[[Arm, int, int], None],
-    time_limit_s: float | None = None,
 ) -> list[Replayed]:
     """Run some trials of a study again and listen; an arm that several paths share runs once.
 
@@ -153,50 +146,38 @@ def fly_again(
             old = tasks.get(row.arm.key())
             every = dict.fromkeys((*(old.scenes if old else ()), *scenes))
             tasks[row.arm.key()] = Block(row.arm, tuple(every))
-    code = system_code(system, study.system).state
-    found: list[Replayed] = []
+    found: dict[TrialAddress, Replayed] = {}
     waiting, done = list(tasks.values()), 0
 
     def settle(task: Block, reply: RecordedBlock | Died | Wrong) -> None:
         nonlocal done
         done += 1
-        found.extend(_compared(task, reply, before, addresses))
+        error = reply.how if isinstance(reply, Died) else ""
+        if isinstance(reply, RecordedBlock):
+            error = reply.error
+        elif isinstance(reply, Wrong):
+            if isinstance(reply.error, UserError):
+                raise reply.error
+            error = f"{type(reply.error).__name__}: {reply.error}"
+        for place, scene in enumerate(task.scenes):
+            for at in addresses[task.arm.key(), scene]:
+                differs, signals = f"failed: {error}", ()
+                if isinstance(reply, RecordedBlock) and not error:
+                    again = Done((reply.outcomes[place],), ())
+                    differs = difference([before[at]], again)
+                    signals = () if differs else reply.signals[place]
+                found[at] = Replayed(at, before[at], differs, signals)
         note(task.arm, done, len(tasks))
 
+    code = system_code(system, study.system).state
     job = Job(study.system, study.library, code, library_hash)
     there, here = partial(record, job), partial(record_here, system)
     call = here if executor.in_process else there
-    seconds = block_limit_s(system, time_limit_s)
     dispatch = Dispatch[Block](
-        executor, lambda task: partial(call, task), seconds, study.system.name
+        executor, lambda task: partial(call, task), block_limit_s(system, None), study.system.name
     )
     dispatch.run(lambda _: waiting.pop(0) if waiting else None, settle)
-    order = {at: place for place, at in enumerate(before)}
-    return sorted(found, key=lambda each: order[each.address])
-
-
-def _compared(
-    task: Block,
-    reply: RecordedBlock | Died | Wrong,
-    before: Mapping[TrialAddress, Outcome],
-    addresses: dict[tuple[str, str], list[TrialAddress]],
-) -> Iterable[Replayed]:
-    heard = reply if isinstance(reply, RecordedBlock) else RecordedBlock(error=_said(reply))
-    for place, scene in enumerate(task.scenes):
-        for at in addresses[task.arm.key(), scene]:
-            if heard.error:
-                yield Replayed(at, before[at], f"failed: {heard.error}")
-                continue
-            differs = difference([before[at]], Done((heard.outcomes[place],), ()))
-            yield Replayed(at, before[at], differs, () if differs else heard.signals[place])
-
-
-def _said(reply: Died | Wrong) -> str:
-    if isinstance(reply, Died):
-        return reply.how
-    if isinstance(reply.error, UserError):
-        raise reply.error
-    return f"{type(reply.error).__name__}: {reply.error}"
+    return [found[at] for at in before if at in found]
 
 
 def keep_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) -> list[Path]:
@@ -204,12 +185,7 @@ def keep_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) -> 
 
     Returns what was written. `UserError` where the folder cannot be written.
     """
-    write_signals(folder, held, found)
-    return [folder / SIGNALS, *write_report(read_run(folder)[0], folder)]
-
-
-def write_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) -> None:
-    """Write the signals beside the run's outcomes, with those of before."""
     signals = {**held.signals, **{each.address: each.signals for each in found if each.signals}}
     write_file(folder / SIGNALS, encode_signals(dict(sorted(signals.items()))), folder)
     amend(folder, held.provenance, [SIGNALS])
+    return [folder / SIGNALS, *write_report(read_run(folder)[0], folder)]

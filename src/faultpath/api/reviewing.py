@@ -1,13 +1,13 @@
-"""`check` and `trace` from Python: what `faultpath check` and `faultpath trace` print, as data."""
+"""`faultpath.check` and `faultpath.trace`: what the commands print, as data."""
 
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
-from faultpath.api.asking import asked_for, asks, begin
+from faultpath.api.asking import Begun, asks, begin
 from faultpath.api.display import Display
-from faultpath.api.systems import Chosen
 from faultpath.trials import System
 from faultpath.trials.question import CheckQuestion, TraceQuestion
+from faultpath.trials.work import Progress
 
 if TYPE_CHECKING:
     from faultpath.systems.checks.check import Report
@@ -32,21 +32,17 @@ def check(
         UserError: There is no such system, variant or library, or it cannot be built.
     """
     from faultpath.systems.checks.check import check_system
-    from faultpath.trials.work import Progress
 
-    asked = asked_for(CheckQuestion, given, progress)
-    begun = begin("check", system, asked, progress)
-    chosen, told = begun.chosen, begun.told
-    if chosen.notice:
-        told.say(chosen.notice)
+    begun = begin("check", CheckQuestion, system, given, progress)
+    asked, chosen = begun.asked, begun.chosen
     if chosen.own:
         asked = asked.model_copy(update={"workers": 0})
-    with told.progress("Checking") as show:
+    with begun.display.progress("Checking") as show:
 
         def note(done: int, known: int | None) -> None:
             show(Progress(done, known, f"{done} of {known} runs" if known else f"{done} runs"))
 
-        return check_system(chosen.system, chosen.spec, asked, note)
+        return check_system(begun.system, chosen.spec, asked, note)
 
 
 @asks(TraceQuestion)
@@ -66,17 +62,16 @@ def trace(
         UserError: There is no such system, variant, library or scene, the fault reaches nobody, or
             the run fails.
     """
-    asked = asked_for(TraceQuestion, given, progress)
-    return traced(begin("trace", system, asked, progress).chosen, asked)
+    return traced(begin("trace", TraceQuestion, system, given, progress))
 
 
-def traced(chosen: Chosen, asked: TraceQuestion) -> "TraceReport":
+def traced(begun: Begun[TraceQuestion]) -> "TraceReport":
     """Return the trace of a system that is built; raises as `trace`."""
     from faultpath.systems.checks.tracing import trace_system
 
-    system = chosen.system
+    asked, system, spec = begun.asked, begun.system, begun.chosen.spec
     fault = None if asked.fault is None else system.fault(asked.fault)
     name = asked.variant or next(iter(system.variants))
     return trace_system(
-        system, chosen.spec, name, asked.library, asked.scene, asked.steps, asked.seed, fault
+        system, spec, name, asked.library, asked.scene, asked.steps, asked.seed, fault
     )

@@ -18,7 +18,7 @@ from faultpath.trials.registry import factory_name
 from faultpath.trials.work import Executor, local
 
 LOCAL, RAY = "local", "ray"
-"""Where trials fly."""
+"""Where trials run."""
 
 _BRING = "bring"
 """The option of a system that takes parts of the user's own, separated by commas; a system without
@@ -106,8 +106,8 @@ def check_executor(executor: object) -> None:
         )
 
 
-def hands(system: System, workers: int | None, executor: str = LOCAL) -> Executor:
-    """Return what flies: processes of this machine, or the workers of a Ray cluster.
+def executor_of(system: System, workers: int | None, executor: str = LOCAL) -> Executor:
+    """Return what runs trials: processes of this machine, or the workers of a Ray cluster.
 
     Where `workers` is left out, one for each core or CPU if the system gains by several. Raises
     `UserError` for an executor that there is not or that cannot be used.

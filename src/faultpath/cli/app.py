@@ -14,12 +14,13 @@ from typing import Annotated, Any
 
 import typer
 
-from faultpath.cli.system_flags import with_system_flags
-from faultpath.cli.verbs import Verbs
+from faultpath.cli import audits, finished, log, systems
+from faultpath.cli.flags import with_system_flags
+from faultpath.cli.options import Verbs
 from faultpath.core.version import __version__
 
 _TOY = "examples/toy.py:create"
-_ARMS = "--baseline calibrated --repair blind"
+_ASKED = f"{_TOY} --baseline calibrated --repair blind --fault gain:scale"
 
 
 @dataclass(frozen=True)
@@ -27,39 +28,33 @@ class Entry:
     """A verb, as the table below names it."""
 
     name: str
+    command: Callable[..., Any]
     example: str
-    """How it is called."""
-    home: str
-    """Module and attribute."""
+    """What follows the name in a call."""
     of_a_system: bool = False
     """Whether it takes the flags of the system that its line names."""
 
 
-def _entry(name: str, example: str, of_a_system: bool = False) -> Entry:
-    home = f"faultpath.cli.{name}:command"
-    return Entry(name, f"faultpath {name} {example}".rstrip(), home, of_a_system)
-
-
 _PANELS = {
     "Your system": (
-        _entry("init", "mine --with numpy"),
-        _entry("trace", _TOY, of_a_system=True),
-        _entry("check", _TOY, of_a_system=True),
+        Entry("init", systems.init, "mine --with numpy"),
+        Entry("trace", systems.trace, _TOY, of_a_system=True),
+        Entry("check", systems.check, _TOY, of_a_system=True),
     ),
     "Audits": (
-        _entry("plan", f"{_TOY} {_ARMS} --fault gain:scale=0.6 --library carts", of_a_system=True),
-        _entry("audit", f"{_TOY} {_ARMS} --fault gain:scale=0.6 --library carts", of_a_system=True),
-        _entry(
+        Entry("plan", audits.plan, f"{_ASKED}=0.6 --library carts", of_a_system=True),
+        Entry("audit", audits.audit, f"{_ASKED}=0.6 --library carts", of_a_system=True),
+        Entry(
             "map",
-            f"{_TOY} {_ARMS} --fault gain:scale --against controller,observer --up-to 0.4 "
-            "--library carts",
+            audits.reversal_map,
+            f"{_ASKED} --against controller,observer --up-to 0.4 --library carts",
             of_a_system=True,
         ),
-        _entry("log", "flight.ulg --columns px4 --mass 1.5"),
+        Entry("log", log.command, "flight.ulg --columns px4 --mass 1.5"),
     ),
     "Finished runs": (
-        _entry("report", "runs/one runs/two --out comparison.html"),
-        _entry("replay", "runs/mine --scene cart/003 --signals"),
+        Entry("report", finished.report, "runs/one runs/two --out comparison.html"),
+        Entry("replay", finished.replay, "runs/mine --scene cart/003 --signals"),
     ),
 }
 """The engine's verbs, by the heading under which the help shows them."""
@@ -70,10 +65,10 @@ def panels() -> dict[str, tuple[Entry, ...]]:
     """Return all verbs: the engine's, and what installed distributions add.
 
     An entry point in the group `faultpath.verbs` is a verb's name, and a function with options or a
-    `Verbs` as its value; the module holds an `EXAMPLE` of a call.
+    `Verbs` as its value; the module holds an `EXAMPLE` of what follows the name in a call.
     """
     added = tuple(
-        Entry(point.name, import_module(point.module).EXAMPLE, point.value)
+        Entry(point.name, point.load(), import_module(point.module).EXAMPLE)
         for point in sorted(entry_points(group="faultpath.verbs"), key=lambda each: each.name)
     )
     return _PANELS | ({"Installed with a system": added} if added else {})
@@ -94,33 +89,23 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
     verb, *rest = arguments or ("",)
     for panel, entries in panels().items():
         for entry in entries:
-            command = _command(entry, rest if entry.name == verb else None)
-            shown: dict[str, Any] = {
-                "rich_help_panel": panel,
-                "epilog": f"Example: {entry.example}",
-            }
+            example = f"Example: faultpath {entry.name} {entry.example}"
+            shown: dict[str, Any] = {"rich_help_panel": panel, "epilog": example}
+            command = entry.command
             if isinstance(command, typer.Typer):
                 app.add_typer(command, name=entry.name, **shown)
                 continue
+            if entry.name == verb == "audit" and any(part.startswith("--study") for part in rest):
+                command = audits.study  # the file says all that flags would
+            elif entry.name == verb and entry.of_a_system:
+                command = with_system_flags(verb, command, rest)
             # Typer would keep the line breaks of a docstring.
             said = " ".join((getdoc(command) or "").split())
             app.command(entry.name, help=said, **shown)(command)
     return app
 
 
-def _command(entry: Entry, rest: Sequence[str] | None) -> Callable[..., int | None] | typer.Typer:
-    module, attribute = entry.home.split(":")
-    if entry.name == "audit" and any(part.partition("=")[0] == "--study" for part in rest or ()):
-        module, attribute = "faultpath.cli.audit", "study"  # the file says all that flags would
-    found = getattr(import_module(module), attribute)
-    if attribute == "study":
-        return found
-    if rest is not None and entry.of_a_system:
-        return with_system_flags(entry.name, found, rest)
-    return found
-
-
-def _tell(asked: bool) -> None:
+def _print_version(asked: bool) -> None:
     if asked:
         typer.echo(f"faultpath {__version__}")
         raise typer.Exit
@@ -134,7 +119,8 @@ def everywhere(
         ),
     ] = False,
     version: Annotated[
-        bool, typer.Option("--version", is_eager=True, callback=_tell, help="Show the version.")
+        bool,
+        typer.Option("--version", is_eager=True, callback=_print_version, help="Show the version."),
     ] = False,
 ) -> None:
     """Audit whether a repair still helps when a fault reaches every module that shares its

@@ -1,19 +1,31 @@
-"""The fields of a question as flags of a verb."""
+"""Flags of the verbs: the fields of a question, and the options of the system that is named."""
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from difflib import get_close_matches
 from functools import wraps
 from pathlib import Path
 from types import NoneType
-from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args, get_origin
 
 import typer
+from typer.models import OptionInfo
 
-from faultpath.cli.options import path
-from faultpath.trials.question import Flag, Request, flag, panel, settings
+from faultpath.cli.options import literal, path
+from faultpath.core.errors import UserError
+from faultpath.trials.question import Flag, Request, flag, panel
+
+if TYPE_CHECKING:
+    from faultpath.trials.options import Option
 
 _Verb = TypeVar("_Verb", bound=Callable[..., Any])
+_KEYWORD = inspect.Parameter.KEYWORD_ONLY
 _PLAIN = (str, int, float, bool)
+_HELP = "--help"
+_SHORT = 24
+"""Letters of choices that stand where the type would."""
+_DEST = "system_"
+"""Before the names of the system's options, which may be those of the verb's own."""
 
 
 def takes(model: type[Request], *without: str) -> Callable[[_Verb], _Verb]:
@@ -32,7 +44,7 @@ def takes(model: type[Request], *without: str) -> Callable[[_Verb], _Verb]:
                 if field.default is True:
                     given[name] = not given[name]
             if "options" in given:
-                given["options"] = settings(given["options"] or [])
+                given["options"] = _settings(given["options"] or [])
             return verb(**line, **{k: v for k, v in given.items() if v is not None})
 
         own = [
@@ -41,7 +53,7 @@ def takes(model: type[Request], *without: str) -> Callable[[_Verb], _Verb]:
             if each.kind != each.VAR_KEYWORD
         ]
         flags = [_parameter(model, name) for name in fields]
-        parameters = [each.replace(kind=inspect.Parameter.KEYWORD_ONLY) for each in (*own, *flags)]
+        parameters = [each.replace(kind=_KEYWORD) for each in (*own, *flags)]
         # Arguments go before, then what is required; typer keeps the order within a panel.
         vars(command)["__signature__"] = inspect.Signature(parameters)
         return command  # pyright: ignore[reportReturnType]
@@ -49,12 +61,27 @@ def takes(model: type[Request], *without: str) -> Callable[[_Verb], _Verb]:
     return decorate
 
 
+def _settings(pairs: Sequence[str]) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for pair in pairs:
+        key, separator, value = pair.partition("=")
+        if not separator or not key:
+            raise UserError(f"--set {pair!r} is not of the form key=value, for example wind=L3.")
+        if key in found:
+            raise UserError(f"the options name '{key}' twice: give it once.")
+        found[key] = value
+    return found
+
+
 def _parameter(model: type[Request], name: str) -> inspect.Parameter:
     field = model.model_fields[name]
     several = any(isinstance(note, Flag) and note.several for note in field.metadata)
-    kind, extra = _kind(field.annotation), dict[str, Any]()
-    if kind is Path:
-        extra["parser"] = path
+    kind: Any = field.annotation
+    optional = [each for each in get_args(kind) if each is not NoneType]
+    if NoneType in get_args(kind):
+        kind = optional[0]
+    if not (kind in _PLAIN or kind is Path or get_origin(kind) is Literal):
+        kind = str  # lists stay text
     default: Any = field.default
     if field.is_required():
         default = inspect.Parameter.empty
@@ -64,28 +91,91 @@ def _parameter(model: type[Request], name: str) -> inspect.Parameter:
         default = ",".join(f"{each:g}" for each in field.default)
     elif default is True:
         default = False
-    hint: Any = kind
-    if several:
-        hint = list[str] | None
-    elif default is None:
-        hint = kind | None
-    told = field.description or ""
-    said = typer.Option(
+    hint: Any = list[str] if several else kind
+    said = field.description or ""
+    option = typer.Option(
         flag(model, name),
-        help=f"Do not {told[0].lower()}{told[1:]}" if field.default is True else told,
+        help=f"Do not {said[0].lower()}{said[1:]}" if field.default is True else said,
         rich_help_panel=panel(model, name),
-        **extra,
+        parser=path if kind is Path else None,
     )
-    return inspect.Parameter(
-        name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[hint, said]
-    )
+    annotation = Annotated[hint | None if default is None else hint, option]
+    return inspect.Parameter(name, _KEYWORD, default=default, annotation=annotation)
 
 
-def _kind(annotation: Any) -> Any:
-    """Return what the parser of the command line makes of a value: lists stay text."""
-    inner: list[Any] = [each for each in get_args(annotation) if each is not NoneType]
-    if annotation in _PLAIN or annotation is Path or get_origin(annotation) is Literal:
-        return annotation
-    if NoneType in get_args(annotation):
-        return _kind(inner[0])
-    return str
+def with_system_flags(
+    name: str, verb: Callable[..., Any], arguments: Sequence[str]
+) -> Callable[..., Any]:
+    """Return the verb `name` with the flags of the system that its arguments begin with.
+
+    The verb has an option `options`, which takes what the flags say. A user's system is imported,
+    but only where the line asks for help or holds a flag that the verb itself has not got.
+    `UserError` for a flag that neither of the two has, and for a system that cannot be asked.
+    """
+    own = {_HELP}
+    for parameter in inspect.signature(verb).parameters.values():
+        for note in getattr(parameter.annotation, "__metadata__", ()):
+            if isinstance(note, OptionInfo):
+                named = note.default if isinstance(note.default, str) else ""
+                own |= {named or f"--{parameter.name}", *(note.param_decls or ())}
+    if "--" in arguments:
+        arguments = arguments[: arguments.index("--")]
+    helps = _HELP in arguments
+    asked = {part.partition("=")[0] for part in arguments if part.startswith("--")} - own
+    if not arguments or arguments[0].startswith("-") or not (asked or helps):
+        return verb
+    from faultpath.trials import system_options
+
+    system = arguments[0]
+    try:
+        found = {f"--{each.name.replace('_', '-')}": each for each in system_options(system)}
+    except (Exception, SystemExit):
+        if not helps:
+            raise
+        found = {}
+    found = {each: option for each, option in found.items() if each not in own}
+    for unknown in sorted(asked - {*found}) if not helps else ():
+        close = get_close_matches(unknown, [*own, *found], n=1)
+        hint = f"did you mean {close[0]}? " if close else ""
+        raise UserError(
+            f"there is no option {unknown}: {hint}`faultpath {name} --help` shows those of the "
+            f"command, and system {system!r} takes {', '.join(found) or 'none of its own'}."
+        )
+
+    @wraps(verb)
+    def extended(**given: Any) -> Any:
+        pairs = list(given.pop("options") or ())
+        for option in found.values():
+            value = given.pop(_DEST + option.name)
+            pairs += [] if value is None else [f"{option.name}={value}"]
+        return verb(**given, options=pairs)
+
+    added = [
+        inspect.Parameter(
+            _DEST + option.name,
+            _KEYWORD,
+            default=None,
+            annotation=Annotated[str | None, _shown(each, option, system)],
+        )
+        for each, option in found.items()
+    ]
+    signature = inspect.signature(verb)
+    every = [*signature.parameters.values(), *added]
+    vars(extended)["__signature__"] = signature.replace(parameters=every)
+    return extended
+
+
+def _shown(name: str, option: "Option", system: str) -> OptionInfo:
+    choices = "|".join(option.choices)
+    short = 0 < len(choices) <= _SHORT
+    said = option.help.rstrip(".")
+    if choices and not short:
+        said += f": {', '.join(option.choices)}" if said else f"One of {', '.join(option.choices)}"
+    if option.default:
+        said += f"{'; d' if said else 'D'}efault {option.default}"
+    return typer.Option(
+        name,
+        metavar=f"<{choices}>" if short else "<str>",
+        help=f"{said}." if said else None,
+        rich_help_panel=literal(f"Options of {system}"),
+    )

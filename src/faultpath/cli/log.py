@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import path
+from faultpath.cli.options import Json, path
 from faultpath.core.errors import UserError
 
 
@@ -23,7 +23,7 @@ def command(
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Folder for compensation.json.")
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Compute from a recorded flight what a calibration error leaves, isolated and shared."""
     from faultpath.systems.flightlog import compensation, read_columns, read_flight

@@ -1,48 +1,42 @@
-"""What several verbs take, and how they end."""
+"""What all verbs have in common: how they are registered, what they take, how they end."""
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+import sys
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup, TyperOption
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line, steers
 
+if TYPE_CHECKING:
+    from faultpath.api.display import Display
+
 _LONGEST = 4096
 """What Linux takes for a path; nothing else that is asked for needs as much."""
-FAILED_TRIALS = 1
-"""Exit status of a verb that finished although trials failed."""
+FOUND = 1
+"""Exit status of a verb that finished, and found what must not be: failed trials, a failed check,
+trials that do not repeat."""
 
-
-TimeLimit = Annotated[
-    float | None,
-    typer.Option(
-        help="Seconds that a block of scenes may take; default what the system says, else 3600."
-    ),
-]
-"""`--time-limit` of the verbs that fly."""
-
-
-Executor = Annotated[
+SystemName = Annotated[
     str,
-    typer.Option(
-        help="local, or ray for a Ray cluster: the one that RAY_ADDRESS names or that runs here, "
-        "else one of its own; ray:HOST:PORT names it."
+    typer.Argument(
+        help="`quadrotor`, `module:attribute` or `file.py:attribute`; --help after it shows its "
+        "own options too."
     ),
 ]
-"""`--executor` of the verbs that fly."""
+Json = Annotated[bool, typer.Option("--json", help="Print JSON; words go to the standard error.")]
 
 
-SYSTEM = (
-    "`quadrotor`, `module:attribute` or `file.py:attribute`; --help after it shows its own options "
-    "too."
-)
-"""Help of the argument `system`."""
-SET = "System option, key=value; where a flag has the same name, or in scripts."
-"""Help of `--set`."""
+def display(stderr: bool = True) -> "Display":
+    """Return where a command shows what it does."""
+    from faultpath.api.display import Display, SafeConsole
+
+    return Display(SafeConsole(stderr=stderr), ("faultpath", *sys.argv[1:]))
 
 
 def check_arguments(arguments: Sequence[str]) -> None:
@@ -64,26 +58,11 @@ def check_arguments(arguments: Sequence[str]) -> None:
             )
 
 
-_Read = TypeVar("_Read")
-
-
-def read(how: Callable[[str], _Read], text: str, flag: str) -> _Read:
-    """Read the text of a flag; `UserError` with its name for what `how` refuses."""
-    try:
-        return how(text)
-    except ValueError as error:
-        raise UserError(f"{flag}: {error}.") from None
-
-
 def refuse_with(other: str, **given: object) -> None:
     """Raise `UserError` for options that were given and do nothing beside another one."""
-    if idle := _named(given):
-        raise UserError(f"{idle} would do nothing with {other}: leave it out.")
-
-
-def _named(given: Mapping[str, object]) -> str:
-    asked = (name.replace("_", "-") for name, value in given.items() if value is not None)
-    return " and ".join(f"--{name}" for name in asked)
+    idle = [f"--{name.replace('_', '-')}" for name, value in given.items() if value is not None]
+    if idle:
+        raise UserError(f"{' and '.join(idle)} would do nothing with {other}: leave it out.")
 
 
 def path(text: str | Path) -> Path:
@@ -101,3 +80,54 @@ def path(text: str | Path) -> Path:
     except RuntimeError:  # what `resolve` raises for a link that leads back to itself
         raise typer.BadParameter(f"the link {str(text)!r} leads back to itself") from None
     return Path(text)
+
+
+def literal(text: str) -> str:
+    """Escape what a help takes for markup: `[...]` for a style, `:factory:` for a picture."""
+    from rich.markup import escape
+
+    return escape(text).replace(":", "[none]:[/none]")
+
+
+def _as_written(command: Any) -> None:
+    """Let all texts of a command stand in its help as they are written."""
+    for each in (command, *getattr(command, "commands", {}).values(), *command.params):
+        for name in ("help", "short_help", "epilog"):
+            if text := getattr(each, name, None):
+                setattr(each, name, literal(text))
+
+
+class _Group(TyperGroup):
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        _as_written(self)
+        super().format_help(ctx, formatter)
+
+
+class Verb(TyperCommand):
+    """A verb that takes every option once, but for those that take several values."""
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write the help; nothing in it is markup."""
+        _as_written(self)
+        super().format_help(ctx, formatter)
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse as any command does; `UserError` for an option given twice."""
+        if args:
+            _, _, given = self.make_parser(ctx).parse_args(list(args))
+            for option in given:
+                single = isinstance(option, TyperOption) and not option.multiple
+                if single and sum(each is option for each in given) > 1:
+                    raise UserError(f"{option.opts[0]} is given twice: give it once.")
+        return super().parse_args(ctx, args)
+
+
+class Verbs(typer.Typer):
+    """A group of verbs."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(cls=_Group, **settings)
+
+    def command(self, name: str | None = None, **settings: Any) -> Any:
+        """Register a function as a verb; `settings` are those of typer."""
+        return super().command(name, cls=Verb, **settings)

@@ -35,47 +35,19 @@ class Flag:
     """Heading in the help; by default that of the class which declares the field."""
 
 
-def numbers(text: str) -> tuple[int, ...]:
-    """Read comma-separated seeds such as `0,1,2`; `ValueError` for what is none."""
-    parts = [part.strip() for part in text.split(",")]
-    if not all(re.fullmatch(r"-?[0-9]+", part) for part in parts):
-        raise ValueError(f"{text!r:.80} is not a list of whole numbers, for example 0,1,2")
-    return tuple(int(part) if len(part) < 20 else LARGEST + 1 for part in parts)
-
-
-def sizes(text: str) -> tuple[float, ...]:
-    """Read comma-separated numbers such as `0.1,0.2`; `ValueError` for what is none."""
-    try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise ValueError(f"{text!r:.80} is not a list of numbers, for example 0.1,0.2") from None
-
-
-def names(text: str) -> tuple[str, ...]:
-    """Read comma-separated names; `ValueError` for an empty one, and for one given twice."""
-    found = tuple(part.strip() for part in text.split(","))
-    if not all(found):
-        raise ValueError(f"'{text}' holds an empty name: part names by one comma each")
-    if twice := [name for place, name in enumerate(found) if name in found[:place]]:
-        raise ValueError(f"'{text}' names '{twice[0]}' twice: name each once")
-    return found
-
-
-def settings(pairs: Sequence[str]) -> dict[str, str]:
-    """Read `key=value` pairs; `UserError` for a pair without `=`, and for what is given twice."""
-    found: dict[str, str] = {}
-    for pair in pairs:
-        key, separator, value = pair.partition("=")
-        if not separator or not key:
-            raise UserError(f"--set {pair!r} is not of the form key=value, for example wind=L3.")
-        if key in found:
-            raise UserError(f"the options name '{key}' twice: give it once.")
-        found[key] = value
-    return found
+def _several(given: object) -> tuple[object, ...]:
+    if isinstance(given, Sequence) and not isinstance(given, str):
+        return tuple(cast("Sequence[object]", given))
+    return (given,)
 
 
 def _seeds(given: object) -> object:
-    found = numbers(given) if isinstance(given, str) else _several(given)
+    found = _several(given)
+    if isinstance(given, str):
+        parts = [part.strip() for part in given.split(",")]
+        if not all(re.fullmatch(r"-?[0-9]+", part) for part in parts):
+            raise ValueError(f"{given!r:.80} is not a list of whole numbers, for example 0,1,2")
+        found = tuple(int(part) if len(part) < 20 else LARGEST + 1 for part in parts)
     for seed in found:
         if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= LARGEST:
             raise ValueError(
@@ -86,55 +58,33 @@ def _seeds(given: object) -> object:
     return found
 
 
-def _several(given: object) -> tuple[object, ...]:
-    if isinstance(given, Sequence) and not isinstance(given, str):
-        return tuple(cast("Sequence[object]", given))
-    return (given,)
-
-
 def _sizes(given: object) -> object:
-    return sizes(given) if isinstance(given, str) else _several(given)
+    if not isinstance(given, str):
+        return _several(given)
+    try:
+        return tuple(float(part) for part in given.split(","))
+    except ValueError:
+        raise ValueError(f"{given!r:.80} is not a list of numbers, for example 0.1,0.2") from None
 
 
 def _names(given: object) -> object:
-    return names(given) if isinstance(given, str) else _several(given)
-
-
-def _path(given: object) -> object:
-    return Path(given) if isinstance(given, str) else given
-
-
-def _options(given: object) -> object:
-    return {} if given is None else given
+    if not isinstance(given, str):
+        return _several(given)
+    found = tuple(part.strip() for part in given.split(","))
+    if not all(found):
+        raise ValueError(f"'{given}' holds an empty name: part names by one comma each")
+    if twice := [name for place, name in enumerate(found) if name in found[:place]]:
+        raise ValueError(f"'{given}' names '{twice[0]}' twice: name each once")
+    return found
 
 
 Sizes = Annotated[tuple[float, ...], BeforeValidator(_sizes)]
 Place = Annotated[
-    Path | None, BeforeValidator(_path), PlainSerializer(lambda path: path and str(path))
-]
-
-
-Options = Annotated[
-    dict[str, Any],
-    BeforeValidator(_options),
-    Flag("--set", several=True),
-    Field(description="System option, key=value; where a flag has the same name, or in scripts."),
+    Path | None,
+    BeforeValidator(lambda given: Path(given) if isinstance(given, str) else given),
+    PlainSerializer(lambda path: path and str(path)),
 ]
 Scenes = Annotated[str, Field(description="Library of scenes, by name or file.")]
-Workers = Annotated[
-    int | None,
-    Field(
-        description="Worker processes, 0 for this process alone; default one per core if that "
-        "helps."
-    ),
-]
-TimeLimit = Annotated[
-    float | None,
-    Field(
-        description="Seconds that a block of scenes may take; default what the system says, else "
-        "3600."
-    ),
-]
 
 
 class Request(Frozen, strict=True, allow_inf_nan=False):
@@ -144,12 +94,20 @@ class Request(Frozen, strict=True, allow_inf_nan=False):
     """Heading in the help of the fields that a class declares."""
 
     library: Scenes = "selection"
-    options: Options = Field(default_factory=dict)
+    options: Annotated[
+        dict[str, Any],
+        BeforeValidator(lambda given: {} if given is None else given),
+        Flag("--set", several=True),
+    ] = Field(
+        default_factory=dict,
+        description="System option, key=value; where a flag has the same name, or in scripts.",
+    )
 
     @property
     def arms(self) -> tuple[str, ...]:
         """Variants that it names."""
-        return ()
+        named = (vars(self).get(name) for name in ("baseline", "repair", "variant"))
+        return (*(name for name in named if name), *vars(self).get("variants", ()))
 
 
 class TraceQuestion(Request):
@@ -162,11 +120,6 @@ class TraceQuestion(Request):
     fault: str | None = Field(
         default=None, description="A fault, as in `audit`, to see whom it reaches."
     )
-
-    @property
-    def arms(self) -> tuple[str, ...]:
-        """Variants that it names."""
-        return (self.variant,) if self.variant else ()
 
 
 class CheckQuestion(Request):
@@ -183,12 +136,6 @@ class CheckQuestion(Request):
         description="Worker processes, by default 2 where that helps; 0 is this process alone, "
         "which cannot see what differs from process to process.",
     )
-    time_limit_s: TimeLimit = None
-
-    @property
-    def arms(self) -> tuple[str, ...]:
-        """Variants that it names."""
-        return self.variants
 
 
 class Question(Request):
@@ -206,11 +153,6 @@ class Question(Request):
         default=(0,), description="Seeds of the noise, and of trained models where there are any."
     )
 
-    @property
-    def arms(self) -> tuple[str, ...]:
-        """Variants that it names."""
-        return self.baseline, self.repair
-
     def audit_of(self, fault: str) -> "AuditQuestion":
         """Return the audit of the same variants and scenes under a fault."""
         same = {name: getattr(self, name) for name in Question.model_fields}
@@ -226,14 +168,21 @@ class Running(Question):
         default=None,
         description="Run folder; default runs/<question>-<code>, so the same call resumes.",
     )
-    workers: Workers = None
+    workers: int | None = Field(
+        default=None,
+        description="Worker processes, 0 for this process alone; default one per core if that "
+        "helps.",
+    )
     executor: str = Field(
         default="local",
         description="local, or ray for a Ray cluster: the one that RAY_ADDRESS names or that runs "
         "here, else one of its own; ray:HOST:PORT names it.",
     )
-    time_limit_s: TimeLimit = None
-
+    time_limit_s: float | None = Field(
+        default=None,
+        description="Seconds that a block of scenes may take; default what the system says, else "
+        "3600.",
+    )
 
 class AuditQuestion(Running):
     """What an audit asks."""

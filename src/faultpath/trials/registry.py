@@ -144,9 +144,10 @@ def _target(name: str) -> tuple[str, str]:
     try:
         return _split(factory_name(installed_systems()[name] if _installed(name) else name))
     except UserError:
+        known = ", ".join(sorted(installed_systems())) or "none"
         raise UserError(
-            f"there is no system {name!r}: use {', '.join(sorted(installed_systems()))}, or name a "
-            "factory as 'module:attribute' or 'path/to/file.py:attribute'"
+            f"there is no system {name!r}; installed: {known}; install what declares it, "
+            "or name a factory as 'module:attribute' or 'path/to/file.py:attribute'"
         ) from None
 
 

@@ -2,15 +2,14 @@
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import ClassVar, NoReturn
+from typing import NoReturn
 
+from faultpath.api.asking import Job
 from faultpath.api.display import Display, display
-from faultpath.api.job import Job
-from faultpath.api.saved import read_provenance
-from faultpath.api.systems import LOCAL, check_executor, hands
+from faultpath.api.runs import FinishedRun, read_provenance
+from faultpath.api.systems import LOCAL, check_executor, executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.decisions import RunProvenance
 from faultpath.decisions.tables import latex, markdown
@@ -36,18 +35,15 @@ from faultpath_quadrotor.paper.run import (
 )
 
 
-@dataclass(frozen=True, repr=False, eq=False)
-class ReproductionRun:
+class ReproductionRun(FinishedRun):
     """A finished reproduction: what was found, and where its files are.
 
     A notebook shows the tables, with the paper's numbers beside our own.
     """
 
-    kind: ClassVar[str] = "reproduction"
-    folder: Path
+    kind = "reproduction"
     record: Reproduction
     """Tables, figures, and in `ledger` the claims of the paper with what became of each."""
-    provenance: RunProvenance
 
     @property
     def headline(self) -> str:
@@ -57,10 +53,6 @@ class ReproductionRun:
     def report(self) -> NoReturn:
         """Raise `UserError`: the pages of a reproduction are written when it is carried out."""
         raise UserError(f"the pages of the reproduction in {self.folder} stand there already.")
-
-    def __repr__(self) -> str:
-        """Return folder and size."""
-        return f"<ReproductionRun in {self.folder}: {self.record.trials} trials>"
 
     def _repr_markdown_(self) -> str:
         return "\n\n".join(map(markdown.block, self.record.tables))
@@ -118,8 +110,8 @@ def reproduce(
     place = Path(folder) if folder else asked.folder(f"reproduction-{asked.profile.name}")
     told = display(progress, "reproduce", given | {"pages": named})
 
-    with hands(asked.system, workers, executor) as workforce:
-        return carry_out(asked, Job(place, workforce, told, time_limit_s))
+    with executor_of(asked.system, workers, executor) as workforce:
+        return carry_out(asked, Job(place, workforce, told, {"time_limit_s": time_limit_s}))
 
 
 def carry_out(plan: Plan, job: Job) -> ReproductionRun:

@@ -1,19 +1,18 @@
 """`faultpath reproduce`: the paper's tables, figures and claims."""
 
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import FAILED_TRIALS, Executor, TimeLimit, path, refuse_with
+from faultpath.cli.options import FOUND, Json, display, path, refuse_with
+from faultpath.trials.question import Running
 
 if TYPE_CHECKING:
-    from faultpath_quadrotor.paper.answers import Ledger
     from faultpath_quadrotor.paper.reproduction import ReproductionRun
 
-EXAMPLE = "faultpath reproduce table-4"
+EXAMPLE = "table-4"
 
 
 def command(
@@ -37,11 +36,13 @@ def command(
         int | None, typer.Option(help="Worker processes; default one per core, or per GPU.")
     ] = None,
     device: Annotated[str | None, typer.Option(help="cpu (default) or cuda.")] = None,
-    executor: Executor = "local",
-    time_limit: TimeLimit = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print folder and record as JSON; words go to stderr.")
-    ] = False,
+    executor: Annotated[
+        str, typer.Option(help=Running.model_fields["executor"].description)
+    ] = "local",
+    time_limit: Annotated[
+        float | None, typer.Option(help=Running.model_fields["time_limit_s"].description)
+    ] = None,
+    as_json: Json = False,
 ) -> int:
     """Run every study of the paper, or some of its pages, and compare the results with it."""
     if judge:
@@ -53,9 +54,9 @@ def command(
             device=device,
             time_limit=time_limit,
         )
-        return _judge(out, as_json)
+        _judge(out, as_json)
+        return 0
 
-    from faultpath.api.display import Display, SafeConsole
     from faultpath_quadrotor.paper.reproduction import reproduce
 
     run = reproduce(
@@ -66,43 +67,38 @@ def command(
         executor=executor,
         device=device,
         time_limit_s=time_limit,
-        progress=Display(SafeConsole(stderr=as_json), ("faultpath", *sys.argv[1:])),
+        progress=display(as_json),
     )
     if as_json:
         record = run.record.model_dump(mode="json")
         typer.echo(json.dumps({"folder": str(run.folder), "record": record}, indent=1))
     else:
-        tell(run, whole=not pages)
-    return FAILED_TRIALS if run.record.failed_trials else 0
+        show(run, whole=not pages)
+    return FOUND if run.record.failed_trials else 0
 
 
-def _judge(folder: Path | None, as_json: bool) -> int:
+def _judge(folder: Path | None, as_json: bool) -> None:
     """Show the claims; those of a run that did not ship are judged by the code that is here."""
     if folder is None:
         from faultpath_quadrotor.paper.answers import shipped_ledger
 
-        answers, profile = shipped_ledger(), "paper"
+        ledger, profile = shipped_ledger(), "paper"
     else:
-        answers, profile = _judged(folder)
+        from faultpath_quadrotor.paper.claims import again
+        from faultpath_quadrotor.paper.run import read_results
+
+        results, found = read_results(folder)
+        ledger, profile = again(results, found.ledger), found.profile
     if as_json:
-        typer.echo(json.dumps([each.model_dump(mode="json") for each in answers.claims], indent=2))
-        return 0
+        typer.echo(json.dumps([each.model_dump(mode="json") for each in ledger.claims], indent=2))
+        return
     from faultpath.api.display import SafeConsole
     from faultpath_quadrotor.paper.report.terminal import ledger_view
 
-    SafeConsole().print(ledger_view(answers, profile))
-    return 0
+    SafeConsole().print(ledger_view(ledger, profile))
 
 
-def _judged(folder: Path) -> "tuple[Ledger, str]":
-    from faultpath_quadrotor.paper.claims import again
-    from faultpath_quadrotor.paper.run import read_results
-
-    results, found = read_results(folder)
-    return again(results, found.ledger), found.profile
-
-
-def tell(run: "ReproductionRun", whole: bool) -> None:
+def show(run: "ReproductionRun", whole: bool) -> None:
     """Print what came out: the ledger of the whole paper, or the tables of its pages."""
     from faultpath.api.display import SafeConsole
     from faultpath.decisions.tables.terminal import drawn

@@ -1,17 +1,29 @@
-"""`faultpath train`: fit the learned models of the quadrotor."""
+"""`faultpath train`: fit the learned models of the quadrotor.
+
+The quadrotor, and torch with it, loads inside the functions.
+"""
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import path, refuse_with
-from faultpath.cli.verbs import Verbs
+from faultpath.cli.options import FOUND, Verbs, path, refuse_with
+from faultpath.core.errors import Stopped
 from faultpath.trials.question import LARGEST
 
-EXAMPLE = "faultpath train quadrotor gru gru+dcc --seed 0"
-FAILED_MODELS = 1
+if TYPE_CHECKING:
+    from rich.progress import Progress, TaskID
+
+    from faultpath.api.display import SafeConsole
+    from faultpath.decisions.tables import Table
+    from faultpath_quadrotor.checkpoint import ModelCard
+    from faultpath_quadrotor.training.catalogue import Job
+    from faultpath_quadrotor.training.jobs import Failure, Overview
+
+EXAMPLE = "quadrotor gru gru+dcc --seed 0"
 
 app = Verbs(help="Fit the learned models of the quadrotor.", no_args_is_help=True)
 
@@ -49,8 +61,10 @@ def command(
     list_: Annotated[bool, typer.Option("--list", help="List the models and end.")] = False,
 ) -> int:
     """Fit models from wherever an earlier call left them; missing flights are collected first."""
-    from faultpath_quadrotor.verbs.fitting import TrainRequest, list_models, train
+    from faultpath.api.display import SafeConsole
+    from faultpath.decisions.tables.terminal import drawn
 
+    console = SafeConsole()
     if list_:
         refuse_with(
             "--list",
@@ -61,14 +75,127 @@ def command(
             workers=workers,
             ship=ship or None,
         )
-        list_models()
+        console.print(drawn(_models()))
         return 0
-    request = TrainRequest(
-        names=tuple(names or ()),
-        seeds=tuple(seeds or ()),
-        data=data or Path("data"),
-        out=out or Path("runs/train"),
-        workers=(os.cpu_count() or 1) if workers is None else workers,
-        ship=ship,
+
+    from faultpath.trials.store import make_folder
+    from faultpath_quadrotor.training.catalogue import choose, stages
+    from faultpath_quadrotor.training.jobs import Failure, check_pilots
+
+    data, out = data or Path("data"), out or Path("runs/train")
+    workers = (os.cpu_count() or 1) if workers is None else workers
+    chosen = choose(tuple(names or ()), tuple(seeds or ()))
+    if not ship:
+        check_pilots(chosen)
+    for place in (out, data):
+        make_folder(place)  # before the flights: what cannot be kept need not be collected
+    status = 0
+    for jobs in stages(chosen):  # models whose data are flown with other models come after those
+        _collect(console, jobs, data, workers)
+        found = _fit(console, jobs, data, out, workers, ship)
+        for failure in (each for each in found if isinstance(each, Failure)):
+            said = f"{failure.job.stem} was not fitted: {failure.error}"
+            said += f" ({failure.details})" if failure.details else ""
+            console.print(said, markup=False, style="bold red", soft_wrap=True)
+            status = FOUND
+        cards = [each for each in found if not isinstance(each, Failure)]
+        if cards:
+            console.print(drawn(result_table(cards), one_line=True))
+            console.print(f"Checkpoints: {out}", markup=False, soft_wrap=True)
+    return status
+
+
+def _models() -> "Table":
+    """Return the table of what can be fitted."""
+    from faultpath.decisions.tables import Table, line
+    from faultpath_quadrotor.training.catalogue import ALL
+
+    columns = ("seeds", "what it is")
+    lines = tuple(line(e.name, ",".join(map(str, e.seeds)), e.description) for e in ALL)
+    return Table(corner="model", columns=columns, words=columns, lines=lines)
+
+
+def result_table(cards: "Sequence[ModelCard]") -> "Table":
+    """Return the table of fitted models."""
+    from faultpath.decisions.tables import MISSING, Line, Table, line
+
+    lines: list[Line] = []
+    for card in cards:
+        metric, value = next(iter(card.final.items()), ("", None))
+        minutes, seconds = divmod(round(card.duration_s), 60)
+        lines.append(
+            line(
+                card.name,
+                str(card.seed),
+                f"{card.parameters:,}",
+                f"{card.training_loss[-1]:.4g}",
+                MISSING if value is None else f"{metric} {value:.4g}",
+                f"{minutes}:{seconds:02d}",
+            )
+        )
+    columns = ("seed", "parameters", "training loss", "validation", "time")
+    return Table(title="Fitted models", corner="model", columns=columns, lines=tuple(lines))
+
+
+def _collect(console: "SafeConsole", jobs: "Sequence[Job]", data: Path, workers: int) -> None:
+    from faultpath_quadrotor.training.jobs import check_pools, collect_missing, missing_pools
+
+    check_pools(jobs, data)
+    missing = missing_pools(jobs, data)
+    if not missing:
+        return
+    with _progress(console) as bar:
+        tasks = {pool: bar.add_task(f"Collecting {pool}", total=None, news="") for pool in missing}
+
+        def show(pool: str, done: float, asked: float) -> None:
+            news = f"{done / max(asked, 1):.0%}"
+            bar.update(tasks[pool], total=asked, completed=done, news=news)
+
+        try:
+            collect_missing(jobs, data, workers, show)
+        except KeyboardInterrupt:
+            raise Stopped(
+                f"interrupted while collecting; what was flown is kept in {data}; run the same "
+                "command again to resume."
+            ) from None
+
+
+def _fit(
+    console: "SafeConsole", jobs: "Sequence[Job]", data: Path, out: Path, workers: int, ship: bool
+) -> "tuple[ModelCard | Failure, ...]":
+    from faultpath_quadrotor.training.jobs import run_jobs
+
+    with _progress(console) as bar:
+        whole = bar.add_task("Fitting", total=1.0, news="")
+        tasks: dict[str, TaskID] = {}
+
+        def show(now: "Overview") -> None:
+            news = f"{now.done}/{now.total} models"
+            bar.update(whole, completed=now.fraction, news=news)
+            for stem in set(tasks) - set(now.running):
+                bar.remove_task(tasks.pop(stem))
+            for stem, moment in now.running.items():
+                if stem not in tasks:
+                    tasks[stem] = bar.add_task(f"  {stem}", total=1.0, news="")
+                if moment is not None:
+                    news = f"epoch {moment.epoch + 1}, loss {moment.loss:.4g}"
+                    bar.update(tasks[stem], completed=moment.fraction, news=news)
+
+        def say(text: str) -> None:
+            bar.console.print(text, markup=False, soft_wrap=True)
+
+        return run_jobs(jobs, data, out, workers, show, say, shipped=ship)
+
+
+def _progress(console: "SafeConsole") -> "Progress":
+    from rich import progress
+
+    return progress.Progress(
+        progress.TextColumn("{task.description}"),
+        progress.BarColumn(),
+        progress.TextColumn("{task.fields[news]}"),
+        progress.TimeElapsedColumn(),
+        progress.TimeRemainingColumn(),
+        progress.TextColumn("left"),
+        console=console,
     )
-    return FAILED_MODELS if train(request) else 0

@@ -68,7 +68,7 @@ def check_system(
     workers = (2 if system.parallel else 1) if asked.workers is None else asked.workers
     seen = Seen(system, variants, scenes, asked.seed, workers > 0)
     job = Job(spec, library.name, system_code(system, spec).state, library.content_hash)
-    limit_s = block_limit_s(system, asked.time_limit_s)
+    limit_s = block_limit_s(system, None)
 
     def run(flights: Iterable[Flight], known: int | None) -> None:
         waiting = iter(flights)

@@ -1,0 +1,92 @@
+"""`faultpath init`, `trace` and `check`: the verbs for a system of one's own."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+
+from faultpath.cli.flags import takes
+from faultpath.cli.options import FOUND, Json, SystemName, display
+from faultpath.trials.question import CheckQuestion, TraceQuestion
+
+
+def init(
+    name: Annotated[str, typer.Argument(help="Of the system; its file is NAME.py.")],
+    kind: Annotated[
+        Literal["numpy", "torch", "gymnasium"],
+        typer.Option("--with", help="What it is written with."),
+    ] = "numpy",
+) -> int:
+    """Write a system that runs, and its test, into the working directory."""
+    from faultpath.systems.init import TEMPLATES, write_system
+
+    system, test = write_system(name, kind, Path())
+    baseline, parameter = TEMPLATES[kind]
+    typer.echo(
+        f"Wrote {system} and {test}. Next:\n"
+        f"  faultpath audit {system}:create --baseline {baseline} "
+        f"--repair typical --fault {parameter}:scale=0.6\n"
+        f"  python -m pytest {test}"
+    )
+    return 0
+
+
+@takes(TraceQuestion)
+def trace(system: SystemName, as_json: Json = False, **given: Any) -> int:
+    """Print the information interface of a system and who read what, when.
+
+    Exits with 1 where that differs from what is declared."""
+    from faultpath.api.asking import begin
+    from faultpath.api.display import SafeConsole
+    from faultpath.api.reviewing import traced
+    from faultpath.decisions.tables.terminal import STYLES, Parted
+    from faultpath.report.terminal import interface_table
+    from faultpath.report.trace import trace_table
+
+    begun = begin("trace", TraceQuestion, system, given, display())
+    trace = traced(begun)
+    if as_json:
+        typer.echo(trace.model_dump_json(indent=2))
+        return FOUND if trace.findings else 0
+    console = SafeConsole()
+    table = trace_table(trace)
+    console.print(interface_table(begun.system.interface), "")
+    console.print(Parted(table))
+    for said in (*table.notes, *trace.privileged):
+        console.print(said, markup=False)
+    for finding in trace.findings:
+        console.print(f"Found: {finding}", markup=False, style=STYLES["bad"])
+    if not trace.findings:
+        console.print("What ran is what is declared.", style=STYLES["good"])
+    return FOUND if trace.findings else 0
+
+
+@takes(CheckQuestion)
+def check(system: SystemName, as_json: Json = False, **given: Any) -> int:
+    """Check what a careful reviewer would: that trials repeat and can be paired, that modules read
+    what is declared, and that a fault reaches every tap. Exits with 1 where a check fails."""
+    from rich.padding import Padding
+    from rich.text import Text
+
+    from faultpath.api.display import SafeConsole
+    from faultpath.api.reviewing import check
+    from faultpath.decisions.tables.terminal import STYLES
+    from faultpath.decisions.wording import counted
+
+    report = check(system, **given, progress=display())
+    if as_json:
+        typer.echo(report.model_dump_json(indent=2))
+        return FOUND if report.failures else 0
+    console = SafeConsole()
+    styles = {"passed": STYLES["good"], "failed": STYLES["bad"], "not judged": STYLES["faint"]}
+    scenes = f"{counted(len(report.scenes), 'scene')} of {report.library}, seed {report.seed}"
+    console.print(Text(f"{report.system}: {', '.join(report.variants)} in {scenes}", "bold"))
+    for each in report.checks:
+        status = Text(each.status, styles[each.status])
+        console.print(Text.assemble(status, f"  {each.name}: {each.says}"))
+        for said in (*each.failures, *(f"Remark: {remark}" for remark in each.remarks)):
+            console.print(Padding(Text(f"- {said}"), (0, 0, 0, 2)))
+    failed = sum(each.status == "failed" for each in report.checks)
+    said = f"{counted(failed, 'check')} failed." if failed else "No check failed."
+    console.print(Text(said, STYLES["bad" if failed else "good"]))
+    return FOUND if report.failures else 0
