@@ -14,9 +14,9 @@ HEAVY = {"jinja2", "mujoco", "numpy", "pyarrow", "scipy", "torch"}
 AUDIT = ["--baseline", "a", "--repair", "b", "--fault", "gain:scale=2"]
 
 MAY_LOAD = {
-    "help": (["--help"], set[str]()),
-    "help of a verb": (["audit", "--help"], set[str]()),
-    "models": (["train", "quadrotor", "--list"], set[str]()),
+    "help": (["--help"], {"numpy"}),
+    "help of a verb": (["audit", "--help"], {"numpy"}),
+    "models": (["train", "quadrotor", "--list"], {"numpy"}),
     "no such run": (["report", "nowhere"], ENGINE),
     "help of the quadrotor": (["audit", "quadrotor", "--help"], {"numpy"}),
     "no such system": (["audit", "quadcopter", *AUDIT], ENGINE),

@@ -15,7 +15,7 @@ def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 TOY_MISTAKES = {
-    "unknown system": ({"system": "quadcopter"}, ["'quadcopter'", "use quadrotor"]),
+    "unknown system": ({"system": "quadcopter"}, ["'quadcopter'", "installed: quadrotor"]),
     "unknown module": ({"system": "no_such_module:create"}, ["'no_such_module'"]),
     "unknown file": ({"system": "nowhere/toy.py:create"}, ["nowhere/toy.py"]),
     "unknown function": ({"system": TOY.replace(":create", ":make")}, ["'make'"]),
@@ -123,7 +123,7 @@ def test_a_mistake_about_the_quadrotor(options, says, tmp_path):
         (["fly"], ["'fly'", "`faultpath --help`"]),
         (["audit"], ["system", "`faultpath audit --help`"]),
         (["audit", TOY], ["--baseline"]),
-        (["report"], ["FOLDERS"]),
+        (["report"], ["folders"]),
         (["report", "nowhere"], ["nowhere", "finished run"]),
         (["trace", "nothing"], ["'nothing'", "quadrotor"]),
     ],

@@ -87,7 +87,7 @@ def audit(
     place = run_folder(asked, chosen, named)
     with executor_of(begun.system, chosen.workers, chosen.executor) as executor:
         job = Job(place, executor, begun.display, {"time_limit_s": asked.time_limit_s})
-        held = _carry_out(begun.system, laid, job, asked)
+        held = _carry_out(begun.system, laid, job, asked.signals)
     run = Run(place, held, read_table(read_regular(place / OUTCOMES)))
     run.report()
     return run
@@ -161,11 +161,11 @@ def run_folder(asked: Running, chosen: Chosen, named: Sequence[str]) -> Path:
     return place
 
 
-def _carry_out(system: System, audit: Audit, job: Job, asked: AuditQuestion) -> ReportInput:
+def _carry_out(system: System, audit: Audit, job: Job, signals: bool) -> ReportInput:
     """Run, decide and write what the run folder's pages are made from; return that.
 
-    What was concluded before in the folder stands in the record: see `after_looks`. Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be
-    run or nothing is left to compare.
+    What was concluded before in the folder stands in the record: see `after_looks`. Raises
+    `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing can be compared.
     """
     folder, display, question = job.folder, job.display, audit.question
     if system.backend:
@@ -197,7 +197,7 @@ def _carry_out(system: System, audit: Audit, job: Job, asked: AuditQuestion) -> 
                 seal(folder, [SIGNALS])[SIGNALS] == earlier.files[SIGNALS]
             ):  # of these very trials
                 held = decode_signals(read_regular(folder / SIGNALS))
-    if asked.signals:
+    if signals:
         held, finding = _recorded(system, audit, job, record, result, traces, held)
         if finding:
             display.say(finding)

@@ -48,7 +48,9 @@ def reversal_map(
     named = [plan.name, asked.fault, *found.against, f"{found.up_to:g}", Path(asked.library).stem]
     place = run_folder(asked, chosen, named)
     with executor_of(begun.system, chosen.workers, chosen.executor) as executor:
-        run = _carry_out(plan, Job(place, executor, begun.display, {"time_limit_s": asked.time_limit_s}))
+        run = _carry_out(
+            plan, Job(place, executor, begun.display, {"time_limit_s": asked.time_limit_s})
+        )
     run.report()
     return run
 

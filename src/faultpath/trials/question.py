@@ -184,6 +184,7 @@ class Running(Question):
         "3600.",
     )
 
+
 class AuditQuestion(Running):
     """What an audit asks."""
 
