@@ -89,7 +89,8 @@ class ComposedSystem(LoopSystem):
             made = graph(self._interface, plant, self.modules(variant, None), wired)
             batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
             first = next(iter(Loop(self._interface, made).execute(batch, cast("Any", seen))))
-            first.state.worlds.close()
+            for world in first.state.worlds:
+                world.close()
         self._interface = self._declared(units, several, plant.shapes | seen.shapes)
 
     @property

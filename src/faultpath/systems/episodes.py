@@ -62,36 +62,26 @@ class Episode:
         return float(self.rewards.sum())
 
 
-@dataclass(frozen=True)
-class Stepped:
-    """What a step did in each scene; rows of scenes that no longer run mean nothing."""
+class World(ABC):
+    """One scene; made for one trial and thrown away with it."""
 
     observation: Any
-    """An array `[B, ...]`, or a mapping or tuple of such."""
-    rewards: HostArray
-    terminated: HostArray
-    truncated: HostArray
-    info: Sequence[Mapping[str, Any]]
-
-
-class Worlds(ABC):
-    """The scenes of a batch, side by side; made for one batch and thrown away with it."""
-
-    observation: Any
-    """At the start, as in `Stepped`."""
-    told: Mapping[str, HostArray]
-    """What the set-up of each scene says of it, `[B, ...]` by source."""
-    initial: Sequence[str]
-    """A hash of each scene's initial state."""
-    disturbances: Sequence[str]
+    """At the start: an array, or a mapping or tuple of such."""
+    told: Mapping[str, Any]
+    """What the set-up says of the scene, by source."""
+    initial: str
+    """A hash of its initial state."""
+    disturbance: str
     """A hash of what its set-up did."""
 
     @abstractmethod
-    def step(self, action: HostArray, running: HostArray, step: int) -> Stepped:
-        """Move the scenes that run by one step. Nothing else of the others may be looked at."""
+    def step(
+        self, action: HostArray, step: int
+    ) -> tuple[Any, float, bool, bool, Mapping[str, Any]]:
+        """Move by one step; return observation, reward, terminated, truncated and info."""
 
     def close(self) -> None:
-        """Free what the worlds hold."""
+        """Free what the world holds."""
         return
 
 
@@ -125,7 +115,10 @@ def look(observation: Any, at: Look) -> HostArray:
 class _Batch:
     """A batch under way."""
 
-    worlds: Worlds
+    worlds: Sequence[World]
+    seen: list[Any]
+    """The last observation of each."""
+    told: Mapping[str, HostArray]
     sensed: dict[str, HostArray]
     running: HostArray
     succeeded: HostArray
@@ -163,16 +156,16 @@ class EpisodePlant(Plant):
         self.reads = frozenset({Port(action, "actuator")})
         self.action = action
         self._observes, self._succeeded = dict(observes), succeeded
-        probed = self.worlds(Batch((f"{SCENE}0",), 0, dt_s))
+        probed = self.world(f"{SCENE}0", 0)
         self.told = tuple(probed.told)
         self.senses = (*self._observes, *self.told)
-        sensed = self._sensed(probed, probed.observation)
+        sensed = self._sensed([probed.observation], _told([probed]))
         self.shapes = {name: np.shape(value)[1:] for name, value in sensed.items()}
         probed.close()
 
     @abstractmethod
-    def worlds(self, batch: Batch) -> Worlds:
-        """Return the scenes of a batch at their start."""
+    def world(self, scene: str, seed: int) -> World:
+        """Return a scene at its start."""
 
     def identity(self) -> str:
         """Return what decides a trial and stands in no file that the system imports."""
@@ -182,9 +175,10 @@ class EpisodePlant(Plant):
         """Return classes, as `module:name`, whose code decides a trial and is not imported."""
         return ()
 
-    def _sensed(self, worlds: Worlds, seen: Any) -> dict[str, HostArray]:
+    def _sensed(self, each: Sequence[Any], told: Mapping[str, HostArray]) -> dict[str, HostArray]:
+        seen = _stacked(each)
         try:
-            return {n: look(seen, at) for n, at in self._observes.items()} | dict(worlds.told)
+            return {n: look(seen, at) for n, at in self._observes.items()} | dict(told)
         except (LookupError, TypeError) as error:
             kind = type(seen).__name__ if not hasattr(seen, "shape") else list(seen.shape[1:])
             raise SystemMistake(
@@ -194,12 +188,15 @@ class EpisodePlant(Plant):
 
     @override
     def start(self, batch: Batch) -> _Batch:
-        worlds, n = self.worlds(batch), len(batch.scenes)
-        sensed = self._sensed(worlds, worlds.observation)
+        worlds, n = [self.world(name, batch.seed) for name in batch.scenes], len(batch.scenes)
+        seen, told = [world.observation for world in worlds], _told(worlds)
+        sensed = self._sensed(seen, told)
         no = np.zeros((3, n), bool)
         log = {name: [value] for name, value in sensed.items()}
         metrics = {name: np.full(n, np.nan) for name in self.metrics}
-        return _Batch(worlds, sensed, ~no[0], no[1], no[2], np.zeros(n, int), metrics, log, [])
+        return _Batch(
+            worlds, seen, told, sensed, ~no[0], no[1], no[2], np.zeros(n, int), metrics, log, []
+        )
 
     @override
     def sense(self, state: _Batch) -> dict[str, HostArray]:
@@ -210,8 +207,12 @@ class EpisodePlant(Plant):
         """Move what runs, freeze what does not, and judge what ends."""
         now, was = state, state.running
         action = to_numpy(inputs[self.action, "actuator"])
-        done = now.worlds.step(action, was, inputs.step)
-        fresh = self._sensed(now.worlds, done.observation)
+        rewards, ends = np.zeros(len(was)), np.zeros((2, len(was)), bool)
+        info: list[Mapping[str, Any]] = [{} for _ in was]
+        for i in map(int, np.flatnonzero(was)):
+            made = now.worlds[i].step(action[i], inputs.step)
+            now.seen[i], rewards[i], ends[0, i], ends[1, i], info[i] = made
+        fresh = self._sensed(now.seen, now.told)
         held, now.sensed = now.sensed, {}
         for name, old in held.items():
             value = fresh[name]
@@ -221,15 +222,15 @@ class EpisodePlant(Plant):
                 now.log[name].clear()
             now.log[name].append(value)
             now.sensed[name] = value
-        now.rewards.append(np.where(was, done.rewards, 0.0))
+        now.rewards.append(rewards)
         now.steps = now.steps + was
-        terminated = was & np.asarray(done.terminated, bool)
-        ended = was & (terminated | np.asarray(done.truncated, bool) | (now.steps == self.steps))
+        terminated, truncated = ends
+        ended = was & (terminated | truncated | (now.steps == self.steps))
         succeeded, crashed = now.succeeded.copy(), now.crashed.copy()
         for i in map(int, np.flatnonzero(ended)):
             signals = {name: np.stack([each[i] for each in log]) for name, log in now.log.items()}
-            rewards = np.array([each[i] for each in now.rewards])
-            episode = Episode(signals, rewards, bool(terminated[i]), done.info[i], self.dt_s)
+            paid = np.array([each[i] for each in now.rewards])
+            episode = Episode(signals, paid, bool(terminated[i]), info[i], self.dt_s)
             said: Any = self._succeeded(episode)
             if type(said) not in (bool, np.bool_):
                 raise SystemMistake(
@@ -241,7 +242,8 @@ class EpisodePlant(Plant):
             crashed[i] = terminated[i] and not succeeded[i]
         now.running, now.succeeded, now.crashed = was & ~ended, succeeded, crashed
         if not now.running.any():
-            now.worlds.close()
+            for world in now.worlds:
+                world.close()
         return now
 
     @override
@@ -251,18 +253,23 @@ class EpisodePlant(Plant):
 
     @override
     def conditions(self, state: _Batch) -> tuple[Sequence[str], Sequence[str]]:
-        return state.worlds.initial, state.worlds.disturbances
+        return [w.initial for w in state.worlds], [w.disturbance for w in state.worlds]
 
 
-def stacked(rows: Sequence[Any]) -> Any:
+def _told(worlds: Sequence[World]) -> dict[str, HostArray]:
+    names = worlds[0].told
+    return {name: np.array([np.asarray(w.told[name]) for w in worlds]) for name in names}
+
+
+def _stacked(rows: Sequence[Any]) -> Any:
     """Return observations of single scenes as that of a batch."""
     first = rows[0]
     if isinstance(first, Mapping):
         return {
-            key: stacked([row[key] for row in rows]) for key in cast("Mapping[Any, Any]", first)
+            key: _stacked([row[key] for row in rows]) for key in cast("Mapping[Any, Any]", first)
         }
     if isinstance(first, tuple):
-        return tuple(stacked(each) for each in zip(*rows, strict=True))
+        return tuple(_stacked(each) for each in zip(*rows, strict=True))
     return np.stack(rows)
 
 

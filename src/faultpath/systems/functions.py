@@ -8,17 +8,7 @@ from typing_extensions import override
 
 from faultpath.core.arrays import HostArray
 from faultpath.core.streams import generator
-from faultpath.loop import Batch
-from faultpath.systems.episodes import (
-    Episode,
-    EpisodePlant,
-    Look,
-    Measure,
-    Stepped,
-    Worlds,
-    hashed,
-    stacked,
-)
+from faultpath.systems.episodes import Episode, EpisodePlant, Look, Measure, World, hashed
 
 
 class FunctionPlant(EpisodePlant):
@@ -63,33 +53,28 @@ class FunctionPlant(EpisodePlant):
         )
 
     @override
-    def worlds(self, batch: Batch) -> Worlds:
-        return _FunctionWorlds(batch, self._start, self._step, self._over)
+    def world(self, scene: str, seed: int) -> World:
+        start = self._start(generator("plant/start", scene, 0))
+        return _FunctionWorld(scene, seed, start, self._step, self._over)
 
 
-class _FunctionWorlds(Worlds):
+class _FunctionWorld(World):
     def __init__(
         self,
-        batch: Batch,
-        start: Callable[[np.random.Generator], Any],
+        scene: str,
+        seed: int,
+        state: Any,
         step: Callable[[Any, HostArray, np.random.Generator], Any],
         over: Callable[[Any], bool] | None,
     ) -> None:
-        self._batch, self._step, self._over = batch, step, over
-        self._states = [start(generator("plant/start", name, 0)) for name in batch.scenes]
-        self.observation, self.told = stacked(self._states), {}
-        self.initial = [hashed(state) for state in self._states]
+        self._scene, self._seed, self._step, self._over = scene, seed, step, over
+        self.observation, self.told, self.initial = state, {}, hashed(state)
         # What a step draws is addressed by scene and seed, so this is all that decides it.
-        self.disturbances = [hashed(name, batch.seed) for name in batch.scenes]
+        self.disturbance = hashed(scene, seed)
 
     @override
-    def step(self, action: HostArray, running: HostArray, step: int) -> Stepped:
-        terminated = np.zeros(len(running), bool)
-        for i in np.flatnonzero(running):
-            rng = generator("plant/step", self._batch.scenes[i], self._batch.seed, step)
-            self._states[i] = self._step(self._states[i], action[i], rng)
-            terminated[i] = self._over is not None and self._over(self._states[i])
-        rewards, no = np.zeros(len(running)), np.zeros(len(running), bool)
-        return Stepped(
-            stacked(self._states), rewards, terminated, no, [dict[str, Any]()] * len(running)
-        )
+    def step(self, action: HostArray, step: int) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        rng = generator("plant/step", self._scene, self._seed, step)
+        self.observation = self._step(self.observation, action, rng)
+        over = self._over is not None and self._over(self.observation)
+        return self.observation, 0.0, over, False, {}

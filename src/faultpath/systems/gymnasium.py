@@ -16,18 +16,15 @@ from typing_extensions import override
 from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
 from faultpath.core.streams import generator
-from faultpath.loop import Batch
 from faultpath.systems.episodes import (
     RETURN,
     Episode,
     EpisodePlant,
     Look,
     Measure,
-    Stepped,
-    Worlds,
+    World,
     hashed,
     seed_of,
-    stacked,
 )
 from faultpath.trials.code import release
 
@@ -88,8 +85,8 @@ class GymnasiumPlant(EpisodePlant):
         )
 
     @override
-    def worlds(self, batch: Batch) -> Worlds:
-        return _Environments([self._make() for _ in batch.scenes], batch, self._setup)
+    def world(self, scene: str, seed: int) -> World:
+        return _Environment(self._make(), scene, self._setup)
 
     @override
     def identity(self) -> str:
@@ -107,29 +104,22 @@ class GymnasiumPlant(EpisodePlant):
         return gymnasium.make(self._environment, max_episode_steps=self._limit)
 
 
-class _Environments(Worlds):
-    """An environment for each scene, left alone once its episode has ended."""
-
-    def __init__(self, envs: Sequence[Any], batch: Batch, setup: Setup | None) -> None:
-        self._envs, self._space = envs, envs[0].action_space
-        seeds = [seed_of(name) for name in batch.scenes]
-        self._last = [env.reset(seed=seed)[0] for env, seed in zip(envs, seeds, strict=True)]
-        self.observation = stacked(self._last)
-        told: list[Mapping[str, Any]] = []
-        self.initial, self.disturbances = [], []
-        for i, name in enumerate(batch.scenes):
-            stream = envs[i].unwrapped.np_random.bit_generator.state
-            self.initial.append(hashed(name, self._last[i], stream))
-            rng = generator("environment/setup", name, 0)
-            found = setup(envs[i], rng) if setup else None
-            told.append({} if found is None else found)
-            done = (sorted(told[-1].items()), rng.bit_generator.state)
-            self.disturbances.append(hashed(done) if setup else "none")
-        self.told = {name: np.array([np.asarray(t[name]) for t in told]) for name in told[0]}
+class _Environment(World):
+    def __init__(self, env: Any, scene: str, setup: Setup | None) -> None:
+        self._env = env
+        self.observation, _ = env.reset(seed=seed_of(scene))
+        stream = env.unwrapped.np_random.bit_generator.state
+        self.initial = hashed(scene, self.observation, stream)
+        rng = generator("environment/setup", scene, 0)
+        self.told = (setup(env, rng) if setup else None) or {}
+        done = (sorted(self.told.items()), rng.bit_generator.state)
+        self.disturbance = hashed(done) if setup else "none"
 
     @override
-    def step(self, action: HostArray, running: HostArray, step: int) -> Stepped:
-        space = self._space
+    def step(
+        self, action: HostArray, step: int
+    ) -> tuple[Any, float, bool, bool, Mapping[str, Any]]:
+        space = self._env.action_space
         if space.shape is None:
             raise SystemMistake(
                 f"the environment takes actions of {space}: only arrays can be given"
@@ -140,23 +130,17 @@ class _Environments(Worlds):
                 f"{action.dtype}: give integers"
             )
         try:
-            rows = action.reshape(len(action), *space.shape).astype(space.dtype)
+            row = action.reshape(space.shape).astype(space.dtype)
         except ValueError:
             raise SystemMistake(
                 f"the environment takes actions of shape {list(space.shape)}, and one scene's is "
-                f"of shape {list(action.shape[1:])}: correct what writes it"
+                f"of shape {list(action.shape)}: correct what writes it"
             ) from None
-        rewards, ends = np.zeros(len(rows)), np.zeros((2, len(rows)), bool)
-        said: list[Mapping[str, Any]] = [{} for _ in rows]
-        for i in map(int, np.flatnonzero(running)):
-            found: Any = self._envs[i].step(rows[i])
-            self._last[i], rewards[i], ends[0, i], ends[1, i], said[i] = found
-        return Stepped(stacked(self._last), rewards, ends[0], ends[1], said)
+        return self._env.step(row[()])
 
     @override
     def close(self) -> None:
-        for env in self._envs:
-            env.close()
+        self._env.close()
 
 
 def _identity(env: Any) -> str:

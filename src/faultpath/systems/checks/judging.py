@@ -166,17 +166,16 @@ def _independence(name: str, seen: Seen) -> Check:
 
 
 def _gap(first: Sequence[Outcome], again: Sequence[Outcome]) -> float:
-    """Return by how much of their size numbers differ at most; infinite for another end."""
+    """Return by how much of their size metrics differ at most; infinite for another end."""
     by_scene, worst = {outcome.scene: outcome for outcome in first}, 0.0 if again else math.inf
     for b in again:
         a = by_scene[b.scene]
-        if a.status is not b.status or unlike(a, b) or set(a.metrics) != set(b.metrics):
+        if (a.status, a.time_s) != (b.status, b.time_s) or unlike(a, b):
             return math.inf
-        numbers = [(a.time_s, b.time_s, a.time_s)]
-        for name, value in a.metrics.items():
-            whole = max(abs(each.metrics[name] or 0.0) for each in first)
-            numbers.append((value or 0.0, b.metrics[name] or 0.0, whole))
-        worst = max(worst, *(abs(x - y) / whole if x != y else 0.0 for x, y, whole in numbers))
+        for name, value in b.metrics.items():
+            gap = abs((value or 0.0) - (a.metrics.get(name) or 0.0))
+            whole = max(abs(each.metrics.get(name) or 0.0) for each in first)
+            worst = max(worst, gap / whole if whole else gap)
     return worst
 
 
