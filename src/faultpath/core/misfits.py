@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pydantic import BaseModel, ValidationError
 
 _BRANCH = re.compile(r".*[\[(].*|constrained-.*|float|int|str|bool|none|[A-Z]\w*")
-"""What stands in a place for a branch that was tried and is no key: `float`, `literal['fit']`."""
+"""A step of a place that names a branch that was tried and is no key: `float`, `literal['fit']`."""
 _NUMBER, _WHOLE = "a number", "a whole number"
 _KINDS = {
     "string": "text",
@@ -34,17 +34,13 @@ _WITH = {
     "greater_than_equal": "a number of at least {ge:g}",
     "less_than": "a number below {lt:g}",
     "less_than_equal": "a number of at most {le:g}",
-    "multiple_of": "a multiple of {multiple_of:g}",
     "literal_error": "{expected}",
     "enum": "{expected}",
     "union_tag_invalid": "of the {discriminator} {expected_tags}",
-    "union_tag_not_found": "fields with a {discriminator} among them",
     "string_pattern_mismatch": "text of the form {pattern}",
     "string_too_short": "text of at least {min_length} characters",
-    "string_too_long": "text of at most {max_length} characters",
     "too_short": "of at least {min_length} values, and has {actual_length}",
     "too_long": "of at most {max_length} values, and has {actual_length}",
-    "is_instance_of": "a {class}",
 }
 """What is allowed, by the kind of error, with what the error says of it."""
 _SHOWN = 60
@@ -105,8 +101,8 @@ def _said(errors: Sequence[Mapping[str, Any]], known: Sequence[str]) -> str:
         return "is missing: add it"
     if kind == "extra_forbidden":
         name = str(first["loc"][-1])
-        told = unknown("field", name, known).removeprefix(f"unknown field '{name}'")
-        return f"is no field{told if known else ''}; correct its spelling or drop it"
+        hint = unknown("field", name, known).removeprefix(f"unknown field '{name}'")
+        return f"is no field{hint if known else ''}; correct its spelling or drop it"
     if kind in ("value_error", "assertion_error"):
         return str(context["error"]).rstrip(".") if "error" in context else "does not fit"
     allowed = [said for said in dict.fromkeys(map(_allowed, errors)) if said]

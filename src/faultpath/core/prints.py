@@ -18,7 +18,7 @@ def show_warning(
 ) -> None:
     """Show a warning in one line, in place of `warnings.showwarning`.
 
-    What NumPy says of numbers that overflow or are none is left out: what becomes of them is told
+    What NumPy says of numbers that overflow or are none is left out: what becomes of them is said
     where it matters.
     """
     del more

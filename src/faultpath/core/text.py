@@ -8,7 +8,7 @@ from difflib import get_close_matches
 _WORD = re.compile(r"\S{240,}")
 _LONGEST = 4000
 _MOST, _FEW = 20, 8
-"""Names that a sentence tells of, and how many of them where there are more."""
+"""Names that a sentence lists, and how many of them where there are more."""
 
 
 def steers(text: str) -> bool:
@@ -43,14 +43,14 @@ def listed(names: Iterable[str]) -> str:
 def unknown(what: str, name: str, known: Iterable[str]) -> str:
     """Return `unknown WHAT 'NAME'`, a close match where there is one, and the known names.
 
-    Of many names only some are told, the nearest to what was given.
+    Of many names only some are listed, the nearest to what was given.
     """
     known = tuple(known)
     close = get_close_matches(name, known, n=1)
     hint = f"did you mean '{close[0]}'? " if close else ""
-    told = known if len(known) <= _MOST else get_close_matches(name, known, _FEW, cutoff=0.0)
-    more = f" and {len(known) - len(told)} more" if len(told) < len(known) else ""
-    return f"unknown {what} '{name}'; {hint}known: {listed(told)}{more}"
+    shown = known if len(known) <= _MOST else get_close_matches(name, known, _FEW, cutoff=0.0)
+    more = f" and {len(known) - len(shown)} more" if len(shown) < len(known) else ""
+    return f"unknown {what} '{name}'; {hint}known: {listed(shown)}{more}"
 
 
 def extra(name: str) -> str:

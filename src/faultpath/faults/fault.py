@@ -183,7 +183,7 @@ class Coupled(Frozen):
 
 
 AnyFault: TypeAlias = Annotated[Fault | Coupled, Field(discriminator="kind")]
-"""A fault as arms carry it, told apart in JSON by its `kind`."""
+"""A fault as arms carry it; its `kind` says in JSON which."""
 
 
 def _matching(name: str, consumers: Collection[str]) -> bool:

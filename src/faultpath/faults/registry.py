@@ -69,7 +69,7 @@ Listed: TypeAlias = (
     | Sequence
 )
 AnyIntervention: TypeAlias = Annotated[Listed, Discriminator("kind")]
-"""Any intervention, told apart in JSON by its `kind`."""
+"""Any intervention; its `kind` says in JSON which."""
 
 Sequence.model_rebuild()
 

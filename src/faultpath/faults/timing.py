@@ -82,7 +82,7 @@ class Dropout(Intervention):
     random: ClassVar[bool] = True
     probability: float = Field(ge=0, le=1)
     substitute: Erase | None = None
-    """What stands in for a lost reading; `None`: the last that arrived, or else the first."""
+    """Delivered instead of a lost reading; `None`: the last that arrived, or else the first."""
 
     def begin(self, reading: Array, at: Moment) -> Memory:
         """Return the last reading that arrived."""
@@ -100,7 +100,7 @@ class Dropout(Intervention):
         return pick(arrives, reading, erased), last
 
     def words(self) -> str:
-        """Return `lost with probability PROBABILITY`, and what stands in."""
+        """Return `lost with probability PROBABILITY`, and what is delivered then."""
         instead = "held" if self.substitute is None else self.substitute.words()
         return f"lost with probability {number(self.probability)}, then {instead}"
 

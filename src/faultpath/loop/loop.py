@@ -23,7 +23,7 @@ class Clock:
 
     A source of `rate_hz` is sampled at the first control step at or after each of its ticks, and
     held in between. Its sample arrives `latency_s` later, rounded up to whole steps; until one has
-    arrived, the first sample stands in. A reading says of which step it is.
+    arrived, the first sample is delivered. A reading says of which step it is.
     """
 
     def __init__(self, source: Source, dt_s: float) -> None:

@@ -30,7 +30,7 @@ class Batch:
 
 
 class Part(ABC):
-    """What stands in a loop and reads at ports."""
+    """A part of a loop, which reads at ports."""
 
     name: str
     """Under which the interface lists its consumers, `name.place`. Parts may share it: a fault at
@@ -59,7 +59,7 @@ class Module(Part):
     """
 
     truths: tuple[str, ...] = ()
-    """What it takes of the plant's own state, past all taps. Only a stand-in for an estimator does
+    """What it takes of the plant's own state, past all taps. Only an override of an estimator does
     so, and tracing names it."""
 
     def begin(self, batch: Batch) -> Memory:
