@@ -13,6 +13,7 @@ from faultpath.decisions.model import (
     Change,
     DecisionRecord,
     Effect,
+    Extreme,
     FailedTrials,
     Path,
     PathBreakEven,
@@ -41,7 +42,6 @@ def decide(
     question: Question,
     paths: Sequence[Path],
     table: OutcomeTable,
-    resamples_seed: int = 0,
     findings: Sequence[str] = (),
 ) -> DecisionRecord:
     """Return the decision record of an audit.
@@ -54,16 +54,9 @@ def decide(
     gave the same.
     """
     asked = question.model_copy(update={"primary": primary_path(question.primary, paths)})
-    found = _compared(asked, paths, table)
-    if asked.generalise == "models" and next(iter(found.arms.values()))[0].shape[1] < 2:
-        raise UserError(
-            "all seeds gave the same outcome in every trial, so they say nothing of newly trained "
-            "models: leave --generalise models out."
-        )
     cells = cells_of(asked, paths, table)
     untested = untested_paths(paths, cells)
-    resamples = Resamples.draw(question.library_hash, found.scenes, seed=resamples_seed)
-    family = _family(asked, paths, found, untested, resamples)
+    found, resamples, family = _family(asked, paths, table, untested)
     effects = {
         path: _effect(asked, path, found, family, resamples, path not in untested)
         for path in found.arms
@@ -99,12 +92,13 @@ def decide(
 
 def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> bool:
     """Return whether a sequential audit stops with these trials; their order does not matter."""
+    untested = untested_paths(paths, cells_of(question, paths, table))
     try:
-        found = _compared(question, paths, table)
+        # What is decided of a sequential audit rests on no resamples.
+        _, _, family = _family(question, paths, table, untested, n_resamples=1)
     except UserError:  # no pair is sound so far
         return False
-    untested = untested_paths(paths, cells_of(question, paths, table))
-    held = _stopped(question, _family(question, paths, found, untested, None), table)
+    held = _stopped(question, family, table)
     return held is not None and held.reached
 
 
@@ -150,30 +144,33 @@ def _look(asked: Question) -> EarlierLook:
     )
 
 
-def _compared(question: Question, paths: Sequence[Path], table: OutcomeTable) -> Compared:
-    names = [path.name for path in paths]
-    arms = question.repair, question.baseline
-    return compared(*arms, names, table, distinct=question.stop is None)
-
-
 def _family(
     question: Question,
     paths: Sequence[Path],
-    found: Compared,
+    table: OutcomeTable,
     untested: Sequence[str],
-    resamples: Resamples | None,
-) -> Family:
-    shares = alpha_shares([path.name for path in paths], question.primary)
-    return decide_paths(
+    n_resamples: int = 10_000,
+) -> tuple[Compared, Resamples, Family]:
+    names = [path.name for path in paths]
+    sequential = question.stop is not None
+    found = compared(question.repair, question.baseline, names, table, distinct=not sequential)
+    if question.generalise == "models" and next(iter(found.arms.values()))[0].shape[1] < 2:
+        raise UserError(
+            "all seeds gave the same outcome in every trial, so they say nothing of newly trained "
+            "models: leave --generalise models out."
+        )
+    resamples = Resamples.draw(question.library_hash, found.scenes, n_resamples=n_resamples)
+    family = decide_paths(
         found.arms,
         rule=question.rule,
         primary=question.primary,
         resamples=resamples,
         models=question.generalise == "models",
         untested=untested,
-        shares=None if question.stop is None else shares,
+        shares=alpha_shares(names, question.primary) if sequential else None,
         voids=found.voids,
     )
+    return found, resamples, family
 
 
 def _stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped | None:
@@ -219,6 +216,9 @@ def _effect(
     counts = effect.counts.per_seed
     wins, losses = (tuple(getattr(c, f) for c in counts) for f in ("first_only", "second_only"))
     rates = percent(baseline), percent(repair)
+    extreme: Extreme | None = "floor" if max(rates) < FLOOR_PERCENT else None
+    if min(rates) > CEILING_PERCENT:
+        extreme = "ceiling"
     failed, least = None, None
     if path in family.fills:
         fills, voids = family.fills[path], found.voids[path]
@@ -250,11 +250,7 @@ def _effect(
         losses=losses,
         baseline_percent=rates[0],
         repair_percent=rates[1],
-        extreme="floor"
-        if max(rates) < FLOOR_PERCENT
-        else "ceiling"
-        if min(rates) > CEILING_PERCENT
-        else None,
+        extreme=extreme,
         acted=acted,
         minimum_detectable_pp=least,
         **secondary(pairs, resamples, asked),
@@ -282,19 +278,18 @@ def _break_even(asked: Question, family: Family, correct: Effect, faulty: Effect
     ends = family.effects[CORRECT], family.effects[faulty.path]
     level = 1.0 - min(end.decision.critical_p for end in ends if end.decision)
     found = break_even(*ends, level=level)
-    borne_out = [each for each in found.regions if _borne_out(each, correct, faulty)]
+    # What a table and a picture show is borne out by the effect at an end, and reaches it.
+    kept: list[Region] = []
+    for each in found.regions:
+        low = each.low > 0.0 or (correct.leads and each.sign == correct.sign)
+        high = each.high < 1.0 or (faulty.leads and each.sign == faulty.sign)
+        inner = each.low > 0.0 and each.high < 1.0
+        shown = wording.last(each.high) > 0 and wording.first(each.low) < 100
+        if low and high and shown and not inner:
+            kept.append(each)
     return PathBreakEven(
         path=faulty.path,
-        result=only(found, borne_out),
+        result=only(found, kept),
         curve=mixture_curve(*ends, level=level),
         words=phrases.frequency(asked, found.regions, correct, faulty),
     )
-
-
-def _borne_out(region: Region, correct: Effect, faulty: Effect) -> bool:
-    """Return whether effects bear a region out to the end: what a table and a picture show."""
-    low = region.low > 0.0 or (correct.leads and region.sign == correct.sign)
-    high = region.high < 1.0 or (faulty.leads and region.sign == faulty.sign)
-    inner = region.low > 0.0 and region.high < 1.0
-    shown = wording.last(region.high) > 0 and wording.first(region.low) < 100
-    return low and high and not inner and shown

@@ -1,6 +1,5 @@
 """What is said of a record, sentence by sentence, from what was decided and nothing else."""
 
-import math
 from collections.abc import Iterator
 
 from faultpath.decisions.model import Change, DecisionRecord, Effect
@@ -54,20 +53,18 @@ def _stopping(record: DecisionRecord) -> Iterator[str]:
     held, rule, most = record.stopped, record.question.stop, record.question.n_scenes
     if held is None or rule is None:
         return
-    because = "because" if held.reached else "but"
+    whole = held.scenes == most
+    because = "but" if not held.reached else "and" if whole else "because"
+    why = f"the primary contrast was {'' if held.reached else 'not '}decided"
     if rule.when == "all-decided":
         also = f" or smaller than {margin(record)}" if rule.margin_pp else ""
         why = f"{'every' if held.reached else 'not every'} effect was decided{also}"
     elif record.question.primary in held.small:
         why = f"the primary contrast was shown to be smaller than {margin(record)}"
-    else:
-        why = f"the primary contrast was {'' if held.reached else 'not '}decided"
-    if held.scenes == most:
+    took = f"it {'stopped after' if held.reached else 'took'} {counted(held.scenes, 'scene')}"
+    took += f" of at most {most}"
+    if whole:
         took = f"it took all that it was allowed, {counted(held.scenes, 'scene')}"
-        because = "and" if held.reached else "but"
-    else:
-        verb = "stopped after" if held.reached else "took"
-        took = f"it {verb} {counted(held.scenes, 'scene')} of at most {most}"
     trials = counted(held.scenes * rule.trials, "trial")
     yield f"This audit was sequential: {took} ({trials}), {because} {why}."
     yield (
@@ -196,16 +193,11 @@ def would_change(record: DecisionRecord) -> Iterator[str]:
         yield "Easier scenes or a smaller fault: where both fail, a difference can hardly show."
     if any(each.extreme == "ceiling" for each in tested):
         yield "Harder scenes or a larger fault: where both succeed, a difference can hardly show."
-    missed: dict[int, list[str]] = {}
-    for each in tested:
-        if not (record.few or each.sign) and each.minimum_detectable_pp is not None:
-            missed.setdefault(math.ceil(each.minimum_detectable_pp), []).append(where(each.path))
-    if missed:
-        listed = "; ".join(f"{least} pp {' and '.join(at)}" for least, at in missed.items())
+    if not record.few and any(e.minimum_detectable_pp and not e.sign for e in tested):
         yield (
             "Fresh scenes, which no audit has looked at, and more of them, or --stop-when, which "
-            "allows for looks: a smaller true difference than these is found with less than 80 % "
-            f"power: {listed}. Adding scenes to this audit would break its 5 %."
+            "allows for looks: they find smaller differences. Adding scenes to this audit would "
+            "break its 5 %."
         )
     yield "Another size or sign of the fault, another library or wiring: none of these was run."
 

@@ -33,11 +33,11 @@ from faultpath.trials import (
     Variant,
 )
 from faultpath.trials import question as asking
-from faultpath.trials.question import AuditQuestion, StopWhen
+from faultpath.trials.question import AuditQuestion
 
 LOOK = 5
-"""Scenes from one look to the next of a sequential audit, where the system flies as many at once:
-fewer save few trials and cost much for systems that fly their scenes together."""
+"""Scenes from one look to the next of a sequential audit, where the system runs as many at once:
+fewer save few trials and cost much for systems that run their scenes together."""
 _ORDER_SEED = 0
 """One order for each library, so that nobody can choose among several."""
 
@@ -122,8 +122,7 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
         for variant in variants
         for seed in asked.seeds
     ]
-    if asked.generalise == "models":
-        _check_trainings(system, asked.seeds, asked.stop_when)
+    _check(system, asked)
     study = Study(
         name=f"{spec.name}-{asked.repair}-vs-{asked.baseline}",
         system=spec,
@@ -132,6 +131,16 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
         rows=tuple(rows),
         look=min(LOOK, system.block_size) if sequential else 0,
     )
+    stop = None
+    if asked.stop_when is not None:
+        stop = StopRule(
+            when=asked.stop_when,
+            margin_pp=asked.margin_pp,
+            order=chosen,
+            order_seed=_ORDER_SEED,
+            look=study.look,
+            trials=len(study.arms()),
+        )
     question = Question(
         system=spec.name,
         options=spec.options,
@@ -148,9 +157,9 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
         trained=system.trained,
         ends={status.value: words for status, words in system.ends.items()},
         metrics=dict(system.metrics),
-        metric=_metric(system, asked.metric, asked.thresholds),
+        metric=asked.metric,
         thresholds=tuple(sorted(set(asked.thresholds))),
-        stop=_stop_rule(asked.stop_when, asked.margin_pp, study),
+        stop=stop,
         rule=asked.rule,
     )
     return Audit(question, tuple(paths), study)
@@ -196,34 +205,21 @@ def _consumers(system: System, fault: AnyFault | None, variant: Variant) -> tupl
     return tuple(dict.fromkeys(struck))
 
 
-def _metric(system: System, name: str, thresholds: Sequence[float]) -> str:
-    if thresholds and not name:
+def _check(system: System, asked: AuditQuestion) -> None:
+    """Raise `UserError` for a metric, a margin or a population that means nothing."""
+    if asked.thresholds and not asked.metric:
         raise UserError("thresholds of what? Name a metric of the system beside them.")
-    if name and name not in system.metrics:
-        raise UserError(f"{system.name}: {unknown('metric', name, system.metrics)}")
-    return name
-
-
-def _stop_rule(when: StopWhen | None, margin_pp: float | None, study: Study) -> StopRule | None:
-    if margin_pp is not None and not (when and 0.0 < margin_pp < 100.0):
+    if asked.metric and asked.metric not in system.metrics:
+        raise UserError(f"{system.name}: {unknown('metric', asked.metric, system.metrics)}")
+    margin = asked.margin_pp
+    if margin is not None and not (asked.stop_when and 0.0 < margin < 100.0):
         raise UserError(
-            f"a margin of {margin_pp:g} pp says when a sequential audit counts a difference as "
+            f"a margin of {margin:g} pp says when a sequential audit counts a difference as "
             "none: give it with --stop-when, between 0 and 100."
         )
-    if when is None:
-        return None
-    return StopRule(
-        when=when,
-        margin_pp=margin_pp,
-        order=study.scenes,
-        order_seed=_ORDER_SEED,
-        look=study.look,
-        trials=len(study.arms()),
-    )
-
-
-def _check_trainings(system: System, seeds: Sequence[int], stop_when: StopWhen | None) -> None:
-    if stop_when:
+    if asked.generalise != "models":
+        return
+    if asked.stop_when:
         raise UserError(
             "no test of newly trained models holds wherever one stops: leave --stop-when or "
             "--generalise models out."
@@ -232,29 +228,23 @@ def _check_trainings(system: System, seeds: Sequence[int], stop_when: StopWhen |
         raise UserError(
             f"{system.name} has no trained models to generalise to: leave --generalise models out."
         )
-    if len(seeds) < 2:
+    if len(asked.seeds) < 2:
         raise UserError(
             "one seed says nothing about newly trained models: give several, such as "
-            "--seeds 0,1,2, "
-            "or leave --generalise models out."
+            "--seeds 0,1,2, or leave --generalise models out."
         )
 
 
 def two_variants(system: System, asked: asking.Question) -> tuple[Variant, Variant]:
     """Return baseline and repair; `UserError` for an unknown one, and where both are one."""
-    found = variant_of(system, asked.baseline), variant_of(system, asked.repair)
+    for name in (asked.baseline, asked.repair):
+        if name not in system.variants:
+            raise UserError(f"{system.name}: {unknown('variant', name, system.variants)}")
     if asked.baseline == asked.repair:
         raise UserError(
             f"baseline and repair are both '{asked.repair}': name two different variants."
         )
-    return found
-
-
-def variant_of(system: System, name: str) -> Variant:
-    """Return a variant by its name; `UserError` for an unknown one."""
-    if name not in system.variants:
-        raise UserError(f"{system.name}: {unknown('variant', name, system.variants)}")
-    return system.variants[name]
+    return system.variants[asked.baseline], system.variants[asked.repair]
 
 
 def scenes_of(library: Library, count: int | None, in_order: bool = True) -> tuple[str, ...]:

@@ -21,13 +21,13 @@ Role = Literal["correct", "repaired", "shared", "attribution"]
 
 
 class StudyArm(Frozen):
-    """One path of the fault, flown with both variants."""
+    """One path of the fault, run with both variants."""
 
     path: str
     role: Role
     """`repaired`: isolated at the module that the repair changes; `attribution`: at another."""
     baseline: tuple[str, ...] = ()
-    """Consumers that the fault strikes there; without any the arm is that of correct inputs."""
+    """Consumers that the fault reaches there; without any the arm is that of correct inputs."""
     repair: tuple[str, ...] = ()
 
     @model_validator(mode="after")
@@ -130,5 +130,5 @@ def check_arms(study: StudyFile, planned: StudyAudit, audit: Audit) -> None:
         other = sorted({path for path, _, _ in now ^ then})
         raise UserError(
             f"audit '{planned.name}' of the study file has other arms than the system now has for "
-            f"'{planned.fault}' ({', '.join(other)}): an audit flies all of its arms, so plan anew."
+            f"'{planned.fault}' ({', '.join(other)}): an audit runs all of its arms, so plan anew."
         )
