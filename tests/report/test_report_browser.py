@@ -1,7 +1,6 @@
 """The page in a real browser, without a network: it draws, answers and stays quiet."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
@@ -58,20 +57,7 @@ def test_pictures_have_a_size_and_nothing_sticks_out(page: Page) -> None:
     assert sideways <= 0
 
 
-def test_the_story_can_be_read_and_the_rest_unfolds_by_key(page: Page) -> None:
-    texts = page.evaluate(
-        """() => [...document.querySelectorAll(".forks svg")].flatMap((svg) => {
-          const whole = svg.getBoundingClientRect();
-          const scale = whole.width / svg.viewBox.baseVal.width;
-          return [...svg.querySelectorAll("text")].map((text) => {
-            const box = text.getBoundingClientRect();
-            const inside = box.left >= whole.left - 1 && box.right <= whole.right + 1;
-            return [inside, parseFloat(getComputedStyle(text).fontSize) * scale];
-          });
-        })"""
-    )
-    assert len(texts) > 40
-    assert all(inside and size >= 10 for inside, size in texts)
+def test_the_rest_unfolds_by_key(page: Page) -> None:
     first = page.locator(".verdict details.more p").first
     assert not first.is_visible()
     page.locator(".verdict details.more summary").focus()
@@ -120,8 +106,3 @@ def test_a_cell_leads_to_its_trial_by_key_and_the_address_brings_it_back(page: P
     assert chosen.get_attribute("data-path") == "shared"
     page.goto(page.url.partition("#")[0] + "#scene=no&seed=%E0%A4%A")
     assert chosen.get_attribute("data-path") == "shared"
-
-
-def test_page_prints(page: Page, tmp_path: Path) -> None:
-    printed = page.pdf(path=tmp_path / "report.pdf", format="A4")
-    assert len(printed) > 20_000

@@ -176,20 +176,6 @@ def test_other_paths_are_blank_and_not_left_out(
     assert all("repair minus baseline, pp" in svg for svg in panels)
 
 
-def test_numbers_are_the_records_and_bold_is_decided(two: Given) -> None:
-    first, second = two[0], signed(two[1], "shared", 0)
-    entries = [line.entries for line in effects((first, second)).lines if line.entries]
-    shared = first.effect("shared")
-    told = entries[-2][1]
-    assert told.detected
-    assert not entries[-1][1].detected
-    assert told.text.startswith(f"−{abs(shared.success.value):.1f} [")
-    assert (entries[-2][2].text, entries[-1][2].text) == ("gru", "–")
-    text = page((first, second))
-    assert text.count('class="dot baseline"') >= 1
-    assert text.count('class="dot open"') >= 1
-
-
 def test_hostile_names_are_text(one_seed: ReportInput) -> None:
     runs = (
         run(one_seed, 1, NASTY, fault=NASTY, baseline=NASTY),
@@ -204,31 +190,3 @@ def test_hostile_names_are_text(one_seed: ReportInput) -> None:
     assert "<script>alert" not in text
     assert "\u202e" not in text
     assert "&lt;script&gt;" in text
-
-
-@pytest.mark.browser
-@pytest.mark.parametrize(("width", "scheme"), [(1400, "light"), (800, "light"), (390, "dark")])
-def test_in_a_browser(
-    browser: Browser, two: Given, tmp_path: Path, width: int, scheme: str
-) -> None:
-    place = tmp_path / "page.html"
-    place.write_text(page(two), encoding="utf-8")
-    context = browser.new_context(
-        viewport={"width": width, "height": 900}, color_scheme=scheme, offline=True
-    )
-    opened = context.new_page()
-    said: list[str] = []
-    opened.on("console", lambda message: said.append(message.text))
-    opened.goto(place.as_uri())
-    root = "document.documentElement"
-    assert opened.evaluate(f"{root}.scrollWidth - {root}.clientWidth") == 0
-    sizes = opened.evaluate(
-        "() => [...document.querySelectorAll('svg.fig')]"
-        ".map((e) => e.getBoundingClientRect().width)"
-    )
-    assert len(sizes) == 4
-    assert all(size > 300 for size in sizes)
-    opened.keyboard.press("Tab")
-    assert opened.evaluate("document.activeElement.className") == "skip"
-    context.close()
-    assert said == []

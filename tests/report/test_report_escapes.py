@@ -14,7 +14,6 @@ from reproduction_toys import ledger
 from faultpath.decisions.tables import Entry, Line, Table, escapes
 from faultpath.decisions.tables.markdown import block as table_markdown
 from faultpath.report.frame import render
-from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import Svg
 from faultpath.report.tables import markdown_table
@@ -128,17 +127,6 @@ def test_what_cannot_be_seen_is_shown_by_its_number(one_seed: ReportInput) -> No
     svg.path("M0 0", UNSEEN, tip=UNSEEN)
     root = ElementTree.fromstring(svg.render(standalone=True))
     assert "".join(root.itertext()).count(SEEN) == 5
-
-
-def test_a_page_can_be_written_whatever_names_there_are(one_seed: ReportInput) -> None:
-    record = one_seed.record
-    question = record.question.model_copy(update={"library": UNSEEN, "system": f"<{UNSEEN}"})
-    changed = record.model_copy(update={"question": question})
-    page = report_page(type(one_seed)(**{**vars(one_seed), "record": changed}))
-    page.encode()
-    assert SEEN in page
-    assert f"&lt;{SEEN}" in page
-    assert "\x1b" not in page
 
 
 def test_the_frame_escapes_what_is_text_and_keeps_what_is_markup() -> None:

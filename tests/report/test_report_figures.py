@@ -3,14 +3,12 @@
 import re
 from xml.etree import ElementTree
 
-import pytest
-
 from faultpath.decisions import DecisionRecord
 from faultpath.decisions.model import PathBreakEven
 from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import pair_grid, pair_key, read_pairs
-from faultpath.report.svg import Axis, Svg, covering, number, shortened, text_width, wrapped
+from faultpath.report.svg import Svg, shortened, text_width, wrapped
 from faultpath.report.taps import fork_panel, forks
 from faultpath.statistics import BreakEven, Region
 
@@ -69,20 +67,6 @@ def test_the_curve_is_coloured_where_an_arm_is_decided(one_seed: ReportInput) ->
     assert "No frequency is decided." in silent
     both = _panel(record, "b is ahead", ((0.0, 0.2), (0.6, 1.0)), Region(low=0.2, high=0.6, sign=1))
     assert both.count('class="star-range"') == 2
-
-
-def test_axes_cover_and_ticks_are_round() -> None:
-    axis = covering([-13.9, 19.0]).at(0.0, 330.0)
-    assert axis.low < -13.9
-    assert axis.high > 19.0
-    assert [t for t in axis.ticks(5) if t % 10] == []
-    assert Axis(0, 1, 10, 20)(0.5) == 15
-    assert covering([]).low < 0 < covering([]).high
-
-
-@pytest.mark.parametrize("value", [0.0, -0.001, 0.5, -0.5, 10, 100.25, -7])
-def test_coordinates_survive_shortening(value: float) -> None:
-    assert float(number(value)) == pytest.approx(value, abs=0.005)
 
 
 def test_long_labels_are_cut_or_wrapped() -> None:

@@ -4,55 +4,16 @@ import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from html.parser import HTMLParser
 from itertools import pairwise
 
 import pytest
-from conftest import unpack
+from conftest import Page, unpack
 
-from faultpath.decisions import wording
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import Kind, read_pairs
 
-MINUS = "−"
 FIGURE_NAMESPACE = "http://www.w3.org/2000/svg"
-
-
-class Page(HTMLParser):
-    """Tags with attributes, cells of tables, and the text that a reader sees."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self.rows: list[list[str]] = []
-        self.words: list[str] = []
-        self._inside: list[str] = []
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append((tag, dict(attrs)))
-        if tag in ("script", "style", "title"):
-            self._inside.append(tag)
-        if tag == "tr":
-            self.rows.append([])
-        if tag in ("td", "th"):
-            self.rows[-1].append("")
-            self._inside.append("cell")
-
-    def handle_endtag(self, tag: str) -> None:
-        if tag in ("script", "style", "title", "td", "th"):
-            self._inside.pop()
-
-    def handle_data(self, data: str) -> None:
-        if self._inside and self._inside[-1] == "cell":
-            self.rows[-1][-1] += data
-        if not self._inside or self._inside[-1] == "cell":
-            self.words.append(data)
-
-    @property
-    def text(self) -> str:
-        return re.sub(r"\s+", " ", " ".join(self.words))
 
 
 @pytest.fixture(scope="module", params=[(0,), (0, 1, 2)], ids=["one seed", "three seeds"])
@@ -68,14 +29,6 @@ def html(source: ReportInput) -> str:
 @pytest.fixture(scope="module")
 def page(html: str) -> Page:
     return Page(html)
-
-
-def signed(value: float, digits: int = 1) -> str:
-    return f"{value:+.{digits}f}".replace("-", MINUS)
-
-
-def plain(value: float, digits: int = 1) -> str:
-    return f"{value:.{digits}f}".replace("-", MINUS)
 
 
 def test_page_loads_nothing(html: str, page: Page) -> None:
@@ -111,7 +64,7 @@ def test_verdict_comes_first_and_headings_do_not_skip(source: ReportInput, page:
 
 
 def test_ids_are_unique_and_links_lead_somewhere(page: Page, source: ReportInput) -> None:
-    ids = [a["id"] for _, a in page.tags if a.get("id")]
+    ids = page.ids
     assert len(ids) == len(set(ids))
     links = [a["href"] for tag, a in page.tags if tag == "a" and a.get("href")]
     trials = {link for link in links if link.startswith("#scene=")}
@@ -126,24 +79,6 @@ def test_every_figure_is_named(page: Page) -> None:
     ids = {a.get("id") for _, a in page.tags}
     for attributes in figures:
         assert set((attributes["aria-labelledby"] or "").split()) <= ids
-
-
-def test_table_has_the_numbers_of_the_record(source: ReportInput, page: Page) -> None:
-    record = source.record
-    titles = {path.title: path.name for path in record.paths}
-    named = [(row[0].partition(" (primary)")[0], row) for row in page.rows if row]
-    rows = {titles[title]: row for title, row in named if title in titles and len(row) == 11}
-    breaks = {b.path: b.result for b in record.break_even}
-    for effect in record.effects:
-        row = rows[effect.path]
-        assert row[1:3] == [plain(effect.baseline_percent), plain(effect.repair_percent)]
-        assert row[3].startswith(signed(effect.success.value).replace("+0.0", "0.0"))
-        adjusted = effect.adjusted_p_value or 0.0
-        assert row[6] == ("< 0.001" if adjusted < 0.001 else f"{adjusted:.3f}")
-        assert row[7] == plain(effect.minimum_detectable_pp or 0.0)
-        assert row[8:10] == [str(effect.scenes), str(effect.void_pairs)]
-        result = breaks.get(effect.path)
-        assert row[10] == ("–" if result is None else wording.break_even(result))
 
 
 def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:

@@ -1,9 +1,9 @@
 """The page of a reproduction: whole, closed to the network, escaped, with the numbers given."""
 
 import re
-from html.parser import HTMLParser
 
 import pytest
+from conftest import Page
 from faultpath_quadrotor.paper.report import words
 from faultpath_quadrotor.paper.report.page import reproduction_page, sweep_plot
 from faultpath_quadrotor.paper.report.terminal import ledger_markdown, ledger_view
@@ -19,36 +19,6 @@ CENTRAL = Table(
     lines=(Line(label="Here", entries=(Entry(text="+5.0", detected=True), Entry(text="−4.0"))),),
     notes=("The reversal is decided here.",),
 )
-
-
-class Page(HTMLParser):
-    """Tags with attributes, and the text that a reader sees."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self._words: list[str] = []
-        self._hidden = 0
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append((tag, dict(attrs)))
-        self._hidden += tag in ("script", "style", "title", "desc")
-
-    def handle_endtag(self, tag: str) -> None:
-        self._hidden -= tag in ("script", "style", "title", "desc")
-
-    def handle_data(self, data: str) -> None:
-        if not self._hidden:
-            self._words.append(data)
-
-    @property
-    def text(self) -> str:
-        return re.sub(r"\s+", " ", " ".join(self._words))
-
-    @property
-    def ids(self) -> list[str]:
-        return [a["id"] for _, a in self.tags if a.get("id")]
 
 
 @pytest.fixture(scope="module")
@@ -83,14 +53,6 @@ def test_ids_are_unique_and_links_lead_somewhere(page: Page) -> None:
     assert {link.removeprefix("#") for link in links if link} - {"C26"} <= set(page.ids)
 
 
-def test_sections_stand_in_the_order_of_reading(page: Page) -> None:
-    order = ["central", "claims", "tables", "table-1", "table-6a", "figures", "figure-3", "method"]
-    assert [i for i in page.ids if i in order] == order
-    text = page.text
-    assert text.index("C26 is open here.") < text.index("Of the paper’s 4 claims, our runs confirm")
-    assert text.index("1 trial failed to run.") < text.index("C01")
-
-
 def test_every_claim_opens_to_its_parts_and_evidence(html: str, page: Page) -> None:
     for claim in ledger().claims:
         row = html.partition(f'id="{claim.id}"')[2].partition("</details>")[0]
@@ -111,13 +73,6 @@ def test_tables_set_each_figure_beside_the_papers(html: str, page: Page) -> None
     assert '<span class="ours found">+57.3</span>' in html
     assert all(f'id="{table.name}"' in html for table in tables())
     assert "100 throughout" in page.text
-
-
-def test_a_page_without_tables_figures_and_provenance() -> None:
-    empty = {"tables": (), "figures": ()}
-    page = Page(reproduction_page(reproduction().model_copy(update=empty), None, None))
-    assert {"C01", "provenance"} <= set(page.ids)
-    assert not {"central", "tables", "figures"} & set(page.ids)
 
 
 def test_sweep_draws_every_point_and_band() -> None:

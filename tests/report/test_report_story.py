@@ -7,7 +7,7 @@ from pathlib import Path as FilePath
 
 import pytest
 
-from faultpath.decisions import DecisionRecord, Path
+from faultpath.decisions import Path
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.taps import Fork, fork_panel, forks
@@ -117,10 +117,6 @@ def test_with_too_few_scenes_the_screen_says_so_and_asks_for_nothing(
     assert "succeeds more often" not in said
     assert "What follows" not in said
     assert not IMPERATIVE.search(said)
-
-
-def _said(record: DecisionRecord) -> set[str]:
-    return {effect.path for effect in record.effects if effect.detected}
 
 
 def test_without_a_pair_on_a_path_the_picture_says_so(make: Callable[..., ReportInput]) -> None:

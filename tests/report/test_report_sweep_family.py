@@ -56,12 +56,3 @@ def test_correct_inputs_that_are_the_same_trials_count_once(one_seed: ReportInpu
     first = together([low(run) for run in runs])[0].family
     assert first is not None
     assert first[CORRECT][1] == pytest.approx((3 * own - 2) * lowest)
-
-
-def test_audits_that_are_no_sizes_stand_by_themselves(one_seed: ReportInput) -> None:
-    runs = drawn(one_seed, np.random.default_rng(0), 2)
-    other = runs[1].asked.model_copy(update={"seeds": (7,)})
-    record = runs[1].record.model_copy(update={"question": other})
-    assert [run.family for run in together([runs[0], replace(runs[1], record=record)])] == [
-        None
-    ] * 2

@@ -7,14 +7,12 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from faultpath.core.errors import UserError
 from faultpath.decisions import DecisionRecord, wording
 from faultpath.decisions.model import Effect
-from faultpath.interface import Interface
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.tables import by_path, decided_for, latex_table, markdown_table
-from faultpath.report.terminal import decision, interface_table
+from faultpath.report.terminal import decision
 
 
 def _expected(record: DecisionRecord) -> dict[str, list[str]]:
@@ -123,17 +121,6 @@ def test_a_narrow_terminal_cuts_no_number(path: Path) -> None:
         assert all(entry.text in text for entry in row.entries), text
 
 
-def test_terminal_shows_an_interface(drawn_interface: Interface) -> None:
-    console = Console(file=io.StringIO(), width=120, force_terminal=False)
-    console.print(interface_table(drawn_interface))
-    text = console.file.getvalue()  # type: ignore[attr-defined] - a StringIO
-    for channel in drawn_interface.channels:
-        assert channel.name in text
-    for source in drawn_interface.sources:
-        assert source.name in text
-    assert "reconstruction reconstructs reconstructed_wind." in text
-
-
 def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:
     folder = tmp_path / "deep" / "report"
     written = write_report(one_seed, folder)
@@ -143,12 +130,6 @@ def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:
     write_report(one_seed, folder)
     assert written[0].read_bytes() == before
     assert len(list(folder.iterdir())) == 3
-
-
-def test_a_folder_that_is_a_file_is_a_users_mistake(one_seed: ReportInput, tmp_path: Path) -> None:
-    (tmp_path / "taken").write_text("")
-    with pytest.raises(UserError, match="cannot make the folder"):
-        write_report(one_seed, tmp_path / "taken")
 
 
 def test_an_interval_that_leaves_out_0_undetected_has_its_p_in_every_table(

@@ -1,6 +1,5 @@
 """The report as one page that opens without a network, as a notebook's cell, and as files."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 from markupsafe import Markup
@@ -9,7 +8,6 @@ from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.decisions.phrases import change
 from faultpath.decisions.summary import answers, in_short
-from faultpath.decisions.tables import Table
 from faultpath.decisions.tables.html import html
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.effects import forest, frequency_panels
@@ -41,6 +39,7 @@ def report_page(source: ReportInput) -> str:
     titles = {path.name: path.title for path in record.paths}
     effects = {effect.path: effect for effect in record.effects}
     why = adding(source, pairs)
+    told = (ended(record), secondary(record), by_threshold(record))
     return render(
         "report.html.j2",
         _STYLES,
@@ -80,7 +79,7 @@ def report_page(source: ReportInput) -> str:
             for name, title in titles.items()
         ],
         pair_key=[(Markup(sign), words) for sign, words in pair_key(pairs)],
-        outcomes=[(table.title, Markup(html(table))) for table in _outcomes(record)],
+        outcomes=[(table.title, Markup(html(table))) for table in filter(None, told)],
         viewer=viewer,
         w=wording,
     )
@@ -111,8 +110,3 @@ def _finding(record: DecisionRecord) -> list[tuple[Effect, str]]:
             if each.turn == turn and {each.isolated, each.shared} <= effects.keys():
                 return [(effects[p], wording.where(p)) for p in (each.isolated, each.shared)]
     return []
-
-
-def _outcomes(record: DecisionRecord) -> Iterator[Table]:
-    yield ended(record)
-    yield from filter(None, (secondary(record), by_threshold(record)))

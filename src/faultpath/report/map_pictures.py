@@ -28,13 +28,17 @@ _EQUAL = "0: both succeed equally often"
 def map_picture(record: MapRecord) -> Svg:
     """Return the map: who is decided to be ahead where, the estimate's zero, paths and points."""
     asked, side = record.question, _SIDE
-    svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, _title(record), record.headline)
+    title = f"Reversal map of {asked.system}: {asked.repair} against {asked.baseline}"
+    svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, title, record.headline)
     x = Axis(-asked.up_to, asked.up_to, _LEFT, _LEFT + side)
     y = Axis(-asked.up_to, asked.up_to, _TOP + side, _TOP)
     hatch = svg.hatch("baseline", "range baseline", 6)
     _key(svg, record, hatch)
     _areas(svg, record, x, y, hatch)
-    svg.path(_square(x, y), "inner")
+    svg.path(
+        f"M{number(x.start)} {number(y.start)}H{number(x.end)}V{number(y.end)}H{number(x.start)}Z",
+        "inner",
+    )
     _paths(svg, record, x, y)
     svg.path(" ".join(_zero(record, x, y)), "range")
     for point in record.points:
@@ -42,11 +46,6 @@ def map_picture(record: MapRecord) -> Svg:
         svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(asked, point))
     _scales(svg, record, x, y)
     return svg
-
-
-def _title(record: MapRecord) -> str:
-    asked = record.question
-    return f"Reversal map of {asked.system}: {asked.repair} against {asked.baseline}"
 
 
 def _areas(svg: Svg, record: MapRecord, x: Axis, y: Axis, hatch: str) -> None:
@@ -87,12 +86,6 @@ def _paths(svg: Svg, record: MapRecord, x: Axis, y: Axis) -> None:
         svg.text(left, up, shortened(name, _RIGHT - 8, 12), "bold", anchor, tip=name)
         svg.text(left, up + 14, "alone", "bold", anchor)
     svg.text(x.end + 6, y.end + 4, "shared", "bold")
-
-
-def _square(x: Axis, y: Axis) -> str:
-    return (
-        f"M{number(x.start)} {number(y.start)}H{number(x.end)}V{number(y.end)}H{number(x.start)}Z"
-    )
 
 
 def _zero(record: MapRecord, x: Axis, y: Axis) -> Iterator[str]:

@@ -6,7 +6,6 @@ Which taps had the fault in force comes from receipts, who reads from the wiring
 from dataclasses import dataclass
 
 from faultpath.decisions import CORRECT
-from faultpath.decisions.model import Path
 from faultpath.decisions.wording import series
 from faultpath.interface import module_of
 from faultpath.report.inputs import ReportInput
@@ -20,15 +19,6 @@ _PITCH, _MODULES = 46.0, 102.0
 _TRUNK, _TAP, _BOX = 12.0, 27.0, 38.0
 _SHORT = 9
 """Letters of a channel's name that still fit into the box of a module."""
-
-
-def struck_taps(path: Path) -> tuple[frozenset[Tap], frozenset[Tap]]:
-    """Return the taps at which the fault was in force, in the baseline and in the repair."""
-    baseline, repair = (
-        frozenset((tap.channel, tap.consumer) for tap in struck)
-        for struck in (path.baseline_struck, path.struck)
-    )
-    return baseline, repair
 
 
 @dataclass(frozen=True)
@@ -93,11 +83,14 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
         if path.name == CORRECT:
             continue
         arms: list[tuple[str, str, tuple[Reader, ...]]] = []
+        struck_anywhere: set[Tap] = set()
         sides = (
             ("baseline", asked.baseline, path.baseline_struck),
             ("repair", asked.repair, path.struck),
         )
-        for (role, name, taps), hit, read in zip(sides, struck_taps(path), reads, strict=True):
+        for (role, name, taps), read in zip(sides, reads, strict=True):
+            hit = frozenset((tap.channel, tap.consumer) for tap in taps)
+            struck_anywhere |= hit
             readers: list[Reader] = []
             for module in modules:
                 # Receipts come before the wiring: a tap that was struck was read.
@@ -105,8 +98,7 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
                 changed = any(t.altered_steps for t in taps if module_of(t.consumer) == module)
                 readers.append(Reader(module, here, here & hit, changed))
             arms.append((role, name, tuple(readers)))
-        everywhere = every <= frozenset[Tap]().union(*struck_taps(path))
-        found.append(Fork(path.title, names, everywhere, tuple(arms)))
+        found.append(Fork(path.title, names, every <= struck_anywhere, tuple(arms)))
     return tuple(found)
 
 
