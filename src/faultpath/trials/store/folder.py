@@ -118,7 +118,7 @@ class RunFolder:
             path.unlink(missing_ok=True)
 
     def save_rechecks(self, text: str) -> None:
-        """Write what flying some trials again has found."""
+        """Write what running some trials again has found."""
         self._write(self.rechecks, text.encode())
 
     def save_tables(self, table: OutcomeTable, deliveries: Deliveries) -> str:

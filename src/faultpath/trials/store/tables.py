@@ -74,7 +74,7 @@ def encode_shard(key: str, shard: Shard) -> bytes:
     """Return one block, traces included, with the key of its unit inside."""
     notes = {_KEY: key, _TAPS: _COUNTS.dump_json(shard.taps).decode()}
     schema = _shard(_metrics(shard.outcomes))
-    return encode(schema, ({**dict.fromkeys(schema), **_told(o)} for o in shard.outcomes), notes)
+    return encode(schema, ({**dict.fromkeys(schema), **_cells(o)} for o in shard.outcomes), notes)
 
 
 def decode_shard(data: bytes, key: str) -> Shard:
@@ -100,8 +100,8 @@ def encode_outcomes(table: OutcomeTable) -> bytes:
 
 def encode_traces(table: OutcomeTable) -> bytes:
     """Return the traces of the trials that have one."""
-    flown = (row for row in table.rows if row.outcome.trace is not None)
-    return encode(_TRACES, (_flat(row, _TRACES) for row in flown))
+    traced = (row for row in table.rows if row.outcome.trace is not None)
+    return encode(_TRACES, (_flat(row, _TRACES) for row in traced))
 
 
 def read_outcomes(path: Path) -> OutcomeTable:
@@ -172,10 +172,10 @@ def _metrics_in(data: bytes) -> list[str]:
 
 
 def _flat(row: TrialRow, schema: Schema) -> Row:
-    return {**dict.fromkeys(schema), **vars(row), **_told(row.outcome)}
+    return {**dict.fromkeys(schema), **vars(row), **_cells(row.outcome)}
 
 
-def _told(outcome: Outcome) -> Row:
+def _cells(outcome: Outcome) -> Row:
     axes = (None,) * 3 if outcome.trace is None else np.asarray(outcome.trace, np.float32).T
     return {**outcome.metrics, **vars(outcome), **dict(zip(_TRACE, axes, strict=True))}
 

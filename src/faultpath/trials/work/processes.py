@@ -52,11 +52,11 @@ _BOOT = (
 
 def passed_on(message: tuple[Any], on_message: OnMessage) -> None:
     """Show a notice of a worker's, once for all workers; hand over what else its call tells."""
-    (told,) = message
-    if isinstance(told, Notice):
-        warnings.warn(told, stacklevel=2)  # which shows the same text once
+    (said,) = message
+    if isinstance(said, Notice):
+        warnings.warn(said, stacklevel=2)  # which shows the same text once
     else:
-        on_message(told)
+        on_message(said)
 
 
 def local(workers: int) -> Executor:
