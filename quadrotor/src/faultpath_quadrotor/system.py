@@ -35,7 +35,7 @@ from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.prisms import floor_plan
 from faultpath_quadrotor.scenes.scene import Scene
-from faultpath_quadrotor.user_parts import bring
+from faultpath_quadrotor.user_parts import load_user_parts
 from faultpath_quadrotor.variants import modelled, setups
 from faultpath_quadrotor.vehicle import CONTROL_DT_S
 
@@ -54,8 +54,8 @@ class Quadrotor(LoopSystem):
         self.parallel = options.device is DeviceName.CPU
         self.block_size = 50 if self.parallel else 100  # a GPU takes a library
         self._scenes: dict[str, Scene] = {}
-        self.brought = bring(options.parts, options.sampling)
-        self.setups = {setup.name: setup for setup in setups(options, self.brought)}
+        self.user_parts = load_user_parts(options.parts, options.sampling)
+        self.setups = {setup.name: setup for setup in setups(options, self.user_parts)}
 
     @classmethod
     def parse(cls, **options: str) -> Self:
@@ -78,7 +78,7 @@ class Quadrotor(LoopSystem):
 
     @property
     def _estimators(self) -> Sequence[Estimator]:
-        parts = (part.blank for part in self.brought.values())
+        parts = (part.blank for part in self.user_parts.values())
         return tuple(part for part in parts if isinstance(part, Estimator))
 
     def library(self, name: str) -> Library:
@@ -109,13 +109,13 @@ class Quadrotor(LoopSystem):
     @property
     def data_files(self) -> Sequence[Path]:
         """See `System.data_files`: the interface, the weights, and what kernels are built from."""
-        own = (file for part in self.brought.values() for file in part.data_files)
+        own = (file for part in self.user_parts.values() for file in part.data_files)
         return (*_weights(shipped_folder()), Path("interface.yaml"), Path("native/source"), *own)
 
     @property
     @override
     def parts(self) -> Sequence[str]:
-        return tuple(self.brought)
+        return tuple(self.user_parts)
 
     @property
     @override
@@ -125,7 +125,7 @@ class Quadrotor(LoopSystem):
     @override
     def plant(self) -> Plant:
         options, free, place = self.options, self.options.free_space, self.options.place
-        own = self.brought.get(options.plant)
+        own = self.user_parts.get(options.plant)
         read = {port.channel for each in self._estimators for port in each.ports}
         sensors = sorted(SENSORS.keys() & read)
 

@@ -1,8 +1,8 @@
-"""Parts that a user brings, named as `my_model.py:create`: `Part` says which.
+"""Parts of the user's own, named as `my_model.py:create`: `Part` says which.
 
 `create(seed)` builds one; `seed` is that of the trained model, and `None` where only what it is and
 what it reads will be looked at, so that weights may be blank. For a plant it returns the class.
-A part is tried on a made-up moment before it flies, so that nothing fails halfway for want of it.
+A part is tried on a made-up moment before it runs, so that nothing fails halfway for want of it.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.planners import Planner, SamplerSettings, Scored
 from faultpath_quadrotor.plant import Plant
 from faultpath_quadrotor.predictors import KinematicIntegrator, Predictor
-from faultpath_quadrotor.predictors.places import PLACES, history, predictor_inputs
+from faultpath_quadrotor.predictors.places import check_places, history, predictor_inputs
 from faultpath_quadrotor.predictors.rollout import rollout
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.state import LANE_MULTIPLE, State
@@ -53,7 +53,7 @@ _READINGS: Mapping[str, Tensor] = {
 
 
 @dataclass(frozen=True)
-class Brought:
+class UserPart:
     """A part that the user named."""
 
     name: str
@@ -97,25 +97,35 @@ class Brought:
                 )
             if seed not in self._tried:
                 with torch.inference_mode():
-                    _explaining(lambda: _try_out(self.name, part, self._settings))
+                    _explaining(lambda: self._try(part))
                 self._tried.add(seed)
         return part
 
+    def _try(self, part: Any) -> None:
+        """Let a part do on a made-up moment what it will do in flight; `SystemMistake` for what it
+        returns in another shape than the loop takes."""
+        if isinstance(part, Predictor):
+            _try_predictor(self.name, part)
+        elif isinstance(part, Reconstruction):
+            _try_reconstruction(self.name, part)
+        elif isinstance(part, Planner):
+            _try_planner(self.name, part, self._settings)
 
-def bring(names: Sequence[str], settings: SamplerSettings) -> dict[str, Brought]:
+
+def load_user_parts(names: Sequence[str], settings: SamplerSettings) -> dict[str, UserPart]:
     """Load the parts of these names, for a planner of these settings.
 
     `UserError` for a name that leads nowhere, `SystemMistake` for what is no part, or reads where
     nothing is.
     """
     created = _explaining(lambda: load_parts(names))
-    return {name: _brought(name, create, settings) for name, create in created.items()}
+    return {name: _loaded(name, create, settings) for name, create in created.items()}
 
 
-def _brought(name: str, create: Callable[..., Any], settings: SamplerSettings) -> Brought:
+def _loaded(name: str, create: Callable[..., Any], settings: SamplerSettings) -> UserPart:
     part: Any = _built(name, create, None)
     if isinstance(part, Predictor):
-        _check_places(name, part.reads)
+        check_places(name, part.reads)
     elif isinstance(part, Reconstruction):
         _check_ports(name, part.reads)
     elif isinstance(part, Estimator) and (odd := set(part.writes) - set(SOURCES.values())):
@@ -131,19 +141,17 @@ def _brought(name: str, create: Callable[..., Any], settings: SamplerSettings) -
             "where they come from: set its data_files to the files that they are read from, for "
             "every seed, or to () where no file is read"
         )
-    code = factory_root(SystemSpec(name=name)).path
-    return Brought(name, part, Path() if code is None else code.parent, create, settings)
+    folder = (factory_root(SystemSpec(name=name)).path or Path("here")).parent
+    return UserPart(name, part, folder, create, settings)
 
 
 def _built(name: str, create: Callable[..., Any], seed: int | None) -> Part:
     try:
         inspect.signature(create).bind(0)
-    except TypeError:
+    except (TypeError, ValueError):
         raise SystemMistake(
             f"{name} cannot be called with a seed alone: let it take just that"
         ) from None
-    except ValueError:  # of some built-in functions nothing is known
-        pass
     part = _explaining(lambda: create(seed))
     plant = isinstance(part, type) and issubclass(part, Plant)
     if not plant and not isinstance(part, KINDS):
@@ -166,26 +174,6 @@ def _explaining(act: Callable[[], Any]) -> Any:
         raise located(mistake) from error
 
 
-def _check_places(name: str, places: Collection[str]) -> None:
-    for place in places:
-        if place not in PLACES:
-            known = "; ".join(f"{at} ({', '.join(channels)})" for at, channels in PLACES.items())
-            raise SystemMistake(
-                f"{name} reads at the place {place!r}, which predictors do not have: "
-                f"choose from {known}"
-            )
-    for needed in ("initial_state", "trim"):
-        if needed not in places:
-            raise SystemMistake(
-                f"{name} does not read at {needed!r}, which every predictor does: add it to reads"
-            )
-    if ("history" in places) != ("latent" in places):
-        raise SystemMistake(
-            f"{name} reads at one of 'history' and 'latent': name both, for the first feeds "
-            "encode(), and what that returns arrives at the second"
-        )
-
-
 def _check_ports(name: str, reads: Collection[tuple[str, str]]) -> None:
     known = {
         (channel.name, consumer.partition(".")[2])
@@ -203,20 +191,9 @@ def _check_ports(name: str, reads: Collection[tuple[str, str]]) -> None:
     for channel, place in sorted(known - set(reads)):
         if place in places:
             raise SystemMistake(
-                f"{name} reads at {place!r} and not {channel} there: a fault strikes a place "
+                f"{name} reads at {place!r} and not {channel} there: a fault reaches a place "
                 f"whole, so add ({channel!r}, {place!r}) to reads, used or not"
             )
-
-
-def _try_out(name: str, part: object, settings: SamplerSettings) -> None:
-    """Let a part do on a made-up moment what it will do in flight; `SystemMistake` for what it
-    returns in another shape than the loop takes."""
-    if isinstance(part, Predictor):
-        _try_predictor(name, part)
-    elif isinstance(part, Reconstruction):
-        _try_reconstruction(name, part)
-    elif isinstance(part, Planner):
-        _try_planner(name, part, settings)
 
 
 def _try_predictor(name: str, predictor: Predictor) -> None:
@@ -241,35 +218,36 @@ def _try_predictor(name: str, predictor: Predictor) -> None:
     for _ in range(_STEPS):
         answer: Any = predictor.step(state, hover.clone(), memory)
         if not isinstance(answer, tuple) or len(answer) != 2 or not isinstance(answer[0], State):
+            kind = type(answer).__name__
             raise SystemMistake(
-                f"{name}: step() returned a {type(answer).__name__}: it returns a State and the "
-                "memory"
+                f"{name}: step() returned a {kind}: it returns a State and the memory"
             )
         state, memory = answer
-        for part in ("position", "velocity", "rotation", "rate"):
-            axes = (3, 3) if part == "rotation" else (3,)
+        for part, axes in (
+            ("position", [3]),
+            ("velocity", [3]),
+            ("rotation", [3, 3]),
+            ("rate", [3]),
+        ):
             what = f"{part} of the state that step() returns"
             _check(name, what, getattr(state, part), *axes, lanes, _CANDIDATES)
 
 
 def _try_reconstruction(name: str, reconstruction: Reconstruction) -> None:
-    def delivered() -> dict[tuple[str, str], Tensor]:
-        return {
-            read: _spread(_READINGS[read[0]], LANE_MULTIPLE).double()
-            for read in reconstruction.reads
-        }
-
-    memory = reconstruction.begin(delivered())
+    given = {
+        read: _spread(_READINGS[read[0]], LANE_MULTIPLE).double() for read in reconstruction.reads
+    }
+    memory = reconstruction.begin(dict(given))
     for _ in range(_STEPS):
-        memory = reconstruction.update(memory, delivered())
+        memory = reconstruction.update(memory, dict(given))
         wind: Any = reconstruction.wind(memory)
         _check(name, "wind()", wind, 3, LANE_MULTIPLE, kinds=(torch.float32, torch.float64))
 
 
 def _try_planner(name: str, planner: Planner, settings: SamplerSettings) -> None:
-    mine: Any = getattr(planner, "sampler", None)
+    mine: Any = getattr(getattr(planner, "sampler", None), "settings", None)
     for what in ("horizon", "candidates"):
-        asked, has = getattr(settings, what), getattr(getattr(mine, "settings", None), what, None)
+        asked, has = getattr(settings, what), getattr(mine, what, None)
         if has != asked:
             raise SystemMistake(
                 f"{name}: the sampler's {what} is {has}, and the options ask for {asked}: build "
@@ -302,17 +280,13 @@ def _check(
     *shape: int,
     kinds: Collection[torch.dtype] = (torch.float32,),
 ) -> None:
-    want = f"a tensor {list(shape)} of {' or '.join(map(_plain, kinds))}"
+    names = [str(kind).removeprefix("torch.") for kind in (*kinds, getattr(value, "dtype", None))]
+    want = f"a tensor {list(shape)} of {' or '.join(names[:-1])}"
     if not isinstance(value, Tensor):
         raise SystemMistake(f"{name}: {what} is a {type(value).__name__}: it must be {want}")
     if tuple(value.shape) != shape or value.dtype not in kinds:
         raise SystemMistake(
-            f"{name}: {what} is a tensor {list(value.shape)} of {_plain(value.dtype)}: it must be "
-            f"{want}"
+            f"{name}: {what} is a tensor {list(value.shape)} of {names[-1]}: it must be {want}"
         )
     if not bool(value.isfinite().all()):
         raise SystemMistake(f"{name}: {what} is NaN or infinite in slow flight: it must be finite")
-
-
-def _plain(kind: torch.dtype) -> str:
-    return str(kind).removeprefix("torch.")

@@ -2,8 +2,8 @@
 
 A variant is named by its wind input (`zero-wind`, `gru`, `dob`, `true-wind`), by its predictor
 (`wm-a+dcc`), or by both (`wm-a-wind/gru`). What a variant names takes the seed of its arm as the
-seed of its training; a predictor that it does not name is that of the options. Parts that the user
-brings stand beside those that ship, under the names by which they were brought; a planner makes a
+seed of its training; a predictor that it does not name is that of the options. The user's own
+parts stand beside those that ship, under the names by which they were named; a planner makes a
 variant with the predictor of the options.
 """
 
@@ -32,7 +32,7 @@ from faultpath_quadrotor.predictors.history import HistoryEncoder
 from faultpath_quadrotor.predictors.module import Prediction
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.reconstruction.module import WindReconstruction
-from faultpath_quadrotor.user_parts import Brought
+from faultpath_quadrotor.user_parts import UserPart
 
 ZERO_WIND = "zero-wind"
 TRUE_WIND = "true-wind"
@@ -55,10 +55,10 @@ class Setup:
     wind: str | None
     """`None` for a predictor without a wind input."""
     planner: str | None = None
-    """One that the user brings; `None` for that of the options."""
+    """One of the user's; `None` for that of the options."""
     estimator: str | None = None
-    """One that the user brings; `None` for the exact one."""
-    brought: Mapping[str, Brought] = field(default_factory=dict[str, Brought])
+    """One of the user's; `None` for the exact one."""
+    user_parts: Mapping[str, UserPart] = field(default_factory=dict[str, UserPart])
 
     @property
     def uses(self) -> set[str | None]:
@@ -69,8 +69,8 @@ class Setup:
         """Return the predictor for an arm of this seed; blank for `None`."""
         fixed = self.predictor_seed is not None and seed is not None
         trained = self.predictor_seed if fixed else seed
-        if self.predictor in self.brought:
-            return self.brought[self.predictor].load(trained, device)
+        if self.predictor in self.user_parts:
+            return self.user_parts[self.predictor].load(trained, device)
         return predictor(self.predictor, trained, device)
 
     def load_reconstruction(
@@ -79,19 +79,19 @@ class Setup:
         """Return the wind reconstruction for an arm of this seed, if the variant has one."""
         if self.wind is None or self.wind in _FIXED:
             return None
-        if self.wind in self.brought:
-            return self.brought[self.wind].load(seed, device)
+        if self.wind in self.user_parts:
+            return self.user_parts[self.wind].load(seed, device)
         return reconstruction(self.wind, seed, device)
 
     def load_planner(self, seed: int | None, options: QuadrotorOptions) -> Planner:
         """Return the planner for an arm of this seed."""
         if self.planner is None:
             return options.build_planner()
-        return self.brought[self.planner].load(seed, options.place)
+        return self.user_parts[self.planner].load(seed, options.place)
 
     def load_estimator(self, seed: int | None, device: torch.device = CPU) -> Estimator | None:
         """Return the user's estimator for an arm of this seed, if the variant has one."""
-        return self.brought[self.estimator].load(seed, device) if self.estimator else None
+        return self.user_parts[self.estimator].load(seed, device) if self.estimator else None
 
     def wiring(self, options: QuadrotorOptions) -> Wiring:
         """Describe the setup to an audit: in words, and which sources it takes."""
@@ -108,26 +108,26 @@ class Setup:
             )
             words = f"{words}. Wind: {said}"
         if self.planner is not None:
-            words = f"{words}. Planning: {self.brought[self.planner].description}"
+            words = f"{words}. Planning: {self.user_parts[self.planner].description}"
         if self.estimator is not None:
-            words = f"{words}. Estimating: {self.brought[self.estimator].description}"
+            words = f"{words}. Estimating: {self.user_parts[self.estimator].description}"
         return Wiring(f"{words}.", bindings)
 
     def _said(self, name: str, shipped: Mapping[str, Kind[Any]]) -> str:
-        return (self.brought.get(name) or shipped[name]).description
+        return (self.user_parts.get(name) or shipped[name]).description
 
 
 def setups(
-    options: QuadrotorOptions, brought: Mapping[str, Brought] | None = None
+    options: QuadrotorOptions, user_parts: Mapping[str, UserPart] | None = None
 ) -> Iterator[Setup]:
-    """Yield every way to wire the quadrotor under these options, with the parts brought to it.
+    """Yield every way to wire the quadrotor under these options, with the user's own parts.
 
     First come those that fly with what the options name: as many as there are such parts cover all.
     """
-    every = list(_setups(options, brought or {}))
+    every = list(_setups(options, user_parts or {}))
     first: dict[str, Setup] = {}
-    named = {options.predictor, *(brought or {})}
-    for part in (options.predictor, *(brought or {})):
+    named = {options.predictor, *(user_parts or {})}
+    for part in (options.predictor, *(user_parts or {})):
         if not any(part in setup.uses for setup in first.values()):
             using = (setup for setup in every if part in setup.uses)
             best = max(using, key=lambda setup: len(setup.uses & named), default=None)
@@ -136,7 +136,7 @@ def setups(
     yield from (setup for setup in every if setup.name not in first)
 
 
-def _setups(options: QuadrotorOptions, mine: Mapping[str, Brought]) -> Iterator[Setup]:
+def _setups(options: QuadrotorOptions, mine: Mapping[str, UserPart]) -> Iterator[Setup]:
     chosen, seed = options.predictor, options.predictor_seed
     winds = (ZERO_WIND, *RECONSTRUCTIONS, *_of(Reconstruction, mine), TRUE_WIND)
     base = Setup(
@@ -146,7 +146,7 @@ def _setups(options: QuadrotorOptions, mine: Mapping[str, Brought]) -> Iterator[
         None,
         planner=options.planner if options.planner in mine else None,
         estimator=options.estimator if options.estimator in mine else None,
-        brought=mine,
+        user_parts=mine,
     )
     if _has_wind(chosen, mine):
         for wind in winds:
@@ -164,12 +164,12 @@ def _setups(options: QuadrotorOptions, mine: Mapping[str, Brought]) -> Iterator[
             yield replace(setup, name=f"{setup.name}/{wind}", wind=wind)
 
 
-def _of(kind: type, brought: Mapping[str, Brought]) -> Iterator[str]:
-    return (name for name, part in brought.items() if isinstance(part.blank, kind))
+def _of(kind: type, user_parts: Mapping[str, UserPart]) -> Iterator[str]:
+    return (name for name, part in user_parts.items() if isinstance(part.blank, kind))
 
 
-def _has_wind(name: str, brought: Mapping[str, Brought]) -> bool:
-    reads = brought[name].reads if name in brought else predictor(name, None).reads
+def _has_wind(name: str, user_parts: Mapping[str, UserPart]) -> bool:
+    reads = user_parts[name].reads if name in user_parts else predictor(name, None).reads
     return "wind_map" in reads
 
 

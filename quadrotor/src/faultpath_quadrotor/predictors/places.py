@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection
 import torch
 from torch import Tensor
 
+from faultpath.core.errors import SystemMistake
 from faultpath.loop import Inputs, Port
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.device import host_readable
@@ -47,6 +48,26 @@ def taking(inputs: Inputs, lanes: Tensor) -> Take:
 def ports(places: Collection[str]) -> frozenset[Port]:
     """Return the ports of some places."""
     return frozenset(Port(channel, place) for place in places for channel in PLACES[place])
+
+
+def check_places(name: str, places: Collection[str]) -> None:
+    """Raise `SystemMistake` for a user's predictor that reads at no such places together."""
+    for place in places:
+        if place not in PLACES:
+            known = "; ".join(f"{at} ({', '.join(channels)})" for at, channels in PLACES.items())
+            raise SystemMistake(
+                f"{name} reads at the place {place!r}, which predictors do not have: "
+                f"choose from {known}"
+            )
+    if absent := [needed for needed in ("initial_state", "trim") if needed not in places]:
+        raise SystemMistake(
+            f"{name} does not read at {absent[0]!r}, which every predictor does: add it to reads"
+        )
+    if ("history" in places) != ("latent" in places):
+        raise SystemMistake(
+            f"{name} reads at one of 'history' and 'latent': name both, for the first feeds "
+            "encode(), and what that returns arrives at the second"
+        )
 
 
 def calibration(take: Take, place: str) -> Calibration:
