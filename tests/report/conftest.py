@@ -4,16 +4,10 @@ The repair is a reconstruction trained with uncertainty: ahead when only the rec
 struck, behind when the fault is shared. Names a user may give carry markup, to see it escaped.
 """
 
-import json
 import os
-import re
 import shutil
-import zlib
-from base64 import b64decode
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from html.parser import HTMLParser
-from typing import Any
 
 import numpy as np
 import pytest
@@ -111,52 +105,6 @@ def make_input(
         traces=Traces(tracks, dt_s=0.05),
         plans={_scene(i): _plan(i) for i in range(n_scenes)},
     )
-
-
-class Page(HTMLParser):
-    """Tags with attributes, cells of tables, and the text that a reader sees."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self.rows: list[list[str]] = []
-        self.words: list[str] = []
-        self._inside: list[str] = []
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append((tag, dict(attrs)))
-        if tag in ("script", "style", "title", "desc"):
-            self._inside.append(tag)
-        if tag == "tr":
-            self.rows.append([])
-        if tag in ("td", "th"):
-            self.rows[-1].append("")
-            self._inside.append("cell")
-
-    def handle_endtag(self, tag: str) -> None:
-        if tag in ("script", "style", "title", "desc", "td", "th"):
-            self._inside.pop()
-
-    def handle_data(self, data: str) -> None:
-        if self._inside and self._inside[-1] == "cell":
-            self.rows[-1][-1] += data
-        if not self._inside or self._inside[-1] == "cell":
-            self.words.append(data)
-
-    @property
-    def text(self) -> str:
-        return re.sub(r"\s+", " ", " ".join(self.words))
-
-    @property
-    def ids(self) -> list[str]:
-        return [a["id"] for _, a in self.tags if a.get("id")]
-
-
-def unpack(packed: str) -> tuple[dict[str, Any], list[np.ndarray]]:
-    """Return the content and the series of what the viewer's `pack` made, as its script does."""
-    content = json.loads(zlib.decompress(b64decode(packed)))
-    return content, [np.cumsum(np.cumsum(steps)) for steps in content.pop("series")]
 
 
 def _lose(row: TrialRow) -> TrialRow:

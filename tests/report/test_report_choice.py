@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
-from conftest import unpack
+from page_reader import unpack
 
 from faultpath.decisions import DecisionRecord
 from faultpath.report.inputs import ReportInput

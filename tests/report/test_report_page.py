@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from conftest import Page, unpack
+from page_reader import Page, unpack
 
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput, Traces

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from conftest import unpack
+from page_reader import unpack
 
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput, Traces
