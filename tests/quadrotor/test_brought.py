@@ -155,7 +155,7 @@ FLOWN = {
     "no memory": (
         "class P(K):\n    def step(self, *given):\n        return super().step(*given)[0]\n"
         "def create(seed):\n    return P()",
-        "returned a State: return a State and the memory",
+        "returned a State: it returns a State and the memory",
     ),
     "fails in a step": (
         "class P(K):\n    def step(self, state, command, memory):\n"
