@@ -13,7 +13,7 @@ from typer.models import OptionInfo
 
 from faultpath.cli.options import literal, path
 from faultpath.core.errors import UserError
-from faultpath.trials.question import Flag, Request, flag, panel
+from faultpath.trials.question import Flag, Request, flag
 
 if TYPE_CHECKING:
     from faultpath.trials.options import Option
@@ -96,11 +96,20 @@ def _parameter(model: type[Request], name: str) -> inspect.Parameter:
     option = typer.Option(
         flag(model, name),
         help=f"Do not {said[0].lower()}{said[1:]}" if field.default is True else said,
-        rich_help_panel=panel(model, name),
+        rich_help_panel=_panel(model, name),
         parser=path if kind is Path else None,
     )
     annotation = Annotated[hint | None if default is None else hint, option]
     return inspect.Parameter(name, _KEYWORD, default=default, annotation=annotation)
+
+
+def _panel(model: type[Request], name: str) -> str | None:
+    """Return under which heading the help shows a field."""
+    for note in model.model_fields[name].metadata:
+        if isinstance(note, Flag) and note.panel:
+            return note.panel
+    owners = (each for each in model.__mro__ if name in vars(each).get("__annotations__", {}))
+    return next(each.panel or None for each in owners if issubclass(each, Request))
 
 
 def with_system_flags(

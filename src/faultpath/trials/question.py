@@ -300,12 +300,3 @@ def flag(model: type[Frozen], name: str) -> str:
             return note.name
     dashed = re.sub(r"_(s|pp)$", "", name).replace("_", "-")
     return f"--no-{dashed}" if field.default is True else f"--{dashed}"
-
-
-def panel(model: type[Request], name: str) -> str | None:
-    """Return under which heading the help shows a field."""
-    for note in model.model_fields[name].metadata:
-        if isinstance(note, Flag) and note.panel:
-            return note.panel
-    owners = (each for each in model.__mro__ if name in vars(each).get("__annotations__", {}))
-    return next(each.panel or None for each in owners if issubclass(each, Request))
