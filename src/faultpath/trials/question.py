@@ -50,9 +50,7 @@ def _seeds(given: object) -> object:
         found = tuple(int(part) if len(part) < 20 else LARGEST + 1 for part in parts)
     for seed in found:
         if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= LARGEST:
-            raise ValueError(
-                f"{seed!r:.80} is not a seed: give whole numbers between 0 and 2^63 - 1"
-            )
+            raise ValueError(f"{seed!r:.80} is not a seed: give whole numbers from 0 to 2^63 - 1")
     if not found or len(set(found)) < len(found):
         raise ValueError("give at least one seed, each of them once")
     return found
