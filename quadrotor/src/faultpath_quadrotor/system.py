@@ -162,8 +162,10 @@ class Quadrotor(LoopSystem):
     @arithmetic()
     @torch.inference_mode()
     @override
-    def fly(self, loop: Loop, scenes: Sequence[str], taps: Deliverer, seed: int) -> list[Outcome]:
-        return super().fly(loop, scenes, taps, seed)
+    def execute(
+        self, loop: Loop, scenes: Sequence[str], taps: Deliverer, seed: int
+    ) -> list[Outcome]:
+        return super().execute(loop, scenes, taps, seed)
 
     def _records(self, scenes: Sequence[str]) -> tuple[Scene, ...]:
         return tuple(self.scene(scene) for scene in scenes)

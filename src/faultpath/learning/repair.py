@@ -156,7 +156,7 @@ def withholding(
 ) -> Repair:
     """Return the repair in which consumers never get a channel but its neutral value.
 
-    The taps put it in place of the reading in every window of a fit; in flight `withheld` does, in
+    The taps put it in place of the reading in every window of a fit; in a loop `withheld` does, in
     a module that no longer reads the channel.
 
     Args:

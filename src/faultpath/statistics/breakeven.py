@@ -1,8 +1,9 @@
 """The fault frequency from which on a repair pays (paper, Table V and its footnote).
 
 In a mixture that meets the fault with probability p the expected difference is
-``(1 - p) * delta_0 + p * delta_f``. Frequencies at which it is not told from 0 are a confidence
-set for the break-even frequency (Fieller, Journal of the Royal Statistical Society B 16:175, 1954).
+``(1 - p) * delta_0 + p * delta_f``. Frequencies at which it cannot be distinguished from 0 are a
+confidence set for the break-even frequency (Fieller, Journal of the Royal Statistical Society B
+16:175, 1954).
 """
 
 from collections.abc import Callable, Sequence
@@ -120,7 +121,7 @@ class _Mixture:
         return (1.0 - p) * self.ends[0].value + p * self.ends[1].value + 0.0
 
     def undecided(self, p: Floats) -> Bools:
-        """Return [frequencies]: whether the difference at each is not told from 0."""
+        """Return [frequencies]: whether it is undecided there who is ahead."""
         if self.models:
             low, high = self.intervals(p)
             return (low <= 0.0) & (high >= 0.0)

@@ -65,7 +65,7 @@ def decide_family(
     """Decide tested contrasts together: Holm's adjustment of all p-values given.
 
     With ``weights`` (any positive numbers) it is his weighted one: each has that part of ``alpha``,
-    and what is detected hands its part on to the others.
+    and what is detected leaves its part to the others.
 
     One is detected when its adjusted p-value is at most ``alpha``, its interval excludes 0 and both
     point the same way. So one or more false detections among all of them come in at most a share

@@ -1,4 +1,4 @@
-"""What the statistics layer hands out: estimates, tests and break-even frequencies as data.
+"""What the statistics give: estimates, tests and break-even frequencies as data.
 
 Every model is frozen, refuses unknown fields and refuses NaN, so a number that does not exist has
 to be said with ``None`` and a reason. Differences are always *first minus second*.
@@ -116,8 +116,8 @@ class Region(FrozenResult):
 class BreakEven(FrozenResult):
     """Fault frequency at which a repair's gain under faults offsets its cost without (Table V).
 
-    ``pieces`` are the frequencies at which the expected difference is not told from 0, a confidence
-    set for the break-even frequency: one interval, none at all, the whole range or two pieces.
+    ``pieces`` are the frequencies at which the expected difference cannot be distinguished from 0,
+    a confidence set for the break-even frequency: one interval, none, all or two pieces.
     ``regions`` are what is left of the range, where it is decided who is ahead. ``p_star`` is where
     the point estimates cross, None where they do not; it decides nothing.
     """
@@ -144,7 +144,7 @@ class Rule(NamedTuple):
     prior: float
     """Of `score.reach`: scenes of the largest possible difference that several seeds are given."""
     period: str
-    """When audits took it unless told otherwise."""
+    """When audits took it by default."""
 
     @property
     def words(self) -> str:

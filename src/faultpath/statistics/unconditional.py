@@ -6,7 +6,7 @@ large, where pairs are discordant as often as was seen. *M*: that chance only or
 the p-value is the largest chance, over all shares of discordant pairs, of a table that is ordered
 as far out. So the level holds whatever the share.
 
-Tables are told by their discordant pairs and the smaller of both counts, the *fewer*.
+Tables are named by their discordant pairs and the smaller of both counts, the *fewer*.
 """
 
 from functools import lru_cache
@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics.distributions import binomial_pmf, normal_quantile
+from faultpath.statistics.distributions import binomial_pmf
 from faultpath.statistics.inputs import Floats
 
 Counts = NDArray[np.int64]
@@ -24,8 +24,6 @@ _TIE = 1e-9
 """Relative: what differs by less is as far out, but for rounding."""
 _SPREAD = 9.0
 """Standard deviations of a number of discordant pairs beyond which none is expected."""
-_LEAST = 1e-300
-"""Chance below which all are alike to what guesses."""
 _PEAKS, _FINER = 3, 25
 """Of the chance over the shares: how many are looked at closely, and at how many points."""
 
@@ -95,13 +93,8 @@ class _Law(NamedTuple):
         """
         low, high = inside.copy(), outside + 1
         high[0] = 0
-        every = np.arange(len(low))
-        near = (every + normal_quantile(max(chance, _LEAST) / 2.0) * np.sqrt(every)) / 2.0
-        guesses = [np.round(near + off).astype(np.int64) for off in (1.0, -1.0)]
         while len(total := np.flatnonzero(high - low > 1)):
             middle = (low[total] + high[total]) // 2
-            if guesses:
-                middle = np.clip(guesses.pop()[total], low[total] + 1, high[total] - 1)
             within = self.expected(total, middle) <= chance * (1.0 + _TIE)
             low[total] = np.where(within, middle, low[total])
             high[total] = np.where(within, high[total], middle)

@@ -60,7 +60,7 @@ class Study(Frozen):
     rows: tuple[Row, ...]
     look: int = 0
     """Of a sequential study: scenes from one look at the results to the next, in the order of
-    `scenes`. 0 flies them all, in the blocks of their library."""
+    `scenes`. 0 runs them all, in the blocks of their library."""
 
     def arms(self) -> tuple[Arm, ...]:
         """Return each distinct arm once, in the order of the rows."""

@@ -4,7 +4,7 @@ import math
 import traceback
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -125,19 +125,18 @@ def _run(
 
 
 def _outcomes(system: System, scenes: Sequence[str], returned: object) -> tuple[Outcome, ...]:
-    kind, several = type(returned).__name__, isinstance(returned, Iterable)
-    outcomes = list(cast("Iterable[object]", returned)) if several else []
-    odd = [type(each).__name__ for each in outcomes if not isinstance(each, Outcome)]
+    several = isinstance(returned, Iterable)
+    found = list(cast("Iterable[Any]", returned)) if several else []
+    odd = [type(each).__name__ for each in found if not isinstance(each, Outcome)]
     if odd or not several:
-        kind = f"{odd[0]} in place of an Outcome" if odd else kind
+        kind = f"{odd[0]} in place of an Outcome" if odd else type(returned).__name__
         raise WrongOutcomes(
             f"run() of system {system.name!r} returned a {kind}: it returns a list with one "
             "Outcome for each scene, in order"
         )
-    found = cast("list[Outcome]", outcomes)
-    if [outcome.scene for outcome in found] != list(scenes):
+    if (said := [outcome.scene for outcome in found]) != list(scenes):
         raise WrongOutcomes(
             f"system {system.name!r} was asked for scenes {list(scenes)} and returned outcomes of "
-            f"{[outcome.scene for outcome in found]}: run() returns one for each, in order"
+            f"{said}: run() returns one for each, in order"
         )
     return tuple(checked(outcome, system.metrics) for outcome in found)

@@ -44,16 +44,6 @@ def library_of(system: System, name: str) -> Library:
     return found
 
 
-def fingerprint_of(system: System) -> str:
-    """Return what the system says of itself; `SystemMistake` for what is no text."""
-    found: Any = system.fingerprint()
-    if not isinstance(found, str):
-        raise SystemMistake(
-            f"system '{system.name}': `fingerprint` returned {shown(found)}: it must return text"
-        )
-    return found
-
-
 def paths_of(system: System, attribute: str) -> tuple[str | PathLike[str], ...]:
     """Return paths that the system names; `SystemMistake` for what are none."""
     found = _declared(system, attribute, f"system {system.name!r}")

@@ -82,10 +82,12 @@ class LoopSystem(System):
 
     @override
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
-        return self.fly(self.loop(variant, seed), scenes, taps, seed)
+        return self.execute(self.loop(variant, seed), scenes, taps, seed)
 
-    def fly(self, loop: Loop, scenes: Sequence[str], taps: Deliverer, seed: int) -> list[Outcome]:
-        """Execute a variant's `loop`, or one made from it that is listened to.
+    def execute(
+        self, loop: Loop, scenes: Sequence[str], taps: Deliverer, seed: int
+    ) -> list[Outcome]:
+        """Execute a variant's `loop`, or one made from it that is recorded.
 
         A system whose loops run in a context of their own, such as torch's inference mode,
         overrides this.

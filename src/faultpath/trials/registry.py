@@ -95,7 +95,21 @@ def load_parts(names: Iterable[str]) -> dict[str, Factory]:
 
 
 def _module(place: str, name: str) -> ModuleType:
-    module = _load_file(place) if place.endswith(".py") else _load_module(place, name)
+    if place.endswith(".py"):
+        module = _load_file(place)
+    else:
+        if not _installed(name):
+            _look_in(os.getcwd())  # where a console script does not look
+            _check_own(Root(place), Path.cwd())
+        try:
+            module = importlib.import_module(place)
+        except ModuleNotFoundError as error:
+            if error.name and f"{place}.".startswith(f"{error.name}."):
+                raise UserError(
+                    f"there is no module {error.name!r}, which {name!r} names: check the name, or "
+                    "give the path of the file as 'path/to/file.py:attribute'"
+                ) from error
+            raise
     if (file := getattr(module, "__file__", None)) and not ours(module.__name__):
         note_system(file)
     return module
@@ -159,21 +173,6 @@ def _split(name: str) -> tuple[str, str]:
             "'path/to/file.py:attribute'"
         )
     return place, attribute
-
-
-def _load_module(name: str, system: str) -> ModuleType:
-    if not _installed(system):
-        _look_in(os.getcwd())  # where a console script does not look
-        _check_own(Root(name), Path.cwd())
-    try:
-        return importlib.import_module(name)
-    except ModuleNotFoundError as error:
-        if error.name and (name == error.name or name.startswith(error.name + ".")):
-            raise UserError(
-                f"there is no module {error.name!r}, which {system!r} names: check the name, or "
-                "give the path of the file as 'path/to/file.py:attribute'"
-            ) from error
-        raise
 
 
 def _load_file(place: str) -> ModuleType:

@@ -1,4 +1,4 @@
-"""A system as it was flown, as data: what a report shows of it without running its code."""
+"""A system as it was run, as data: what a report shows of it without running its code."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict

@@ -6,9 +6,11 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
+from faultpath.core.errors import SystemMistake
 from faultpath.trials.arm import SystemSpec
-from faultpath.trials.checks import fingerprint_of, paths_of
+from faultpath.trials.checks import paths_of
 from faultpath.trials.code import Code, CodeState, Root, read_code
+from faultpath.trials.declared import shown
 from faultpath.trials.registry import factory_root
 from faultpath.trials.system import System
 
@@ -24,7 +26,11 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     nothing can build again, that is the file of its class, or its source where it was typed into a
     notebook. `UserError` for a data file that cannot be read.
     """
-    given, root = fingerprint_of(system), None if spec.is_object else factory_root(spec)
+    given, root = system.fingerprint(), None if spec.is_object else factory_root(spec)
+    if not isinstance(given, str):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise SystemMistake(
+            f"system '{system.name}': `fingerprint` returned {shown(given)}: it must return text"
+        )
     classes: dict[str, Root] = {}
     for each in type(system).__mro__:
         module, name = sys.modules.get(each.__module__), each.__module__

@@ -37,11 +37,11 @@ class System(ABC):
     ends: Mapping[Status, str] = MappingProxyType({})
     """What a trial's end is called where it is not the status itself, for example `missed`."""
     errors: ErrorSum | None = None
-    """Two errors that act together, for the report; nothing that flies reads them."""
+    """Two errors that act together, for the report; no trial reads them."""
     more_signals: str = ""
-    """`module:function` of what a recorded flight says beside its readings, in place of `errors`:
-    `function(system, heard, done)` returns a tuple of signals a scene. It is a name, since whatever
-    a system imports counts as flown."""
+    """`module:function` of what a recorded trial says beside its readings, in place of `errors`:
+    `function(system, recorded, done)` returns a tuple of signals a scene. It is a name, since
+    whatever a system imports counts as run."""
 
     @property
     @abstractmethod

@@ -87,18 +87,8 @@ def assemble(
     study: Study, library: Library, outcomes: Mapping[tuple[str, str], Outcome]
 ) -> OutcomeTable:
     """Lay the outcomes, by arm key and scene, out in the order of the study's rows."""
-    scenes = selected(study, library)
-    return OutcomeTable(
-        tuple(
-            TrialRow(
-                variant=row.variant,
-                path=row.path,
-                seed=row.seed,
-                scene_index=scene.index,
-                topology=scene.topology,
-                outcome=outcomes[key, scene.id],
-            )
-            for row, key in ((row, row.arm.key()) for row in study.rows)
-            for scene in scenes
-        )
-    )
+    scenes, rows = selected(study, library), list[TrialRow]()
+    for row in study.rows:
+        where, key = (row.variant, row.path, row.seed), row.arm.key()
+        rows += [TrialRow(*where, s.index, s.topology, outcomes[key, s.id]) for s in scenes]
+    return OutcomeTable(tuple(rows))

@@ -1,6 +1,6 @@
 """What a system may say of why its errors add up or cancel: two of them, on one scale.
 
-It is for pictures only: nothing that flies reads it, and no audit needs it.
+It is for pictures only: no trial reads it, and no audit needs it.
 """
 
 from collections.abc import Callable

@@ -49,7 +49,7 @@ def command_responses(
         for port in part.reads_past
     }
     observed = _with_plant(loop, _Observed(loop.graph.plant, probe))
-    system.fly(observed, scenes, _Taps(probe, (), first=True), seed)
+    system.execute(observed, scenes, _Taps(probe, (), first=True), seed)
     if not probe.commands or probe.commands[0].shape[1] == 0:
         return {}
     commands, running = np.stack(probe.commands), np.stack(probe.running)

@@ -1,4 +1,4 @@
-"""Repaired modules in a loop: what a fit had at its taps is what they have in flight."""
+"""Repaired modules in a loop: what a fit had at its taps is what they have in a trial."""
 
 from __future__ import annotations
 
