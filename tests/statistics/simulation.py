@@ -15,7 +15,7 @@ from scipy.stats import multinomial
 
 from faultpath.core.streams import generator
 from faultpath.decisions.family import CORRECT, SHARED, Arms, alpha_shares, decide_paths
-from faultpath.statistics import IN_FORCE, Resamples, detectable, success_effect
+from faultpath.statistics import IN_FORCE, Resamples, detectable
 from faultpath.statistics.estimate import RULES
 from faultpath.statistics.power import detected, rule_power
 from faultpath.statistics.score import quantile, reach, rejects
@@ -210,20 +210,6 @@ def trainings(scenes: int, seeds: int, models: bool, runs: int = 2000) -> float:
         family = decide_paths({CORRECT: arms}, rule=IN_FORCE, resamples=resamples, models=models)
         announced += family.announces
     return announced / runs
-
-
-def models_coverage(scenes: int, seeds: int, rate: float, runs: int = 400) -> float:
-    """Return how often the interval for newly trained models, all alike, covers the truth."""
-    stream = generator("statistics", f"models {scenes} {seeds} {rate}", 0)
-    resamples = Resamples.draw("statistics", scenes, n_resamples=1)
-    covered, truth = 0, 100.0 * rate
-    for _ in range(runs):
-        together, alike = stream.random((2, scenes, 1))
-        apart = stream.random((scenes, seeds))
-        wins = np.where(alike < 0.5, together, apart) < rate
-        found = success_effect(wins, np.zeros_like(wins), resamples, models=True).interval
-        covered += found is not None and found[0] - 1e-9 <= truth <= found[1] + 1e-9
-    return covered / runs
 
 
 def detection(scenes: int, truth: Population, alpha: float, runs: int = 20) -> float:

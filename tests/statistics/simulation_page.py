@@ -15,7 +15,6 @@ from simulation import (
     detection,
     equal_arms,
     interval_coverage,
-    models_coverage,
     reversals,
     trainings,
 )
@@ -94,18 +93,6 @@ def sections() -> Iterator[tuple[str, str, str]]:
         ),
     )
     yield (
-        "Interval for newly trained models",
-        "Coverage of the interval of `--generalise models`, where only the first arm ever wins. "
-        "Columns: share of scenes that differ. Promised: at least .93.",
-        markdown(
-            ("scenes, trainings", *by_rate),
-            (
-                (f"{n}, {seeds}", *(share([models_coverage(n, seeds, rate)]) for rate in RATES))
-                for n, seeds in product((25, 100), (3, 5))
-            ),
-        ),
-    )
-    yield (
         "Least detectable difference",
         "Audits of equal arms report what they could have detected; then the true difference is "
         "made that. Share of audits that detect it. Promised: about .80, at least .70.",
@@ -180,9 +167,8 @@ def main() -> None:
         "",
         "Made by `make statistics`. Populations with a known truth are sampled, and the shipped "
         "code decides. Simulated rates have a standard error of .003 (interval), .005 "
-        "(break-even), .011 (newly trained models), at most .013 (audits) and .018 (sequential "
-        "audits). What is promised, and how it is decided: "
-        "[design/statistics.md](design/statistics.md).",
+        "(break-even), at most .013 (audits) and .018 (sequential audits). What is promised, and "
+        "how it is decided: [design/statistics.md](design/statistics.md).",
         "",
     ]
     for title, note, table in sections():

@@ -91,7 +91,6 @@ def test_equal_arms_announce_next_to_nothing_and_no_reversal_is_made_up():
 def test_equal_methods_are_not_told_apart_by_their_trainings():
     assert kept(simulated.trainings(100, 3, True, 300), 300, most=ALPHA)
     assert simulated.trainings(100, 3, False, 100) > 0.15
-    assert kept(simulated.models_coverage(25, 3, 0.02, 60), 60, least=0.93)
 
 
 @pytest.mark.parametrize("seeds", [1, 3])

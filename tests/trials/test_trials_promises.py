@@ -80,10 +80,8 @@ def test_a_floor_plan_that_is_none_is_refused(toy: type) -> None:
 @pytest.mark.parametrize(
     "name",
     [
-        *("builtins:dict", "builtins:exit", "builtins:object", "builtins:int", "builtins:type"),
-        *("json:loads", "json:JSONDecoder", "os:getcwd", "math:sqrt", "sys:exit", "re:compile"),
-        *("sys:intern", "gc:collect", "typing:Any", "enum:Enum", "types:FunctionType"),
-        *("threading:Thread", "operator:itemgetter", "collections:OrderedDict", "abc:ABC"),
+        *("builtins:dict", "builtins:exit", "builtins:object", "builtins:type", "json:loads"),
+        *("math:sqrt", "typing:Any", "enum:Enum", "threading:Thread", "abc:ABC"),
     ],
 )
 def test_what_builds_no_system_is_a_sentence(name: str) -> None:
