@@ -35,11 +35,11 @@ def flown(
     rotation = Rotation.from_euler("ZYX", np.stack([0.3 * t, pitch, roll], axis=1))
     thrust = MASS_KG * G / np.cos(roll) / np.cos(pitch) * (1 + 0.05 * np.sin(2.1 * t + phase[2]))
     blown = wind * np.stack([np.sin(0.5 * t + phase[3]), np.cos(0.4 * t), np.sin(0.7 * t)], axis=1)
-    axis = rotation.apply([0.0, 0.0, 1.0])
+    axis, turned = rotation.apply([0.0, 0.0, 1.0]), rotation.as_matrix()
     velocity = np.zeros((n, 3))
     for i in range(n - 1):
-        against = rotation[i].inv().apply(velocity[i] - blown[i])
-        force = axis[i] * thrust[i] - rotation[i].apply(np.array(DRAG) * against)
+        against = (velocity[i] - blown[i]) @ turned[i]
+        force = axis[i] * thrust[i] - turned[i] @ (np.array(DRAG) * against)
         velocity[i + 1] = velocity[i] + (force / MASS_KG - [0, 0, G]) / RATE_HZ
     x, y, z, w = rotation.as_quat().T
     names = ("t", "qw", "qx", "qy", "qz", "vx", "vy", "vz", "thrust")

@@ -2,12 +2,11 @@
 
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from faultpath.cli.main import main
 from faultpath.core.errors import UserError
 from faultpath.systems.checks.check import check_system
 from faultpath.trials import SystemSpec, load_system
@@ -134,16 +133,17 @@ def test_what_cannot_be_checked_is_refused(asked, said):
         check_system(load_system(spec), spec, asked, lambda done, known: None)
 
 
-def _run(*arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from faultpath.cli.main import main; main()", "check"]
-    return subprocess.run([*command, *arguments, "--workers", "0"], capture_output=True, text=True)
+def test_the_command_says_it_in_lines_and_as_json(capsys, monkeypatch):
+    def run(*arguments: str) -> tuple[int, str]:
+        monkeypatch.setattr("sys.argv", ["faultpath", "check", *arguments, "--workers", "0"])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        return int(ended.value.code or 0), capsys.readouterr().out
 
-
-def test_the_command_says_it_in_lines_and_as_json():
-    sound = _run(BROKEN)
-    assert (sound.returncode, sound.stdout.splitlines()[-1]) == (0, "No check failed.")
-    bad = _run(BROKEN, "--broken", "deaf", "--json", "--scenes", "2")
-    assert bad.returncode == 1
-    told = json.loads(bad.stdout)
-    assert [len(each["failures"]) for each in told["checks"]] == [0, 0, 0, 0, 1, 0, 0]
-    assert _run(BROKEN, "--variants", "bear").returncode == 2
+    code, said = run(BROKEN)
+    assert (code, said.splitlines()[-1]) == (0, "No check failed.")
+    code, said = run(BROKEN, "--broken", "deaf", "--json", "--scenes", "2")
+    assert code == 1
+    counts = [len(each["failures"]) for each in json.loads(said)["checks"]]
+    assert counts == [0, 0, 0, 0, 1, 0, 0]
+    assert run(BROKEN, "--variants", "bear")[0] == 2

@@ -2,12 +2,11 @@
 
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from faultpath.cli.main import main
 from faultpath.core.errors import UserError
 from faultpath.faults import parse_fault
 from faultpath.interface import Provenance
@@ -98,18 +97,20 @@ def test_what_cannot_be_traced_is_refused(more, said):
         trace_system(system, SystemSpec(name=TOY), **more)
 
 
-def test_the_command_prints_and_exits_with_what_was_found():
-    def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, "-c", "from faultpath.cli.main import main; main()", "trace"]
-        return subprocess.run([*command, *arguments], capture_output=True, text=True)
+def test_the_command_prints_and_exits_with_what_was_found(capsys, monkeypatch):
+    def run(*arguments: str) -> tuple[int, str]:
+        monkeypatch.setattr("sys.argv", ["faultpath", "trace", *arguments])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        return int(ended.value.code or 0), capsys.readouterr().out
 
-    told = run(TOY, "--variant", "blind", "--fault", "gain:scale=0.6")
-    assert told.returncode == 0, told.stderr
-    assert "What ran is what is declared." in told.stdout
-    lines = told.stdout.splitlines()
+    code, said = run(TOY, "--variant", "blind", "--fault", "gain:scale=0.6")
+    assert code == 0
+    assert "What ran is what is declared." in said
+    lines = said.splitlines()
     assert max(len(each) for each in lines) <= 80
-    (struck,) = (line for line in lines if line.startswith("controller.inverse") and "by" in line)
-    assert "gain scaled by 0.6 gain_estimate 0 1 2 0 1 2" in " ".join(struck.split())
-    found = run(BROKEN, "--broken", "nosy", "--json")
-    assert (found.returncode, len(json.loads(found.stdout)["findings"])) == (1, 1)
-    assert run(BROKEN, "--fault", "mass:scale=2@guard").returncode == 2
+    (reached,) = (line for line in lines if line.startswith("controller.inverse") and "by" in line)
+    assert "gain scaled by 0.6 gain_estimate 0 1 2 0 1 2" in " ".join(reached.split())
+    code, said = run(BROKEN, "--broken", "nosy", "--json")
+    assert (code, len(json.loads(said)["findings"])) == (1, 1)
+    assert run(BROKEN, "--fault", "mass:scale=2@guard")[0] == 2
