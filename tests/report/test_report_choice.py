@@ -105,11 +105,6 @@ def test_what_is_decided_at_the_floor_announces_nothing(one_seed: ReportInput, s
     assert said == "Neither succeeds on any path. 2 of 6 scenes go like this one."
 
 
-def test_of_one_pattern_the_usual_end_comes_first(one_seed: ReportInput) -> None:
-    pairs = scenes(one_seed, "nnnn", "nnnn", "nnnn", ends={0: Status.TIMEOUT})
-    assert begun(one_seed, announcing(one_seed), pairs) == [1, 2, 0]
-
-
 def test_void_scenes_are_neither_shown_nor_counted(one_seed: ReportInput) -> None:
     pairs = scenes(one_seed, "bbrb", "bbrb", "bbbb", "bbbb")
     dead = next(p for p in pairs if p.index == 0 and p.path == "shared")

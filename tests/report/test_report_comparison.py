@@ -104,15 +104,6 @@ def test_decided_in_opposite_directions(two: Given) -> None:
     )
 
 
-def test_other_arms_ask_something_else(one_seed: ReportInput) -> None:
-    first, second = run(one_seed, 1), run(one_seed, 2, repair="dob", system="other")
-    turned = (first, signed(second, "shared", 1))
-    assert "opposite" not in headline(turned)
-    said = sentences(turned)
-    assert "none can contradict another" in said[1]
-    assert "different systems" in said[2]
-
-
 def test_only_what_differs_is_told(one_seed: ReportInput) -> None:
     first = run(one_seed, 1)
     assert differing((first, run(one_seed, 2))) == {}

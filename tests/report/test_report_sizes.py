@@ -5,10 +5,7 @@ import re
 import pytest
 from faultpath_quadrotor.paper.answers import ClaimVerdict
 from faultpath_quadrotor.paper.report import words
-from faultpath_quadrotor.paper.report.page import reproduction_page
-from faultpath_quadrotor.paper.report.terminal import ledger_markdown, ledger_view
-from reproduction_toys import claim, ledger, part, reproduction
-from rich.console import Console
+from reproduction_toys import claim, ledger, part
 
 
 def said_in(html: str) -> str:
@@ -59,20 +56,3 @@ def test_sizes_are_counted_in_a_sentence() -> None:
         "The paper prints 5 figures for these claims, of which 4 can be compared: "
         f"2 compatible; 1 {SAME}; 1 {OTHER}."
     )
-
-
-def test_sizes_stand_beside_the_verdict_everywhere() -> None:
-    found = ledger().model_copy(update={"claims": (sized(SAME, "compatible"),)})
-    row = next(
-        line for line in ledger_markdown(found, "paper").splitlines() if line.startswith("| C01")
-    )
-    assert f"| {SAME}, 1 of 2 |" in row
-    console = Console(width=100)
-    with console.capture() as captured:
-        console.print(ledger_view(found, "paper"))
-    assert "right sign only" in captured.get()
-    reproduced = reproduction().model_copy(update={"ledger": found})
-    html = reproduction_page(reproduced, None, None)
-    text = said_in(html)
-    assert f"size: {SAME}, 1 of 2" in text
-    assert f"the paper +3.0 pp: {SAME}" in text
