@@ -58,12 +58,6 @@ def test_another_primary_contrast_is_a_look():
     assert [(look.scenes, look.primary) for look in found.earlier] == [(12, "shared")]
 
 
-def test_a_default_folder_knows_of_those_that_share_its_trials():
-    audited(scenes=12, folder=None)
-    assert [look.scenes for look in audited(scenes=20, folder=None).record.earlier] == [12]
-    assert not audited(scenes=20, folder=None, fault="gain:scale=0.7").record.earlier
-
-
 def test_what_could_announce_nothing_is_no_look():
     audited(scenes=3)
     assert not audited(scenes=12).record.earlier

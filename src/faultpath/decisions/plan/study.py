@@ -30,15 +30,6 @@ class StudyArm(Frozen):
     """Consumers that the fault reaches there; without any the arm is that of correct inputs."""
     repair: tuple[str, ...] = ()
 
-    @model_validator(mode="after")
-    def _role_of_its_path(self) -> Self:
-        fit = _roles(self.path)
-        if self.role not in fit:
-            raise ValueError(
-                f"path '{self.path}' has the role {' or '.join(fit)}, and not {self.role}"
-            )
-        return self
-
 
 class StudyAudit(Frozen):
     """One audit of the repair: a fault, and its arms."""
@@ -94,28 +85,22 @@ def read_study(path: Path) -> StudyFile:
 def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...]:
     """Return the arms of an audit path by path, in the order of their roles: the paper's, III-C."""
     asked = audit.question
-    struck: dict[str, dict[str, tuple[str, ...]]] = {}
+    reached: dict[str, dict[str, tuple[str, ...]]] = {}
     for row in audit.study.rows:
         consumers = {c: None for f in row.arm.faults if f.kind != "coupled" for c in f.consumers}
-        struck.setdefault(row.path, {})[row.variant] = tuple(consumers)
+        reached.setdefault(row.path, {})[row.variant] = tuple(consumers)
+    of_path: dict[str, Role] = {CORRECT: "correct", SHARED: "shared"}
+    of_path |= dict.fromkeys(repaired, "repaired")
     arms = [
         StudyArm(
             path=path,
-            role=_roles(path)[0 if path in repaired else -1],
+            role=of_path.get(path, "attribution"),
             baseline=by_variant[asked.baseline],
             repair=by_variant[asked.repair],
         )
-        for path, by_variant in struck.items()
+        for path, by_variant in reached.items()
     ]
     return tuple(sorted(arms, key=lambda arm: get_args(Role).index(arm.role)))
-
-
-def _roles(path: str) -> tuple[Role, ...]:
-    if path == CORRECT:
-        return ("correct",)
-    if path == SHARED:
-        return ("shared",)
-    return ("repaired", "attribution")
 
 
 def check_arms(study: StudyFile, planned: StudyAudit, audit: Audit) -> None:
