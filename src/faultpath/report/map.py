@@ -22,9 +22,9 @@ from faultpath.trials.store import make_folder, write_text
 
 
 def tables(record: MapRecord) -> tuple[Table, ...]:
-    """Return how large an error changes the verdict on each path, and what was seen there.
+    """Return how large an error reverses the ranking on each path, and what was seen there.
 
-    Too few scenes to decide anything have no verdict that could change.
+    Too few scenes to decide anything have no ranking that could reverse.
     """
     flips = (_flips(record),) if record.scenes >= MIN_SCENES else ()
     return *flips, _paths(record)
@@ -67,7 +67,7 @@ def _difference(point: MapPoint | None) -> Entry:
 def _flips(record: MapRecord) -> Table:
     return Table(
         name="flips",
-        title="Smallest error that turns the verdict",
+        title="Smallest error that reverses the ranking",
         corner="Path",
         columns=("Error", "Ahead without error, up to", "Estimate turns at", "Ahead beyond, from"),
         lines=tuple(_flip(record, flip) for flip in record.flips),
@@ -75,7 +75,7 @@ def _flips(record: MapRecord) -> Table:
             "Ahead is who is decided to be, at all sizes up to that one, or from that one on. The "
             "turn lies between the two, which are its interval. A dash: no size on the map is "
             "decided, or the estimate does not turn; where correct inputs decide nothing there is "
-            "no verdict to turn. All of it holds at once, with the intervals of the map.",
+            "no ranking to reverse. All of it holds at once, with the intervals of the map.",
         ),
     )
 
