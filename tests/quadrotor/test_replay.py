@@ -5,13 +5,13 @@ from dataclasses import fields
 import pytest
 import torch
 from faultpath_quadrotor.evidence.inputs import Subject
+from faultpath_quadrotor.evidence.playback import at_present
 from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath_quadrotor.predictors import PredictorInputs
 from faultpath_quadrotor.predictors import module as prediction
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import windows as replay
 from faultpath_quadrotor.training.flight import fly
-from faultpath_quadrotor.training.playback import at_present
 from faultpath_quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath_quadrotor.training.reconstruction_task import _calibration, _history
 from faultpath_quadrotor.training.trajectories import record_flights

@@ -12,10 +12,10 @@ from faultpath.core.errors import UserError
 from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, Hold
 from faultpath.loop.taps import Reading, Taps
 from faultpath.trials import Variant
+from faultpath_quadrotor.evidence.playback import CODE, HELD, Present, at_present
 from faultpath_quadrotor.predictors import Predictor
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.system import Quadrotor
-from faultpath_quadrotor.training.playback import CODE, HELD, Present, at_present
 from faultpath_quadrotor.training.windows import Windows
 
 _BY_WINDOW = HELD | {"wind"}

@@ -15,6 +15,7 @@ from faultpath.trials.store import atomic, make_folder
 from faultpath.trials.store.atomic import locked
 from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.evidence.inputs import Subject
+from faultpath_quadrotor.evidence.playback import Present, at_present
 from faultpath_quadrotor.evidence.recording import Block, Recorded, blocks, quadrotor, recorded
 from faultpath_quadrotor.evidence.table import (
     EvidenceTable,
@@ -34,7 +35,6 @@ from faultpath_quadrotor.reconstruction import (
     Sensed,
 )
 from faultpath_quadrotor.training.parts import Part, make_missing
-from faultpath_quadrotor.training.playback import Present, at_present
 from faultpath_quadrotor.training.provenance import code_of
 from faultpath_quadrotor.training.windows import HISTORY, Windows
 
