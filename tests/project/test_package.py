@@ -78,6 +78,6 @@ def test_what_is_to_be_installed_exists(declared: dict[str, Any], root: Path) ->
         assert not re.search(r"pip install '?faultpath", text), file
         found = re.findall(r"pip install '(?:\.|/faultpath)\[([\w,]+)\]'|\bextra\(['\"](\w+)", text)
         named |= {each for pair in found for one in pair for each in one.split(",") if each}
-    assert {"torch", "pandas", "ray"} <= named
+    assert {"torch", "ray"} <= named
     assert named <= extras
     assert {"torch", "gymnasium"} <= set(_EXTRAS) <= extras
