@@ -9,7 +9,7 @@ from rich.console import Console
 
 from faultpath.decisions import DecisionRecord, wording
 from faultpath.decisions.model import Effect
-from faultpath.report.html import write_report
+from faultpath.report.html import _finding, write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.tables import by_path, decided_for, latex_table, markdown_table
 from faultpath.report.terminal import decision
@@ -119,6 +119,15 @@ def test_a_narrow_terminal_cuts_no_number(path: Path) -> None:
     text = captured.get()
     for row in by_path(record, ("break-even", "interval", "won"), "").lines:
         assert all(entry.text in text for entry in row.entries), text
+
+
+@pytest.mark.parametrize("path", RECORDS, ids=lambda path: path.parent.name)
+def test_the_two_numbers_below_the_headline_are_both_decided(path: Path) -> None:
+    record = DecisionRecord.model_validate_json(path.read_bytes())
+    found = [effect for effect, _ in _finding(record)]
+    assert bool(found) == any(change.turn == "reversal" for change in record.changes)
+    assert all(effect.detected for effect in found)
+    assert not found or found[0].success.value * found[1].success.value < 0
 
 
 def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:

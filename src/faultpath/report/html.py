@@ -102,11 +102,12 @@ def write_report(source: ReportInput, folder: Path) -> list[Path]:
 
 
 def _finding(record: DecisionRecord) -> list[tuple[Effect, str]]:
-    """Return the effects of which sharing the fault reverses, or at least changes, the first one,
-    each with where it holds; nothing where no change is detected."""
+    """Return the two effects of a reversal, each with where it holds; without one, nothing.
+
+    Of an interaction only the change is decided: an effect by itself may be a point estimate.
+    """
     effects = {effect.path: effect for effect in record.effects}
-    for turn in ("reversal", "interaction"):
-        for each in record.changes:
-            if each.turn == turn and {each.isolated, each.shared} <= effects.keys():
-                return [(effects[p], wording.where(p)) for p in (each.isolated, each.shared)]
+    for each in record.changes:
+        if each.turn == "reversal" and {each.isolated, each.shared} <= effects.keys():
+            return [(effects[p], wording.where(p)) for p in (each.isolated, each.shared)]
     return []
