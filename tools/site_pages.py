@@ -113,6 +113,12 @@ def linked(app: Sphinx, tree: nodes.document) -> None:
                 node["reftarget"] = "index"
             if node["reftarget"] in app.env.found_docs:
                 continue
+            if (
+                not Path(node["reftarget"]).is_relative_to(DOCS)
+                and Path(f"{node['reftarget']}.md").is_file()
+            ):  # the site has no page of it: finished studies, and what is for contributors
+                node.replace_self(node.children)
+                continue
             target = DOCS / Path(node["reftarget"]).parent
         page = next((target / name for name in PAGES if (target / name).is_file()), target)
         if page.name in PAGES and page.is_relative_to(DOCS):

@@ -52,7 +52,7 @@ DECLARED = {
     "no block": ("block_size = 0", "`block_size` is 0"),
     "interface of text": ("interface = 'toy.yaml'", "`interface` is 'toy.yaml'"),
     "no variants": ("variants = {}", "`variants` is {}"),
-    "variant under another name": ("variants = {'b': Toy().variants['blind']}", "under 'b'"),
+    "variant under another name": ("variants = {'b': Toy().variants['blind']}", "the name of each"),
     "unknown consumer": (
         "variants = {'v': Variant('v', '', frozenset({'nobody.there'}))}",
         "unknown consumer 'nobody.there'",

@@ -6,7 +6,6 @@ from faultpath.loop.taps.reading import (
     MalformedReading,
     NotDelivered,
     NotFinite,
-    Observer,
     Query,
     Reading,
     TapError,
@@ -19,6 +18,7 @@ from faultpath.loop.taps.receipts import (
     added,
     check_delivered,
 )
+from faultpath.loop.taps.tap import Observer
 from faultpath.loop.taps.taps import ModuleTaps, Taps
 
 __all__ = [

@@ -1,14 +1,11 @@
-"""What passes a tap, who may watch it, and what is a mistake there."""
+"""What passes a tap, and what is a mistake there."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from faultpath.core.arrays import Array
 from faultpath.core.errors import SystemMistake
-
-if TYPE_CHECKING:
-    from faultpath.loop.taps.tap import Tap
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,24 +44,6 @@ class Query:
     called only where something looks at it."""
     changed: Callable[[Any, Array], Any] = _replaced
     """The answer with another such array in its place."""
-
-
-class Observer:
-    """Sees what passes the taps of one run; a subclass overrides what it wants to see.
-
-    Readings are those of the run itself: an observer copies what it keeps and writes to nothing.
-    """
-
-    def delivered(self, tap: "Tap", reading: Reading, step: int, got: Any) -> None:
-        """See that a consumer got `got` of a reading; of a query, the function that answers."""
-
-    def answered(
-        self, tap: "Tap", query: Query, step: int, request: Any, answer: Any, got: Any
-    ) -> None:
-        """See what a query answered to a request, and what the consumer got of that answer."""
-
-    def faulted(self, step: int, held: Any) -> None:
-        """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""
 
 
 class TapError(SystemMistake):

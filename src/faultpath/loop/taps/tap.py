@@ -13,6 +13,7 @@ from faultpath.core.text import unknown
 from faultpath.faults import Draws, Fault, Moment
 from faultpath.faults.base import Memory
 from faultpath.interface import Interface, Provenance
+from faultpath.loop.taps.reading import Query, Reading
 from faultpath.loop.taps.receipts import CorruptionReceipt, Receipt
 
 
@@ -237,3 +238,21 @@ def wire(
                 legal = bound in privileged or not secret
                 taps[channel.name, name] = Tap(channel.name, name, bound, legal, shape)
     return taps
+
+
+class Observer:
+    """Sees what passes the taps of one run; a subclass overrides what it wants to see.
+
+    Readings are those of the run itself: an observer copies what it keeps and writes to nothing.
+    """
+
+    def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
+        """See that a consumer got `got` of a reading; of a query, the function that answers."""
+
+    def answered(
+        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
+    ) -> None:
+        """See what a query answered to a request, and what the consumer got of that answer."""
+
+    def faulted(self, step: int, held: Any) -> None:
+        """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""

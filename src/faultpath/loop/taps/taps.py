@@ -24,7 +24,6 @@ from faultpath.loop.taps.checks import (
 from faultpath.loop.taps.reading import (
     IllegalRead,
     MalformedReading,
-    Observer,
     Query,
     Reading,
     TapError,
@@ -32,7 +31,7 @@ from faultpath.loop.taps.reading import (
     WrittenTo,
 )
 from faultpath.loop.taps.receipts import Receipts, check_delivered
-from faultpath.loop.taps.tap import Corruption, Guard, Running, Tally, Tap, wire
+from faultpath.loop.taps.tap import Corruption, Guard, Observer, Running, Tally, Tap, wire
 
 
 @dataclass(frozen=True, slots=True)
