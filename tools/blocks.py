@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from functools import cache
 from io import StringIO
 from pathlib import Path
-from string import Formatter
 from typing import Any, TypeVar
 
 from flown_code import ROOT, flown_by
@@ -16,7 +15,7 @@ from pydantic import BaseModel, ValidationError
 from rich.console import Console
 
 from faultpath.decisions import DecisionRecord, RunProvenance, wording
-from faultpath.decisions.tables import MISSING, Entry, Table, line
+from faultpath.decisions.tables import Entry, Table, line
 from faultpath.decisions.tables.markdown import grid
 from faultpath.report.tables import DIFFERENCE, by_quantity
 from faultpath.report.terminal import decision
@@ -27,10 +26,6 @@ REFERENCE = ROOT / "docs" / "reference"
 
 TAKE_AGAIN = "take the run again"
 M = TypeVar("M", bound=BaseModel)
-Row = Mapping[str, Any]
-Columns = Mapping[str, str | Callable[[Row], str]]
-"""The columns of a table, from left to right: what each says of a row, as the template of a text
-(in backticks where it is a name) or a function."""
 
 
 class Wrong(Exception):
@@ -85,61 +80,6 @@ def load(name: str) -> Run | None:
         return None
     record = parsed(folder / "record.json", DecisionRecord, TAKE_AGAIN)
     return Run(name, record, parsed(folder / "provenance.json", RunProvenance, TAKE_AGAIN))
-
-
-class _Words(Formatter):
-    """Formats fields of a row; what is not there is a dash.
-
-    A number takes its digits after the colon, `{error:3}`, with `+` always its sign; `%` makes
-    whole per cent of a fraction.
-    """
-
-    def get_field(self, field_name: str, args: Any, kwargs: Any) -> Any:
-        try:
-            return super().get_field(field_name, args, kwargs)
-        except (KeyError, TypeError):
-            return None, field_name
-
-    def format_field(self, value: Any, format_spec: str) -> str:
-        if value is None:
-            return MISSING
-        if not isinstance(value, float) or not format_spec:
-            return format(value, format_spec)
-        if format_spec == "%":
-            return wording.percent(value)
-        words = wording.signed if format_spec.startswith("+") else wording.plain
-        return words(value, int(format_spec))
-
-
-def told(column: str | Callable[[Row], str], row: Row) -> str:
-    """Return what a column says of a row."""
-    return _Words().vformat(column, (), row) if isinstance(column, str) else column(row)
-
-
-def tabled(
-    corner: str, rows: Iterable[Row], columns: Columns, *, code: bool = False, words: str = ""
-) -> str:
-    """Return a Markdown table of rows, each under its `name`, and its `aside` where it has one.
-
-    Names are set as code on request; `words` is a column of prose.
-    """
-
-    def entry(text: str) -> Entry:
-        name = text.startswith("`")
-        return Entry(text=text.strip("`") if name else text, name=name)
-
-    lines = (
-        line(
-            row["name"],
-            *(entry(told(column, row)) for column in columns.values()),
-            name=code,
-            aside=row.get("aside", ""),
-        )
-        for row in rows
-    )
-    heads = tuple(columns)
-    prose = tuple(head for head in heads if head == words)
-    return grid(Table(corner=corner, columns=heads, words=prose, lines=tuple(lines)))
 
 
 def missing(name: str) -> str:
@@ -262,25 +202,22 @@ def origin(run: Run) -> str:
 
 def times(*names: str) -> str:
     """Return how long runs took, one a row; those that are not there have a line below."""
-    runs = [(name, load(name)) for name in names]
-    rows = [
-        {
-            "name": str(run.record.question.n_scenes),
-            "seeds": len(run.record.question.seeds),
-            "trials": run.trials,
-            "time": duration(run),
-            "processor": run.provenance.processor.replace("(R)", ""),
-            "workers": run.provenance.workers,
-        }
-        for _, run in runs
-        if run is not None
-    ]
-    columns = {
-        head: f"{{{head.lower()}}}" for head in ("Seeds", "Trials", "Time", "Processor", "Workers")
-    }
-    table = tabled("Scenes", rows, columns, words="Processor") if rows else ""
-    by = " ".join(dict.fromkeys(flown(run) for _, run in runs if run is not None))
-    return "\n\n".join(filter(None, [table, by, *(missing(n) for n, run in runs if not run)]))
+    runs = [run for name in names if (run := load(name))]
+    lines = tuple(
+        line(
+            str(run.record.question.n_scenes),
+            *(Entry(text=str(len(run.record.question.seeds))), Entry(text=str(run.trials))),
+            Entry(text=duration(run)),
+            Entry(text=run.provenance.processor.replace("(R)", "")),
+            Entry(text=str(run.provenance.workers)),
+        )
+        for run in runs
+    )
+    heads = ("Seeds", "Trials", "Time", "Processor", "Workers")
+    table = Table(corner="Scenes", columns=heads, words=("Processor",), lines=lines)
+    by = " ".join(dict.fromkeys(map(flown, runs)))
+    absent = [missing(name) for name in names if load(name) is None]
+    return "\n\n".join([*([grid(table), by] if runs else []), *absent])
 
 
 def duration(run: Run) -> str:
