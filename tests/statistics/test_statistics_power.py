@@ -34,8 +34,8 @@ def test_distributions_agree_with_scipy(n, k, p):
     assert normal_quantile(p) == pytest.approx(norm.ppf(p))
 
 
-@settings(max_examples=10, deadline=None)
-@given(st.integers(1, 10), st.floats(0.05, 1.0), st.floats(-1, 1), st.sampled_from([0.05, 0.3]))
+@settings(max_examples=15, deadline=None)
+@given(st.integers(1, 14), st.floats(0.05, 1.0), st.floats(-1, 1), st.sampled_from([0.05, 0.3]))
 def test_power_agrees_with_enumerating_every_table(n, rate, lean, alpha):
     """Both have to find it: the exact test, and the 95 % interval on the same side."""
     difference = lean * rate
@@ -90,7 +90,7 @@ def test_the_number_to_plan_by_is_found_in_four_audits_of_five(rule, wins, losse
 
     def power(difference):
         chances = [noise / 2 + difference, noise / 2, 1 - noise - difference]
-        first, second, _ = stream.multinomial(100, chances, size=120).T
+        first, second, _ = stream.multinomial(100, chances, size=300).T
         resamples = Resamples.draw("planned", 100, n_resamples=1)
         tested = (
             with_test(success_effect(*counted(b, c), resamples), rule)
@@ -98,5 +98,5 @@ def test_the_number_to_plan_by_is_found_in_four_audits_of_five(rule, wins, losse
         )
         return np.mean([each.detected != 0 for each in tested])
 
-    assert power(planned) == pytest.approx(0.8, abs=0.11)
+    assert power(planned) == pytest.approx(0.8, abs=0.07)
     assert power(seen) < power(planned)

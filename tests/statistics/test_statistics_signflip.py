@@ -67,7 +67,7 @@ def lopsided(rng: np.random.Generator, scenes: int, gains: float) -> tuple[np.nd
 @pytest.mark.parametrize("gains", [0.3, 0.6])
 def test_many_small_gains_against_few_whole_losses_are_no_difference(gains):
     """The sign test, with an interval at 95 % as the only guard, announced .07 to .18."""
-    rng, audits, announced = np.random.default_rng(11), 120, {"exact": 0, RULE: 0}
+    rng, audits, announced = np.random.default_rng(11), 250, {"exact": 0, RULE: 0}
     paths = (CORRECT, "first", "second", SHARED)
     for _ in range(audits):
         arms = {path: lopsided(rng, 100, gains) for path in paths}
