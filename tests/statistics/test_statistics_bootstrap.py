@@ -1,5 +1,7 @@
 """Bootstrap effects: the laws that they must keep, against plain resampling, and their speed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,13 +10,16 @@ from hypothesis.extra import numpy as hnp
 from scipy.stats import sem
 from scipy.stats import t as student
 
+from faultpath.core.streams import generator
 from faultpath.statistics import (
+    Estimate,
     Resamples,
     change,
     mean_effect,
     median_effect,
     percentile_interval,
     success_effect,
+    success_rate,
 )
 from faultpath.statistics.estimate import SCENES, SCENES_AND_SEEDS
 
@@ -48,6 +53,33 @@ def test_resamples_are_keyed_and_complete():
         RESAMPLES.counts[0, 0] = 3
 
 
+@pytest.mark.parametrize(
+    ("n_resamples", "n_scenes"), [(10_000, 100), (10_000, 1), (3001, 37), (3, 70_001)]
+)
+def test_counts_are_those_of_the_scenes_drawn_one_resample_after_another(n_resamples, n_scenes):
+    """However the counting is done: every reported interval comes of these very numbers."""
+    drawn = generator("bootstrap", "plain", 4).integers(0, n_scenes, size=(n_resamples, n_scenes))
+    plain = np.stack([np.bincount(row, minlength=n_scenes) for row in drawn]).astype(np.float64)
+    resamples = Resamples.draw("plain", n_scenes, seed=4, n_resamples=n_resamples)
+    assert resamples.counts.dtype == np.float64
+    np.testing.assert_array_equal(resamples.counts, plain, strict=True)
+    blocks = list(resamples.blocks())
+    assert len(blocks) > 1 or n_scenes == 1
+    np.testing.assert_array_equal(np.concatenate(blocks), plain, strict=True)
+
+
+@fewer
+@given(FLOATS)
+def test_draws_are_the_means_of_resampled_scenes(pair):
+    means = (pair[0] - pair[1]).mean(axis=1)
+    expected = [means[row].mean() for row in rows(RESAMPLES)]
+    effect = mean_effect(*pair, RESAMPLES, "m")
+    np.testing.assert_allclose(effect.draws, expected, atol=1e-10)
+    assert effect.value == pytest.approx(means.mean(), abs=1e-10)
+    low, high = effect.ends(0.9)
+    assert (low, high) == pytest.approx(np.percentile(expected, [5, 95]), abs=1e-9)
+
+
 @fewer
 @given(BINARY.filter(lambda pair: pair.shape[2] > 1))
 def test_newly_trained_models_have_the_hull_of_score_and_students_t(pair):
@@ -69,6 +101,28 @@ def test_newly_trained_models_have_the_hull_of_score_and_students_t(pair):
     backward = success_effect(*pair[::-1], RESAMPLES, models=True)
     low, high = trained.interval
     assert (backward.value, backward.interval) == (-trained.value, pytest.approx((-high, -low)))
+
+
+@pytest.mark.parametrize("seeds", [3, 5])
+def test_the_interval_for_new_trainings_holds_their_mean(seeds):
+    """The crossed bootstrap, which knows too little of the spread of a few, held it in .79."""
+    rng, audits, held = np.random.default_rng(8), 300, 0
+    for _ in range(audits):
+        shift = rng.normal(0.0, 0.08, size=seeds)
+        scene, one, two = rng.random((N, 1)), *rng.normal(0.0, 0.15, size=(2, N, seeds))
+        arms = scene + one < 0.5 + shift, scene + two < 0.5
+        low, high = success_effect(*arms, RESAMPLES, models=True).interval
+        held += low <= 0.0 <= high
+    assert held >= 0.92 * audits
+
+
+def test_newly_trained_models_without_discordance_are_not_known_to_be_equal():
+    """Resampled trainings alone printed [0.0, 0.0]."""
+    some = np.arange(60).reshape(N, 3) % 2
+    effect = success_effect(some, some, RESAMPLES, models=True)
+    assert effect.interval == success_effect(some, some, RESAMPLES).interval
+    low, high = change(effect, effect).interval
+    assert low == -high < -10
 
 
 @fewer
@@ -93,6 +147,48 @@ def test_duplicating_seeds_changes_neither_value_nor_interval(pair, times):
 
 
 @fewer
+@given(BINARY, st.permutations(range(N)))
+def test_permuting_scenes_with_their_resamples_changes_nothing(pair, order):
+    order = np.array(order)
+    resamples = replace(RESAMPLES, counts=RESAMPLES.counts[:, order])
+    moved = success_effect(*pair[:, order], resamples)
+    assert moved.estimate() == success_effect(*pair, RESAMPLES).estimate()
+
+
+@fewer
+@given(FLOATS)
+def test_identical_arms_give_zero_with_a_degenerate_interval(pair):
+    found = mean_effect(pair[0], pair[0], RESAMPLES, "m")
+    assert (found.value, found.interval, found.side) == (0.0, (0.0, 0.0), 0)
+
+
+def test_a_resampled_mean_of_zero_is_exactly_zero():
+    """Thirds do not cancel in floating point; an end at 0 must not come out beside it."""
+    first, second = np.zeros((2, N, 3))
+    first[:7, 0], second[7:14, 1] = 1, 1
+    draws = success_effect(first, second, RESAMPLES).draws
+    assert (draws == 0).sum() > 20
+    assert np.abs(draws[draws != 0]).min() > 1
+
+
+def test_per_seed_values_and_counts():
+    first = np.array([[1, 0], [1, 0], [0, 1], [0, 0]])
+    second = np.array([[0, 0], [0, 1], [0, 0], [0, 0]])
+    estimate = success_effect(first, second, Resamples.draw("four", 4)).estimate()
+    assert estimate.per_seed == (50.0, 0.0)
+    assert (estimate.value, str(estimate.counts)) == (25.0, "2:0/1:1")
+    assert (estimate.n_scenes, estimate.n_seeds, estimate.unit) == (4, 2, "pp")
+    assert estimate.method == "score on scene means (Tango's, cluster-robust)"
+
+
+def test_one_arm():
+    outcomes = np.arange(N) < 13
+    assert success_rate(outcomes, RESAMPLES).estimate().value == 65.0
+    with pytest.raises(ValueError, match="only 0 and 1"):
+        success_rate(outcomes * 2.0, RESAMPLES)
+
+
+@fewer
 @given(BINARY, BINARY)
 def test_a_change_is_joint(a, b):
     effect_a, effect_b = (success_effect(*pair, RESAMPLES) for pair in (a, b))
@@ -105,6 +201,22 @@ def test_a_change_is_joint(a, b):
     assert not none.scenes.values.any()
     low, high = none.interval
     assert low == -high < 0
+
+
+def test_effects_that_are_not_joint_are_refused():
+    one = np.ones((N, 2))
+    here = success_effect(one, one, RESAMPLES)
+    elsewhere = success_effect(one, one, Resamples.draw("other", N, n_resamples=500))
+    with pytest.raises(ValueError, match="same resamples"):
+        change(here, elsewhere)
+    with pytest.raises(ValueError, match="'pp' and 'm'"):
+        change(here, mean_effect(one, one, RESAMPLES, "m"))
+    trained = success_effect(one, one, RESAMPLES, models=True)
+    with pytest.raises(ValueError, match="one effect speaks of new seeds"):
+        change(here, trained)
+    three = np.ones((N, 3))
+    with pytest.raises(ValueError, match="same seeds"):
+        change(trained, success_effect(three, three, RESAMPLES, models=True))
 
 
 def test_wrong_input_is_refused():
@@ -137,3 +249,40 @@ def test_medians_are_those_of_the_resampled_joint_scenes(pair, data):
     np.testing.assert_allclose(effect.draws, expected, atol=1e-9)
     assert effect.value == pytest.approx(np.median([w for w in within if w is not None]))
     assert effect.n_scenes == joint.any(axis=1).sum()
+
+
+def test_medians_take_every_resample_in_order():
+    resamples = Resamples.draw("several blocks", 100, n_resamples=1501)
+    assert len(list(resamples.blocks())) > 1
+    first, second = np.random.default_rng(0).normal(size=(2, 100))
+    joint = np.arange(100) % 3 == 0
+    expected = [np.median((first - second)[row[joint[row]]]) for row in rows(resamples)]
+    draws = median_effect(first, second, joint, resamples).draws
+    np.testing.assert_array_equal(draws, expected, strict=True)
+
+
+def test_times_of_scenes_that_are_not_joint_are_not_read():
+    first, second = np.full(N, 3.0), np.full(N, 2.0)
+    joint = np.arange(N) < 15
+    first[15:] = np.nan
+    found = median_effect(first, second, joint, RESAMPLES)
+    assert (found.value, found.interval, found.n_scenes) == (1.0, (1.0, 1.0), 15)
+    with pytest.raises(ValueError, match="no scene is jointly successful"):
+        median_effect(first, second, np.zeros(N, dtype=bool), RESAMPLES)
+    with pytest.raises(ValueError, match="first has shape"):
+        median_effect(first[:3], second, joint, RESAMPLES)
+    with pytest.raises(ValueError, match="first holds NaN"):
+        median_effect(first, second, np.ones(N, dtype=bool), RESAMPLES)
+
+
+def test_an_estimate_refuses_nonsense():
+    base = {"method": "m", "estimand": SCENES, "n_scenes": 100, "n_seeds": 3, "unit": "pp"}
+    estimate = Estimate(value=-9.67, low=-16.0, high=-4.0, **base)
+    assert Estimate.model_validate_json(estimate.model_dump_json()) == estimate
+    for wrong in (
+        {"value": float("nan")},
+        {"value": 0.0, "low": 1.0},
+        {"value": 0.0, "low": 1.0, "high": -1.0},
+    ):
+        with pytest.raises(ValueError, match=r"finite|both ends|upside down"):
+            Estimate(**wrong, **base)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from faultpath.core.streams import generator
-from faultpath.statistics import WindowQuantiles, change
+from faultpath.statistics import Resamples, WindowQuantiles, change
 
 FEW = {"n_resamples": 400}
 
@@ -55,6 +55,21 @@ def test_an_interval_over_scenes_is_wider_than_one_that_takes_windows_for_indepe
     assert clustered.high - clustered.low > 2 * (alone.high - alone.low)
 
 
+def test_the_order_of_windows_does_not_matter():
+    values, scenes = windows()
+    order = generator("test-order", "clustered", 0).permutation(len(values))
+    shuffled = quantile_estimate(values[order], [scenes[i] for i in order], **FEW)
+    assert shuffled == quantile_estimate(values, scenes, **FEW)
+
+
+def test_seeds_are_averaged_after_their_quantiles():
+    values, scenes = windows(seeds=3)
+    found = quantile_estimate(values, scenes, **FEW)
+    assert found.per_seed == tuple(np.median(values, axis=0))
+    assert found.value == pytest.approx(np.mean(found.per_seed), rel=1e-12)
+    assert found.n_seeds == 3
+
+
 def test_a_difference_is_paired_and_mirrors_when_the_arms_are_swapped():
     values, scenes = windows()
     noise = windows()[0][::-1]
@@ -67,3 +82,43 @@ def test_a_difference_is_paired_and_mirrors_when_the_arms_are_swapped():
     )
     low, high = forth.interval
     assert (back.value, back.interval) == (-forth.value, (-high, -low))
+
+
+def test_a_logarithm_of_a_ratio_is_scale_free():
+    values, scenes = windows(seeds=2)
+    other = values[::-1].copy()
+    drawn = WindowQuantiles(scenes, **FEW)
+    log = drawn.log_ratio(values, other, 0.5).estimate()
+    scaled = drawn.log_ratio(3 * values, 3 * other, 0.5).estimate()
+    assert scaled.value == pytest.approx(log.value)
+    tripled = drawn.log_ratio(3 * values, values, 0.5).estimate()
+    assert tripled.value == pytest.approx(np.log(3))
+    assert tripled.low > 0
+
+
+def test_effects_of_the_same_windows_are_joint():
+    values, scenes = windows()
+    drawn = WindowQuantiles(scenes, **FEW)
+    one, two = drawn.value(values, 0.5, "m"), drawn.value(values + 1.0, 0.5, "m")
+    moved = change(one, two).estimate()
+    assert (moved.value, moved.low, moved.high) == pytest.approx((1.0, 1.0, 1.0))
+    assert WindowQuantiles(scenes, **FEW).resamples.same_as(drawn.resamples)
+    assert isinstance(drawn.resamples, Resamples)
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda values, scenes: quantile_estimate(values, scenes, 0.0),
+        lambda values, scenes: quantile_estimate(values, scenes, 1.0),
+        lambda values, scenes: quantile_estimate(values[:-1], scenes),
+        lambda values, scenes: quantile_estimate(np.full_like(values, np.nan), scenes),
+        lambda values, scenes: quantile_difference(values, values[:-1], scenes),
+        lambda values, scenes: WindowQuantiles(scenes).log_ratio(values, values[:-1], 0.5),
+        lambda values, scenes: WindowQuantiles(scenes).log_ratio(values, values * 0, 0.5),
+        lambda values, scenes: WindowQuantiles([]),
+    ],
+)
+def test_what_has_no_quantile_is_refused(ask):
+    with pytest.raises(ValueError, match=r"."):
+        ask(*windows())

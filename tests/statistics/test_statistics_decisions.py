@@ -7,15 +7,18 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.stats import ttest_1samp
+from scipy.stats import binomtest, ttest_1samp
 from statsmodels.stats.multitest import multipletests
 
 from faultpath.statistics import (
     Contrast,
     Resamples,
+    change,
     decide_family,
     fewest_scenes,
+    mean_effect,
     success_effect,
+    success_rate,
     turn,
     with_test,
 )
@@ -42,6 +45,18 @@ def test_an_effect_is_tested_as_the_paper_tests_it(n_seeds):
     assert (found.p_value, found.leans) == (sign_p_value(wins, losses), 1)
 
 
+def test_a_change_is_tested_by_the_signs_of_scene_differences():
+    rng = np.random.default_rng(1)
+    arms = rng.random((4, N, 3)) < 0.5
+    one, two = (success_effect(*pair, RESAMPLES) for pair in (arms[:2], arms[2:]))
+    found = with_test(change(one, two), "exact").test
+    means = (arms[2].astype(int) - arms[3] - arms[0] + arms[1]).sum(axis=1)
+    wins, losses = int((means > 0).sum()), int((means < 0).sum())
+    assert found.leans == np.sign(wins - losses)
+    assert found.p_value == pytest.approx(binomtest(wins, wins + losses).pvalue)
+    assert found.name == "sign test on scene differences"
+
+
 def test_interval_and_test_have_to_point_the_same_way():
     """Many small wins and few large losses: the sign test finds the first arm, the mean is below.
 
@@ -61,6 +76,13 @@ def test_interval_and_test_have_to_point_the_same_way():
     assert decide_family({"it": contrary})["it"].sign == 0
 
 
+def test_what_has_no_test_is_refused():
+    with pytest.raises(ValueError, match="has no test"):
+        with_test(mean_effect(np.ones(N), np.zeros(N), RESAMPLES, "m"), "exact")
+    with pytest.raises(ValueError, match="has no test"):
+        with_test(success_rate(np.ones(N), RESAMPLES), "exact")
+
+
 @settings(deadline=None)
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=8))
 def test_the_adjustment_is_holms(p_values):
@@ -71,6 +93,23 @@ def test_the_adjustment_is_holms(p_values):
         assert each.decision.adjusted_p == pytest.approx(adjusted[i])
         if abs(adjusted[i] - 0.05) > 1e-12:
             assert (each.sign == 1) == rejected[i]
+
+
+@settings(deadline=None)
+@given(st.lists(st.floats(0, 0.2), min_size=1, max_size=6), st.data())
+def test_the_critical_p_is_where_the_decision_turns(p_values, data):
+    """Replacing one p-value by anything up to its critical one detects it, and above does not."""
+    place = data.draw(st.integers(0, len(p_values) - 1))
+    name = str(place)
+
+    def decide(p):
+        values = [*p_values[:place], p, *p_values[place + 1 :]]
+        return decide_family({str(i): contrast(v) for i, v in enumerate(values)})[name]
+
+    critical = decide(p_values[place]).decision.critical_p
+    assert 0.05 / len(p_values) <= critical <= 0.05
+    assert decide(critical * (1 - 1e-9)).sign == 1
+    assert decide(critical * (1 + 1e-9)).sign == 0
 
 
 @settings(deadline=None)
@@ -128,6 +167,15 @@ def test_fewest_scenes_is_where_a_unanimous_test_first_suffices(hypotheses):
     assert fewest_scenes() == 6
 
 
+@pytest.mark.parametrize("n", [1, 3, 5])
+def test_few_scenes_detect_nothing_however_one_sided(n):
+    resamples = Resamples.draw("few", n, n_resamples=100)
+    ones = np.ones(n)
+    found = with_test(success_effect(ones, 0 * ones, resamples), "exact")
+    assert found.detected == 0
+    assert decide_family({"only": found})["only"].sign == 0
+
+
 def test_newly_trained_models_are_tested_by_the_seeds_effects():
     rng = np.random.default_rng(3)
     first, second = rng.random((2, N, 4)) < [[[0.8]], [[0.4]]]
@@ -138,3 +186,26 @@ def test_newly_trained_models_are_tested_by_the_seeds_effects():
     assert found.test.leans == 1
     assert "Student's t over seeds" in found.method
     assert found.estimand.startswith("new scenes like these and models newly trained")
+
+
+def test_trainings_that_agree_to_the_digit_are_not_certain():
+    """Two trainings with the same rate: a share of 40 scenes is known to a fortieth only."""
+    difference = np.zeros((N, 2))
+    difference[:10] = 1
+    effect = success_effect(difference, 0 * difference, RESAMPLES, models=True)
+    assert 0.005 < with_test(effect, "exact").test.p_value < 0.05
+    none = success_effect(0 * difference, 0 * difference, RESAMPLES, models=True)
+    assert with_test(none, "exact").test.p_value == 1.0
+
+
+def test_newly_trained_models_are_not_told_apart_by_six_single_wins():
+    """Two scenes of a hundred won in each training, others in each: bootstrap and t test agreed."""
+    wins = np.zeros((100, 3))
+    wins[np.arange(6), np.arange(6) % 3] = 1
+    resamples = Resamples.draw("hundred", 100, n_resamples=2000)
+    found = with_test(success_effect(wins, 0 * wins, resamples, models=True), "exact")
+    assert found.test.rejects()
+    assert found.test.leans == 1
+    assert found.detected == 0
+    wins[:12] = 1
+    assert with_test(success_effect(wins, 0 * wins, resamples, models=True), "exact").detected == 1

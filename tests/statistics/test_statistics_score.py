@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 from scipy.stats import norm
 from statsmodels.stats.proportion import proportion_confint
 
-from faultpath.statistics import Resamples, success_effect, success_rate
-from faultpath.statistics.score import SceneValues, rejects
+from faultpath.statistics import Resamples, change, success_effect, success_rate
+from faultpath.statistics.score import SceneValues, interval, reach, rejects
 
 Z = float(norm.ppf(0.975))
 N = 30
@@ -44,12 +44,35 @@ def test_one_seed_gives_tangos_interval(n):
             assert found == pytest.approx(tango(b, c, n), abs=1e-9), (b, c)
 
 
+@pytest.mark.parametrize(("n", "n_seeds"), [(100, 1), (100, 3), (25, 5)])
+def test_no_discordance_has_an_interval_with_width(n, n_seeds):
+    """0 of 100 used to print [0.0, 0.0]; that no scene in n differs bounds how many may."""
+    none = np.zeros((n, n_seeds))
+    found = success_effect(none, none, Resamples.draw("none", n, n_resamples=10))
+    expected = 100 * Z**2 / (n + Z**2)
+    assert found.value == 0.0
+    assert found.interval == pytest.approx((-expected, expected))
+    everything = np.concatenate([np.ones(n)])
+    whole = success_effect(everything, 0 * everything, Resamples.draw("w", n, n_resamples=10))
+    assert whole.estimate().high == 100.0
+    assert whole.estimate().low == pytest.approx(100 - 2 * expected)
+
+
 @laws
 @given(ARMS)
 def test_swapping_the_arms_mirrors_the_interval_to_the_bit(arms):
     forward, backward = (success_effect(*pair, RESAMPLES) for pair in (arms, arms[::-1]))
     low, high = forward.interval
     assert (backward.value, backward.interval) == (-forward.value, (-high, -low))
+
+
+def test_sums_of_sizes_that_round_do_not_break_the_mirror():
+    """Sizes of a third and of two: their sum depends on the order in its last bit."""
+    stream = np.random.default_rng(0)
+    for rate in stream.random(600):
+        arms = stream.random((2, N, 3)) < rate
+        forward, backward = (success_effect(*pair, RESAMPLES) for pair in (arms, arms[::-1]))
+        assert backward.scenes.far == forward.scenes.far
 
 
 @laws
@@ -80,6 +103,33 @@ def test_the_interval_holds_exactly_the_means_that_the_test_does_not_reject(arms
     assert not rejected[inside].any()
 
 
+@laws
+@given(ARMS, st.floats(0.5, 0.99), st.floats(0.0, 0.009))
+def test_a_higher_level_is_wider(arms, level, more):
+    effect = success_effect(*arms, RESAMPLES)
+    narrow, wide = effect.ends(level), effect.ends(level + more)
+    assert wide[0] <= narrow[0] + 1e-9
+    assert wide[1] >= narrow[1] - 1e-9
+
+
+def test_what_was_not_seen_is_assumed_larger_than_what_was():
+    size = np.array([[1.0, 3.0]])
+    assert reach(size, np.array([[0.0, 0.0]]), 3.0) == 3.0
+    alone = reach(size, np.array([[40.0, 0.0]]), 3.0)
+    assert 1.0 < alone < 2.0
+    assert reach(size, np.array([[40.0, 1.0]]), 3.0) == 3.0
+    assert reach(size, np.array([[400.0, 0.0]]), 3.0) < alone
+
+
+def test_a_change_is_bounded_by_the_sum_of_both_bounds():
+    none = np.zeros(N)
+    one = success_effect(none, none, RESAMPLES)
+    both = change(one, one)
+    assert both.scenes.far == 2.0
+    assert both.interval[1] == pytest.approx(2 * one.interval[1])
+    assert both.estimate().method == "score on scene differences (Tango's, cluster-robust)"
+
+
 @pytest.mark.parametrize("successes", [0, 1, 15, 30])
 def test_one_arms_rate_has_wilsons_interval(successes):
     outcomes = np.arange(N) < successes
@@ -89,3 +139,20 @@ def test_one_arms_rate_has_wilsons_interval(successes):
     assert found.method == "score (Wilson)"
     seeds = success_rate(np.tile(outcomes[:, None], 3), RESAMPLES)
     assert seeds.interval == pytest.approx(found.interval)
+
+
+def test_batches_agree_with_single_samples():
+    rng = np.random.default_rng(0)
+    counts = rng.integers(0, 20, size=(50, 7)).astype(float)
+    kinds = np.arange(-3.0, 4.0)
+    values = np.broadcast_to(kinds, counts.shape)
+    low, high = interval(values, counts, reach(values, counts, 3.0), Z)
+    for row, *ends in zip(counts, low, high, strict=True):
+        scenes = SceneValues.paired(np.repeat(kinds, row.astype(int)), 3.0)
+        assert scenes.interval() == pytest.approx(ends, abs=1e-12)
+
+
+@pytest.mark.parametrize("level", [0.0, 1.0, 95.0])
+def test_a_level_outside_0_and_1_is_refused(level):
+    with pytest.raises(ValueError, match="level of an interval"):
+        SceneValues.paired(np.zeros(3), 1.0).interval(level)

@@ -1,5 +1,8 @@
 """Exact tests against scipy and statsmodels, and the laws that they must keep."""
 
+from fractions import Fraction
+from math import comb
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -27,6 +30,21 @@ def test_exact_mcnemar_agrees_with_statsmodels_and_scipy(first_only, second_only
         )
     else:
         assert ours == 1.0
+
+
+def test_p_values_are_the_exact_fractions_of_every_table_up_to_60_discordant_pairs():
+    """1,891 tables, each against sums of binomial coefficients in whole numbers."""
+    tables = 0
+    for total in range(61):
+        ways = [comb(total, k) for k in range(total + 1)]
+        for first_only in range(total + 1):
+            fewer = min(first_only, total - first_only)
+            exact = min(Fraction(1), Fraction(2 * sum(ways[: fewer + 1]), 2**total))
+            assert sign_p_value(first_only, total - first_only) == pytest.approx(
+                float(exact), rel=1e-12
+            )
+            tables += 1
+    assert tables == 1891
 
 
 def found(first, second):
@@ -67,3 +85,38 @@ def test_one_seed_is_tested_by_exact_mcnemar(pair):
 def test_wrong_input_is_refused(first, second, message):
     with pytest.raises(ValueError, match=message):
         found(first, second)
+
+
+@settings(deadline=None)
+@given(PAIR)
+def test_swapping_the_arms_swaps_the_counts_and_keeps_the_p_value(pair):
+    forward, backward = found(*pair), found(*pair[::-1])
+    assert backward.test.p_value == forward.test.p_value
+    assert backward.test.leans == -forward.test.leans
+    there = [(each.first_only, each.second_only) for each in forward.counts.per_seed]
+    back = [(each.second_only, each.first_only) for each in backward.counts.per_seed]
+    assert back == there
+
+
+@settings(deadline=None)
+@given(PAIR, st.randoms(use_true_random=False))
+def test_the_order_of_scenes_and_of_seeds_does_not_matter(pair, random):
+    scenes = random.sample(range(pair.shape[1]), pair.shape[1])
+    seeds = random.sample(range(pair.shape[2]), pair.shape[2])
+    assert found(*pair[:, scenes][:, :, seeds]).test == found(*pair).test
+
+
+@settings(deadline=None)
+@given(PAIR)
+def test_identical_arms_have_p_one(pair):
+    result = found(pair[0], pair[0])
+    assert (result.test.p_value, result.test.leans) == (1.0, 0)
+    assert {str(counts) for counts in result.counts.per_seed} == {"0:0"}
+
+
+def test_scene_means_decide_and_ties_drop():
+    first = np.array([[1, 1, 0], [1, 1, 0], [1, 0, 0], [0, 0, 0], [1, 1, 1]])
+    second = np.array([[0, 0, 1], [0, 0, 1], [0, 1, 0], [0, 0, 1], [1, 1, 1]])
+    result = found(first, second).test  # +, +, tie, -, tie
+    assert result.name == "sign test on scene means"
+    assert (result.p_value, result.leans) == (sign_p_value(2, 1), 1)

@@ -1,5 +1,6 @@
 """The E+M test against enumerating every table by its definition, and against exact McNemar."""
 
+import time
 from itertools import pairwise
 from math import comb, sqrt
 
@@ -8,6 +9,8 @@ import pytest
 
 from faultpath.statistics import Resamples, success_effect, unconditional, with_test
 from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.power import rule_power
+from faultpath.statistics.score import quantile, rejects
 
 
 def tables(n):
@@ -54,6 +57,24 @@ def test_p_values_are_those_of_the_definition_and_keep_their_level(n):
         assert (laws @ (ours <= alpha)).max() <= alpha
 
 
+def test_of_a_hundred_pairs_it_agrees_with_tangos_interval_nearly_everywhere():
+    """What the documents say: where each test and the interval disagree, level, and power."""
+    first, second = np.array(tables(100)).T
+    total, fewer = first + second, np.minimum(first, second)
+    em = fewer <= unconditional.critical(100, 0.05)[total]
+    exact = np.array([sign_p_value(b, c) for b, c in zip(first, second, strict=True)]) <= 0.05
+    counts = np.stack([second, 100 - total, first], axis=1).astype(float)
+    interval = rejects(np.array([-1.0, 0.0, 1.0]), counts, 0.0, np.ones(len(em)), quantile(0.95))
+    assert len(em) == 5151
+    assert (em != interval).sum() == 12
+    assert (exact != interval).sum() == 94
+    levels = [chances(100, share)[em].sum() for share in np.linspace(0.0, 1.0, 51)]
+    assert 0.049 < max(levels) < 0.0498
+    # 5 % of pairs discordant, all of them on one side: the power of test and interval together.
+    power = {rule: rule_power(100, 0.05, 0.05, rule=rule) for rule in ("exact", "unconditional")}
+    assert power == pytest.approx({"exact": 0.38, "unconditional": 0.74}, abs=5e-3)
+
+
 @pytest.mark.parametrize(("n", "alpha"), [(7, 0.05), (40, 0.05), (40, 0.05 / 6), (100, 0.025)])
 def test_the_critical_counts_are_where_p_passes_the_level(n, alpha):
     for total, critical in enumerate(unconditional.critical(n, alpha).tolist()):
@@ -70,6 +91,15 @@ def test_it_has_the_symmetries_of_a_test_of_no_difference():
     assert unconditional.p_value(8, 0, 8) == pytest.approx(sign_p_value(8, 0), rel=1e-12)
     more = [unconditional.p_value(b, 2, 100) for b in range(2, 60)]
     assert all(one > two for one, two in pairwise(more))
+
+
+def test_a_thousand_pairs_are_quick_and_very_many_do_not_underflow():
+    unconditional.p_value.cache_clear()
+    unconditional.p_value(3, 1, 1000)
+    before = time.process_time()
+    unconditional.p_value(60, 35, 1000)
+    assert time.process_time() - before < 0.1
+    assert unconditional.p_value(1400, 0, 1500) == pytest.approx(0.0, abs=1e-300)
 
 
 def test_the_rule_chooses_the_test_of_one_seed():
