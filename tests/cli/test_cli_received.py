@@ -173,6 +173,14 @@ FORGED = {
         _system(lambda c: c["interface"]["channels"][0].update(sources=["nowhere"])),
     ),
     "a plan that is not finite": ("system.json", _system(lambda c: c["plans"].update(x=PLAN))),
+    "a binding that is not offered": (
+        "system.json",
+        _system(lambda c: c["variants"][0].update(bindings={"gain": "odometer"})),
+    ),
+    "a tap that does not exist": (
+        "system.json",
+        _system(lambda c: c["variants"][0].update(consumers=["nobody.reads"])),
+    ),
     "other variants": ("variants", _system(lambda c: c.update(variants=[]))),
     "deep": ("system.json", lambda run: (run / "system.json").write_text("[" * 100_000)),
     "an effect on no path": ("path", _record(lambda c: c["effects"][0].update(path="nowhere"))),

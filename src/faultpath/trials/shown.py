@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, model_validator
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.frozen import Frozen
@@ -26,7 +26,10 @@ class VariantShown(Frozen, allow_inf_nan=False):
 
 
 class SystemShown(Frozen, allow_inf_nan=False):
-    """What a run keeps of the system beside its trials; written as `system.json`."""
+    """What a run keeps of the system beside its trials; written as `system.json`.
+
+    Raises `ValueError` for variants that do not fit the interface.
+    """
 
     format: Literal[1] = 1
     control_dt_s: Annotated[float, Field(gt=0)]
@@ -35,6 +38,21 @@ class SystemShown(Frozen, allow_inf_nan=False):
     variants: tuple[VariantShown, ...]
     plans: dict[str, FloorPlan]
     """By scene id; scenes without one are drawn without obstacles."""
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        sources = {channel.name: channel.sources for channel in self.interface.channels}
+        known = {name for channel in self.interface.channels for name in channel.consumers}
+        for variant in self.variants:
+            for name in set(variant.consumers) - known:
+                raise ValueError(f"variant '{variant.name}' reads at {name!r}: no such tap")
+            for channel, source in variant.bindings.items():
+                if source not in sources.get(channel, ()):
+                    raise ValueError(
+                        f"variant '{variant.name}' feeds {channel!r} from {source!r}, which the "
+                        "interface does not offer"
+                    )
+        return self
 
 
 def system_shown(system: System, variants: Iterable[str], scenes: Sequence[str]) -> SystemShown:
