@@ -117,6 +117,7 @@ class MapRun(FinishedRun):
         return write_map(self.record, self.provenance, place)
 
     def _repr_html_(self) -> str:
+        # What a notebook calls has an underscore.
         return self.record._repr_html_()  # pyright: ignore[reportPrivateUsage]
 
 

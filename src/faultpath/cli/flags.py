@@ -56,6 +56,7 @@ def takes(model: type[Request], *without: str) -> Callable[[_Verb], _Verb]:
         parameters = [each.replace(kind=_KEYWORD) for each in (*own, *flags)]
         # Arguments go before, then what is required; typer keeps the order within a panel.
         vars(command)["__signature__"] = inspect.Signature(parameters)
+        # Its signature is the model's from here on, which no type can say.
         return command  # pyright: ignore[reportReturnType]
 
     return decorate

@@ -47,6 +47,7 @@ def read_interface(
     try:
         document = read_yaml(text)
         data = cast("dict[str, Any]", document.data)
+        # YAML holds whatever its author wrote.
         if not isinstance(data, dict):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise Misread("holds no interface; start with `name:`, `sources:`, `channels:`")
         _complete(data, consumers or {}, writers or {})

@@ -63,6 +63,7 @@ def system_shown(system: System, variants: Iterable[str], scenes: Sequence[str])
     """
     plans = {scene: plan for scene in scenes if (plan := system.floor_plan(scene)) is not None}
     for plan in plans.values():
+        # A user's method returns what it likes.
         if not isinstance(plan, FloorPlan):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise SystemMistake(f"`floor_plan` returned {shown(plan)}: return a FloorPlan or None")
     try:

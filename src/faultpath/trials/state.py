@@ -27,6 +27,7 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     notebook. `UserError` for a data file that cannot be read.
     """
     given, root = system.fingerprint(), None if spec.is_object else factory_root(spec)
+    # A user's method returns what it likes.
     if not isinstance(given, str):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise SystemMistake(
             f"system '{system.name}': `fingerprint` returned {shown(given)}: it must return text"
