@@ -212,7 +212,7 @@ def test_scenes_are_the_same_wherever_the_file_of_a_system_lies(tmp_path):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "wrapped.py").write_text(WRAPPED)
         made += load_parts([f"{tmp_path / folder / 'wrapped.py'}:made"]).values()
-    here, there = (make().identity() for make in made)
+    here, there = (make().identity for make in made)
     assert "faultpath_system_:Own" in here
     assert "function" in here
     assert here == there

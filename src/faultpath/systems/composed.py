@@ -13,8 +13,8 @@ from faultpath.core.text import unknown
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Loop, Module, graph, interface_of
 from faultpath.loop.taps import Reading
-from faultpath.systems.episodes import SCENE, EpisodePlant, scene
-from faultpath.trials import Library, LoopSystem, Wiring
+from faultpath.systems.episodes import SCENE, EpisodePlant
+from faultpath.trials import Library, LoopSystem, SceneRef, Wiring
 
 SCENES: Mapping[str, Sequence[int]] = {
     "training": range(100),
@@ -116,17 +116,17 @@ class ComposedSystem(LoopSystem):
         if name not in self._scenes:
             raise UserError(f"{self.name}: {unknown('library', name, self._scenes)}")
         seeds = [int(seed) for seed in self._scenes[name]]
-        content = sha256(f"{self._plant.identity()}{seeds}".encode()).hexdigest()[:16]
-        return Library(name, tuple(map(scene, seeds)), content)
+        content = sha256(f"{self._plant.identity}{seeds}".encode()).hexdigest()[:16]
+        return Library(name, tuple(SceneRef(f"{SCENE}{s}", s) for s in seeds), content)
 
     @override
     def fingerprint(self) -> str:
-        return self._plant.identity()
+        return self._plant.identity
 
     @property
     @override
     def parts(self) -> Sequence[str]:
-        return self._plant.code()
+        return self._plant.code
 
     def _declared(
         self,

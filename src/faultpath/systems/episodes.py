@@ -1,6 +1,6 @@
 """A plant of episodes: each scene runs until it ends, and stays as it ended."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
@@ -13,23 +13,10 @@ from faultpath.core.arrays import HostArray, to_numpy
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
-from faultpath.trials import Metric, SceneRef
+from faultpath.trials import Metric
 
 SCENE = "seed/"
-"""A scene is the seed of its reset."""
-
-
-def scene(seed: int) -> SceneRef:
-    """Return the scene whose reset has this seed."""
-    return SceneRef(f"{SCENE}{seed}", seed)
-
-
-def seed_of(name: str) -> int:
-    """Return the seed of a scene's reset; `SystemMistake` for a scene that is not of `scene`."""
-    digits = name.removeprefix(SCENE)
-    if digits == name or not digits.isdecimal():
-        raise SystemMistake(f"scene '{name}' names no seed: such scenes are called {SCENE}7")
-    return int(digits)
+"""A scene is called after the seed of its reset, `seed/7`."""
 
 
 @dataclass(frozen=True)
@@ -62,27 +49,22 @@ class Episode:
         return float(self.rewards.sum())
 
 
-class World(ABC):
-    """One scene; made for one trial and thrown away with it."""
+@dataclass(frozen=True)
+class World:
+    """One scene at its start; made for one trial and thrown away with it."""
 
     observation: Any
-    """At the start: an array, or a mapping or tuple of such."""
+    """An array, or a mapping or tuple of such."""
     told: Mapping[str, Any]
     """What the set-up says of the scene, by source."""
     initial: str
     """A hash of its initial state."""
     disturbance: str
     """A hash of what its set-up did."""
-
-    @abstractmethod
-    def step(
-        self, action: HostArray, step: int
-    ) -> tuple[Any, float, bool, bool, Mapping[str, Any]]:
-        """Move by one step; return observation, reward, terminated, truncated and info."""
-
-    def close(self) -> None:
-        """Free what the world holds."""
-        return
+    step: Callable[[HostArray, int], tuple[Any, float, bool, bool, Mapping[str, Any]]]
+    """Moves it by an action at a step; returns observation, reward, terminated, truncated, info."""
+    close: Callable[[], None] = lambda: None
+    """Frees what it holds."""
 
 
 @dataclass(frozen=True)
@@ -93,22 +75,9 @@ class Measure:
     of: Callable[[Episode], float]
 
 
-RETURN = {"return": Measure(Metric(unit="1", better="more"), lambda episode: episode.returned)}
-"""The sum of an episode's rewards."""
-
-
 Look = str | int | slice | tuple[Any, ...] | Callable[[Any], Any]
 """Where in the observation a source stands: a key, an index or slice, several in turn, or a
 function of the batch's observation that returns an array `[B, ...]`."""
-
-
-def look(observation: Any, at: Look) -> HostArray:
-    """Return a part of a batch's observation, `[B, ...]`."""
-    if callable(at):
-        return np.array(at(observation))
-    for each in at if isinstance(at, tuple) else (at,):
-        observation = observation[each] if isinstance(each, str) else observation[:, each]
-    return np.array(observation)
 
 
 @dataclass
@@ -118,7 +87,6 @@ class _Batch:
     worlds: Sequence[World]
     seen: list[Any]
     """The last observation of each."""
-    told: Mapping[str, HostArray]
     sensed: dict[str, HostArray]
     running: HostArray
     succeeded: HostArray
@@ -141,6 +109,10 @@ class EpisodePlant(Plant):
     """
 
     name = "plant"
+    identity: str = ""
+    """What decides a trial and stands in no file that the system imports."""
+    code: Sequence[str] = ()
+    """Classes, as `module:name`, whose code decides a trial and is not imported."""
 
     def __init__(
         self,
@@ -159,7 +131,7 @@ class EpisodePlant(Plant):
         probed = self.world(f"{SCENE}0", 0)
         self.told = tuple(probed.told)
         self.senses = (*self._observes, *self.told)
-        sensed = self._sensed([probed.observation], _told([probed]))
+        sensed = self._sensed([probed], [probed.observation])
         self.shapes = {name: np.shape(value)[1:] for name, value in sensed.items()}
         probed.close()
 
@@ -167,35 +139,42 @@ class EpisodePlant(Plant):
     def world(self, scene: str, seed: int) -> World:
         """Return a scene at its start."""
 
-    def identity(self) -> str:
-        """Return what decides a trial and stands in no file that the system imports."""
-        return ""
-
-    def code(self) -> Sequence[str]:
-        """Return classes, as `module:name`, whose code decides a trial and is not imported."""
-        return ()
-
-    def _sensed(self, each: Sequence[Any], told: Mapping[str, HostArray]) -> dict[str, HostArray]:
-        seen = _stacked(each)
+    def _sensed(self, worlds: Sequence[World], each: Sequence[Any]) -> dict[str, HostArray]:
+        """Return every source of worlds that are observed as `each`, `[B, ...]`."""
+        seen, found = _stacked(each), dict[str, HostArray]()
         try:
-            return {n: look(seen, at) for n, at in self._observes.items()} | dict(told)
+            for name, at in self._observes.items():
+                part = at(seen) if callable(at) else seen
+                keys = () if callable(at) else at if isinstance(at, tuple) else (at,)
+                for key in keys:
+                    part = part[key] if isinstance(key, str) else part[:, key]
+                found[name] = np.array(part)
         except (LookupError, TypeError) as error:
             kind = type(seen).__name__ if not hasattr(seen, "shape") else list(seen.shape[1:])
             raise SystemMistake(
                 f"observes: the observation ({kind}) holds no such part ({error}): give a key, an "
                 "index or a slice of it"
             ) from error
+        for name in self.told:
+            found[name] = np.array([np.asarray(world.told[name]) for world in worlds])
+        return found
 
     @override
     def start(self, batch: Batch) -> _Batch:
         worlds, n = [self.world(name, batch.seed) for name in batch.scenes], len(batch.scenes)
-        seen, told = [world.observation for world in worlds], _told(worlds)
-        sensed = self._sensed(seen, told)
-        no = np.zeros((3, n), bool)
-        log = {name: [value] for name, value in sensed.items()}
-        metrics = {name: np.full(n, np.nan) for name in self.metrics}
+        seen = [world.observation for world in worlds]
+        sensed = self._sensed(worlds, seen)
         return _Batch(
-            worlds, seen, told, sensed, ~no[0], no[1], no[2], np.zeros(n, int), metrics, log, []
+            worlds=worlds,
+            seen=seen,
+            sensed=sensed,
+            running=np.ones(n, bool),
+            succeeded=np.zeros(n, bool),
+            crashed=np.zeros(n, bool),
+            steps=np.zeros(n, int),
+            metrics={name: np.full(n, np.nan) for name in self.metrics},
+            log={name: [value] for name, value in sensed.items()},
+            rewards=[],
         )
 
     @override
@@ -212,7 +191,7 @@ class EpisodePlant(Plant):
         for i in map(int, np.flatnonzero(was)):
             made = now.worlds[i].step(action[i], inputs.step)
             now.seen[i], rewards[i], ends[0, i], ends[1, i], info[i] = made
-        fresh = self._sensed(now.seen, now.told)
+        fresh = self._sensed(now.worlds, now.seen)
         held, now.sensed = now.sensed, {}
         for name, old in held.items():
             value = fresh[name]
@@ -256,11 +235,6 @@ class EpisodePlant(Plant):
         return [w.initial for w in state.worlds], [w.disturbance for w in state.worlds]
 
 
-def _told(worlds: Sequence[World]) -> dict[str, HostArray]:
-    names = worlds[0].told
-    return {name: np.array([np.asarray(w.told[name]) for w in worlds]) for name in names}
-
-
 def _stacked(rows: Sequence[Any]) -> Any:
     """Return observations of single scenes as that of a batch."""
     first = rows[0]
@@ -275,16 +249,16 @@ def _stacked(rows: Sequence[Any]) -> Any:
 
 def hashed(*parts: Any) -> str:
     """Return a hash of arrays, numbers and what holds such, exact to the bit."""
-    return sha256("\n".join(map(_exact, parts)).encode()).hexdigest()
 
+    def exact(part: Any) -> str:
+        if isinstance(part, Mapping):
+            items = cast("Mapping[Any, Any]", part).items()
+            return str({str(key): exact(value) for key, value in items})
+        if isinstance(part, tuple | list):
+            return str([exact(each) for each in cast("Sequence[Any]", part)])
+        if isinstance(part, np.ndarray | np.generic):
+            array = cast("HostArray", part)
+            return f"{array.dtype}{array.shape}{array.tobytes().hex()}"
+        return repr(part)
 
-def _exact(part: Any) -> str:
-    if isinstance(part, Mapping):
-        items = cast("Mapping[Any, Any]", part).items()
-        return str({str(key): _exact(value) for key, value in items})
-    if isinstance(part, tuple | list):
-        return str([_exact(each) for each in cast("Sequence[Any]", part)])
-    if isinstance(part, np.ndarray | np.generic):
-        array = cast("HostArray", part)
-        return f"{array.dtype}{array.shape}{array.tobytes().hex()}"
-    return repr(part)
+    return sha256("\n".join(map(exact, parts)).encode()).hexdigest()

@@ -54,27 +54,12 @@ class FunctionPlant(EpisodePlant):
 
     @override
     def world(self, scene: str, seed: int) -> World:
-        start = self._start(generator("plant/start", scene, 0))
-        return _FunctionWorld(scene, seed, start, self._step, self._over)
+        state = self._start(generator("plant/start", scene, 0))
 
+        def step(action: HostArray, step: int) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+            nonlocal state
+            state = self._step(state, action, generator("plant/step", scene, seed, step))
+            return state, 0.0, self._over is not None and self._over(state), False, {}
 
-class _FunctionWorld(World):
-    def __init__(
-        self,
-        scene: str,
-        seed: int,
-        state: Any,
-        step: Callable[[Any, HostArray, np.random.Generator], Any],
-        over: Callable[[Any], bool] | None,
-    ) -> None:
-        self._scene, self._seed, self._step, self._over = scene, seed, step, over
-        self.observation, self.told, self.initial = state, {}, hashed(state)
-        # What a step draws is addressed by scene and seed, so this is all that decides it.
-        self.disturbance = hashed(scene, seed)
-
-    @override
-    def step(self, action: HostArray, step: int) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        rng = generator("plant/step", self._scene, self._seed, step)
-        self.observation = self._step(self.observation, action, rng)
-        over = self._over is not None and self._over(self.observation)
-        return self.observation, 0.0, over, False, {}
+        # What a step draws is addressed by scene and seed, so these are all that decides it.
+        return World(state, {}, hashed(state), hashed(scene, seed), step)

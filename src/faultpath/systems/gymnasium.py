@@ -5,7 +5,7 @@ It is made anew for every scene, by id or by a function, and moved only while it
 
 import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from types import ModuleType
 from typing import Any
 
@@ -17,15 +17,15 @@ from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
 from faultpath.core.streams import generator
 from faultpath.systems.episodes import (
-    RETURN,
+    SCENE,
     Episode,
     EpisodePlant,
     Look,
     Measure,
     World,
     hashed,
-    seed_of,
 )
+from faultpath.trials import Metric
 from faultpath.trials.code import release
 
 Setup = Callable[[Any, np.random.Generator], Mapping[str, Any] | None]
@@ -68,33 +68,59 @@ class GymnasiumPlant(EpisodePlant):
         self._environment, self._setup = environment, setup
         self._limit = steps
         sample = self._make()
-        self._identity, self._code = _identity(sample), _code(sample)
+        self.identity, self.code = _identity(sample), _code(sample)
         steps = steps or getattr(sample.spec, "max_episode_steps", None)
         dt_s = dt_s or getattr(sample.unwrapped, "dt", None)
         sample.close()
         for what, found in {"steps": steps, "dt_s": dt_s}.items():
             if not found:
                 raise SystemMistake(f"GymnasiumPlant: the environment does not say {what}: give it")
+        returned = Measure(Metric(unit="1", better="more"), lambda episode: episode.returned)
         super().__init__(
             observes=observes,
             action=action,
             steps=int(steps or 0),
             dt_s=float(dt_s or 0),
             succeeded=succeeded,
-            metrics=RETURN | dict(metrics or {}),
+            metrics={"return": returned, **(metrics or {})},
         )
 
     @override
     def world(self, scene: str, seed: int) -> World:
-        return _Environment(self._make(), scene, self._setup)
+        digits = scene.removeprefix(SCENE)
+        if digits == scene or not digits.isdecimal():
+            raise SystemMistake(f"scene '{scene}' names no seed: such scenes are called {SCENE}7")
+        env, disturbance = self._make(), "none"
+        observation, _ = env.reset(seed=int(digits))
+        initial = hashed(scene, observation, env.unwrapped.np_random.bit_generator.state)
+        told: Mapping[str, Any] = {}
+        if self._setup:
+            rng = generator("environment/setup", scene, 0)
+            told = self._setup(env, rng) or {}
+            disturbance = hashed((sorted(told.items()), rng.bit_generator.state))
 
-    @override
-    def identity(self) -> str:
-        return self._identity
+        def step(action: HostArray, step: int) -> tuple[Any, float, bool, bool, Mapping[str, Any]]:
+            del step
+            space = env.action_space
+            if space.shape is None:
+                raise SystemMistake(
+                    f"the environment takes actions of {space}: only arrays can be given"
+                )
+            if np.issubdtype(space.dtype, np.integer) and action.dtype.kind not in "biu":
+                raise SystemMistake(
+                    f"the environment takes whole numbers, {space}, and its action is of "
+                    f"{action.dtype}: give integers"
+                )
+            try:
+                row = action.reshape(space.shape).astype(space.dtype)
+            except ValueError:
+                raise SystemMistake(
+                    f"the environment takes actions of shape {list(space.shape)}, and one scene's "
+                    f"is of shape {list(action.shape)}: correct what writes it"
+                ) from None
+            return env.step(row[()])
 
-    @override
-    def code(self) -> Sequence[str]:
-        return self._code
+        return World(observation, told, initial, disturbance, step, env.close)
 
     def _make(self) -> Any:
         if not isinstance(self._environment, str):
@@ -102,45 +128,6 @@ class GymnasiumPlant(EpisodePlant):
         if self._limit is None:
             return gymnasium.make(self._environment)
         return gymnasium.make(self._environment, max_episode_steps=self._limit)
-
-
-class _Environment(World):
-    def __init__(self, env: Any, scene: str, setup: Setup | None) -> None:
-        self._env = env
-        self.observation, _ = env.reset(seed=seed_of(scene))
-        stream = env.unwrapped.np_random.bit_generator.state
-        self.initial = hashed(scene, self.observation, stream)
-        rng = generator("environment/setup", scene, 0)
-        self.told = (setup(env, rng) if setup else None) or {}
-        done = (sorted(self.told.items()), rng.bit_generator.state)
-        self.disturbance = hashed(done) if setup else "none"
-
-    @override
-    def step(
-        self, action: HostArray, step: int
-    ) -> tuple[Any, float, bool, bool, Mapping[str, Any]]:
-        space = self._env.action_space
-        if space.shape is None:
-            raise SystemMistake(
-                f"the environment takes actions of {space}: only arrays can be given"
-            )
-        if np.issubdtype(space.dtype, np.integer) and action.dtype.kind not in "biu":
-            raise SystemMistake(
-                f"the environment takes whole numbers, {space}, and its action is of "
-                f"{action.dtype}: give integers"
-            )
-        try:
-            row = action.reshape(space.shape).astype(space.dtype)
-        except ValueError:
-            raise SystemMistake(
-                f"the environment takes actions of shape {list(space.shape)}, and one scene's is "
-                f"of shape {list(action.shape)}: correct what writes it"
-            ) from None
-        return self._env.step(row[()])
-
-    @override
-    def close(self) -> None:
-        self._env.close()
 
 
 def _identity(env: Any) -> str:
