@@ -32,7 +32,7 @@ from faultpath.trials.store.signals import SIGNALS
 sys.path.insert(0, str(ROOT))
 from benchmarks import page as performance
 
-TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md", "table.tex")
+TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md")
 """All that `faultpath report` reads of a run folder and writes there."""
 
 KINDS: Mapping[str, Any] = {

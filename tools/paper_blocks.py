@@ -21,7 +21,7 @@ from faultpath.trials.store import read_outcomes
 PLACE = REFERENCE / "paper"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")
 """What of a run is shipped with the package: the claims are evaluated from it."""
-PAGES = ("reproduction.html", "tables.tex", "tables.md", "ledger.md")
+PAGES = ("reproduction.html", "tables.md", "ledger.md")
 """What of a run stands in `docs/reference/paper`."""
 AGAIN = "quadrotor-L3-seeds"
 """The reference run that asks what Table IV asks, of the same scenes."""

@@ -21,7 +21,6 @@ FILES = {
     "provenance.json",
     "system.json",
     "report.html",
-    "table.tex",
     "table.md",
 }
 BROKEN = f"{HERE / 'systems' / 'slow_toy.py'}:broken"
@@ -98,7 +97,7 @@ def test_the_toy_shows_the_reversal(toy_run):
 
 def test_reports_are_made_again_from_what_is_stored(run, monkeypatch):
     monkeypatch.chdir(ROOT)
-    before = {name: (run / name).read_bytes() for name in ("report.html", "table.tex", "table.md")}
+    before = {name: (run / name).read_bytes() for name in ("report.html", "table.md")}
     for name in before:
         (run / name).unlink()
     ended = faultpath("report", run)

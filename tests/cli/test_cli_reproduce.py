@@ -38,7 +38,6 @@ def test_every_file_is_there(done: ReproductionRun) -> None:
         "reproduction.html",
         "reproduction.json",
         "tables.md",
-        "tables.tex",
         "traces.parquet",
     }
 

@@ -119,7 +119,6 @@ SEEN = "a[U+0000]b[U+001B]c[U+0085]d[U+202E]e[U+2066]f[U+D800]g[U+2028]h"
 
 def test_what_cannot_be_seen_is_shown_by_its_number(one_seed: ReportInput) -> None:
     assert escapes.visible(UNSEEN) == SEEN
-    assert escapes.latex(UNSEEN) == SEEN
     assert _shown(escapes.markdown(UNSEEN)) == SEEN
     assert escapes.html(f"<{UNSEEN}>") == f"&lt;{SEEN}&gt;"
     svg = Svg(10, 10, UNSEEN, UNSEEN)

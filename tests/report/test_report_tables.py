@@ -1,4 +1,4 @@
-"""LaTeX, Markdown and terminal tables: escaped, complete, and with the record's numbers."""
+"""Markdown and terminal tables: escaped, complete, and with the record's numbers."""
 
 import io
 import re
@@ -11,7 +11,7 @@ from faultpath.decisions import DecisionRecord, wording
 from faultpath.decisions.model import Effect
 from faultpath.report.html import _finding, write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.report.tables import by_path, decided_for, latex_table, markdown_table
+from faultpath.report.tables import by_path, decided_for, markdown_table
 from faultpath.report.terminal import decision
 
 
@@ -76,10 +76,8 @@ def test_markdown_has_the_numbers_of_the_record(source: ReportInput) -> None:
         assert rows[label] == values
 
 
-def test_names_are_escaped_in_latex_and_markdown(one_seed: ReportInput) -> None:
-    tex, md = latex_table(one_seed.record), markdown_table(one_seed.record)
-    assert r"100 \% of \_it\_" in tex
-    assert r"\textless{}script\textgreater{}" in tex
+def test_names_are_escaped_in_markdown(one_seed: ReportInput) -> None:
+    md = markdown_table(one_seed.record)
     assert "<script>" not in md
     assert r"100 % of \_it\_" in md
 
@@ -133,12 +131,12 @@ def test_the_two_numbers_below_the_headline_are_both_decided(path: Path) -> None
 def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:
     folder = tmp_path / "deep" / "report"
     written = write_report(one_seed, folder)
-    assert [p.name for p in written] == ["report.html", "table.tex", "table.md"]
+    assert [p.name for p in written] == ["report.html", "table.md"]
     assert sorted(p.name for p in folder.iterdir()) == sorted(p.name for p in written)
     before = written[0].read_bytes()
     write_report(one_seed, folder)
     assert written[0].read_bytes() == before
-    assert len(list(folder.iterdir())) == 3
+    assert len(list(folder.iterdir())) == 2
 
 
 def test_an_interval_that_leaves_out_0_undetected_has_its_p_in_every_table(

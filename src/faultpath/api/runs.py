@@ -92,7 +92,7 @@ class Run(FinishedRun):
         return self._trials
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
-        """Write report.html, table.tex and table.md, and return their paths.
+        """Write report.html and table.md, and return their paths.
 
         They go into `folder`, by default that of the run. `UserError` where it cannot be written.
         """

@@ -19,7 +19,6 @@ from faultpath.report.tables import (
     by_path,
     by_threshold,
     ended,
-    latex_table,
     markdown_table,
     secondary,
 )
@@ -86,14 +85,13 @@ def report_page(source: ReportInput) -> str:
 
 
 def write_report(source: ReportInput, folder: Path) -> list[Path]:
-    """Write `report.html`, `table.tex` and `table.md` into `folder` and return their paths.
+    """Write `report.html` and `table.md` into `folder` and return their paths.
 
     Each file appears whole or not at all. Raises `UserError` where the folder cannot be written.
     """
     make_folder(folder)
     made = {
         "report.html": report_page(source),
-        "table.tex": latex_table(source.record),
         "table.md": markdown_table(source.record),
     }
     for name, text in made.items():

@@ -7,7 +7,6 @@ from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.decisions.phrases import adjusted, only_alone
 from faultpath.decisions.summary import not_standing
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
-from faultpath.decisions.tables.latex import booktabs
 from faultpath.decisions.tables.markdown import block
 from faultpath.statistics import Estimate
 
@@ -149,11 +148,6 @@ def markdown_table(record: DecisionRecord) -> str:
     """Return the whole table as Markdown, with the question above it and the verdict below."""
     tables = (whole_table(record), by_threshold(record))
     return "\n\n".join(map(block, filter(None, tables)))
-
-
-def latex_table(record: DecisionRecord) -> str:
-    """Return a `table` environment that needs the package booktabs and nothing else."""
-    return "% Needs \\usepackage{booktabs}\n" + booktabs(whole_table(record))
 
 
 def ended(record: DecisionRecord) -> Table:

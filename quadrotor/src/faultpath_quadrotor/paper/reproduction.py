@@ -12,7 +12,7 @@ from faultpath.api.runs import FinishedRun, read_provenance
 from faultpath.api.systems import LOCAL, check_executor, executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.decisions import RunProvenance
-from faultpath.decisions.tables import latex, markdown
+from faultpath.decisions.tables import markdown
 from faultpath.trials.store import write_text
 from faultpath.trials.store.folder import DELIVERIES
 from faultpath.trials.store.sealed import AGAIN, unseal
@@ -151,6 +151,5 @@ def write_pages(place: Path, found: Reproduction, provenance: RunProvenance) -> 
     """Write the page, the tables and the ledger of a reproduction into a folder."""
     page = reproduction_page(found, provenance, of_page(found))
     write_text(place / "reproduction.html", page, place)
-    write_text(place / "tables.tex", latex.document(found.tables), place)
     write_text(place / "tables.md", "\n\n".join(map(markdown.block, found.tables)) + "\n", place)
     write_text(place / "ledger.md", ledger_markdown(found.ledger, found.profile), place)

@@ -1,4 +1,4 @@
-"""Tables of text, and how terminal, Markdown, LaTeX and HTML show them."""
+"""Tables of text, and how terminal, Markdown and HTML show them."""
 
 from faultpath.decisions.tables.model import MISSING, Entry, Line, Table, line
 

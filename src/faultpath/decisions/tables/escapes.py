@@ -1,6 +1,6 @@
-"""Text as HTML, Markdown and LaTeX show it: names are the user's, and markup is ours.
+"""Text as HTML and Markdown show it: names are the user's, and markup is ours.
 
-Every format shows what cannot be seen by its number, such as `[U+202E]`: control characters, the
+Both show what cannot be seen by its number, such as `[U+202E]`: control characters, the
 marks that turn the direction of reading, and halves of characters that no file can hold.
 """
 
@@ -18,28 +18,6 @@ _MARKDOWN = str.maketrans(
 )
 _OPENING = re.compile(r"(?:[-+]|\d+[.)])(?= |$)|(?:-+|=+)$")
 """What opens a list, or makes a heading of the line before."""
-
-_LATEX = str.maketrans(
-    {
-        "\\": r"\textbackslash{}",
-        "&": r"\&",
-        "%": r"\%",
-        "$": r"\$",
-        "#": r"\#",
-        "_": r"\_",
-        "{": r"\{",
-        "}": r"\}",
-        "~": r"\textasciitilde{}",
-        "^": r"\textasciicircum{}",
-        "<": r"\textless{}",
-        ">": r"\textgreater{}",
-        "*": r"$^\star$",
-        "−": "$-$",
-        "–": "--",
-        "Δ": r"$\Delta$",
-        "²": "$^2$",
-    }
-)
 
 
 def visible(text: str) -> str:
@@ -60,10 +38,3 @@ def markdown(text: str) -> str:
     if not opening:
         return escaped
     return f"{escaped[: opening.end() - 1]}\\{escaped[opening.end() - 1 :]}"
-
-
-def latex(text: str) -> str:
-    """Return text that LaTeX prints as it is; what an old pdflatex has no glyph for, by number."""
-    line = visible(text.translate(_SPACE))
-    marked = line.replace("p*", "\0").translate(_LATEX).replace("\0", r"$p^\star$")
-    return "".join(c if ord(c) < 0x250 else f"[U+{ord(c):04X}]" for c in marked)
