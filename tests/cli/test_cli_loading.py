@@ -14,18 +14,15 @@ HEAVY = {"jinja2", "mujoco", "numpy", "pyarrow", "scipy", "torch"}
 AUDIT = ["--baseline", "a", "--repair", "b", "--fault", "gain:scale=2"]
 
 MAY_LOAD = {
-    "help": (["--help"], {"numpy"}),
-    "help of a verb": (["audit", "--help"], {"numpy"}),
+    "help": (["--help"], set[str]()),
+    "help of a verb": (["audit", "--help"], set[str]()),
     "models": (["train", "quadrotor", "--list"], {"numpy"}),
-    "no such run": (["report", "nowhere"], ENGINE),
+    "no such run": (["report", "nowhere"], set[str]()),
     "help of the quadrotor": (["audit", "quadrotor", "--help"], {"numpy"}),
     "no such system": (["audit", "quadcopter", *AUDIT], ENGINE),
-    "nothing to check": (
-        ["check", TOY, "--variants", "a"],
-        {"jinja2", "numpy", "pyarrow", "scipy"},
-    ),
+    "nothing to check": (["check", TOY, "--variants", "a"], ENGINE),
     "nothing to trace": (["trace", TOY, "--variant", "a"], ENGINE),
-    "claims": (["reproduce", "--judge"], {"numpy", "pyarrow"}),
+    "claims": (["reproduce", "--judge"], {"numpy"}),
 }
 
 CODE = """
