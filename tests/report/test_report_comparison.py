@@ -9,14 +9,8 @@ import pytest
 from playwright.sync_api import Browser
 
 from faultpath.decisions import Path as FaultPath
-from faultpath.report.comparison.page import (
-    effects,
-    headline,
-    page,
-    sentences,
-)
-from faultpath.report.comparison.runs import Compared, differing, facts_table, titles
-from faultpath.report.comparison.sweep import together
+from faultpath.report.compared import Compared, differing, titles, together
+from faultpath.report.comparison import effects, facts_table, headline, page, sentences
 from faultpath.report.inputs import ReportInput
 
 NASTY = '<script>alert("x")</script> & 100 % of _it_ \u202e'

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from faultpath.decisions.family import CORRECT
-from faultpath.report.comparison.runs import Compared
-from faultpath.report.comparison.sweep import contrasts, together
+from faultpath.report.compared import Compared, contrasts, together
 from faultpath.report.inputs import ReportInput
 
 

@@ -8,9 +8,8 @@ from pathlib import Path
 
 from faultpath.api.runs import RECORD, Run, open_run
 from faultpath.core.errors import UserError
-from faultpath.report.comparison.page import headline, page, sentences
-from faultpath.report.comparison.runs import Compared, differing
-from faultpath.report.comparison.sweep import together
+from faultpath.report.compared import Compared, differing, together
+from faultpath.report.comparison import headline, page, sentences
 from faultpath.trials.store import write_text
 from faultpath.trials.store.sealed import read_regular
 
@@ -37,26 +36,25 @@ class Comparison:
 
     def as_json(self) -> dict[str, object]:
         """Return headline, sentences, what differs, and each record, for `json.dumps`."""
+        found: list[dict[str, object]] = []
+        for run in self.runs:
+            said = folder_and_record(Path(run.folder))
+            if run.family is not None:
+                said["over_all_sizes"] = {
+                    path: {"sign": sign, "adjusted_p_value": p}
+                    for path, (sign, p) in run.family.items()
+                }
+            found.append(said)
         return {
             "headline": self.headline,
             "sentences": sentences(self.runs),
             "differs": differing(self.runs),
-            "runs": [_folder_and_record(each) for each in self.runs],
+            "runs": found,
         }
 
     def __repr__(self) -> str:
         """Return the headline."""
         return f"<Comparison: {self.headline}>"
-
-
-def _folder_and_record(run: Compared) -> dict[str, object]:
-    """Return what `--json` prints of an audit, of sizes with what stands over all of them."""
-    found = folder_and_record(Path(run.folder))
-    if run.family is not None:
-        found["over_all_sizes"] = {
-            path: {"sign": sign, "adjusted_p_value": p} for path, (sign, p) in run.family.items()
-        }
-    return found
 
 
 def folder_and_record(folder: Path) -> dict[str, object]:

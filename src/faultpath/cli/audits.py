@@ -77,7 +77,7 @@ def audit(
     from faultpath.api.audit import audits, sweep_page
     from faultpath.api.comparing import compare
     from faultpath.api.display import SafeConsole
-    from faultpath.report.comparison.page import shown
+    from faultpath.report.comparison import shown
 
     console = SafeConsole(stderr=as_json)
     runs = audits(system, **given, progress=display(as_json))

@@ -43,7 +43,7 @@ def report(
 
     from faultpath.api.comparing import compare
     from faultpath.api.display import SafeConsole
-    from faultpath.report.comparison.page import shown
+    from faultpath.report.comparison import shown
 
     compared = compare(folders)
     page = None if out is None else compared.report(out)

@@ -8,34 +8,31 @@ from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.decisions import wording
-from faultpath.decisions.model import Effect
+from faultpath.decisions.family import ALPHA
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.terminal import drawn
 from faultpath.decisions.wording import series
-from faultpath.report.comparison import sweep
-from faultpath.report.comparison.runs import (
+from faultpath.report.compared import (
     Compared,
+    Facts,
     differing,
-    facts_table,
     labels,
+    same_correct_trials,
+    swept,
     titles,
 )
 from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
+from faultpath.report.svg import tick_label
 from faultpath.report.tables import decided_for
-
-_NO_TEST = (
-    "Setting verdicts side by side is no test between the audits: where one detects a difference "
-    "and another does not, the two are not shown to differ."
-)
 
 
 def headline(runs: Sequence[Compared]) -> str:
     """Return how many audits there are, and where they are decided in opposite directions."""
     where = [title for path, title in titles(runs).items() if list(_opposite(runs, path))]
-    found = sweep.swept(runs)
-    count = f"{len(runs)} {f'sizes of {found.name}' if found else 'audits'} side by side"
+    sweep = swept(runs)
+    count = f"{len(runs)} {f'sizes of {sweep[0]}' if sweep else 'audits'} side by side"
     return f"{count}: decided in opposite directions on {series(where)}" if where else count
 
 
@@ -47,7 +44,8 @@ def same(runs: Sequence[Compared]) -> str:
 
 
 def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
-    """Return the caveat, where audits are decided in opposite directions, and what qualifies it.
+    """Return the caveat, what sizes decide together, where audits are decided in opposite
+    directions, and what qualifies it.
 
     Audits of other arms ask something else, and are not held against each other.
     """
@@ -61,7 +59,33 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
     told = told or ["No two audits of the same arms are decided in opposite directions."]
     if len({run.asked.system for run in runs}) > 1:
         told += ["The runs are of different systems: the same name need not mean the same thing."]
-    return (_NO_TEST, *sweep.sentences(runs), *told)
+    caveat = (
+        "Setting verdicts side by side is no test between the audits: where one detects a "
+        "difference and another does not, the two are not shown to differ."
+    )
+    return caveat, *_over_sizes(runs), *told
+
+
+def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
+    """Yield what the number of sizes does to what was decided; nothing for other runs."""
+    sweep = swept(runs)
+    if sweep is None:
+        return
+    for path, title in titles(runs).items():
+        at: dict[str, list[str]] = {}
+        for run, size in sorted(zip(runs, sweep[1], strict=True), key=lambda each: each[1]):
+            sign = effect.sign if (effect := run.effect(path)) else 0
+            ahead = {1: f"{run.asked.repair} ahead", -1: f"{run.asked.baseline} ahead"}
+            at.setdefault(ahead.get(sign, "not decided"), []).append(tick_label(size))
+        if len(at) > 1:
+            said = "; ".join(f"{words} at {series(where)}" for words, where in at.items())
+            yield f"{title}, verdicts differ with the size: {said}."
+    if same_correct_trials(runs):
+        yield "Correct inputs are the same trials at every size, and count once."
+    yield (
+        f"All {len(runs)} sizes are one family here: what is called decided, and what is bold, is "
+        f"wrong in at most {100 * ALPHA:g} % of such sweeps, all sizes together (Holm)."
+    )
 
 
 def _opposite(runs: Sequence[Compared], path: str) -> Iterator[str]:
@@ -69,51 +93,60 @@ def _opposite(runs: Sequence[Compared], path: str) -> Iterator[str]:
     others: `for a (baseline) in 1, for b (repair) in 2 and 3`."""
     decided = [(run, effect) for run in runs if (effect := run.effect(path)) and effect.sign]
     for arms in dict.fromkeys(_arms(run) for run, _ in decided):
-        there = [(run, effect) for run, effect in decided if _arms(run) == arms]
-        if len({_winner(*each) for each in there}) < 2:
-            continue
-        sides: dict[str, list[str]] = {}
-        for run, effect in there:
-            side = f"{_winner(run, effect)} ({'repair' if effect.sign > 0 else 'baseline'})"
+        sides: dict[str, dict[str, list[str]]] = {}
+        for run, effect in decided:
+            if _arms(run) != arms:
+                continue
+            role = "repair" if effect.sign > 0 else "baseline"
+            winner = run.asked.repair if effect.sign > 0 else run.asked.baseline
             aside = wording.reservation(effect)
             told = f"{run.number} (at the {aside})" if aside else f"{run.number}"
-            sides.setdefault(side, []).append(told)
-        yield ", ".join(f"for {side} in {series(said)}" for side, said in sides.items())
+            sides.setdefault(winner, {}).setdefault(f"{winner} ({role})", []).append(told)
+        if len(sides) > 1:
+            found = [each for of in sides.values() for each in of.items()]
+            yield ", ".join(f"for {side} in {series(said)}" for side, said in found)
 
 
 def _arms(run: Compared) -> frozenset[str]:
     return frozenset((run.asked.baseline, run.asked.repair))
 
 
-def _winner(run: Compared, effect: Effect) -> str:
-    return run.asked.repair if effect.sign > 0 else run.asked.baseline
+def facts_table(runs: Sequence[Compared], facts: Facts) -> Table:
+    """Return what differs, each value with the runs that have it."""
+    lines: list[Line] = []
+    for title, values in facts.items():
+        lines.append(line(title))
+        for value in dict.fromkeys(values):
+            of = [str(r.number) for r, own in zip(runs, values, strict=True) if own == value]
+            lines.append(line(value, series(of)))
+    columns = ("Runs",)
+    return Table(
+        title="What differs", corner="Value", columns=columns, words=columns, lines=tuple(lines)
+    )
 
 
 def effects(runs: Sequence[Compared]) -> Table:
     """Return the effect of every run on every path; bold is decided, by its own audit."""
-    label = dict(zip(runs, labels(runs), strict=True))
     levels = {f"{100 * e.success.level:g} % interval" for run in runs for e in run.record.effects}
     interval = levels.pop() if len(levels) == 1 else "interval"
+    lines: list[Line] = []
+    for path, title in titles(runs).items():
+        lines.append(line(title))
+        for run, label in zip(runs, labels(runs), strict=True):
+            if (effect := run.effect(path)) is None:
+                lines.append(line(label, MISSING, MISSING, run.absent(path)))
+                continue
+            rates = map(wording.plain, (effect.baseline_percent, effect.repair_percent))
+            difference = Entry(text=wording.with_interval(effect.success), detected=effect.detected)
+            decided = decided_for(run.record, effect)
+            lines.append(line(label, " → ".join(rates), difference, decided))
     return Table(
-        title=f"{'All sizes' if sweep.swept(runs) else 'Each run by itself'}; bold is decided",
+        title=f"{'All sizes' if swept(runs) else 'Each run by itself'}; bold is decided",
         corner="Run",
         columns=("Baseline → repair, %", f"Difference, pp [{interval}]", "Decided for"),
-        lines=tuple(
-            each
-            for path, title in titles(runs).items()
-            for each in (line(title), *(_line(run, label[run], path) for run in runs))
-        ),
+        lines=tuple(lines),
         words=("Decided for",),
     )
-
-
-def _line(run: Compared, label: str, path: str) -> Line:
-    effect = run.effect(path)
-    if effect is None:
-        return line(label, MISSING, MISSING, run.absent(path))
-    rates = map(wording.plain, (effect.baseline_percent, effect.repair_percent))
-    difference = Entry(text=wording.with_interval(effect.success), detected=effect.detected)
-    return line(label, " → ".join(rates), difference, decided_for(run.record, effect))
 
 
 def shown(runs: Sequence[Compared]) -> RenderableType:
@@ -150,6 +183,6 @@ def page(runs: Sequence[Compared]) -> str:
         effects=Markup(html(effects(runs))),
         facts=Markup(html(facts_table(runs, found))) if found else "",
         same=same(runs),
-        sizes=sweep.swept(runs),
+        sizes=swept(runs),
         w=wording,
     )

@@ -1,0 +1,202 @@
+"""Finished audits side by side: what differs between them, and what several sizes decide together.
+
+Every audit keeps its own verdict. Only sizes of one fault are decided anew, as one family.
+"""
+
+import re
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from faultpath.decisions import wording
+from faultpath.decisions.family import ALPHA, CORRECT, SHARED, alpha_shares
+from faultpath.decisions.model import DecisionRecord, Effect
+from faultpath.decisions.question import Question
+from faultpath.statistics import RULES, Sign
+from faultpath.statistics.decisions import holm
+from faultpath.trials.provenance import RunProvenance
+
+_SIZED = re.compile(r"([^=,@]+)=([^=,@/]+)(.*)", re.DOTALL)
+_MAY_DIFFER = ("Fault", "Scenes flown", "Scenes compared")
+_DIGITS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """A finished audit beside others."""
+
+    number: int
+    """Its place among them, from 1."""
+    folder: str
+    record: DecisionRecord
+    provenance: RunProvenance
+    family: Mapping[str, tuple[Sign, float]] | None = None
+    """Of a sweep over sizes: for each path the side that is decided over all of them together, and
+    the adjusted p. `None` where every audit stands by itself."""
+
+    @property
+    def asked(self) -> Question:
+        """What it asked."""
+        return self.record.question
+
+    def effect(self, path: str) -> Effect | None:
+        """Return its effect on a path, as decided beside the others; `None` where it has none."""
+        found = next((each for each in self.record.effects if each.path == path), None)
+        if found is None or self.family is None or path not in self.family:
+            return found
+        sign, p = self.family[path]
+        return found.model_copy(update={"sign": sign, "adjusted_p_value": p})
+
+    @property
+    def headline(self) -> str:
+        """Its own headline, qualified where not all that it decided stands over all sizes."""
+        own, family = self.record.verdict.headline, self.family or {}
+        fallen = any(e.sign and not family.get(e.path, (e.sign, 0))[0] for e in self.record.effects)
+        return f"By itself, and not over all sizes: {own}" if fallen else own
+
+    def absent(self, path: str) -> str:
+        """Say why it has no effect on a path."""
+        there = any(each.name == path for each in self.record.paths)
+        return "every pair void" if there else "no such path"
+
+
+def titles(runs: Sequence[Compared]) -> dict[str, str]:
+    """Return the paths of all runs by name, with titles that say which is primary in all of them.
+
+    Correct inputs stand first and the shared fault last, as in every audit.
+    """
+    found = {path.name: path.title for run in reversed(runs) for path in run.record.paths}
+    order = {path.name: None for run in runs for path in run.record.paths}
+    primaries = {run.asked.primary for run in runs}
+    return {
+        path: f"{found[path]} (primary)" if primaries == {path} else found[path]
+        for path in sorted(order, key=lambda path: {CORRECT: 0, SHARED: 2}.get(path, 1))
+    }
+
+
+Facts = Mapping[str, tuple[str, ...]]
+"""By title, the value in each run."""
+
+
+def _side_by_side(each: Sequence[Mapping[str, str]], absent: str) -> dict[str, tuple[str, ...]]:
+    keys = dict.fromkeys(key for values in each for key in values)
+    return {key: tuple(values.get(key, absent) for values in each) for key in keys}
+
+
+def _asked(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
+    facts = [
+        {
+            "Fault": run.asked.fault,
+            "Baseline": run.asked.baseline,
+            "Repair": run.asked.repair,
+            "System": run.asked.system,
+            "Library": run.asked.library,
+            "State of the library": run.asked.library_hash[:_DIGITS],
+            "Scenes flown": run.record.flown,
+            "Scenes compared": str(run.record.scenes),
+            "Seeds": ", ".join(map(str, run.asked.seeds)),
+            "Primary path": run.asked.primary,
+            "Intervals and tests hold for": run.record.estimand,
+            "Stopping": wording.sentence(run.record.stopping or "all scenes were flown"),
+            **{f"Option {key}": value for key, value in sorted(run.asked.options.items())},
+        }
+        for run in runs
+    ]
+    return _side_by_side(facts, "not given")
+
+
+def differing(runs: Sequence[Compared]) -> Facts:
+    """Return what differs between runs: what was asked first, then what ran, then on what."""
+    made = [
+        {
+            "Code, data and packages": source.system_fingerprint[:_DIGITS],
+            "faultpath": source.faultpath_version,
+            "Python": source.python,
+            "Computed with": source.backend or "not said",
+            "Processor": source.processor,
+            "Platform": source.platform,
+            **{f"Package {name}": version for name, version in sorted(source.packages.items())},
+        }
+        for source in (run.provenance for run in runs)
+    ]
+    found = _asked(runs) | _side_by_side(made, "not named")
+    return {title: values for title, values in found.items() if len(set(values)) > 1}
+
+
+def labels(runs: Sequence[Compared]) -> tuple[str, ...]:
+    """Return a label for each run: its number, with what of the question tells all of them apart
+    if one thing does, and otherwise with its folder."""
+    apart = [values for values in _asked(runs).values() if len(set(values)) == len(runs)]
+    told = apart[0] if apart else tuple(Path(run.folder).name for run in runs)
+    return tuple(f"{run.number}  {text}" for run, text in zip(runs, told, strict=True))
+
+
+def swept(runs: Sequence[Compared]) -> tuple[str, tuple[float, ...]] | None:
+    """Return the fault in whose size alone the questions differ, with the size in each run;
+    `None` where they differ in something else."""
+    parts = [_SIZED.fullmatch(run.asked.fault) for run in runs]
+    found = [part.groups() for part in parts if part]
+    if len(runs) < 2 or len(found) < len(runs) or len({(a, c) for a, _, c in found}) > 1:
+        return None
+    try:
+        sizes = tuple(float(size) for _, size, _ in found)
+    except ValueError:
+        return None
+    asked_alike = all(
+        len(set(values)) == 1 or title in _MAY_DIFFER for title, values in _asked(runs).items()
+    )
+    if len(set(sizes)) < len(sizes) or not asked_alike:
+        return None
+    name, _, rest = found[0]
+    return f"{name}{rest}", sizes
+
+
+def same_correct_trials(runs: Sequence[Compared]) -> bool:
+    """Return whether all runs saw the same of the same code under correct inputs."""
+    found = [run.effect(CORRECT) for run in runs]
+    code = {run.provenance.system_fingerprint for run in runs}
+    same = {(each.success.value, each.wins, each.losses) for each in found if each}
+    return None not in found and len(same) == len(code) == 1
+
+
+def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
+    """Return p and weight of every contrast that a record tested, by its name."""
+    tested = [effect for effect in record.effects if effect.adjusted_p_value is not None]
+    found = {f"effect/{effect.path}": effect.p_value for effect in tested}
+    found |= {f"change/{change.isolated}": change.p_value for change in record.changes}
+    asked = record.question
+    parts = alpha_shares([effect.path for effect in tested], asked.primary)
+    weighted = RULES[asked.rule].weighted or asked.stop is not None
+    return {name: (p, parts[name] if weighted else 1.0) for name, p in found.items()}
+
+
+def together(runs: Sequence[Compared]) -> tuple[Compared, ...]:
+    """Return runs of which sizes of one fault are decided as one family; others as they are.
+
+    Holm's procedure over every contrast of every size, weighted as each audit by itself: whatever
+    is decided then holds with an error of at most 5 % for all sizes together. Correct inputs that
+    are the same trials at every size are one contrast. A size decides no more than by itself.
+    """
+    if swept(runs) is None:
+        return tuple(runs)
+    once: Collection[str] = (f"effect/{CORRECT}",) if same_correct_trials(runs) else ()
+
+    def key(run: Compared, name: str) -> str:
+        return name if name in once else f"{run.number}/{name}"
+
+    tested = {
+        key(run, name): found for run in runs for name, found in contrasts(run.record).items()
+    }
+    adjusted = holm(
+        {name: p for name, (p, _) in tested.items()},
+        {name: weight for name, (_, weight) in tested.items()},
+    )
+    decided: list[Compared] = []
+    for run in runs:
+        family: dict[str, tuple[Sign, float]] = {}
+        for effect in run.record.effects:
+            if effect.adjusted_p_value is not None:
+                p = adjusted[key(run, f"effect/{effect.path}")]
+                family[effect.path] = effect.sign if p <= ALPHA else 0, p
+        decided.append(replace(run, family=family))
+    return tuple(decided)
