@@ -1,8 +1,7 @@
 """A system with three modules that only lays out arms and never runs."""
 
 from faultpath.decisions.planning import Audit, plan_audit
-from faultpath.faults import Coupled, Fault
-from faultpath.faults.values import Scale
+from faultpath.faults import Coupled, Fault, Scale
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.trials import Library, SceneRef, System, SystemSpec, Variant
 from faultpath.trials.question import AuditQuestion

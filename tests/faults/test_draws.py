@@ -30,6 +30,11 @@ def test_a_scenes_row_does_not_depend_on_its_neighbours(what: str) -> None:
 
 def test_parts_and_causes_and_seeds_are_apart() -> None:
     base = Draws(("a",), 0, "x")
-    others = (base.part(0), base.part(1), base.part(0).part(1), Draws(("a",), 1, "x"))
+    others = (
+        base.beside("/0"),
+        base.beside("/1"),
+        base.beside("/0").beside("/1"),
+        Draws(("a",), 1, "x"),
+    )
     values = [float(draws.normal((), 0)[0]) for draws in (base, *others)]
     assert len(set(values)) == len(values)

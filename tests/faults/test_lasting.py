@@ -67,9 +67,9 @@ def test_parts_of_a_sequence_are_correlated_each_with_its_like_and_not_with_the_
     )
     draws = [fault.draws(SCENES, 0) for fault in (one, two)]
     for index in (1, 2):
-        drawn = [each.part(index).normal((), 0) for each in draws]
+        drawn = [each.beside(f"/{index}").normal((), 0) for each in draws]
         assert np.corrcoef(drawn)[0, 1] == pytest.approx(0.5, abs=0.05)
-    across = [draws[0].part(1).normal((), 0), draws[1].part(2).normal((), 0)]
+    across = [draws[0].beside("/1").normal((), 0), draws[1].beside("/2").normal((), 0)]
     assert np.corrcoef(across)[0, 1] == pytest.approx(0.0, abs=0.05)
     whole = [
         parts.apply(np.zeros(len(SCENES)), None, Moment(0, 0, DT_S, each))[0] for each in draws

@@ -106,7 +106,7 @@ def test_time_and_consumers(text: str) -> None:
         ("wind:delay=5.5", "steps is 5.5, and must be a whole number"),
         ("wind:delay=-1", "steps is -1, and must be a number of at least 0"),
         ("wind:delay=1,2", "several sizes"),
-        ("wind:noise=-1", "noise std must not be negative"),
+        ("wind:noise=-1", "std must not be negative"),
         ("wind:freeze=3", "'freeze' takes no value"),
         ("mass:scale=1,factors=2", "unknown option 'factors'"),
         ("mass:scale=1,onset=1,onset=2", "option 'onset' appears twice"),

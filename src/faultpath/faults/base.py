@@ -1,18 +1,87 @@
-"""What is done to a reading: the shape that every intervention has."""
+"""What is done to a reading: the shape that every intervention has, and the numbers it draws."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from math import sqrt
 from typing import Any, ClassVar, Self, TypeAlias, cast
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
-from faultpath.core.arrays import Array, Constant, HostArray, like, misfit
-from faultpath.faults.draws import Draws
+from faultpath.core.arrays import Array, misfit
+from faultpath.core.streams import generators
 from faultpath.interface import Channel
 
 Memory: TypeAlias = Any
 """What an intervention carries from step to step: an array, a tuple or `None`; never written to."""
+
+
+@dataclass(frozen=True)
+class Draws:
+    """Random numbers addressed by cause, scene, seed and step, one row a scene.
+
+    Two consumers, arms or blocks that share those four get the same numbers. Every call at one
+    address starts the stream anew: calls with different shapes, and normal and uniform numbers,
+    come from the same bits. `beside` gives an independent address.
+
+    With `own`, numbers are made of those of the cause and of its own: two draws of one cause with
+    the loadings a and b have the correlation a * b (one-factor model; uniform numbers through the
+    Gaussian copula). Permutations are of the cause.
+    """
+
+    scenes: tuple[str, ...]
+    seed: int
+    cause: str
+    loading: float = 1.0
+    """Share of the cause in a normal number, from -1 to 1."""
+    own: "Draws | None" = None
+    _kept: dict[Any, Any] = field(
+        default_factory=dict[Any, Any], init=False, repr=False, compare=False
+    )
+    """What was last drawn, which the other consumers of a step ask for again; draws beside."""
+
+    def normal(self, shape_per_scene: tuple[int, ...], step: int) -> NDArray[np.float64]:
+        """Return standard normal numbers `[B, *shape_per_scene]`."""
+        drawn = self._rows(
+            "normal", shape_per_scene, step, lambda g: g.normal(size=shape_per_scene)
+        )
+        if self.own is None:
+            return drawn
+        rest = sqrt(1 - self.loading**2)
+        return self.loading * drawn + rest * self.own.normal(shape_per_scene, step)
+
+    def uniform(self, shape_per_scene: tuple[int, ...], step: int) -> NDArray[np.float64]:
+        """Return uniform numbers in [0, 1), `[B, *shape_per_scene]`."""
+        if self.own is not None:
+            from scipy.special import ndtr  # only here: it takes longer to load than all else
+
+            return ndtr(self.normal(shape_per_scene, step))
+        return self._rows("uniform", shape_per_scene, step, lambda g: g.random(shape_per_scene))
+
+    def permutation(self, n: int, step: int) -> NDArray[np.int64]:
+        """Return a permutation of `0 … n-1` for each scene, `[B, n]`."""
+        return self._rows("permutation", n, step, lambda g: g.permutation(n))
+
+    def beside(self, suffix: str) -> "Draws":
+        """Return independent draws: `/N` those of a part, `?N` those of a further ask in a step."""
+        if suffix not in self._kept:
+            own = None if self.own is None else self.own.beside(suffix)
+            cause = self.cause + suffix
+            self._kept[suffix] = Draws(self.scenes, self.seed, cause, self.loading, own)
+        return self._kept[suffix]
+
+    def _rows(
+        self, what: str, size: Any, step: int, draw: Callable[[np.random.Generator], Any]
+    ) -> NDArray[Any]:
+        known = self._kept.get((what, size))
+        if known is not None and known[0] == step:
+            return known[1]
+        streams = generators(f"fault/{self.cause}", self.scenes, self.seed, step)
+        drawn = np.stack([draw(stream) for stream in streams])
+        self._kept[what, size] = (step, drawn)
+        return drawn
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,10 +95,6 @@ class Moment:
     dt_s: float
     """Length of a control step, s."""
     draws: Draws
-
-    def part(self, index: int) -> "Moment":
-        """Return the same moment with the independent draws of one part."""
-        return replace(self, draws=self.draws.part(index))
 
 
 class Intervention(BaseModel, ABC):
@@ -49,6 +114,8 @@ class Intervention(BaseModel, ABC):
     """The field that takes VALUE in fault text `CHANNEL:KIND=VALUE`; `None`: KIND stands alone."""
     random: ClassVar[bool] = False
     """Whether errors are drawn, so that those of several channels can be correlated."""
+    said: ClassVar[str] = ""
+    """What is done, in a few words; a field's name in braces stands for its value."""
 
     def begin(self, reading: Array, at: Moment) -> Memory:
         """Return the memory before the first `apply`, at the first delivery."""
@@ -61,9 +128,6 @@ class Intervention(BaseModel, ABC):
     def is_random(self) -> bool:
         """Return whether errors are drawn, here or in a part."""
         return self.random
-
-    said: ClassVar[str] = ""
-    """What is done, in a few words; a field's name in braces stands for its value."""
 
     def words(self) -> str:
         """Return what is done, in a few words."""
@@ -87,14 +151,3 @@ def number(value: Any) -> str:
     if isinstance(value, tuple):
         return "(" + ", ".join(map(number, cast("tuple[Any, ...]", value))) + ")"
     return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-def with_error(reading: Array, error: HostArray, relative: bool) -> Array:
-    """Return the reading plus `error`, or times `1 + error` when relative."""
-    return reading * like(1 + error, reading) if relative else reading + like(error, reading)
-
-
-def check_std(std: Constant) -> None:
-    """Raise `ValueError` for a negative standard deviation."""
-    if np.any(np.asarray(std) < 0):
-        raise ValueError("std must not be negative")

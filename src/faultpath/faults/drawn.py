@@ -1,13 +1,40 @@
 """Errors that are drawn: anew at every step, once a scene, wandering slowly, or growing."""
 
 from math import exp, sqrt
-from typing import ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field
 
-from faultpath.core.arrays import Array, Constant, is_zero, like, namespace, place, rows
-from faultpath.faults.base import Intervention, Memory, Moment, check_std, number, with_error
+from faultpath.core.arrays import (
+    Array,
+    Constant,
+    HostArray,
+    copy,
+    is_zero,
+    like,
+    namespace,
+    pick,
+    place,
+    rows,
+)
+from faultpath.faults.base import Intervention, Memory, Moment, number
+from faultpath.faults.values import Erase
+from faultpath.interface import Channel
+
+
+def _not_negative(std: Constant) -> Constant:
+    if np.any(np.asarray(std) < 0):
+        raise ValueError("must not be negative")
+    return std
+
+
+Std = Annotated[Constant, AfterValidator(_not_negative)]
+"""A standard deviation for each number of a reading, or one for all."""
+
+
+def _with_error(reading: Array, error: HostArray, relative: bool) -> Array:
+    return reading * like(1 + error, reading) if relative else reading + like(error, reading)
 
 
 class Noise(Intervention):
@@ -16,21 +43,16 @@ class Noise(Intervention):
     kind: Literal["noise"] = "noise"
     value_field: ClassVar[str | None] = "std"
     random: ClassVar[bool] = True
-    std: Constant
+    std: Std
     """In the reading's unit, or as a fraction of the reading when `relative`."""
     relative: bool = False
-
-    @model_validator(mode="after")
-    def _not_negative(self) -> Self:
-        check_std(self.std)
-        return self
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return `reading + std * n`, or `reading * (1 + std * n)` when relative."""
         if at.elapsed < 0 or is_zero(self.std):
             return reading, None
         error = np.asarray(self.std) * at.draws.normal(tuple(reading.shape[1:]), at.step)
-        return with_error(reading, error, self.relative), None
+        return _with_error(reading, error, self.relative), None
 
     def words(self) -> str:
         """Return `noise of std STD`."""
@@ -70,20 +92,15 @@ class Bias(Intervention):
     kind: Literal["bias"] = "bias"
     value_field: ClassVar[str | None] = "std"
     random: ClassVar[bool] = True
-    std: Constant
+    std: Std
     """In the reading's unit, or as a fraction of the reading when `relative`."""
     relative: bool = False
     time_constant_s: float | None = Field(default=None, gt=0)
     """`None`: constant in a scene."""
 
-    @model_validator(mode="after")
-    def _not_negative(self) -> Self:
-        check_std(self.std)
-        return self
-
     def begin(self, reading: Array, at: Moment) -> Memory:
         """Return the process on the host in units of `std`, and the step that it stands at."""
-        return at.draws.part(0).normal(tuple(reading.shape[1:]), 0), 0
+        return at.draws.beside("/0").normal(tuple(reading.shape[1:]), 0), 0
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return `reading + std * x(t)`, or `reading * (1 + std * x(t))` when relative."""
@@ -96,7 +113,7 @@ class Bias(Intervention):
                 draw = at.draws.normal(process.shape[1:], step)
                 process = stays * process + sqrt(1 - stays**2) * draw
         error = np.asarray(self.std) * process
-        return with_error(reading, error, self.relative), (process, at.step)
+        return _with_error(reading, error, self.relative), (process, at.step)
 
     def words(self) -> str:
         """Return `bias of std STD`, and how long it lasts."""
@@ -146,6 +163,47 @@ class Drift(Intervention):
         if not self.walk_per_sqrt_s:
             return ramp
         return walk if is_zero(self.rate_per_s) else f"{ramp} and {walk}"
+
+
+class Dropout(Intervention):
+    """Lose each reading with a probability, drawn per scene and step."""
+
+    kind: Literal["dropout"] = "dropout"
+    value_field: ClassVar[str | None] = "probability"
+    random: ClassVar[bool] = True
+    probability: float = Field(ge=0, le=1)
+    substitute: Erase | None = None
+    """Delivered instead of a lost reading; `None`: the last that arrived, or else the first."""
+
+    def begin(self, reading: Array, at: Moment) -> Memory:
+        """Return the last reading that arrived."""
+        return copy(reading)
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return the reading where it arrives and the substitute where it is lost."""
+        if at.elapsed < 0 or not self.probability:
+            return reading, copy(reading)
+        arrives = place(at.draws.uniform((), at.step) >= self.probability, reading)
+        last = pick(arrives, reading, memory)
+        if self.substitute is None:
+            return last, last
+        erased, _ = self.substitute.apply(reading, None, at)
+        return pick(arrives, reading, erased), last
+
+    def words(self) -> str:
+        """Return `lost with probability PROBABILITY`, and what is delivered then."""
+        instead = "held" if self.substitute is None else self.substitute.words()
+        return f"lost with probability {number(self.probability)}, then {instead}"
+
+    def resolved(self, channel: Channel) -> Self:
+        """Take the channel's erasure default where the substitute names none."""
+        if self.substitute is None:
+            return self
+        return self.model_copy(update={"substitute": self.substitute.resolved(channel)})
+
+    def misfit(self, shape: tuple[int, ...]) -> str | None:
+        """Refuse a substitute that the reading does not fit."""
+        return None if self.substitute is None else self.substitute.misfit(shape)
 
 
 class Shuffle(Intervention):

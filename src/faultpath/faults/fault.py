@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from faultpath.core.errors import UserError
 from faultpath.core.frozen import Frozen
 from faultpath.core.text import listed, unknown
-from faultpath.faults.draws import Draws
+from faultpath.faults.base import Draws
 from faultpath.faults.registry import AnyIntervention
 from faultpath.interface import Interface, module_of, modules
 
@@ -46,13 +46,9 @@ class Fault(Frozen):
     """A key of stored faults; always `null`."""
 
     @model_validator(mode="after")
-    def _recovers_from_an_end(self) -> Self:
+    def _possible(self) -> Self:
         if self.recovery_steps and self.duration_steps is None:
             raise ValueError("recovery_steps needs an end to recover from; give duration_steps")
-        return self
-
-    @model_validator(mode="after")
-    def _loads_on_draws(self) -> Self:
         if self.loading != 1.0 and not self.intervention.is_random():
             raise ValueError(f"{self.intervention.kind} takes no loading; leave it out")
         return self
@@ -73,44 +69,16 @@ class Fault(Frozen):
         """Return the same fault at other consumers: `module.place`, modules, or `*`."""
         return self.model_copy(update={"consumers": names or (ALL,)})
 
-    def validate_against(self, interface: Interface) -> None:
-        """Raise `UserError` unless the fault can act on `interface`."""
-        channel = interface.channel(self.channel)
-        for name in self.consumers:
-            if not _matching(name, channel.consumers):
-                raise UserError(_no_reader(interface, (self.channel,), name))
-        shape = interface.source(channel.sources[0]).shape
-        wrong = self.intervention.misfit(shape)
-        if wrong:
-            raise UserError(
-                f"channel '{self.channel}': {self.intervention.kind} does not fit: {wrong}"
-            )
-
     def resolved(
         self, interface: Interface, present: Collection[str] | None = None
     ) -> tuple["Fault", ...]:
         """Return the fault with every consumer spelled out and defaults filled in.
 
         Consumers that are not `present` in a variant are left out; the result is empty when none is
-        left, that is, when the fault cannot reach the variant. Raises `UserError` as
-        `validate_against`.
+        left, that is, when the fault cannot reach the variant. Raises `UserError` where the fault
+        cannot act on `interface`.
         """
-        self.validate_against(interface)
-        return self._resolved(interface, present)
-
-    def _resolved(
-        self, interface: Interface, present: Collection[str] | None
-    ) -> tuple["Fault", ...]:
-        channel = interface.channel(self.channel)
-        reached = tuple(
-            consumer
-            for consumer in channel.consumers
-            if any(_matching(name, (consumer,)) for name in self.consumers)
-            and (present is None or consumer in present)
-        )
-        intervention = self.intervention.resolved(channel)
-        update = {"consumers": reached, "intervention": intervention, "cause": self.drawn_from}
-        return (self.model_copy(update=update),) if reached else ()
+        return _resolved((self,), interface, present)
 
     @property
     def _end(self) -> float:
@@ -133,10 +101,9 @@ class Fault(Frozen):
 
     def describe(self) -> str:
         """Return the fault in a few words."""
-        return f"{self.channel} {self.intervention.words()} at {_at(self.consumers)}{self._when()}"
-
-    def _when(self) -> str:
-        words = f" from step {self.onset_step}" if self.onset_step else ""
+        at = "every consumer" if ALL in self.consumers else ", ".join(self.consumers)
+        words = f"{self.channel} {self.intervention.words()} at {at}"
+        words += f" from step {self.onset_step}" if self.onset_step else ""
         if self.duration_steps is not None:
             words += f" for {self.duration_steps} steps"
         if self.recovery_steps:
@@ -158,24 +125,12 @@ class Coupled(Frozen):
         """Return the same faults at other consumers: `module.place`, modules, or `*`."""
         return self.model_copy(update={"faults": tuple(f.aimed_at(*names) for f in self.faults)})
 
-    def validate_against(self, interface: Interface) -> None:
-        """Raise `UserError` unless the faults can act on `interface`."""
-        readers = {c for f in self.faults for c in interface.channel(f.channel).consumers}
-        for fault in self.faults:
-            for name in fault.consumers:
-                if not _matching(name, readers):
-                    channels = tuple(f.channel for f in self.faults)
-                    raise UserError(_no_reader(interface, channels, name))
-            fault.aimed_at(ALL).validate_against(interface)
-
     def resolved(
         self, interface: Interface, present: Collection[str] | None = None
     ) -> tuple[Fault, ...]:
         """Return the faults as `Fault.resolved` does, without those that reach nobody."""
-        self.validate_against(interface)
         shared = (f.model_copy(update={"cause": f.cause or self.name}) for f in self.faults)
-        # The parts were validated together above: a consumer may read only one of the channels.
-        return tuple(found for f in shared for found in f._resolved(interface, present))  # pyright: ignore[reportPrivateUsage]
+        return _resolved(tuple(shared), interface, present)
 
     def describe(self) -> str:
         """Return the faults in a few words."""
@@ -186,19 +141,41 @@ AnyFault: TypeAlias = Annotated[Fault | Coupled, Field(discriminator="kind")]
 """A fault as arms carry it; its `kind` says in JSON which."""
 
 
-def _matching(name: str, consumers: Collection[str]) -> bool:
-    return any(name in (ALL, consumer, module_of(consumer)) for consumer in consumers)
-
-
-def _at(consumers: tuple[str, ...]) -> str:
-    return "every consumer" if ALL in consumers else ", ".join(consumers)
-
-
-def _no_reader(interface: Interface, channels: tuple[str, ...], name: str) -> str:
-    readers = {c for channel in channels for c in interface.channel(channel).consumers}
-    everyone = {c for channel in interface.channels for c in channel.consumers}
+def _resolved(
+    faults: tuple[Fault, ...], interface: Interface, present: Collection[str] | None
+) -> tuple[Fault, ...]:
+    """Resolve faults that act together: a consumer needs to read only one of their channels."""
+    channels = [interface.channel(fault.channel) for fault in faults]
+    readers = {consumer for channel in channels for consumer in channel.consumers}
     known = readers | {module_of(reader) for reader in readers}
-    what = " and ".join(f"channel '{channel}'" for channel in channels)
-    if name in everyone or name in modules(interface):
-        return f"{what}: '{name}' does not read it; its readers: {listed(known)}"
-    return f"{what}: {unknown('consumer', name, known)}"
+    found: list[Fault] = []
+    for fault, channel in zip(faults, channels, strict=True):
+        for name in fault.consumers:
+            if name == ALL or name in known:
+                continue
+            what = " and ".join(f"channel '{each.channel}'" for each in faults)
+            everyone = {c for each in interface.channels for c in each.consumers}
+            if name in everyone or name in modules(interface):
+                said = f"'{name}' does not read it; its readers: {listed(known)}"
+            else:
+                said = unknown("consumer", name, known)
+            raise UserError(f"{what}: {said}")
+        wrong = fault.intervention.misfit(interface.source(channel.sources[0]).shape)
+        if wrong:
+            raise UserError(
+                f"channel '{fault.channel}': {fault.intervention.kind} does not fit: {wrong}"
+            )
+        reached = tuple(
+            consumer
+            for consumer in channel.consumers
+            if not {ALL, consumer, module_of(consumer)}.isdisjoint(fault.consumers)
+            and (present is None or consumer in present)
+        )
+        update = {
+            "consumers": reached,
+            "intervention": fault.intervention.resolved(channel),
+            "cause": fault.drawn_from,
+        }
+        if reached:
+            found.append(fault.model_copy(update=update))
+    return tuple(found)

@@ -7,12 +7,14 @@
     wind:freeze,onset=20,for=40         when, in control steps; onset_s= and for_s= in seconds
     mass:scale=1.1@planner+predictor.trim   only these modules and consumers
 
-A correlation group may stand for its channels: `calibration:scale=1.1`.
+Further sizes stand after commas without a name: `gain:scale=0.8,0.9,1.1,onset=20@observer`, or a
+range `FROM..TO/COUNT`. A correlation group may stand for its channels: `calibration:scale=1.1`.
 """
 
 import re
 from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from dataclasses import dataclass, replace
+from typing import Any, Self, TypeAlias
 
 from pydantic import ValidationError
 
@@ -20,8 +22,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.misfits import misfit_of
 from faultpath.core.text import listed, unknown
 from faultpath.faults.fault import Coupled, Fault
-from faultpath.faults.registry import INTERVENTIONS, AnyIntervention
-from faultpath.faults.text import FaultText
+from faultpath.faults.registry import INTERVENTIONS
 from faultpath.interface import Interface, groups
 
 FaultPreset: TypeAlias = Callable[[float], Coupled]
@@ -47,6 +48,114 @@ _WINDOW = {
 _ANY_FAULT = tuple(f"{name}{unit}" for name in _WINDOW for unit in ("", "_s"))
 """Options that every fault takes."""
 
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_SIZE = re.compile(rf"{_NUMBER}(?:/{_NUMBER})*")
+_RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})/(\d+)")
+_MOST = 99
+"""Sizes of one range; each is an audit."""
+
+
+@dataclass(frozen=True)
+class FaultText:
+    """The parts of a fault's text, not yet understood."""
+
+    name: str
+    """Of a channel, a correlation group or a preset."""
+    kind: str | None
+    """`None` for a preset."""
+    sizes: tuple[str, ...]
+    options: Mapping[str, str]
+    consumers: tuple[str, ...]
+
+    @classmethod
+    def read(cls, text: str) -> Self:
+        """Take a text apart; a range `FROM..TO/COUNT` stands for that many sizes, both ends too.
+
+        `UserError` for what has no such form.
+        """
+        try:
+            return cls._read(text)
+        except UserError as error:
+            raise UserError(f"fault '{text}': {error}") from None
+
+    @classmethod
+    def _read(cls, text: str) -> Self:
+        if not text.strip():
+            raise UserError("the text is empty; write CHANNEL:KIND=VALUE or PRESET=SIZE")
+        items: list[str] = []
+        consumers: list[str] = []
+        for item in text.split(","):
+            head, at, names = (part.strip() for part in item.partition("@"))
+            if at and (consumers or "@" in names):
+                raise UserError("'@' appears twice; join consumers with '+', as in @planner+other")
+            if at:
+                consumers = [name.strip() for name in names.split("+")]
+                if not all(consumers):
+                    raise UserError("'@' needs a module or consumer after it, as in @planner")
+            if not head:
+                raise UserError("something is missing between commas; write CHANNEL:KIND=VALUE")
+            items.append(head)
+        what, has_size, size = items[0].partition("=")
+        name, has_kind, kind = what.partition(":")
+        sizes = [*_spread(size)] if has_size else []
+        options: dict[str, str] = {}
+        for item in items[1:]:
+            key, equals, given = item.partition("=")
+            if not equals and (_SIZE.fullmatch(item) or ".." in item):
+                if not has_size:
+                    raise UserError(
+                        f"{item} is a further size, and there is no first: write "
+                        "CHANNEL:KIND=SIZE,SIZE"
+                    )
+                sizes += _spread(item)
+                continue
+            if key in options:
+                raise UserError(f"option '{key}' appears twice; drop one")
+            options[key] = given
+        if len({tuple(map(float, s.split("/"))) if _SIZE.fullmatch(s) else s for s in sizes}) < len(
+            sizes
+        ):
+            raise UserError("it names a size twice: name each once")
+        named = tuple(dict.fromkeys(consumers))
+        return cls(name, kind if has_kind else None, tuple(sizes), options, named)
+
+    def at(self, size: str) -> Self:
+        """Return the same fault of one size."""
+        return replace(self, sizes=(size,))
+
+    def __str__(self) -> str:
+        head = self.name if self.kind is None else f"{self.name}:{self.kind}"
+        sized = f"{head}={','.join(self.sizes)}" if self.sizes else head
+        options = (f"{key}={given}" if given else key for key, given in self.options.items())
+        at = f"@{'+'.join(self.consumers)}" if self.consumers else ""
+        return ",".join((sized, *options)) + at
+
+
+def each_size(text: str) -> tuple[str, ...]:
+    """Return the text of a fault for each of its sizes; a fault of one size is its own only text.
+
+    `UserError` for a text that has no such form.
+    """
+    asked = FaultText.read(text)
+    if len(asked.sizes) < 2:
+        return (text,)
+    return tuple(str(asked.at(size)) for size in asked.sizes)
+
+
+def _spread(item: str) -> tuple[str, ...]:
+    found = _RANGE.fullmatch(item)
+    if found is None:
+        if ".." in item:
+            raise UserError(
+                "a range cannot be read: write FROM..TO/COUNT, as in calibration=-0.2..0.2/9"
+            )
+        return (item,)
+    low, high, count = found.groups()
+    if len(count) > len(str(_MOST)) or not 2 <= int(count) <= _MOST:
+        raise UserError(f"it asks for {count} sizes: a range takes 2 to {_MOST}")
+    first, last, steps = float(low), float(high), int(count) - 1
+    return tuple(f"{(first * (steps - i) + last * i) / steps + 0.0:.10g}" for i in range(steps + 1))
+
 
 def parse_fault(
     text: str, interface: Interface, presets: Mapping[str, FaultPreset], dt_s: float
@@ -60,20 +169,19 @@ def parse_fault(
     try:
         if len(parts.sizes) > 1:
             raise UserError("it has several sizes: audit each with faultpath.audits")
-        when, rest = _timing(parts.options, dt_s)
-        size = parts.sizes[0] if parts.sizes else None
-        if parts.kind is None:
-            fault = _preset(parts.name, size, rest, interface, presets)
-        else:
-            fault = _intervention(parts.name, parts.kind, size, rest, interface)
-        if isinstance(fault, Coupled):
-            timed = tuple(each.model_copy(update=when) for each in fault.faults)
-            fault = fault.model_copy(update={"faults": timed})
-        else:
-            fault = fault.model_copy(update=when)
+        update, options = _timing(parts.options, dt_s)
         if parts.consumers:
-            fault = fault.aimed_at(*parts.consumers)
-        fault.validate_against(interface)
+            update["consumers"] = parts.consumers
+        if parts.kind is None:
+            fault = _preset(parts, options, interface, presets)
+        else:
+            fault = _intervention(parts, parts.kind, options, interface)
+        if isinstance(fault, Coupled):
+            updated = tuple(each.model_copy(update=update) for each in fault.faults)
+            fault = fault.model_copy(update={"faults": updated})
+        else:
+            fault = fault.model_copy(update=update)
+        fault.resolved(interface)
     except UserError as error:
         raise UserError(f"fault '{text}': {error}") from None
     return fault
@@ -91,95 +199,72 @@ def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], di
         field, least = _WINDOW[plain]
         if field in when:
             raise UserError(f"'{plain}' is given in steps and in seconds; drop one")
-        when[field] = _steps(key, given, least, dt_s if plain != key else None)
+        unit, of, length = "control steps", "", 1.0
+        if plain != key:
+            unit, of, length = "seconds", f" of {dt_s:g} s each", dt_s
+        value = _number(key, given, unit) / length
+        steps = round(value) if abs(value) < 1e9 else -1
+        if steps < least or abs(value - steps) > 1e-6 * max(1.0, abs(value)):
+            raise UserError(f"{key}={given} is not a whole number of steps{of}, at least {least}")
+        when[field] = steps
     if "recovery_steps" in when and "duration_steps" not in when:
         raise UserError("'recover' needs an end to recover from; add for=STEPS")
     return when, rest
 
 
-def _steps(key: str, given: str, least: int, dt_s: float | None) -> int:
-    unit = "control steps" if dt_s is None else "seconds"
-    value = _number(key, given, unit) / (dt_s or 1.0)
-    steps = round(value) if abs(value) < 1e9 else -1
-    if steps < least or abs(value - steps) > 1e-6 * max(1.0, abs(value)):
-        of = "" if dt_s is None else f" of {dt_s:g} s each"
-        raise UserError(f"{key}={given} is not a whole number of steps{of}, at least {least}")
-    return steps
-
-
-def _number(key: str, given: str, what: str = "a number") -> float:
-    try:
-        value = float(given.replace("_", "?"))  # Python reads 1_0 as ten
-    except ValueError:
-        raise UserError(f"'{key}' needs {what}, not '{given}'") from None
-    if value - value != 0.0:  # infinite or NaN
-        raise UserError(f"'{key}' needs a finite number, not '{given}'")
-    return value
-
-
 def _preset(
-    name: str,
-    size: str | None,
+    parts: FaultText,
     options: Mapping[str, str],
     interface: Interface,
     presets: Mapping[str, FaultPreset],
 ) -> Coupled:
+    name = parts.name
     if name not in presets:
-        if name in _targets(interface):
+        if name in groups(interface) or name in {each.name for each in interface.channels}:
             raise UserError(
                 f"says nothing about what happens to '{name}'; write {name}:KIND=VALUE, kinds: "
                 f"{listed(KINDS)}"
             )
         said = unknown("preset", name, presets)
         raise UserError(f"{said}; a fault of one channel is CHANNEL:KIND=VALUE")
-    if size is None:
+    if not parts.sizes:
         raise UserError(f"'{name}' needs a size, as in {name}=+0.1")
     if options:
         raise UserError(unknown("option", next(iter(options)), _ANY_FAULT))
-    return presets[name](_number(name, size))
-
-
-def _targets(interface: Interface) -> dict[str, tuple[str, ...]]:
-    channels = {channel.name: (channel.name,) for channel in interface.channels}
-    return groups(interface) | channels
+    return presets[name](_number(name, parts.sizes[0]))
 
 
 def _intervention(
-    name: str, kind: str, value: str | None, options: Mapping[str, str], interface: Interface
+    parts: FaultText, kind: str, options: Mapping[str, str], interface: Interface
 ) -> Fault | Coupled:
-    targets = _targets(interface)
-    if name not in targets:
-        raise UserError(unknown("channel", name, targets))
+    together = groups(interface)
+    targets = together | {channel.name: (channel.name,) for channel in interface.channels}
+    if parts.name not in targets:
+        raise UserError(unknown("channel", parts.name, targets))
     if kind not in KINDS:
         raise UserError(unknown("kind", kind, KINDS))
-    built = _build(f"{name}:{kind}", kind, value, dict(options))
-    faults = tuple(Fault(channel=channel, intervention=built) for channel in targets[name])
-    if name in groups(interface):
-        return Coupled(name=f"{name}:{kind}", faults=faults)
-    return faults[0]
-
-
-def _build(said: str, kind: str, value: str | None, options: dict[str, str]) -> AnyIntervention:
-    cls = KINDS[kind]
+    said, cls = f"{parts.name}:{kind}", KINDS[kind]
     fields = [field for field in cls.model_fields if field not in ("kind", cls.value_field)]
     for key in options:
         if key not in fields:
             raise UserError(unknown("option", key, (*fields, *_ANY_FAULT)))
     given = {key: _value(key, text or "true") for key, text in options.items()}
     if cls.value_field is None:
-        if value is not None:
+        if parts.sizes:
             raise UserError(f"'{kind}' takes no value; write {said}")
-    elif value is not None:
-        given[cls.value_field] = _value(kind, value)
+    elif parts.sizes:
+        given[cls.value_field] = _value(kind, parts.sizes[0])
     elif cls.model_fields[cls.value_field].is_required():
         raise UserError(f"'{kind}' needs a value ({cls.value_field}), as in {said}=VALUE")
     try:
         built: Any = cls.model_validate(given)
     except ValidationError as error:
         found = misfit_of(error)
-        where = found.where or kind
-        raise UserError(f"'{kind}': {where} {found.says}; correct the value") from None
-    return built
+        raise UserError(
+            f"'{kind}': {found.where or kind} {found.says}; correct the value"
+        ) from None
+    faults = tuple(Fault(channel=channel, intervention=built) for channel in targets[parts.name])
+    return Coupled(name=said, faults=faults) if parts.name in together else faults[0]
 
 
 def _value(key: str, text: str) -> Any:
@@ -191,3 +276,13 @@ def _value(key: str, text: str) -> Any:
         return tuple(_number(key, part) for part in text.split("/"))
     # What is echoed in a refusal is what was written, -1 and not -1.0.
     return int(text) if re.fullmatch(r"[+-]?\d{1,15}", text) else _number(key, text)
+
+
+def _number(key: str, given: str, what: str = "a number") -> float:
+    try:
+        value = float(given.replace("_", "?"))  # Python reads 1_0 as ten
+    except ValueError:
+        raise UserError(f"'{key}' needs {what}, not '{given}'") from None
+    if value - value != 0.0:  # infinite or NaN
+        raise UserError(f"'{key}' needs a finite number, not '{given}'")
+    return value

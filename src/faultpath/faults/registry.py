@@ -1,14 +1,14 @@
 """Every intervention that there is, and several of them in turn."""
 
+from dataclasses import replace
 from typing import Annotated, Literal, Self, TypeAlias, get_args
 
 from pydantic import Discriminator, Field
 
 from faultpath.core.arrays import Array
 from faultpath.faults.base import Intervention, Memory, Moment
-from faultpath.faults.drawn import Bias, Drift, Noise, Shuffle, UniformScale
-from faultpath.faults.timing import Delay, Dropout, Freeze, Hold
-from faultpath.faults.values import Erase, Offset, Quantise, Scale
+from faultpath.faults.drawn import Bias, Drift, Dropout, Noise, Shuffle, UniformScale
+from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Scale
 from faultpath.interface import Channel
 
 
@@ -27,7 +27,7 @@ class Sequence(Intervention):
         """Return the last part's value; the memory holds one entry a part."""
         value, carried = reading, ()
         for index, part in enumerate(self.parts):
-            here = at.part(index)
+            here = replace(at, draws=at.draws.beside(f"/{index}"))
             past = part.begin(value, here) if memory is None else memory[index]
             changed, past = part.apply(value, past, here)
             value = changed if at.elapsed >= 0 else value

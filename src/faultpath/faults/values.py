@@ -1,10 +1,13 @@
-"""Interventions on the value of a reading that need no past."""
+"""Interventions that draw nothing: on the value of a reading, and on when it arrives.
+
+Those that hold a reading keep copies, so a producer may reuse its memory.
+"""
 
 from typing import ClassVar, Literal, Self
 
 from pydantic import Field
 
-from faultpath.core.arrays import Array, Constant, constant, filled, is_zero, namespace
+from faultpath.core.arrays import Array, Constant, constant, copy, filled, is_zero, namespace
 from faultpath.faults.base import Intervention, Memory, Moment, number
 from faultpath.interface import Channel
 
@@ -72,3 +75,64 @@ class Erase(Intervention):
         if self.default is not None:
             return self
         return self.model_copy(update={"default": channel.erasure_default})
+
+
+class Delay(Intervention):
+    """Deliver the reading of some steps ago; the first reading until there is one that old."""
+
+    kind: Literal["delay"] = "delay"
+    said = "delayed by {steps} steps"
+    value_field: ClassVar[str | None] = "steps"
+    steps: int = Field(ge=0)
+
+    def begin(self, reading: Array, at: Moment) -> Memory:
+        """Return an empty past."""
+        return ()
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return the newest reading that is at least `steps` old, and the past since it."""
+        past = (*memory, (at.step, copy(reading)))
+        while len(past) > 1 and past[1][0] <= at.step - self.steps:
+            past = past[1:]
+        return past[0][1], past
+
+
+class Hold(Intervention):
+    """Refresh the reading at every n-th step from the onset on: a lower rate."""
+
+    kind: Literal["hold"] = "hold"
+    said = "refreshed every {every} steps"
+    value_field: ClassVar[str | None] = "every"
+    every: int = Field(ge=1)
+    """Steps between two refreshes."""
+
+    def begin(self, reading: Array, at: Moment) -> Memory:
+        """Return the held reading and which refresh it belongs to."""
+        return copy(reading), at.elapsed // self.every
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return the held reading, refreshed when its time has come."""
+        held, turn = memory
+        now = at.elapsed // self.every
+        if now != turn or at.elapsed < 0:
+            held = copy(reading)
+        return held, (held, now)
+
+
+class Freeze(Intervention):
+    """Hold the reading of the onset (paper: freezing).
+
+    Where a tap is silent at the onset, its last reading before that; if it has none, its first.
+    """
+
+    kind: Literal["freeze"] = "freeze"
+    said = "frozen"
+
+    def begin(self, reading: Array, at: Moment) -> Memory:
+        """Return the reading to hold."""
+        return copy(reading)
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return the held reading, which follows the readings up to the onset."""
+        held = copy(reading) if at.elapsed <= 0 else memory
+        return held, held

@@ -134,7 +134,8 @@ class Corruption:
         if fault.over(step):
             self._memories.clear()
             return reading, False
-        at = Moment(step, step - fault.onset_step, self._dt_s, self._draws.of_ask(ask))
+        draws = self._draws.beside(f"?{ask}") if ask else self._draws
+        at = Moment(step, step - fault.onset_step, self._dt_s, draws)
         if ask not in self._memories:
             self._memories[ask] = doing.begin(reading, at)
         value, self._memories[ask] = doing.apply(reading, self._memories[ask], at)
