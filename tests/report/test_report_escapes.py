@@ -123,7 +123,7 @@ def test_what_cannot_be_seen_is_shown_by_its_number(one_seed: ReportInput) -> No
     assert escapes.html(f"<{UNSEEN}>") == f"&lt;{SEEN}&gt;"
     svg = Svg(10, 10, UNSEEN, UNSEEN)
     svg.text(0, 0, UNSEEN, tip=UNSEEN)
-    svg.path("M0 0", UNSEEN, tip=UNSEEN)
+    svg.circle((0, 0), 1, UNSEEN, tip=UNSEEN)
     root = ElementTree.fromstring(svg.render(standalone=True))
     assert "".join(root.itertext()).count(SEEN) == 5
 

@@ -10,16 +10,7 @@ from faultpath.decisions import CORRECT, wording
 from faultpath.decisions.wording import where
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, by_scene
-from faultpath.report.svg import (
-    Axis,
-    Point,
-    Svg,
-    covering,
-    draw_levels,
-    draw_tick,
-    shortened,
-    tick_label,
-)
+from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes
 from faultpath.report.viewer_choice import choose
 from faultpath.trials import Outcome, Status
 from faultpath.trials.store import TrialAddress
@@ -30,7 +21,6 @@ _MOST_PATHS = 4
 """The last ones, among them the shared fault."""
 _WIDTH, _LEFT, _RIGHT = 308.0, 38.0, 14.0
 _TOP, _PLOT, _PITCH = 44.0, 96.0, 136.0
-_LINES = ("term one", "term two", "term both")
 _SIGN = {Status.SUCCESS: "M-5 0l3 4l7 -9", Status.CRASH: "M-5 -5l10 10M5 -5l-10 10"}
 _OTHER = "M-4 -4h8v8h-8Z"
 
@@ -97,9 +87,12 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
             ("baseline", asked.baseline, pair.baseline),
             ("repair", asked.repair, pair.repair),
         ):
-            known = _terms(source.signals.get(TrialAddress(name, path.name, pair.seed, scene), ()))
-            if trial is not None and known:
-                terms = [*known]
+            named = source.signals.get(TrialAddress(name, path.name, pair.seed, scene), ())
+            topics = [each.topic for each in named if each.name == TOGETHER]
+            known = [each for each in named if each.topic in topics]
+            numbers = all(np.isfinite(each.values).any() for each in known)
+            if trial and numbers and len(known) == 3 and known[-1].name == TOGETHER:
+                terms = known
                 values = np.array([each.values[:, 0] for each in known], np.float64)
                 ended = f"{wording.ended(asked, trial.status)}, {trial.time_s:.1f} s"
                 lines.append(Lines(role, name, values, trial, ended))
@@ -131,49 +124,41 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
     )
 
 
-def _terms(named: Sequence[Signal]) -> tuple[Signal, ...]:
-    topics = [each.topic for each in named if each.name == TOGETHER]
-    found = [each for each in named if each.topic in topics]
-    known = all(np.isfinite(each.values).any() for each in found)
-    return (*found,) if len(found) == 3 and found[-1].name == TOGETHER and known else ()
-
-
 def adding_panels(shown: Adding) -> list[str]:
     """Return a picture of each path, the baseline above the repair, all on the same axes."""
     upward = covering(shown.span, least=1e-9)
     longest = max(arm.trial.time_s for _, arms in shown.paths for arm in arms)
-    clock = Axis(0.0, longest, _LEFT, _WIDTH - _RIGHT)
+    x = Axis(0.0, longest, _LEFT, _WIDTH - _RIGHT)
     panels: list[str] = []
     for title, arms in shown.paths:
         told = "; ".join(f"{arm.role} {arm.name}: {arm.ended}" for arm in arms)
         svg = Svg(_WIDTH, _TOP + _PITCH * len(arms) - 16, f"{title}: {shown.words} over time", told)
-        svg.text(0, 14, shortened(title, _WIDTH, 13), "head", tip=title)
+        svg.text(0, 14, title, "head", room=_WIDTH)
         for place, arm in enumerate(arms):
             top = _TOP + _PITCH * place
-            _arm(svg, arm, clock, upward.at(top + _PLOT, top), shown)
-        bottom = _TOP + _PITCH * (len(arms) - 1) + _PLOT
-        for tick in clock.ticks(4):
-            draw_tick(svg, clock, Axis(0, 1, bottom, 0), tick, tick_label(tick))
-        svg.text(_WIDTH, bottom + 17, "s", "small soft", "end")
+            y = upward.at(top + _PLOT, top)
+            svg.text(0, top - 10, arm.role, "small soft")
+            svg.text(54, top - 10, arm.name, f"bold {arm.role}", room=130)
+            svg.text(_WIDTH, top - 10, arm.ended, "small soft", "end")
+            draw_axes(svg, x, y, 4, x.ticks(4) if arm is arms[-1] else ())
+            svg.text(_LEFT - 6, y.start + 14, shown.unit, "small soft", "end")
+            _terms(svg, arm, x, y, shown.dt_s)
+        svg.text(_WIDTH, svg.height - 7, "s", "small soft", "end")
         panels.append(svg.render())
     return panels
 
 
-def _arm(svg: Svg, arm: Lines, x: Axis, y: Axis, shown: Adding) -> None:
-    svg.text(0, y.end - 10, arm.role, "small soft")
-    svg.text(54, y.end - 10, shortened(arm.name, 130, 12), f"bold {arm.role}", tip=arm.name)
-    svg.text(_WIDTH, y.end - 10, arm.ended, "small soft", "end")
-    draw_levels(svg, x, y, 4, zero="zero")
-    svg.text(_LEFT - 6, y.start + 14, shown.unit, "small soft", "end")
-    steps = shown.dt_s * np.arange(arm.values.shape[1], dtype=np.float64)
+def _terms(svg: Svg, arm: Lines, x: Axis, y: Axis, dt_s: float) -> None:
+    """Draw both errors and their sum, what the sum leaves, and how the trial ended."""
+    steps = dt_s * np.arange(arm.values.shape[1], dtype=np.float64)
     lines: list[list[Point]] = []
     for values in np.clip(arm.values, y.low, y.high):
         known = np.isfinite(values)
         lines.append([(x(t), y(v)) for t, v in zip(steps[known], values[known], strict=True)])
     if both := lines[-1]:
         svg.polygon([(both[0][0], y(0)), *both, (both[-1][0], y(0))], f"left-over {arm.role}")
-    for points, cls in zip(lines, _LINES, strict=True):
-        svg.polyline(points, f"{cls} {arm.role}" if cls == _LINES[-1] else cls)
+    for points, cls in zip(lines, ("one", "two", f"both {arm.role}"), strict=True):
+        svg.polyline(points, f"term {cls}")
     end = x(arm.trial.time_s)
     svg.line((end, y.start), (end, y.end), "ended")
     with svg.group(transform=f"translate({end:.1f} {y.end + 8:.1f})"):

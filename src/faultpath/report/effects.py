@@ -3,23 +3,20 @@
 from collections.abc import Sequence
 
 from faultpath.decisions import wording
-from faultpath.decisions.model import DecisionRecord, Effect, PathBreakEven
+from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.report.svg import (
     Axis,
-    Point,
     Svg,
     covering,
-    draw_levels,
-    draw_tick,
+    draw_axes,
     shortened,
     text_width,
     tick_label,
-    wrapped,
 )
 
 _PITCH, _TOP = 48.0, 44.0
-_ROOM = 26.0  # pixels beside zero that a label of a side needs
-
+_ROOM = 26.0
+"""Pixels beside zero that a label of a side needs."""
 
 Row = tuple[str, str, Effect | str]
 """A label, what stands beside it, and the effect or why there is none."""
@@ -62,7 +59,7 @@ def panel(title: str, rows: Sequence[Row], axis: Axis, width: float = 350.0) -> 
     bottom = _TOP + _PITCH * len(rows)
     name = f"{title}: success of the repair minus success of the baseline, percentage points"
     svg = Svg(width, bottom + 40, name, described)
-    svg.text(0, 14, shortened(title, width, 13), "head", tip=title)
+    svg.text(0, 14, title, "head", room=width)
     plot = axis.at(8, width - 8)
     zero = plot(0.0)
     if zero - plot.start > 96:
@@ -78,14 +75,14 @@ def panel(title: str, rows: Sequence[Row], axis: Axis, width: float = 350.0) -> 
         if not isinstance(effect, str):
             note = ", ".join(filter(None, (note, wording.reservation(effect))))
             sign = effect.sign
-        room = width - text_width(value, 12) - text_width(note, 11) - 18
-        short = shortened(label, room, 12)
-        beside = text_width(short, 12) + (text_width(note, 11) + 12 if note else 6)
-        svg.rect(0, y + 3, beside, 18, "paper")
-        svg.rect(width - text_width(value, 12) - 6, y + 3, text_width(value, 12) + 6, 18, "paper")
-        svg.text(0, y + 16, short, tip=label)
+        right, beside = text_width(value, 12), text_width(note, 11)
+        room = width - right - beside - 18
+        left = text_width(shortened(label, room, 12), 12)
+        svg.rect(0, y + 3, left + (beside + 12 if note else 6), 18, "paper")
+        svg.rect(width - right - 6, y + 3, right + 6, 18, "paper")
+        svg.text(0, y + 16, label, room=room)
         if note:
-            svg.text(text_width(short, 12) + 6, y + 16, note, "small soft")
+            svg.text(left + 6, y + 16, note, "small soft")
         svg.text(width, y + 16, value, "bold" if sign else "", "end")
         if not isinstance(effect, str):
             _mark(svg, plot, effect, y + 34)
@@ -112,54 +109,48 @@ def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
     svg.circle((plot(e.value), y), 4.5, "dot" + side if side else "dot open")
 
 
-def frequency_panels(record: DecisionRecord) -> list[str]:
-    """Return the expected success difference over the frequency of the fault, a picture a path.
+def frequency_panels(record: DecisionRecord) -> list[tuple[str, str]]:
+    """Return the expected success difference over the frequency of the fault, a picture a path,
+    each with what is decided.
 
     The band is the interval at each frequency, at the level that the family leaves. The thick line
     on zero is the set of frequencies at which neither arm is decided to be ahead, the ring the
-    estimate of the crossing. The curve has the colour of an arm where that arm is decided to be
-    ahead.
+    estimate of the crossing. The curve has the colour of an arm where a sentence names that arm.
     """
     titles = {path.name: path.title for path in record.paths}
-    drawn = [path for path in record.break_even if path.curve]
-    axis = covering((v for path in drawn for _, *ends in path.curve for v in ends), least=10.0)
-    return [_frequency(path, titles.get(path.path, path.path), axis) for path in drawn]
-
-
-def _frequency(path: PathBreakEven, title: str, vertical: Axis) -> str:
-    shown = wording.break_even(path.result)
-    words = f"{path.words or 'No frequency is decided'}."
-    svg = Svg(290, 278, f"{title}: expected success difference against fault frequency", words)
-    svg.text(0, 14, shortened(title, 285, 13), "head", tip=title)
-    for i, line in enumerate(wrapped(words, 285, 11, 2)):
-        svg.text(0, 31 + 14 * i, line, "small soft", tip=words)
-    x, y = Axis(0.0, 1.0, 34, 280), vertical.at(238, 72)
-    draw_levels(svg, x, y, 5, zero="zero")
-    for percent in (0, 25, 50, 75, 100):
-        draw_tick(svg, x, y, percent / 100, str(percent))
-    svg.text(x(0.5), y.start + 34, "share of episodes with the fault, %", "small soft", "middle")
-    svg.text(0, y.end - 10, "expected difference in success, pp", "small soft")
-    upper = [(x(p), y(high)) for p, _, _, high in path.curve]
-    lower = [(x(p), y(low)) for p, _, low, _ in path.curve]
-    svg.polygon([*upper, *reversed(lower)], "fan")
-    first, last = path.curve[0][1], path.curve[-1][1]
-
-    def point(p: float) -> Point:
-        return x(p), y((1 - p) * first + p * last)
-
-    # In an arm's colour only where a sentence names the arm.
-    for low, high in path.result.pieces if path.words else ((0.0, 1.0),):
-        svg.polyline([point(low), point(high)], "curve")
-    for region in path.result.regions if path.words else ():
-        side = "repair" if region.sign > 0 else "baseline"
-        svg.polyline([point(region.low), point(region.high)], f"curve {side}")
-    for low, high in path.result.pieces:
-        svg.line((x(low), y(0)), (x(high), y(0)), "star-range")
-    if path.result.p_star is not None and path.result.regions:
-        tip = "no frequency is decided" if shown == "any" else f"not decided at {shown}"
-        svg.circle((x(path.result.p_star), y(0)), 5, "star", tip=tip)
-    if y(0) - y.end > _ROOM:
-        svg.text(x.start + 6, y.end + 12, "repair better", "small repair halo")
-    if y.start - y(0) > _ROOM:
-        svg.text(x.start + 6, y.start - 6, "baseline better", "small baseline halo")
-    return svg.render()
+    with_curve = [path for path in record.break_even if path.curve]
+    vertical = covering(
+        (v for path in with_curve for _, *ends in path.curve for v in ends), 0.06, 10
+    )
+    panels: list[tuple[str, str]] = []
+    for path in with_curve:
+        title, found = titles.get(path.path, path.path), path.result
+        words = f"{path.words or 'No frequency is decided'}."
+        svg = Svg(290, 248, f"{title}: expected success difference against fault frequency", words)
+        svg.text(0, 14, title, "head", room=285)
+        svg.text(0, 32, "expected difference in success, pp", "small soft")
+        x, y = Axis(0.0, 100.0, 34, 280), vertical.at(208, 42)
+        draw_axes(svg, x, y, 5, (0, 25, 50, 75, 100))
+        svg.text(x(50), y.start + 34, "share of episodes with the fault, %", "small soft", "middle")
+        upper = [(x(100 * p), y(high)) for p, _, _, high in path.curve]
+        lower = [(x(100 * p), y(low)) for p, _, low, _ in path.curve]
+        svg.polygon([*upper, *reversed(lower)], "fan")
+        sides = {1: "curve repair", -1: "curve baseline"}
+        pieces = [(low, high, "curve") for low, high in found.pieces if path.words]
+        pieces += [(r.low, r.high, sides[r.sign]) for r in found.regions if path.words]
+        first, last = path.curve[0][1], path.curve[-1][1]
+        for low, high, cls in pieces or [(0.0, 1.0, "curve")]:
+            line = [(x(100 * p), y((1 - p) * first + p * last)) for p in (low, high)]
+            svg.polyline(line, cls)
+        for low, high in found.pieces:
+            svg.line((x(100 * low), y(0)), (x(100 * high), y(0)), "star-range")
+        if found.p_star is not None and found.regions:
+            at = wording.break_even(found)
+            tip = "no frequency is decided" if at == "any" else f"not decided at {at}"
+            svg.circle((x(100 * found.p_star), y(0)), 5, "star", tip)
+        if y(0) - y.end > _ROOM:
+            svg.text(x.start + 6, y.end + 12, "repair better", "small repair halo")
+        if y.start - y(0) > _ROOM:
+            svg.text(x.start + 6, y.start - 6, "baseline better", "small baseline halo")
+        panels.append((svg.render(), words))
+    return panels

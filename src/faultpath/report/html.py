@@ -65,7 +65,7 @@ def report_page(source: ReportInput) -> str:
         or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.variants, strict=True)),
         forks=[Markup(fork_panel(fork)) for fork in forks(source)],
-        frequency=list(map(Markup, frequency_panels(record))),
+        frequency=[(Markup(picture), words) for picture, words in frequency_panels(record)],
         grids=[
             Markup(
                 pair_grid(

@@ -6,16 +6,7 @@ from itertools import pairwise, product
 from faultpath.decisions import wording
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.words import at_point
-from faultpath.report.svg import (
-    Axis,
-    Svg,
-    covering,
-    draw_levels,
-    draw_tick,
-    number,
-    shortened,
-    tick_label,
-)
+from faultpath.report.svg import Axis, Svg, covering, draw_axes, number, tick_label
 
 _SIDE = 340.0
 """Of the square."""
@@ -39,33 +30,47 @@ def map_picture(record: MapRecord) -> Svg:
         f"M{number(x.start)} {number(y.start)}H{number(x.end)}V{number(y.end)}H{number(x.start)}Z",
         "inner",
     )
-    _paths(svg, record, x, y)
+    first, second = asked.against
+    svg.line((x(0.0), y.start), (x(0.0), y.end), "zero")
+    svg.line((x.start, y(0.0)), (x.end, y(0.0)), "zero")
+    svg.line((x.start, y.start), (x.end, y.end), "back")
+    for name, left, up, anchor in (
+        (first, x.end + 6, y(0.0) - 3, "start"),
+        (second, x(0.0), y.end - 20, "middle"),
+    ):
+        svg.text(left, up, name, "bold", anchor, room=_RIGHT - 8)
+        svg.text(left, up + 14, "alone", "bold", anchor)
+    svg.text(x.end + 6, y.end + 4, "shared", "bold")
     svg.path(" ".join(_zero(record, x, y)), "range")
     for point in record.points:
         at = x(point.errors[0]), y(point.errors[1])
         svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(asked, point))
-    _scales(svg, record, x, y)
+    # What a relative error is asked as is a share, and read as percent.
+    reach, unit = (100 * asked.up_to, "%") if asked.relative else (asked.up_to, asked.unit)
+    x, y = Axis(-reach, reach, x.start, x.end), Axis(-reach, reach, y.start, y.end)
+    for tick in (-reach, -reach / 2, 0.0, reach / 2, reach):
+        svg.line((x(tick), y.start), (x(tick), y.start + 4), "axis")
+        svg.text(x(tick), y.start + 17, tick_label(tick), "small soft", "middle")
+        svg.line((x.start - 4, y(tick)), (x.start, y(tick)), "axis")
+        svg.text(x.start - 8, y(tick) + 4, tick_label(tick), "small soft", "end")
+    across, upward = (f"error at the {at}, {unit}".removesuffix(", 1") for at in asked.against)
+    svg.text(x(0.0), y.start + 36, across, "small soft", "middle", room=svg.width)
+    svg.text(0, y.end - 38, upward, "small soft", room=svg.width)
     return svg
 
 
 def _areas(svg: Svg, record: MapRecord, x: Axis, y: Axis, hatch: str) -> None:
     """Fill what is decided, a piece around each place of the lattice; the rest stays empty."""
-    surface = record.surface
-    edges = [
-        surface.sizes[0],
-        *((a + b) / 2 for a, b in pairwise(surface.sizes)),
-        surface.sizes[-1],
-    ]
+    sizes, surface = record.surface.sizes, record.surface
+    edges = [sizes[0], *((a + b) / 2 for a, b in pairwise(sizes)), sizes[-1]]
     drawn: dict[tuple[int, str], list[str]] = {}
-    for row, column in product(range(len(surface.sizes)), repeat=2):
-        sign = surface.sign[row][column]
-        size = abs(surface.difference[row][column])
-        if sign:
+    for row, column in product(range(len(sizes)), repeat=2):
+        if sign := surface.sign[row][column]:
             left, right = (number(x(edges[column + i])) for i in (0, 1))
             low, high = (number(y(edges[row + i])) for i in (0, 1))
+            size = abs(surface.difference[row][column])
             shade = next(shade for least, shade in _SHADES if size >= least)
-            piece = f"M{left} {low}H{right}V{high}H{left}Z"
-            drawn.setdefault((sign, shade), []).append(piece)
+            drawn.setdefault((sign, shade), []).append(f"M{left} {low}H{right}V{high}H{left}Z")
     for (sign, shade), pieces in sorted(drawn.items()):
         side = "repair-only" if sign > 0 else "baseline-only"
         svg.path("".join(pieces), side, fill_opacity=shade, shape_rendering="crispEdges")
@@ -74,50 +79,21 @@ def _areas(svg: Svg, record: MapRecord, x: Axis, y: Axis, hatch: str) -> None:
         svg.path("".join(marked), "", fill=hatch, fill_opacity="0.5", stroke="none")
 
 
-def _paths(svg: Svg, record: MapRecord, x: Axis, y: Axis) -> None:
-    """Draw the isolated axes and the shared diagonal, each with its name."""
-    first, second = record.question.against
-    svg.line((x(0.0), y.start), (x(0.0), y.end), "zero")
-    svg.line((x.start, y(0.0)), (x.end, y(0.0)), "zero")
-    svg.line((x.start, y.start), (x.end, y.end), "back")
-    tips = ((first, x.end, y(0.0) - 3), (second, x(0.0), y.end - 20))
-    for name, across, up in tips:
-        anchor, left = ("middle", across) if name == second else ("start", across + 6)
-        svg.text(left, up, shortened(name, _RIGHT - 8, 12), "bold", anchor, tip=name)
-        svg.text(left, up + 14, "alone", "bold", anchor)
-    svg.text(x.end + 6, y.end + 4, "shared", "bold")
-
-
 def _zero(record: MapRecord, x: Axis, y: Axis) -> Iterator[str]:
+    """Yield a stroke for each cell of the lattice that the estimate's zero crosses."""
     sizes, heights = record.surface.sizes, record.surface.difference
     for row, column in product(range(len(sizes) - 1), repeat=2):
         around = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
-        crossings: list[tuple[float, float]] = []
+        crossings: list[str] = []
         for (r1, c1), (r2, c2) in pairwise([*around, around[0]]):
             a, b = heights[r1][c1], heights[r2][c2]
             if (a > 0) != (b > 0):
                 share = a / (a - b)
                 across = sizes[c1] + share * (sizes[c2] - sizes[c1])
                 upward = sizes[r1] + share * (sizes[r2] - sizes[r1])
-                crossings.append((x(across), y(upward)))
-        for (x1, y1), (x2, y2) in zip(crossings[::2], crossings[1::2], strict=True):
-            yield f"M{number(x1)} {number(y1)}L{number(x2)} {number(y2)}"
-
-
-def _scales(svg: Svg, record: MapRecord, x: Axis, y: Axis) -> None:
-    asked = record.question
-    unit = "%" if asked.relative else asked.unit
-    factor = 100.0 if asked.relative else 1.0
-    for share in (-1.0, -0.5, 0.0, 0.5, 1.0):
-        tick = share * asked.up_to
-        draw_tick(svg, x, y, tick, tick_label(round(factor * tick, 9)))
-        svg.line((x.start - 4, y(tick)), (x.start, y(tick)), "axis")
-        svg.text(x.start - 8, y(tick) + 4, tick_label(round(factor * tick, 9)), "small soft", "end")
-    middle = (x.start + x.end) / 2
-    across = f"error at the {asked.against[0]}, {unit}".removesuffix(", 1")
-    svg.text(middle, y.start + 36, shortened(across, svg.width, 11), "small soft", "middle")
-    upward = f"error at the {asked.against[1]}, {unit}".removesuffix(", 1")
-    svg.text(0, y.end - 38, shortened(upward, svg.width, 11), "small soft")
+                crossings.append(f"{number(x(across))} {number(y(upward))}")
+        for one, two in zip(crossings[::2], crossings[1::2], strict=True):
+            yield f"M{one}L{two}"
 
 
 def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
@@ -125,10 +101,9 @@ def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
     asked, cell = record.question, 46.0
     end = 6 * cell
     title = f"Success of {asked.repair} minus that of {asked.baseline}, pp"
-    svg.text(0, 13, shortened(title, svg.width, 13), "head", tip=title)
+    svg.text(0, 13, title, "head", room=svg.width)
     for name, left, anchor in ((asked.baseline, 0.0, "start"), (asked.repair, end, "end")):
-        said = f"{name} ahead"
-        svg.text(left, 32, shortened(said, end / 2 - 6, 12), anchor=anchor, tip=said)
+        svg.text(left, 32, f"{name} ahead", anchor=anchor, room=end / 2 - 6)
     shades = [shade for _, shade in _SHADES]
     for column, shade in enumerate((*shades, *reversed(shades))):
         side = "baseline-only" if column < len(shades) else "repair-only"
@@ -160,11 +135,9 @@ def correlation_picture(record: MapRecord) -> Svg:
     vertical = covering([end for e in joint.curve for end in (e.low, e.high)], least=10.0)
     y = vertical.at(238, 44)
     title = f"Expected success of {asked.repair} minus that of {asked.baseline}, pp"
-    svg.text(0, 13, shortened(title, width, 13), "head", tip=title)
+    svg.text(0, 13, title, "head", room=width)
     svg.text(0, 28, _EQUAL, "small soft")
-    draw_levels(svg, x, y, 5, zero="zero")
-    for tick in (-1.0, -0.5, 0.0, 0.5, 1.0):
-        draw_tick(svg, x, y, tick, tick_label(tick))
+    draw_axes(svg, x, y, 5, (-1.0, -0.5, 0.0, 0.5, 1.0))
     svg.text(x(0.0), 274, "correlation of the two errors", "small soft", "middle")
     upper = [(x(e.correlation), y(e.high)) for e in joint.curve]
     lower = [(x(e.correlation), y(e.low)) for e in joint.curve]

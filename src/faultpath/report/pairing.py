@@ -7,7 +7,7 @@ from itertools import groupby
 from urllib.parse import quote
 
 from faultpath.decisions.model import DecisionRecord
-from faultpath.report.svg import Point, Svg, shortened, text_width
+from faultpath.report.svg import Point, Svg, text_width
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
 
 
@@ -156,11 +156,11 @@ def pair_grid(
     svg = Svg(
         _WIDTH, 42 + rows * row_height + 4 * (len(blocks) - 1), f"{title}: pairs", told, "group"
     )
-    svg.text(0, 14, shortened(title, _WIDTH, 13), "head", tip=title)
+    svg.text(0, 14, title, "head", room=_WIDTH)
     svg.text(0, 31, told, "small soft")
     y = 42.0
     for name, stacks in blocks:
-        svg.text(0, y + side / 2 + 4, shortened(name, left - 8, 12), "soft", tip=name)
+        svg.text(0, y + side / 2 + 4, name, "soft", room=left - 8)
         for k, stack in enumerate(stacks):
             x = left + (k % columns) * (side + _GAP)
             at = y + (k // columns) * row_height

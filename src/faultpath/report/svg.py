@@ -1,7 +1,7 @@
 """Pictures as SVG, and their axes; text and attribute values are escaped on the way in."""
 
 import math
-from collections.abc import Generator, Iterable, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -37,23 +37,6 @@ def shortened(text: str, width: float, size: float) -> str:
     return kept.rstrip(" ._-") + "…"
 
 
-def wrapped(text: str, width: float, size: float, lines: int) -> list[str]:
-    """Break `text` at spaces into at most `lines` lines, the last one shortened to fit."""
-    done: list[str] = []
-    line = ""
-    words = text.split()
-    for position, word in enumerate(words):
-        longer = f"{line} {word}".strip()
-        if text_width(longer, size) <= width or not line:
-            line = longer
-            continue
-        if len(done) == lines - 1:
-            return [*done, shortened(" ".join([line, *words[position:]]), width, size)]
-        done.append(line)
-        line = word
-    return [*done, shortened(line, width, size)]
-
-
 @cache
 def template(name: str) -> str:
     """Return the text of a file in `faultpath/report/templates`."""
@@ -81,72 +64,79 @@ class Svg:
         self._title, self._description = title, description
         self._parts: list[str] = []
 
-    def _add(self, tag: str, cls: str, tip: str | None, **attributes: float | str) -> None:
-        inner = f"<title>{escape(tip)}</title>" if tip else ""
+    def _add(self, tag: str, cls: str, inner: str, **attributes: float | str) -> None:
         self._parts.append(f"<{tag}{_attributes(cls, attributes)}>{inner}</{tag}>")
 
     def line(self, a: Point, b: Point, cls: str) -> None:
         """Draw a straight line from `a` to `b`."""
-        self._add("line", cls, None, x1=a[0], y1=a[1], x2=b[0], y2=b[1])
+        self._add("line", cls, "", x1=a[0], y1=a[1], x2=b[0], y2=b[1])
 
     def rect(
-        self, x: float, y: float, w: float, h: float, cls: str, r: float = 0, tip: str | None = None
+        self, x: float, y: float, w: float, h: float, cls: str, r: float = 0, tip: str = ""
     ) -> None:
         """Draw a rectangle with its upper left corner at `(x, y)` and corner radius `r`."""
-        self._add("rect", cls, tip, x=x, y=y, width=max(w, 0.0), height=max(h, 0.0), rx=r)
+        self._add("rect", cls, _tip(tip), x=x, y=y, width=max(w, 0.0), height=max(h, 0.0), rx=r)
 
-    def circle(self, at: Point, r: float, cls: str, tip: str | None = None) -> None:
+    def circle(self, at: Point, r: float, cls: str, tip: str = "") -> None:
         """Draw a disc."""
-        self._add("circle", cls, tip, cx=at[0], cy=at[1], r=r)
+        self._add("circle", cls, _tip(tip), cx=at[0], cy=at[1], r=r)
 
-    def path(self, d: str, cls: str, tip: str | None = None, **attributes: str) -> None:
+    def path(self, d: str, cls: str, **attributes: str) -> None:
         """Draw a path given in SVG's own notation."""
-        self._add("path", cls, tip, d=d, **attributes)
+        self._add("path", cls, "", d=d, **attributes)
 
-    def polygon(self, points: Sequence[Point], cls: str, tip: str | None = None) -> None:
+    def polygon(self, points: Sequence[Point], cls: str, tip: str = "") -> None:
         """Draw a closed polygon."""
-        self._add("polygon", cls, tip, points=_joined(points))
+        self._add("polygon", cls, _tip(tip), points=_joined(points))
 
     def polyline(self, points: Sequence[Point], cls: str) -> None:
         """Draw an open line through `points`."""
-        self._add("polyline", cls, None, points=_joined(points))
+        self._add("polyline", cls, "", points=_joined(points))
 
     def text(
-        self, x: float, y: float, content: str, cls: str = "", anchor: str = "", tip: str = ""
+        self,
+        x: float,
+        y: float,
+        content: str,
+        cls: str = "",
+        anchor: str = "",
+        tip: str = "",
+        room: float | None = None,
     ) -> None:
         """Write `content` with its baseline at `y`; `anchor` is start, middle or end.
 
-        What would stick out of the picture at a side is moved in, as far as the other allows.
+        What is wider than `room` is cut, and the whole is a tip. What would stick out of the
+        picture at a side is moved in, as far as the other allows.
         """
         size = next((_SIZES[name] for name in cls.split() if name in _SIZES), 12.0)
+        if room is not None:
+            tip = tip or content
+            content = shortened(content, room, size)
         width = text_width(content, size)
         before = {"middle": width / 2, "end": width}.get(anchor, 0.0)
         inside = min(max(x, before), max(self.width - width, 0.0) + before)
         attributes: dict[str, float | str] = {"x": inside, "y": y}
         if anchor:
             attributes["text-anchor"] = anchor
-        inner = escape(content) + (f"<title>{escape(tip)}</title>" if tip else "")
-        self._parts.append(f"<text{_attributes(cls, attributes)}>{inner}</text>")
+        self._add("text", cls, escape(content) + _tip(tip), **attributes)
 
     @contextmanager
     def group(
-        self, cls: str = "", tip: str | None = None, link: str = "", **attributes: str
+        self, cls: str = "", tip: str = "", link: str = "", **attributes: str
     ) -> Generator[None]:
         """Put what is drawn inside into one `<g>`, or into one link."""
-        inner = f"<title>{escape(tip)}</title>" if tip else ""
         tag, to = ("a", {"href": link}) if link else ("g", {})
-        self._parts.append(f"<{tag}{_attributes(cls, to | attributes)}>{inner}")
+        self._parts.append(f"<{tag}{_attributes(cls, {**to, **attributes})}>{_tip(tip)}")
         yield
         self._parts.append(f"</{tag}>")
 
-    def hatch(self, name: str, cls: str, spacing: float = 5) -> str:
+    def hatch(self, name: str, cls: str, spacing: float) -> str:
         """Define a diagonal hatching and return the `fill` that uses it."""
-        key = f"{self.uid}-{name}"
+        key, step = f"{self.uid}-{name}", number(spacing)
         self._parts.append(
-            f'<defs><pattern id="{key}" width="{number(spacing)}" height="{number(spacing)}" '
+            f'<defs><pattern id="{key}" width="{step}" height="{step}" '
             'patternUnits="userSpaceOnUse" patternTransform="rotate(45)">'
-            f'<line x1="0" y1="0" x2="0" y2="{number(spacing)}" class="{escape(cls)}"/>'
-            "</pattern></defs>"
+            f'<line x1="0" y1="0" x2="0" y2="{step}" class="{escape(cls)}"/></pattern></defs>'
         )
         return f"url(#{key})"
 
@@ -159,12 +149,10 @@ class Svg:
             ground = f'<rect class="paper" x="-{margin}" y="-{margin}" width="100%" height="100%"/>'
             style = f"<style>{css}</style>{ground}"
         width, height = number(self.width + 2 * margin), number(self.height + 2 * margin)
-        ids = f"{self.uid}-t {self.uid}-d" if self._description else f"{self.uid}-t"
-        described = (
-            f'<desc id="{self.uid}-d">{escape(self._description)}</desc>'
-            if self._description
-            else ""
-        )
+        ids, described = f"{self.uid}-t", ""
+        if self._description:
+            ids += f" {self.uid}-d"
+            described = f'<desc id="{self.uid}-d">{escape(self._description)}</desc>'
         head = (
             f'<svg xmlns="http://www.w3.org/2000/svg" class="fig" role="{self._role}" '
             f'aria-labelledby="{ids}" viewBox="{-margin} {-margin} {width} {height}" '
@@ -174,11 +162,15 @@ class Svg:
         return head + "".join(self._parts) + "</svg>"
 
 
+def _tip(text: str) -> str:
+    return f"<title>{escape(text)}</title>" if text else ""
+
+
 def _joined(points: Sequence[Point]) -> str:
     return " ".join(f"{number(x)},{number(y)}" for x, y in points)
 
 
-def _attributes(cls: str, attributes: dict[str, float | str] | dict[str, str]) -> str:
+def _attributes(cls: str, attributes: Mapping[str, float | str]) -> str:
     named = {"class": cls, **attributes} if cls else attributes
     return "".join(
         f' {key.replace("_", "-")}="{escape(value) if isinstance(value, str) else number(value)}"'
@@ -192,16 +184,18 @@ class Axis:
 
     low: float
     high: float
-    start: float
-    end: float
+    start: float = 0.0
+    end: float = 1.0
 
     def __call__(self, value: float) -> float:
         """Return the pixel of a value."""
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
-    def ticks(self, about: int = 5) -> list[float]:
+    def ticks(self, about: int) -> list[float]:
         """Return round numbers inside the axis, roughly `about` of them."""
-        step = _round_step((self.high - self.low) / max(about, 1))
+        raw = (self.high - self.low) / about
+        power = 10.0 ** math.floor(math.log10(raw))
+        step = power * next(m for m in (1.0, 2.0, 5.0, 10.0) if raw <= m * power * 1.0001)
         first = math.ceil(self.low / step - 1e-9)
         last = math.floor(self.high / step + 1e-9)
         return [i * step for i in range(first, last + 1)]
@@ -219,27 +213,22 @@ def covering(values: Iterable[float], margin: float = 0.06, least: float = 1.0) 
         middle = 0.5 * (low + high)
         low, high = middle - 0.5 * least, middle + 0.5 * least
     pad = margin * (high - low)
-    return Axis(low - pad, high + pad, 0.0, 1.0)
+    return Axis(low - pad, high + pad)
 
 
 def tick_label(value: float) -> str:
     """Return a short label with a real minus sign."""
-    return f"{value:g}".replace("-", "−")
+    return f"{round(value, 9):g}".replace("-", "−")
 
 
-def draw_levels(svg: Svg, x: Axis, y: Axis, about: int, zero: str = "axis") -> None:
-    """Draw the round levels of an upward axis across the plot, labels to their left."""
-    for tick in y.ticks(about):
+def draw_axes(
+    svg: Svg, x: Axis, y: Axis, levels: int, ticks: Iterable[float] = (), zero: str = "zero"
+) -> None:
+    """Draw about `levels` round levels of the upward axis across the plot, labels to their left,
+    and `ticks` of the lower axis with their labels below."""
+    for tick in y.ticks(levels):
         svg.line((x.start, y(tick)), (x.end, y(tick)), zero if tick == 0 else "axis")
         svg.text(x.start - 6, y(tick) + 4, tick_label(tick), "small soft", "end")
-
-
-def draw_tick(svg: Svg, x: Axis, y: Axis, value: float, label: str) -> None:
-    """Draw a tick of the lower axis with its label below."""
-    svg.line((x(value), y.start), (x(value), y.start + 4), "axis")
-    svg.text(x(value), y.start + 17, label, "small soft", "middle")
-
-
-def _round_step(raw: float) -> float:
-    power = 10.0 ** math.floor(math.log10(raw))
-    return power * next(m for m in (1.0, 2.0, 5.0, 10.0) if raw <= m * power * 1.0001)
+    for tick in ticks:
+        svg.line((x(tick), y.start), (x(tick), y.start + 4), "axis")
+        svg.text(x(tick), y.start + 17, tick_label(tick), "small soft", "middle")

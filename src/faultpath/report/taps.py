@@ -9,7 +9,7 @@ from faultpath.decisions import CORRECT
 from faultpath.decisions.wording import series
 from faultpath.interface import module_of
 from faultpath.report.inputs import ReportInput
-from faultpath.report.svg import Svg, shortened
+from faultpath.report.svg import Svg
 
 Tap = tuple[str, str]
 """A channel and the consumer that reads it."""
@@ -64,9 +64,8 @@ class Fork:
 def forks(source: ReportInput) -> tuple[Fork, ...]:
     """Return every path of the fault, isolated ones first; none where no tap is known."""
     record, asked = source.record, source.record.question
-    faults = asked.faults
     struck = (tap.channel for path in record.paths for tap in (*path.struck, *path.baseline_struck))
-    names = tuple(dict.fromkeys([fault.channel for fault in faults] or struck))
+    names = tuple(dict.fromkeys([fault.channel for fault in asked.faults] or struck))
     reads = [
         frozenset(
             (name, consumer)
@@ -83,14 +82,13 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
         if path.name == CORRECT:
             continue
         arms: list[tuple[str, str, tuple[Reader, ...]]] = []
-        struck_anywhere: set[Tap] = set()
-        sides = (
-            ("baseline", asked.baseline, path.baseline_struck),
-            ("repair", asked.repair, path.struck),
-        )
-        for (role, name, taps), read in zip(sides, reads, strict=True):
+        untouched = every
+        for role, name, taps, read in (
+            ("baseline", asked.baseline, path.baseline_struck, reads[0]),
+            ("repair", asked.repair, path.struck, reads[1]),
+        ):
             hit = frozenset((tap.channel, tap.consumer) for tap in taps)
-            struck_anywhere |= hit
+            untouched -= hit
             readers: list[Reader] = []
             for module in modules:
                 # Receipts come before the wiring: a tap that was struck was read.
@@ -98,7 +96,7 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
                 changed = any(t.altered_steps for t in taps if module_of(t.consumer) == module)
                 readers.append(Reader(module, here, here & hit, changed))
             arms.append((role, name, tuple(readers)))
-        found.append(Fork(path.title, names, every <= struck_anywhere, tuple(arms)))
+        found.append(Fork(path.title, names, not untouched, tuple(arms)))
     return tuple(found)
 
 
@@ -112,15 +110,15 @@ def fork_panel(fork: Fork) -> str:
     )
     bottom = _MODULES + _PITCH * len(fork.arms[0][2])
     svg = Svg(_WIDTH, bottom, f"{fork.title}: who gets the fault", told)
-    svg.text(0, 14, shortened(fork.title, _WIDTH, 13), "head", tip=fork.title)
+    svg.text(0, 14, fork.title, "head", room=_WIDTH)
     names = ", ".join(map(_named, fork.channels))
     wrong = " wrong" if fork.everywhere else ""
     state = "wrong for all" if fork.everywhere else "correct at the source"
     for x, (role, name, readers) in zip((_EDGE, _WIDTH - _ARM - _EDGE), fork.arms, strict=True):
         svg.text(x, 34, role, "small soft")
-        svg.text(x, 49, shortened(name, _ARM, 12), f"bold {role}", tip=name)
+        svg.text(x, 49, name, f"bold {role}", room=_ARM)
         svg.rect(x, 57, _ARM, 36, f"source{wrong}", 4)
-        svg.text(x + 8, 72, shortened(names, _ARM - 16, 12), tip=names)
+        svg.text(x + 8, 72, names, room=_ARM - 16)
         svg.text(x + 8, 87, state, f"small {'struck' if wrong else 'soft'}")
         for i, reader in enumerate(readers):
             _branch(svg, x, _MODULES + _PITCH * (i + 0.5), reader, fork.everywhere)
@@ -129,29 +127,25 @@ def fork_panel(fork: Fork) -> str:
 
 def _branch(svg: Svg, x: float, y: float, reader: Reader, everywhere: bool) -> None:
     """Draw one module with its way from the source, and the tap on it."""
-    above, cls = max(93.0, y - _PITCH), "wire hit" if reader.struck else "wire"
+    above, box, room = max(93.0, y - _PITCH), x + _BOX, _ARM - _BOX - 12
     if not reader.taps:
-        svg.path(f"M{x + _TRUNK} {above}V{y}H{x + _BOX}", "wire other")
-        svg.rect(x + _BOX, y - 19, _ARM - _BOX, 38, "absent", 4)
+        svg.path(f"M{x + _TRUNK} {above}V{y}H{box}", "wire other")
+        svg.rect(box, y - 19, _ARM - _BOX, 38, "absent", 4)
     else:
-        trunk = "wire hit" if everywhere else "wire"
+        trunk, hit = "wire hit" if everywhere else "wire", " hit" if reader.struck else ""
         svg.line((x + _TRUNK, above), (x + _TRUNK, y), trunk)
         svg.line((x + _TRUNK, y), (x + _TAP, y), trunk)
-        svg.line((x + _TAP, y), (x + _BOX, y), cls)
-        svg.rect(x + _BOX, y - 19, _ARM - _BOX, 38, "module", 4)
-        svg.circle((x + _TAP, y), 6, "tap hit" if reader.struck else "tap")
-        if reader.struck:
+        svg.line((x + _TAP, y), (box, y), f"wire{hit}")
+        svg.rect(box, y - 19, _ARM - _BOX, 38, "module", 4)
+        svg.circle((x + _TAP, y), 6, f"tap{hit}")
+        if hit:
             svg.path(f"M{x + _TAP + 2} {y - 4}l-4 4.5h4l-4 4.5", "bolt")
-    room = _ARM - _BOX - 12
-    soft = "" if reader.taps else "soft"
-    name = _named(reader.module)
-    svg.text(x + _BOX + 6, y - 3, shortened(name, room, 12), f"bold {soft}".strip(), tip=name)
-    state = "small struck" if reader.struck else "small soft"
-    read = (
-        f"{channel} at {consumer}" for channel, consumer in sorted(reader.struck or reader.taps)
-    )
-    tip = f"{reader.state}: {', '.join(read)}"
-    svg.text(x + _BOX + 6, y + 12, shortened(reader.state, room, 11), state, tip=tip)
+    cls = "bold" if reader.taps else "bold soft"
+    svg.text(box + 6, y - 3, _named(reader.module), cls, room=room)
+    cls = "small struck" if reader.struck else "small soft"
+    taps = sorted(reader.struck or reader.taps)
+    tip = f"{reader.state}: {', '.join(f'{channel} at {at}' for channel, at in taps)}"
+    svg.text(box + 6, y + 12, reader.state, cls, tip=tip, room=room)
 
 
 def _named(module: str) -> str:

@@ -8,7 +8,7 @@ from faultpath.decisions import RunProvenance, wording
 from faultpath.decisions.tables import Table
 from faultpath.decisions.tables.html import html
 from faultpath.report.frame import render
-from faultpath.report.svg import Axis, Svg, draw_levels, draw_tick, text_width, tick_label
+from faultpath.report.svg import Axis, Svg, draw_axes, text_width, tick_label
 from faultpath_quadrotor.paper.answers import Point, Reproduction, Series, Sweep
 from faultpath_quadrotor.paper.report import words
 
@@ -28,11 +28,9 @@ def sweep_plot(sweep: Sweep) -> str:
     x = _across(sweep.series).at(34, width - 10)
     y = _upward(sweep.series).at(top + height, top)
     svg.text(0, top - 12, sweep.y_title, "small soft")
-    draw_levels(svg, x, y, 6)
-    for tick in x.ticks(6):
-        if tick == 0:
-            svg.line((x(0.0), y.start), (x(0.0), y.end), "axis")
-        draw_tick(svg, x, y, tick, tick_label(round(tick, 9)))
+    draw_axes(svg, x, y, 6, x.ticks(6), zero="axis")
+    if x.start < x(0.0) < x.end:
+        svg.line((x(0.0), y.start), (x(0.0), y.end), "axis")
     svg.text((x.start + x.end) / 2, top + height + 36, sweep.x_title, "small soft", "middle")
     for i, line in enumerate(sweep.series):
         _band(svg, line, x, y, f"spread s{i % LOOKS}")
