@@ -14,7 +14,7 @@ HEAD = f"""
 import sys
 sys.path.insert(0, {str(ROOT / "examples")!r})
 import numpy as np
-from faultpath.loop.taps import Reading
+from faultpath.loop import Reading
 from faultpath.trials import Library, SceneRef, System, Variant
 from toy import Toy
 INTERFACE = Toy.interface

@@ -6,8 +6,7 @@ from declared_toy import Declared
 
 from faultpath.decisions.plan.probing import command_responses
 from faultpath.faults import parse_fault
-from faultpath.loop import Batch
-from faultpath.loop.taps import Taps
+from faultpath.loop import Batch, Taps
 
 SYSTEM = Declared()
 SCENES = tuple(f"cart/{i:03d}" for i in range(5))

@@ -24,7 +24,7 @@ from faultpath.faults import (
 )
 from faultpath.interface import read_interface
 from faultpath.learning.windows import Windows, delivered
-from faultpath.loop.taps import Reading, Taps
+from faultpath.loop import Reading, Taps
 
 WINDOWS, STEPS, DT_S = 5, 8, 0.05
 INTERFACE = read_interface("""

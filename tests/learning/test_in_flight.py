@@ -10,8 +10,7 @@ from repair_toys import INTERFACE, SHORT, Net, windows
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault, Scale
 from faultpath.learning import Learned, errors, fit, uncertainty_training, withheld, withholding
-from faultpath.loop import Batch, Inputs, Module, Port
-from faultpath.loop.taps import Reading, Taps
+from faultpath.loop import Batch, Inputs, Module, Port, Reading, Taps
 from faultpath.systems import ComposedSystem, FunctionPlant, Parts
 
 GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")

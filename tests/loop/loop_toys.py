@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from faultpath.interface import Interface
-from faultpath.loop import Batch, Graph, Loop, Module, Plant, Port, Progress, graph
+from faultpath.loop import Batch, Graph, Loop, Module, Plant, Port, Progress, Query, Taps, graph
 from faultpath.loop import interface_of as derived
-from faultpath.loop.taps import Query, Taps
 from faultpath.systems.checks.flights import TraceEnded
 
 DT_S = 0.1

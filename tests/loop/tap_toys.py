@@ -26,7 +26,7 @@ from faultpath.faults import (
 )
 from faultpath.faults import Sequence as InTurn
 from faultpath.interface import Channel, Interface, Provenance, Source
-from faultpath.loop.taps import Reading, Taps
+from faultpath.loop import Reading, Taps
 
 DT_S = 0.05
 SHAPES = {"mass": (), "wind": (3,)}

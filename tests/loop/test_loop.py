@@ -7,9 +7,18 @@ from loop_toys import DT_S, FACTS, SCENES, Guess, Line, Planner, execute, interf
 from faultpath.core.errors import SystemMistake
 from faultpath.faults import Fault, Scale, parse_fault
 from faultpath.interface import transitive_consumers
-from faultpath.loop import Batch, Loop, Module, Port, consumers, graph
+from faultpath.loop import (
+    Batch,
+    IllegalRead,
+    Loop,
+    MalformedReading,
+    Module,
+    Port,
+    Taps,
+    consumers,
+    graph,
+)
 from faultpath.loop import interface_of as derived
-from faultpath.loop.taps import IllegalRead, MalformedReading, Taps
 from faultpath.systems.checks.flights import Trace
 
 

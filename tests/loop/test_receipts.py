@@ -10,13 +10,13 @@ import torch
 from tap_toys import make
 
 from faultpath.faults import Fault, Scale
-from faultpath.loop.taps import (
+from faultpath.loop import (
     FaultedElsewhere,
     NotDelivered,
     Reading,
     Taps,
-    check_delivered,
 )
+from faultpath.loop.receipts import check_delivered
 
 LIBRARIES = pytest.mark.parametrize("to", [np.asarray, torch.asarray], ids=["numpy", "torch"])
 LATE = Fault(

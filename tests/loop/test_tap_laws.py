@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from tap_toys import INTERVENTIONS, make, play
 
 from faultpath.faults import Coupled, Delay, Fault, Intervention, Noise, Offset, Scale, Sequence
-from faultpath.loop.taps import Reading
+from faultpath.loop import Reading
 
 SCENES = ("a", "b", "c", "d")
 EACH = pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import torch
 from tap_toys import make
 
 from faultpath.faults import Fault, Freeze, Scale
-from faultpath.loop.taps import MalformedReading, NotFinite, Reading, Taps, WrittenTo
+from faultpath.loop import MalformedReading, NotFinite, Reading, Taps, WrittenTo
 
 NULL = Fault(channel="mass", intervention=Scale(factor=1.0), consumers=("observer",))
 STRONG = NULL.model_copy(update={"intervention": Scale(factor=2.0)})

@@ -10,7 +10,7 @@ from tap_toys import make
 
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault, Freeze, Offset, Quantise, Scale
-from faultpath.loop.taps import IllegalRead, MalformedReading, Reading, Taps, UndeclaredReader
+from faultpath.loop import IllegalRead, MalformedReading, Reading, Taps, UndeclaredReader
 
 SCALE = Fault(channel="mass", intervention=Scale(factor=2.0), consumers=("observer",))
 

@@ -12,8 +12,7 @@ from faultpath_quadrotor.vehicle import VehicleParameters
 
 from faultpath.core.arrays import Array
 from faultpath.faults import AnyFault, parse_fault
-from faultpath.loop.taps import Observer, Query, Reading, Taps
-from faultpath.loop.taps.tap import Tap
+from faultpath.loop import Observer, Query, Reading, Tap, Taps
 from faultpath.trials import Outcome, SystemSpec, load_system
 
 STEPS = 12

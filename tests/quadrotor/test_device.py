@@ -19,9 +19,7 @@ from simulated_gpu import GPU, SimulatedGPU, simulated_gpu
 
 from faultpath.core import arrays
 from faultpath.core.errors import UserError
-from faultpath.loop import Batch
-from faultpath.loop.taps import Observer, Query, Reading, Taps
-from faultpath.loop.taps.tap import Tap
+from faultpath.loop import Batch, Observer, Query, Reading, Tap, Taps
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
 UNANCHORED = {"clearance": "depth", "wind": "L1"}

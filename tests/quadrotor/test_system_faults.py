@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from flights import HELD_OUT, STEPS, bits, fault, fly, quadrotor, trace
 
-from faultpath.loop.taps import Receipts
+from faultpath.loop import Receipts
 from faultpath.trials import Outcome
 
 ALTERED_BY_CALIBRATION = {

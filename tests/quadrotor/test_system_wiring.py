@@ -5,7 +5,7 @@ import torch
 from faultpath_quadrotor.plant.module import VehiclePlant
 from flights import HELD_OUT, STEPS, bits, fly, quadrotor, wire
 
-from faultpath.loop.taps import IllegalRead
+from faultpath.loop import IllegalRead
 
 VARIANTS = ("zero-wind", "dob", "true-wind")
 

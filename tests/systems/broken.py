@@ -7,7 +7,7 @@ import numpy as np
 
 from faultpath.core.streams import generator
 from faultpath.interface import read_interface
-from faultpath.loop.taps import Reading
+from faultpath.loop import Reading
 from faultpath.trials import Library, Metric, Outcome, SceneRef, Status, System, Variant
 
 INTERFACE = read_interface("""

@@ -4,8 +4,7 @@ import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Dict, Discrete
 
-from faultpath.loop import Module, Port
-from faultpath.loop.taps import Taps
+from faultpath.loop import Module, Port, Taps
 from faultpath.systems import ComposedSystem, Parts
 from faultpath.systems.gymnasium import GymnasiumPlant
 

@@ -4,7 +4,7 @@ import pytest
 from toy_study import FAULT, SCENES, study
 from toy_system import STEPS
 
-from faultpath.loop.taps import TapCount
+from faultpath.loop import TapCount
 from faultpath.trials import Deliveries
 from faultpath.trials.execution import run_study
 from faultpath.trials.store import parquet, tables

@@ -9,7 +9,7 @@ import pytest
 from toy_study import SCENES, study
 from toy_system import ToySystem
 
-from faultpath.loop.taps import Reading
+from faultpath.loop import Reading
 from faultpath.trials import Status, load_system
 from faultpath.trials.execution import WrongOutcomes, run_study
 

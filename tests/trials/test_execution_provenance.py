@@ -64,7 +64,7 @@ def test_provenance_tells_the_users_own_repository_and_every_file_that_flew(tmp_
     clean = told("clean")
     assert clean.system_commit == _git(tmp_path / "mine", "rev-parse", "HEAD")
     assert clean.system_dirty is False
-    assert {"my.py", mine.helper.name, "faultpath/loop/taps/taps.py"} <= clean.sources.keys()
+    assert {"my.py", mine.helper.name, "faultpath/loop/taps.py"} <= clean.sources.keys()
     assert clean.sources["my.py"] == hashlib.sha256(mine.file.read_bytes()).hexdigest()
     assert clean.data.keys() == {"push.txt"}
     assert "pydantic-core" in clean.packages

@@ -13,7 +13,7 @@ from toy_study import SCENES, UNITS, study
 from toy_system import CONSUMERS, STEPS, ToySystem
 
 from faultpath.core.errors import Stopped
-from faultpath.loop.taps import Reading
+from faultpath.loop import Reading
 from faultpath.trials.execution import run_study
 from faultpath.trials.execution.again import SAMPLE, Rechecks
 

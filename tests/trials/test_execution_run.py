@@ -8,7 +8,7 @@ import pytest
 from toy_study import FAULT, SCENES, UNITS, rows, study
 
 from faultpath.core.errors import UserError
-from faultpath.loop.taps import NotDelivered, UndeclaredReader
+from faultpath.loop import NotDelivered, UndeclaredReader
 from faultpath.trials.arm import Arm, Row, Study
 from faultpath.trials.execution import RunResult, run_study
 from faultpath.trials.store import read_outcomes, read_traces

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from faultpath.core.errors import UserError
-from faultpath.loop.taps import TapCount
+from faultpath.loop import TapCount
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.code import CodeState
 from faultpath.trials.outcome import Outcome, Status

@@ -13,7 +13,7 @@ import numpy as np
 
 from faultpath.core.streams import generator
 from faultpath.interface import Channel, Interface, Provenance, Source
-from faultpath.loop.taps import Reading, Taps
+from faultpath.loop import Reading, Taps
 from faultpath.trials import Library, Metric, SceneRef, System, Variant
 from faultpath.trials.outcome import Outcome, Status
 

@@ -20,7 +20,7 @@ from faultpath.decisions import (
 )
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import module_of
-from faultpath.loop.taps import TapCount
+from faultpath.loop import TapCount
 from faultpath.trials import (
     Arm,
     Deliveries,

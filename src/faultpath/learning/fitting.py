@@ -25,7 +25,7 @@ from faultpath.learning.model_card import Schedule, fill, parameter_count, save,
 from faultpath.learning.record import Architecture, FitRecord, Machine
 from faultpath.learning.repair import Repair, kept, understood
 from faultpath.learning.windows import VALIDATION, Windows, delivered, named
-from faultpath.loop.taps import TapCount, added
+from faultpath.loop import TapCount, added
 from faultpath.trials.store import make_folder
 
 if TYPE_CHECKING:

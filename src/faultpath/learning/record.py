@@ -5,7 +5,7 @@ from typing import Literal
 from faultpath.core.frozen import Frozen
 from faultpath.learning.model_card import Card
 from faultpath.learning.repair import Repair
-from faultpath.loop.taps import TapCount
+from faultpath.loop import TapCount
 
 FORMAT = "faultpath-fit/2"
 

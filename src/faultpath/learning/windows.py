@@ -15,8 +15,7 @@ from faultpath.faults import AnyFault
 from faultpath.interface import Interface, Provenance, module_of
 from faultpath.learning.record import Data
 from faultpath.learning.repair import Repair
-from faultpath.loop import Port
-from faultpath.loop.taps import Reading, TapCount, Taps
+from faultpath.loop import Port, Reading, TapCount, Taps
 
 _EPOCHS = 100_000
 """Seeds of the faults' random numbers lie this far apart from one seed of a fit to the next."""

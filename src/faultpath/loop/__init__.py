@@ -1,31 +1,51 @@
-"""The closed loop, executed: modules declare ports, and who reads what is what runs."""
+"""The closed loop, executed: modules declare ports, and every edge between them is a tap."""
 
 from faultpath.loop.graph import graph, interface_of
 from faultpath.loop.loop import Deliverer, Instant, Loop
 from faultpath.loop.module import (
     Batch,
     Graph,
+    Inputs,
     Memory,
     Module,
     Outputs,
     Part,
     Plant,
+    Port,
     Progress,
     State,
     consumers,
 )
-from faultpath.loop.ports import Inputs, Port
-from faultpath.loop.taps import Observer, Query, Reading, Taps
+from faultpath.loop.reading import (
+    FaultedElsewhere,
+    IllegalRead,
+    MalformedReading,
+    NotDelivered,
+    NotFinite,
+    Query,
+    Reading,
+    TapError,
+    UndeclaredReader,
+    WrittenTo,
+)
+from faultpath.loop.receipts import Receipts, TapCount, added
+from faultpath.loop.tap import Tap
+from faultpath.loop.taps import Observer, Taps
 
 __all__ = [
     "Batch",
     "Deliverer",
+    "FaultedElsewhere",
     "Graph",
+    "IllegalRead",
     "Inputs",
     "Instant",
     "Loop",
+    "MalformedReading",
     "Memory",
     "Module",
+    "NotDelivered",
+    "NotFinite",
     "Observer",
     "Outputs",
     "Part",
@@ -34,8 +54,15 @@ __all__ = [
     "Progress",
     "Query",
     "Reading",
+    "Receipts",
     "State",
+    "Tap",
+    "TapCount",
+    "TapError",
     "Taps",
+    "UndeclaredReader",
+    "WrittenTo",
+    "added",
     "consumers",
     "graph",
     "interface_of",

@@ -30,21 +30,6 @@ def graph(
     """
     bound = {channel.name: channel.sources[0] for channel in interface.channels}
     bound |= dict(bindings or {})
-    writers = _writers(interface, plant, modules)
-    for part in (*modules, plant):
-        _check_ports(interface, part, bound, writers)
-        missing = sorted(set(part.truths) - set(plant.shows)) if isinstance(part, Module) else []
-        if missing:
-            raise SystemMistake(
-                f"module '{part.name}' declares the truth '{missing[0]}', which the plant does not "
-                f"show: it shows {listed(plant.shows)}"
-            )
-    return Graph(plant, _ordered(modules, bound, writers), bound)
-
-
-def _writers(
-    interface: Interface, plant: Plant, modules: Sequence[Module]
-) -> dict[str, Module | Plant]:
     writers: dict[str, Module | Plant] = {}
     for part, names in [(plant, plant.senses), *((module, module.writes) for module in modules)]:
         for name in names:
@@ -55,7 +40,15 @@ def _writers(
                     "give each source one writer"
                 )
             writers[name] = part
-    return writers
+    for part in (*modules, plant):
+        _check_ports(interface, part, bound, writers)
+        missing = sorted(set(part.truths) - set(plant.shows)) if isinstance(part, Module) else []
+        if missing:
+            raise SystemMistake(
+                f"module '{part.name}' declares the truth '{missing[0]}', which the plant does not "
+                f"show: it shows {listed(plant.shows)}"
+            )
+    return Graph(plant, _ordered(modules, bound, writers), bound)
 
 
 def _check_ports(
@@ -89,19 +82,15 @@ def _check_ports(
 def _ordered(
     modules: Sequence[Module], bound: Mapping[str, str], writers: Mapping[str, Module | Plant]
 ) -> tuple[Module, ...]:
-    before = {
-        id(module): {
-            id(writer)
-            for port in module.reads
-            if isinstance(writer := writers[bound[port.channel]], Module)
-        }
+    needed = {
+        id(module): {id(writers[bound[port.channel]]) for port in module.reads}
         for module in modules
     }
     ordered: list[Module] = []
     waiting = list(modules)
     while waiting:
-        done = {id(module) for module in ordered}
-        ready = next((module for module in waiting if before[id(module)] <= done), None)
+        left = {id(module) for module in waiting}
+        ready = next((each for each in waiting if left.isdisjoint(needed[id(each)])), None)
         if ready is None:
             names = " -> ".join(dict.fromkeys(module.name for module in waiting))
             raise SystemMistake(

@@ -10,9 +10,8 @@ from faultpath.core.arrays import Array
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import listed
 from faultpath.interface import Interface, Source
-from faultpath.loop.module import Batch, Graph, Memory, Module, Outputs, Part, State
-from faultpath.loop.ports import Inputs, Port
-from faultpath.loop.taps import Reading
+from faultpath.loop.module import Batch, Graph, Inputs, Module, Outputs, Part, Port, State
+from faultpath.loop.reading import Reading
 
 _SLACK = 1e-6
 """Of a step: what rounding of rates and latencies may take away."""
@@ -95,78 +94,61 @@ class _Execution:
         self._clocks = {name: Clock(loop.interface.source(name), batch.dt_s) for name in read}
         """Of the sources that somebody reads."""
         self._ports = {id(part): sorted(part.ports) for part in graph.parts}
-        self._now: dict[str, Reading] = {}
         self._past: dict[str, Reading] = {}
-        self._truths: dict[str, Any] = {}
-        self._state: State = graph.plant.start(batch)
-        self._memories: list[Memory] = [module.begin(batch) for module in graph.modules]
-        for module in graph.modules:
-            self._hold(module, module.before(batch), 0, module.writes, first=True)
+        self._state = graph.plant.start(batch)
+        self._memories = [module.begin(batch) for module in graph.modules]
+        self._now = {
+            name: Reading(value, name, -1)
+            for module in graph.modules
+            for name, value in module.before(batch).items()
+            if name in module.writes and name in read
+        }
 
     def run(self) -> Iterator[Instant]:
-        plant, modules = self._graph.plant, self._graph.modules
-        state, memories = self._state, self._memories
-        step = 0
+        plant, modules, memories = self._graph.plant, self._graph.modules, self._memories
+        state, step = self._state, 0
         while step < plant.steps and not plant.over(state, step):
             running = plant.progress(state).running
             self._taps.set_active(running)
             self._past, self._now = self._now, {}
             sensed = plant.sense(state)
             self._hold(plant, sensed, step, plant.senses)
-            self._truths = {name: sensed[name] for name in plant.shows}
+            truths = {name: sensed[name] for name in plant.shows}
             for index, module in enumerate(modules):
-                inputs = self._inputs(module, step, running)
+                inputs = self._inputs(module, step, truths, running)
                 outputs, memories[index] = module.step(inputs, memories[index])
                 self._hold(module, outputs, step, module.writes)
-            inputs = self._inputs(plant, step, running)
+            inputs = self._inputs(plant, step, {}, running)
             yield Instant(step, state, inputs)
             state = plant.advance(state, inputs)
             step += 1
         yield Instant(step, state, Inputs(plant.name, step, {}, {}))
 
-    def _hold(
-        self,
-        part: Part,
-        outputs: Outputs,
-        step: int,
-        wanted: tuple[str, ...],
-        first: bool = False,
-    ) -> None:
+    def _hold(self, part: Part, outputs: Outputs, step: int, wanted: tuple[str, ...]) -> None:
         """Take in what a part's sources hold at a step, as far as somebody reads them."""
         for name in wanted:
             if name not in self._clocks:
                 continue
-            if name in outputs:
-                value = outputs[name]
-                arrived = (
-                    Reading(value, name, -1) if first else self._clocks[name].read(value, step)
-                )
-                self._now[name] = arrived
-            elif not first:
+            if name not in outputs:
                 raise SystemMistake(
                     f"module '{part.name}' writes source '{name}', but at step {step} it returned "
                     f"no such entry; it returned: {listed(outputs)}"
                 )
+            self._now[name] = self._clocks[name].read(outputs[name], step)
 
-    def _inputs(self, part: Module | Any, step: int, running: Array) -> Inputs:
+    def _inputs(self, part: Part, step: int, truths: Mapping[str, Any], running: Array) -> Inputs:
         delivered: dict[Port, Any] = {}
         for port in self._ports[id(part)]:
-            reading = self._reading(part, port)
+            source = self._graph.bindings[port.channel]
+            reading = self._now[source] if port in part.reads else self._past.get(source)
+            if reading is None:
+                raise SystemMistake(
+                    f"module '{part.name}' reads what channel '{port.channel}' held one step "
+                    f"before, but nobody says what source '{source}' held before the first step: "
+                    "return it from the writing module's before()"
+                )
             consumer = f"{part.name}.{port.place}"
             delivered[port] = self._taps.deliver(port.channel, consumer, reading, step)
-        names = part.truths if isinstance(part, Module) else ()
-        truths: Mapping[str, Any] = {name: self._truths[name] for name in names}
-        return Inputs(part.name, step, delivered, truths, running)
-
-    def _reading(self, part: Part, port: Port) -> Reading:
-        source = self._graph.bindings[port.channel]
-        if port in part.reads:
-            return self._now[source]
-        held = self._past.get(source)
-        if held is None:
-            raise SystemMistake(
-                f"module '{part.name}' reads what channel '{port.channel}' held one step before, "
-                f"but nobody says what source '{source}' held before the first step: return it "
-                "from the writing module's before()"
-            )
-        return held
+        declared = part.truths if isinstance(part, Module) else ()
+        shown = {name: truths[name] for name in declared}
+        return Inputs(part.name, step, delivered, shown, running)

@@ -11,8 +11,7 @@ from typing_extensions import override
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import unknown
 from faultpath.interface import Interface
-from faultpath.loop import Batch, Loop, Module, graph, interface_of
-from faultpath.loop.taps import Reading
+from faultpath.loop import Batch, Loop, Module, Reading, graph, interface_of
 from faultpath.systems.episodes import SCENE, EpisodePlant
 from faultpath.trials import Library, LoopSystem, SceneRef, Wiring
 

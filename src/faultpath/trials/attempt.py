@@ -10,7 +10,7 @@ import numpy as np
 
 from faultpath.core.error_source import described, located
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.loop.taps import Observer, TapCount, Taps
+from faultpath.loop import Observer, TapCount, Taps
 from faultpath.trials.arm import Arm
 from faultpath.trials.outcome import Outcome, checked
 from faultpath.trials.system import System

@@ -10,7 +10,7 @@ from typing import Any, cast
 from faultpath.core.error_source import described, place
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.interface import Interface
-from faultpath.loop.taps.tap import wire
+from faultpath.loop.taps import wire
 from faultpath.trials.declared import Library, Variant, check_name, shown
 from faultpath.trials.metrics import Metric
 from faultpath.trials.outcome import Outcome, Status

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Self
 
 from faultpath.core.results import Result
-from faultpath.loop.taps import TapCount, added
+from faultpath.loop import TapCount, added
 from faultpath.trials.arm import Study
 from faultpath.trials.outcome import Outcome
 from faultpath.trials.table import OutcomeTable

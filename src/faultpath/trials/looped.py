@@ -10,8 +10,7 @@ from typing_extensions import override
 
 from faultpath.core.arrays import Array, namespace, to_numpy
 from faultpath.interface import Provenance
-from faultpath.loop import Batch, Deliverer, Graph, Loop, Module, Plant, consumers, graph
-from faultpath.loop.taps import Taps
+from faultpath.loop import Batch, Deliverer, Graph, Loop, Module, Plant, Taps, consumers, graph
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.system import System, Variant
 

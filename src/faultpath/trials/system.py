@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from faultpath.faults import AnyFault, FaultPreset, parse_fault
 from faultpath.interface import Interface
-from faultpath.loop.taps import Taps
+from faultpath.loop import Taps
 from faultpath.trials.declared import FloorPlan, Library, Variant
 from faultpath.trials.metrics import Metric
 from faultpath.trials.outcome import Outcome, Status

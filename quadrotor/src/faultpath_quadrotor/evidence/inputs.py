@@ -10,7 +10,7 @@ from torch import Tensor
 
 from faultpath.core.errors import UserError
 from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, Hold
-from faultpath.loop.taps import Reading, Taps
+from faultpath.loop import Reading, Taps
 from faultpath.trials import Variant
 from faultpath_quadrotor.evidence.playback import CODE, HELD, Present, at_present
 from faultpath_quadrotor.predictors import Predictor

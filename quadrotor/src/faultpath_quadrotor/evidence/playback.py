@@ -23,10 +23,11 @@ from faultpath.loop import (
     Plant,
     Port,
     Progress,
+    Reading,
+    Taps,
     consumers,
     graph,
 )
-from faultpath.loop.taps import Reading, Taps
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.lanes import Chunk

@@ -8,8 +8,7 @@ from functools import lru_cache
 
 from torch import Tensor
 
-from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
-from faultpath.loop.taps import Query
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port, Query
 from faultpath_quadrotor.lanes import Chunk
 from faultpath_quadrotor.perception import DepthClearance, mounted
 from faultpath_quadrotor.predictors.rollout import Predicted

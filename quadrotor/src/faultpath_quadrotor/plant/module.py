@@ -8,8 +8,7 @@ import torch
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress
-from faultpath.loop.taps import Query
+from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress, Query
 from faultpath.trials.metrics import VEHICLE
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.device import host_readable

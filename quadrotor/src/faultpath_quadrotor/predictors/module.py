@@ -2,8 +2,7 @@
 
 import torch
 
-from faultpath.loop import Batch, Inputs, Memory, Module, Outputs
-from faultpath.loop.taps import Query
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Query
 from faultpath_quadrotor.lanes import lanes_of, scenes_first
 from faultpath_quadrotor.predictors import Predictor
 from faultpath_quadrotor.predictors.places import ports, predictor_inputs, taking

@@ -6,7 +6,7 @@ from torch import Tensor
 
 from faultpath.faults import AnyFault, Coupled, Fault, UniformScale
 from faultpath.learning.windows import window_taps
-from faultpath.loop.taps import Reading
+from faultpath.loop import Reading
 from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.training.windows import DeliveredInputs
 from faultpath_quadrotor.vehicle import CONTROL_DT_S

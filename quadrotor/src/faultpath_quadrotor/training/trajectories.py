@@ -14,7 +14,7 @@ import numpy as np
 import torch
 
 from faultpath import loop
-from faultpath.loop.taps import Taps
+from faultpath.loop import Taps
 from faultpath.trials import SystemSpec
 from faultpath.trials.state import system_code
 from faultpath_quadrotor import native

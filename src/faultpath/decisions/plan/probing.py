@@ -20,8 +20,7 @@ from faultpath.core.arrays import Array, is_array, to_numpy
 from faultpath.core.error_source import described
 from faultpath.core.errors import Notice
 from faultpath.faults import AnyFault
-from faultpath.loop import Batch, Inputs, Loop, Plant, Progress
-from faultpath.loop.taps import Reading, Taps
+from faultpath.loop import Batch, Inputs, Loop, Plant, Progress, Reading, Taps
 from faultpath.trials import Arm, LoopSystem
 from faultpath.trials.attempt import taps_of
 

@@ -13,7 +13,7 @@ from typing_extensions import override
 from faultpath.core.arrays import to_numpy
 from faultpath.core.error_source import described
 from faultpath.core.errors import UserError
-from faultpath.loop.taps import (
+from faultpath.loop import (
     FaultedElsewhere,
     IllegalRead,
     MalformedReading,
@@ -22,10 +22,10 @@ from faultpath.loop.taps import (
     Observer,
     Query,
     Reading,
+    Tap,
     TapCount,
     UndeclaredReader,
 )
-from faultpath.loop.taps.tap import Tap
 from faultpath.trials import Arm, Outcome, System
 from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
 from faultpath.trials.execution.worker import Job, building

@@ -19,9 +19,7 @@ from faultpath.core.arrays import is_array, to_numpy
 from faultpath.core.error_source import described
 from faultpath.core.errors import SystemMistake
 from faultpath.interface import Interface, Provenance
-from faultpath.loop import Loop
-from faultpath.loop.taps import Observer, Query, Reading
-from faultpath.loop.taps.tap import Tap
+from faultpath.loop import Loop, Observer, Query, Reading, Tap
 from faultpath.trials import Arm, LoopSystem, Outcome, System
 from faultpath.trials.attempt import Done, Raised, Wrong, attempt
 from faultpath.trials.execution.worker import Job, building

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from faultpath.core.errors import UserError
-from faultpath.loop.taps import TapCount, added
+from faultpath.loop import TapCount, added
 from faultpath.trials.arm import Study
 from faultpath.trials.attempt import Died, Done, Raised, Reply, Wrong
 from faultpath.trials.declared import Library

@@ -11,7 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
-from faultpath.loop.taps import TapCount
+from faultpath.loop import TapCount
 from faultpath.trials.metrics import VEHICLE
 from faultpath.trials.outcome import Outcome, Status, checked
 from faultpath.trials.store.parquet import (

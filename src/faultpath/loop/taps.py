@@ -13,15 +13,8 @@ from faultpath.core.arrays import Array, differs, read_only
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.faults import Coupled, Draws, Fault
-from faultpath.interface import Interface, modules
-from faultpath.loop.taps.checks import (
-    check_draws,
-    check_finite,
-    check_first,
-    check_same,
-    check_shape,
-)
-from faultpath.loop.taps.reading import (
+from faultpath.interface import Interface, Provenance, modules
+from faultpath.loop.reading import (
     IllegalRead,
     MalformedReading,
     Query,
@@ -30,8 +23,58 @@ from faultpath.loop.taps.reading import (
     UndeclaredReader,
     WrittenTo,
 )
-from faultpath.loop.taps.receipts import Receipts, check_delivered
-from faultpath.loop.taps.tap import Corruption, Guard, Observer, Running, Tally, Tap, wire
+from faultpath.loop.receipts import Receipts, check_delivered
+from faultpath.loop.tap import Corruption, Guard, Running, Tally, Tap
+
+
+def wire(
+    interface: Interface,
+    bindings: Mapping[str, str],
+    consumers: Collection[str] | None,
+    privileged: Collection[str],
+    n_scenes: int,
+) -> dict[tuple[str, str], Tap]:
+    """Return the taps of a variant by channel and consumer; raises `UserError` for wrong names."""
+    for name in bindings:
+        interface.channel(name)
+    for name in privileged:
+        interface.source(name)
+    declared = {name for channel in interface.channels for name in channel.consumers}
+    for name in consumers or ():
+        if name not in declared:
+            raise UserError(f"this variant's consumers: {unknown('consumer', name, declared)}")
+    taps: dict[tuple[str, str], Tap] = {}
+    for channel in interface.channels:
+        bound = bindings.get(channel.name, channel.sources[0])
+        if bound not in channel.sources:
+            said = unknown("source", bound, channel.sources)
+            raise UserError(f"channel '{channel.name}' cannot be bound: {said}")
+        source = interface.source(bound)
+        secret = source.provenance is Provenance.PRIVILEGED
+        shape = (n_scenes, *source.shape)
+        for name in channel.consumers:
+            if consumers is None or name in consumers:
+                legal = bound in privileged or not secret
+                taps[channel.name, name] = Tap(channel.name, name, bound, legal, shape)
+    return taps
+
+
+class Observer:
+    """Sees what passes the taps of one run; a subclass overrides what it wants to see.
+
+    Readings are those of the run itself: an observer copies what it keeps and writes to nothing.
+    """
+
+    def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
+        """See that a consumer got `got` of a reading; of a query, the function that answers."""
+
+    def answered(
+        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
+    ) -> None:
+        """See what a query answered to a request, and what the consumer got of that answer."""
+
+    def faulted(self, step: int, held: Any) -> None:
+        """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,28 +132,34 @@ class Taps:
             tap.guard = Guard()
         first = {channel.name: channel.sources[0] for channel in interface.channels}
         self._bindings = MappingProxyType(first | dict(bindings or {}))
-        self._add(tuple(faults), dt_s, seed)
+        self._add(faults, dt_s, seed)
 
-    def _add(self, faults: tuple[Fault | Coupled, ...], dt_s: float, seed: int) -> None:
-        present = {consumer for _, consumer in self._taps}
-        draws: dict[tuple[str, float, str | None], Draws] = {}
-        resolved = [declared.resolved(self._interface) for declared in faults]
-        check_draws([fault for parts in resolved for fault in parts])
-        for declared, everywhere in zip(faults, resolved, strict=True):
-            if not declared.resolved(self._interface, present):
+    def _add(self, faults: Iterable[Fault | Coupled], dt_s: float, seed: int) -> None:
+        shared: dict[Draws, Draws] = {}
+        apart: dict[Draws | None, Fault] = {}
+        for declared in faults:
+            everywhere, reached = declared.resolved(self._interface), False
+            for fault in everywhere:
+                made = fault.draws(self._scenes, seed)
+                if abs(fault.loading) < 1:
+                    if made.own in apart:
+                        raise UserError(
+                            f"faults '{apart[made.own].describe()}' and '{fault.describe()}' have "
+                            "a loading and draw the same numbers nevertheless: give them different "
+                            "causes"
+                        )
+                    apart[made.own] = fault
+                drawn = shared.setdefault(made, made)
+                for consumer in fault.consumers:
+                    if tap := self._taps.get((fault.channel, consumer)):
+                        tap.add(Corruption(fault, drawn, dt_s))
+                        reached = True
+            if not reached:
                 names = {consumer for fault in everywhere for consumer in fault.consumers}
                 raise UserError(
                     f"fault '{declared.describe()}' reaches nobody in this variant, which has no "
                     f"{listed(names)}; leave the fault out or name other consumers"
                 )
-            for fault in everywhere:
-                made = fault.draws(self._scenes, seed)
-                drawn = draws.setdefault(
-                    (made.cause, made.loading, made.own and made.own.cause), made
-                )
-                for consumer in fault.consumers:
-                    if tap := self._taps.get((fault.channel, consumer)):
-                        tap.add(Corruption(fault, drawn, dt_s))
 
     @property
     def bindings(self) -> Mapping[str, str]:
@@ -147,13 +196,13 @@ class Taps:
                     "new taps"
                 )
             if not (tap.deliveries or isinstance(value, Query)):
-                check_first(tap, value, self._scenes)
+                tap.check_first(value, self._scenes)
             tap.last_step = step
             tap.deliveries += 1
             tap.given = value
             tap.cached = self._handed(tap, value, step)
         elif value is not tap.given:
-            check_same(tap, value, step)
+            tap.check_same(value, step)
         if self._observer is not None:
             self._observer.delivered(tap, reading, step, tap.cached)
         return tap.cached
@@ -183,7 +232,7 @@ class Taps:
         if first or tap.corruptions or tap.guard:
             given = value = query.value(answer)
             if first:
-                check_first(tap, value, self._scenes)
+                tap.check_first(value, self._scenes)
             if tap.corruptions:
                 value = self._corrupted(tap, value, step, ask)
             if tap.guard is not None:
@@ -195,7 +244,7 @@ class Taps:
         return got
 
     def _corrupted(self, tap: Tap, reading: Array, step: int, ask: int = 0) -> Array:
-        check_shape(tap, reading)
+        tap.check_shape(reading)
         value, faulted = reading, False
         for each in tap.corruptions:
             value, in_force = each.act(value, step, ask)
@@ -245,7 +294,7 @@ class Taps:
         guarded consumer that wrote.
         """
         for tap in self._taps.values():
-            check_finite(tap, self._scenes)
+            tap.check_finite(self._scenes)
             if tap.guard is not None and tap.guard.written():
                 raise WrittenTo(
                     f"tap {tap}: the consumer wrote into the reading, which others may read too; "

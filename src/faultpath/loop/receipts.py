@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.loop.taps.reading import FaultedElsewhere, NotDelivered, UndeclaredReader
+from faultpath.loop.reading import FaultedElsewhere, NotDelivered, UndeclaredReader
 
 
 @dataclass(frozen=True, slots=True)

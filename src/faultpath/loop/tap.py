@@ -1,20 +1,28 @@
 """One consumer's end of one channel: the faults that act there, and what is counted."""
 
-from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.arrays import Array, copy, differs, namespace, place, to_numpy, together
+from faultpath.core.arrays import (
+    Array,
+    HostArray,
+    copy,
+    device_kind,
+    differs,
+    is_array,
+    namespace,
+    place,
+    to_numpy,
+    together,
+)
 from faultpath.core.errors import UserError
-from faultpath.core.text import unknown
 from faultpath.faults import Draws, Fault, Moment
 from faultpath.faults.base import Memory
-from faultpath.interface import Interface, Provenance
-from faultpath.loop.taps.reading import Query, Reading
-from faultpath.loop.taps.receipts import CorruptionReceipt, Receipt
+from faultpath.loop.reading import MalformedReading, NotFinite
+from faultpath.loop.receipts import CorruptionReceipt, Receipt
 
 
 class Tally:
@@ -208,52 +216,73 @@ class Tap:
             steps_altered=self.altered.counts(n_scenes),
         )
 
+    def check_first(self, value: Any, scenes: tuple[str, ...]) -> None:
+        """Check the first value: an array of real numbers, as declared, all of them finite.
 
-def wire(
-    interface: Interface,
-    bindings: Mapping[str, str],
-    consumers: Collection[str] | None,
-    privileged: Collection[str],
-    n_scenes: int,
-) -> dict[tuple[str, str], Tap]:
-    """Return the taps of a variant by channel and consumer; raises `UserError` for wrong names."""
-    for name in bindings:
-        interface.channel(name)
-    for name in privileged:
-        interface.source(name)
-    declared = {name for channel in interface.channels for name in channel.consumers}
-    for name in consumers or ():
-        if name not in declared:
-            raise UserError(f"this variant's consumers: {unknown('consumer', name, declared)}")
-    taps: dict[tuple[str, str], Tap] = {}
-    for channel in interface.channels:
-        bound = bindings.get(channel.name, channel.sources[0])
-        if bound not in channel.sources:
-            said = unknown("source", bound, channel.sources)
-            raise UserError(f"channel '{channel.name}' cannot be bound: {said}")
-        source = interface.source(bound)
-        secret = source.provenance is Provenance.PRIVILEGED
-        shape = (n_scenes, *source.shape)
-        for name in channel.consumers:
-            if consumers is None or name in consumers:
-                legal = bound in privileged or not secret
-                taps[channel.name, name] = Tap(channel.name, name, bound, legal, shape)
-    return taps
+        Raises `MalformedReading`, and `NotFinite` at once where the value is on the host; on an
+        accelerator that waits for `check_finite`, so that no delivery waits for the device.
+        """
+        if not is_array(value):
+            raise MalformedReading(
+                f"tap {self}: the reading's value is a {type(value).__name__}: give an array with "
+                "one row a scene"
+            )
+        self.check_shape(value)
+        if not _real(value):
+            raise MalformedReading(
+                f"tap {self}: the reading is of {value.dtype}; a source gives real numbers or "
+                "truths"
+            )
+        if namespace(value).isdtype(value.dtype, "real floating"):
+            self.finite = namespace(value).isfinite(value)
+            if device_kind(value) == "cpu":
+                self.check_finite(scenes)
+
+    def check_shape(self, value: Array) -> None:
+        """Raise `MalformedReading` for another shape than declared."""
+        shape, wanted = list(getattr(value, "shape", ())), list(self.shape)
+        if shape == wanted:
+            return
+        if shape[:1] != wanted[:1]:
+            rows = str(shape[0]) if shape else "no"
+            raise MalformedReading(
+                f"tap {self}: the reading has {rows} rows for {wanted[0]} scenes"
+            )
+        raise MalformedReading(
+            f"tap {self}: the reading of one scene has the shape {shape[1:]}, but source "
+            f"'{self.source}' is declared with {wanted[1:]}; mend one of the two"
+        )
+
+    def check_finite(self, scenes: tuple[str, ...]) -> None:
+        """Raise `NotFinite` when the first value was not; this waits for the device."""
+        if self.finite is None:
+            return
+        finite, self.finite = to_numpy(self.finite), None
+        lost = np.flatnonzero(~finite.reshape(len(scenes), -1).all(axis=1))
+        if lost.size:
+            raise NotFinite(
+                f"tap {self}: the first reading is not finite in {lost.size} of {len(scenes)} "
+                f"scenes, '{scenes[lost[0]]}' for one"
+            )
+
+    def check_same(self, value: Any, step: int) -> None:
+        """Raise `MalformedReading` when a second delivery in a step brings another reading.
+
+        On an accelerator the two are not compared, because no delivery waits for it.
+        """
+        if step < 0:
+            raise MalformedReading(f"tap {self}: step {step} is before the first, which is 0")
+        alike = is_array(value) and tuple(value.shape) == self.shape
+        if alike and device_kind(value) == device_kind(self.given) == "cpu":
+            alike = not to_numpy(differs(value, self.given)).any()
+        if not alike:
+            raise MalformedReading(
+                f"tap {self}: step {step} brings two different readings, but a channel has one in "
+                "a step; deliver it once, or declare a channel for each"
+            )
 
 
-class Observer:
-    """Sees what passes the taps of one run; a subclass overrides what it wants to see.
-
-    Readings are those of the run itself: an observer copies what it keeps and writes to nothing.
-    """
-
-    def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
-        """See that a consumer got `got` of a reading; of a query, the function that answers."""
-
-    def answered(
-        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
-    ) -> None:
-        """See what a query answered to a request, and what the consumer got of that answer."""
-
-    def faulted(self, step: int, held: Any) -> None:
-        """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""
+def _real(value: Array) -> bool:
+    if isinstance(value, np.ndarray):
+        return cast(HostArray, value).dtype.kind in "biuf"
+    return bool(namespace(value).isdtype(value.dtype, ("bool", "integral", "real floating")))
