@@ -12,11 +12,11 @@ from faultpath_quadrotor.models import clearance_model, predictor
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.perception import DepthClearance, DepthRenderer, mounted
 from faultpath_quadrotor.planners import AutoregressiveSampler, SamplerSettings, Scored, shift
-from faultpath_quadrotor.predictors import AnchoredPredictor, Calibration, PredictorInputs
+from faultpath_quadrotor.predictors import AnchoredPredictor, PredictorInputs
+from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.rollout import rolling
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import GRAVITY_MPS2
 from torch import Tensor
 
 from benchmarks.side import Side
@@ -38,6 +38,9 @@ def model() -> AnchoredPredictor:
     return AnchoredPredictor(found.network, wind=True, drag_kgps=(DRAG_KGPS,) * 3)
 
 
+CALIBRATED = ("trim", "dynamics")
+
+
 def inputs() -> PredictorInputs:
     """Return what the taps would deliver for one scene, batch `[1, 1]`, float32."""
     draw = generator("benchmark", "scene/0", 0)
@@ -45,7 +48,7 @@ def inputs() -> PredictorInputs:
     def column(rows: int, low: float, high: float) -> Tensor:
         return torch.from_numpy(draw.uniform(low, high, (rows, 1))).float()[..., None]
 
-    calibration = Calibration(column(1, 0.8, 1.2)[0], column(1, 0.8, 1.2)[0])
+    mass_kg, thrust_scale = column(1, 0.8, 1.2)[0], column(1, 0.8, 1.2)[0]
     return PredictorInputs(
         state=State(
             position=column(3, 1.0, 2.0),
@@ -53,19 +56,19 @@ def inputs() -> PredictorInputs:
             rotation=so3.exp(column(3, -0.4, 0.4)),
             rate=column(3, -1.0, 1.0),
         ),
-        trim=calibration,
-        dynamics=calibration,
-        wind_map_mass_kg=calibration.mass_kg,
-        wind_mps=column(3, -5.0, 5.0),
-        thrust_mass_kg=calibration.mass_kg,
-        code=column(32, -0.8, 0.8),
+        delivered={
+            **{("mass", place): mass_kg for place in (*CALIBRATED, "wind_map", "normalise_thrust")},
+            **{("thrust_scale", place): thrust_scale for place in CALIBRATED},
+            ("wind", "wind_map"): column(3, -5.0, 5.0),
+            ("history_code", "latent"): column(32, -0.8, 0.8),
+        },
     )
 
 
 def commands() -> Tensor:
     """Return candidates about hover, `[H, 4, 1, K]`."""
     sampler = AutoregressiveSampler(SamplerSettings(candidates=CANDIDATES, horizon=HORIZON))
-    hover = inputs().trim.hover_thrust(GRAVITY_MPS2)[:, 0]
+    hover = hover_thrust(inputs().delivered, "trim")[:, 0]
     plan = torch.zeros(HORIZON, 4, 1)
     plan[:, 0] = hover
     with native.using(native.PORTABLE):  # the same numbers for every side
@@ -118,7 +121,7 @@ def _replans(goal: Tensor, clearance: Callable[[Tensor], Tensor]) -> Callable[[]
     `clearance` gives `[1, H, K]`, metres, along positions `[3, 1, H, K]`.
     """
     planner, roll, given = QuadrotorOptions().build_planner(), rolling(model()), inputs()
-    hover = given.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
+    hover = hover_thrust(given.delivered, "trim")[:, 0]
     plan, step = commands()[..., 0].clone(), 0
 
     def work() -> None:

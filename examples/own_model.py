@@ -44,7 +44,7 @@ class OwnModel(nn.Module, Predictor):
 
     def begin(self, inputs: PredictorInputs) -> object:
         """Once a replan: what stays the same over the horizon, batch `[S, 1]`."""
-        return self.kinematics.begin(inputs), inputs.thrust_mass_kg
+        return self.kinematics.begin(inputs), inputs["mass", "normalise_thrust"]
 
     def step(self, state: State, command: Tensor, memory: object) -> tuple[State, object]:
         """Once a horizon step, for scenes and candidates: commands are `[4, S, K]`."""

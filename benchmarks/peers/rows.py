@@ -70,12 +70,10 @@ class RowsModel(nn.Module):
         second, last = linear(network.second), linear(network.last)
         self.head = nn.Sequential(first, nn.ReLU(), second, nn.ReLU(), last)
         given = planning.inputs()
-        assert given.dynamics is not None
-        assert given.wind_mps is not None
-        assert given.thrust_mass_kg is not None
-        self.gain = float(given.dynamics.thrust_scale / given.dynamics.mass_kg)
-        self.weight_n = float(given.thrust_mass_kg) * GRAVITY_MPS2
-        constant = planning.DRAG_KGPS * given.wind_mps[:, 0, 0] / given.dynamics.mass_kg[0]
+        mass_kg = given["mass", "dynamics"]
+        self.gain = float(given["thrust_scale", "dynamics"] / mass_kg)
+        self.weight_n = float(given["mass", "normalise_thrust"]) * GRAVITY_MPS2
+        constant = planning.DRAG_KGPS * given["wind", "wind_map"][:, 0, 0] / mass_kg[0]
         constant[2] -= GRAVITY_MPS2
         self.register_buffer("constant", constant)
         self.register_buffer("eye", torch.eye(3))

@@ -5,8 +5,9 @@ from collections.abc import Callable, Sequence
 import torch
 from faultpath_quadrotor.planners import Planner, Scored
 from faultpath_quadrotor.predictors import KinematicIntegrator, PredictorInputs
+from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.rollout import rolling
-from faultpath_quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS
+from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
 from torch import Tensor
 
 
@@ -24,7 +25,7 @@ def replan(
     `clearance` gives `[S, H, K]` at positions `[3, S, H, K]`, a metre where it is not given; the
     goal `[3, S]` is the origin where it is not.
     """
-    hover = inputs.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
+    hover = hover_thrust(inputs.delivered, "trim")[:, 0]
     roll = rolling(KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS))
     search = planner.init(plan, hover)
     for iteration in range(planner.iterations):

@@ -1,13 +1,10 @@
 """WM-A and WM-U: what their shapes and their wiring must hold whatever their weights are."""
 
-from dataclasses import replace
-
 import pytest
 import torch
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
-    Calibration,
     KinematicIntegrator,
     PredictorInputs,
     UnanchoredPredictor,
@@ -47,15 +44,20 @@ def inputs(scenes=SCENES, seed=0):
         return spread * torch.randn(3, scenes, 1, generator=draw)
 
     state = State(three(2.0), three(2.0), so3.exp(three(0.3)), three(1.0))
+    calibrated = [
+        (channel, place)
+        for place in ("trim", "dynamics", "features")
+        for channel in ("mass", "thrust_scale")
+    ]
     return PredictorInputs(
-        state=state,
-        trim=Calibration(column(0.7, 1.4), column(0.7, 1.4)),
-        dynamics=Calibration(column(0.7, 1.4), column(0.7, 1.4)),
-        wind_map_mass_kg=column(0.7, 1.4),
-        wind_mps=three(5.0),
-        thrust_mass_kg=column(0.7, 1.4),
-        conditioning=Calibration(column(0.7, 1.4), column(0.7, 1.4)),
-        code=torch.randn(32, scenes, 1, generator=draw).tanh(),
+        state,
+        {read: column(0.7, 1.4) for read in calibrated}
+        | {
+            ("mass", "wind_map"): column(0.7, 1.4),
+            ("wind", "wind_map"): three(5.0),
+            ("mass", "normalise_thrust"): column(0.7, 1.4),
+            ("history_code", "latent"): torch.randn(32, scenes, 1, generator=draw).tanh(),
+        },
     )
 
 
@@ -97,24 +99,15 @@ def test_a_scene_does_not_depend_on_the_scenes_beside_it(kind):
         assert torch.equal(alone.positions, together.positions[:, scenes])
 
 
-def _moved(model, given, **changes):
+def _moved(model, given, read):
     plain = rollout(model, given, commands()).positions
-    return not torch.equal(rollout(model, replace(given, **changes), commands()).positions, plain)
+    other = PredictorInputs(given.state, given.delivered | {read: -1.1 * given[read]})
+    return not torch.equal(rollout(model, other, commands()).positions, plain)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_declared_place_matters_and_no_other(kind):
     model, given = predictor(kind), inputs()
-    other = Calibration(given.trim.mass_kg * 1.1, given.trim.thrust_scale)
-    changes = {
-        "dynamics": {"dynamics": other},
-        "features": {"conditioning": other},
-        "normalise_thrust": {"thrust_mass_kg": given.thrust_mass_kg * 1.1},
-        "latent": {"code": -given.code},
-    }
-    for place, change in changes.items():
-        assert _moved(model, given, **change) == (place in model.reads), place
-    wind = {"wind_mps": -given.wind_mps}
-    assert _moved(model, given, **wind) == ("wind_map" in model.reads)
-    mass = {"wind_map_mass_kg": given.wind_map_mass_kg * 1.1}
-    assert _moved(model, given, **mass) == ("wind_map" in model.reads)
+    for read in given.delivered:
+        matters = read[1] in model.reads and read[1] != "trim"
+        assert _moved(model, given, read) == matters, read

@@ -1,13 +1,13 @@
 """What a kernel is lent: memory of the right form, layers of the right size, and nothing else."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 
 import pytest
 import torch
 from faultpath_quadrotor import native
 from faultpath_quadrotor.native.lending import lend
+from faultpath_quadrotor.predictors import PredictorInputs
 from faultpath_quadrotor.predictors.rollout import Rollout, rolling
 from test_native_rollout import commands_of, inputs_of, predictor
 from torch import Tensor
@@ -60,6 +60,8 @@ def test_a_rollout_checks_all_that_it_is_given(name: str) -> None:
 @torch.inference_mode()
 def test_a_rollout_that_is_told_less_than_it_reads_is_refused() -> None:
     roll = rolling(predictor("wm-a-wind"))
-    for field in ("dynamics", "wind_mps", "thrust_mass_kg", "code"):
-        with pytest.raises(ValueError, match="was told none"):
-            roll(replace(inputs_of(), **{field: None}), commands_of())
+    given = inputs_of()
+    for place in ("dynamics", "wind_map", "normalise_thrust", "latent"):
+        less = {read: value for read, value in given.delivered.items() if read[1] != place}
+        with pytest.raises(ValueError, match=rf"'{place}' and was told none"):
+            roll(PredictorInputs(given.state, less), commands_of())

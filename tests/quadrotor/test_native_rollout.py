@@ -5,7 +5,6 @@ import torch
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
-    Calibration,
     KinematicIntegrator,
     Predictor,
     PredictorInputs,
@@ -51,18 +50,20 @@ def inputs_of(scenes: int = SCENES, seed: int = 1) -> PredictorInputs:
 
     state = State(draw(3), 2 * draw(3), so3.exp(draw(3)), draw(3))
 
-    def calibration() -> Calibration:
-        return Calibration(draw(low=0.6, high=1.4), draw(low=0.6, high=1.4))
-
+    calibrated = [
+        (channel, place)
+        for place in ("trim", "dynamics", "features")
+        for channel in ("mass", "thrust_scale")
+    ]
     return PredictorInputs(
-        state=state,
-        trim=calibration(),
-        dynamics=calibration(),
-        wind_map_mass_kg=draw(low=0.6, high=1.4),
-        wind_mps=5 * draw(3),
-        thrust_mass_kg=draw(low=0.6, high=1.4),
-        conditioning=calibration(),
-        code=draw(32),
+        state,
+        {read: draw(low=0.6, high=1.4) for read in calibrated}
+        | {
+            ("mass", "wind_map"): draw(low=0.6, high=1.4),
+            ("wind", "wind_map"): 5 * draw(3),
+            ("mass", "normalise_thrust"): draw(low=0.6, high=1.4),
+            ("history_code", "latent"): draw(32),
+        },
     )
 
 

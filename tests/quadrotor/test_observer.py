@@ -4,7 +4,7 @@ import pytest
 import torch
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.predictors.kinematic import LinearDrag
-from faultpath_quadrotor.reconstruction import DisturbanceObserver, Sensed
+from faultpath_quadrotor.reconstruction import DisturbanceObserver
 from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 LANES = 32
@@ -50,12 +50,12 @@ def test_it_reads_what_it_declares_and_nothing_else():
 def test_unfiltered_estimate_recombines_to_the_observed_acceleration(mass, scale):
     """a_0 + B w_raw = a_obs whatever the calibration (paper, Eq. 2)."""
     observer = DisturbanceObserver(low_pass=1.0, drag_kgps=NOMINAL_DRAG_KGPS)
-    readings = [delivered(seed, mass=mass, scale=scale) for seed in (1, 2)]
-    first, second = (Sensed.of(each) for each in readings)
-    start = observer.begin(readings[0])
-    wind = observer.wind(observer.update(start, readings[1]))
-    turn = so3.log(so3.compose(first.rotation.transpose(0, 1), second.rotation))
-    middle = so3.compose(first.rotation, so3.exp(0.5 * turn))
+    first, second = (delivered(seed, mass=mass, scale=scale) for seed in (1, 2))
+    start = observer.begin(first)
+    wind = observer.wind(observer.update(start, second))
+    before, after = (each["attitude", "nominal_model"] for each in (first, second))
+    turn = so3.log(so3.compose(before.transpose(0, 1), after))
+    middle = so3.compose(before, so3.exp(0.5 * turn))
     recombined = (
         observer.nominal(start, second) + LinearDrag(NOMINAL_DRAG_KGPS).force(middle, wind) / mass
     )

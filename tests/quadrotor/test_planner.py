@@ -7,7 +7,8 @@ from faultpath_quadrotor.planners import (
     AutoregressiveSampler,
     SamplerSettings,
 )
-from faultpath_quadrotor.predictors import Calibration, PredictorInputs
+from faultpath_quadrotor.predictors import PredictorInputs
+from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
 from planning_toys import replan
@@ -18,8 +19,11 @@ SCENES = ["s/0", "s/1", "s/2", "s/3"]
 def planner_inputs(scenes=4, mass=1.0):
     state = State.hover(torch.zeros(3, scenes, 1), torch.zeros(scenes, 1))
     column = torch.full((scenes, 1), mass)
-    calibration = Calibration(column, torch.ones_like(column))
-    return PredictorInputs(state, calibration, calibration, column, torch.zeros(3, scenes, 1))
+    delivered = {("mass", place): column for place in ("trim", "dynamics", "wind_map")}
+    delivered |= {
+        ("thrust_scale", place): torch.ones_like(column) for place in ("trim", "dynamics")
+    }
+    return PredictorInputs(state, delivered | {("wind", "wind_map"): torch.zeros(3, scenes, 1)})
 
 
 def test_noise_is_standard_and_correlated_along_the_horizon():
@@ -55,7 +59,7 @@ def test_trim_follows_the_supplied_calibration():
     """The hover centre moves with m~ and T~; nothing else of the sampler does."""
     planner = QuadrotorOptions().build_planner()
     wrong = planner_inputs(mass=1.1)
-    plan = planner.initial_plan(wrong.trim.hover_thrust(GRAVITY_MPS2)[:, 0])
+    plan = planner.initial_plan(hover_thrust(wrong.delivered, "trim")[:, 0])
     assert torch.allclose(plan[:, 0], torch.tensor(1.1 * GRAVITY_MPS2))
 
 

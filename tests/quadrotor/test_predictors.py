@@ -6,12 +6,12 @@ import pytest
 import torch
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.predictors import (
-    Calibration,
     KinematicIntegrator,
     Physics,
     PredictorInputs,
     TrueParameter,
 )
+from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.rollout import rollout
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import (
@@ -36,26 +36,25 @@ def inputs(
         state.rotation,
         state.rate,
     )
-    calibration = Calibration(mass * column, scale * column)
 
     def three(values):
         return torch.tensor(values, dtype=torch.float64).view(3, 1, 1).expand(3, scenes, 1)
 
-    return PredictorInputs(
-        state=state,
-        dynamics=calibration,
-        trim=calibration,
-        wind_map_mass_kg=mass * column,
-        wind_mps=three(wind),
-        physics=Physics(
-            three(NOMINAL_INERTIA_KGM2),
-            column,
-            NOMINAL_MOTOR_TIME_CONSTANT_S * column,
-            three(NOMINAL_DRAG_KGPS),
-            thrust * column,
-        ),
-        code=following(thrust, scenes),
+    physics = Physics(
+        three(NOMINAL_INERTIA_KGM2),
+        column,
+        NOMINAL_MOTOR_TIME_CONSTANT_S * column,
+        three(NOMINAL_DRAG_KGPS),
+        thrust * column,
     )
+    delivered = {("mass", place): mass * column for place in ("trim", "dynamics", "wind_map")}
+    delivered |= {("thrust_scale", place): scale * column for place in ("trim", "dynamics")}
+    delivered |= {
+        ("wind", "wind_map"): three(wind),
+        ("physics", "physics"): physics.reading(),
+        ("history_code", "latent"): following(thrust, scenes),
+    }
+    return PredictorInputs(state, delivered)
 
 
 def following(thrust, scenes):
@@ -80,7 +79,7 @@ PREDICTORS = [
 @pytest.mark.parametrize("predictor", PREDICTORS)
 def test_hover_thrust_of_the_calibration_holds_the_vehicle(predictor):
     given = inputs(mass=1.3, scale=0.8, thrust=1.3 * GRAVITY_MPS2 / 0.8)
-    hover = float(given.trim.hover_thrust(GRAVITY_MPS2))
+    hover = float(hover_thrust(given.delivered, "trim"))
     end = rollout(predictor, given, commands(hover)).final
     assert end.position.abs().max() < 1e-9
 
@@ -130,8 +129,9 @@ def test_rate_lag_turns_by_its_closed_form():
 
 def test_true_parameter_follows_a_thrust_step_with_the_motor_lag():
     given = inputs(thrust=0.0)
-    still_air = replace(given.physics, drag_kgps=torch.zeros_like(given.physics.drag_kgps))
-    given = replace(given, physics=still_air)
+    physics = Physics.of(given["physics", "physics"])
+    still_air = replace(physics, drag_kgps=torch.zeros_like(physics.drag_kgps)).reading()
+    given = replace(given, delivered=given.delivered | {("physics", "physics"): still_air})
     rolled = rollout(TrueParameter(), given, commands(GRAVITY_MPS2))
     # From still motors, gravity acts until the thrust is there: the loss of speed tends to
     # g times the motor time constant.
@@ -148,10 +148,11 @@ def test_a_scene_does_not_depend_on_its_neighbours(predictor):
     state = State(
         *(getattr(one.state, n).float() for n in ("position", "velocity", "rotation", "rate"))
     )
-    calibration = Calibration(torch.full((4, 1), 1.1), torch.full((4, 1), 0.9))
-    physics = Physics(*(v.float() for v in vars(one.physics).values()))
-    given = PredictorInputs(state, calibration, calibration, torch.full((4, 1), 1.1), wind, physics)
-    given = replace(given, code=one.code.float())
+    changed = {("mass", place): torch.full((4, 1), 1.1) for place in ("dynamics", "wind_map")}
+    changed |= {("thrust_scale", "dynamics"): torch.full((4, 1), 0.9), ("wind", "wind_map"): wind}
+    given = PredictorInputs(
+        state, {read: value.float() for read, value in one.delivered.items()} | changed
+    )
     noise = torch.randn(HORIZON, 4, 4, 512, generator=generator)
     noise[:, 0] += GRAVITY_MPS2
     whole = rollout(predictor, given, noise)

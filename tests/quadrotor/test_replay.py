@@ -1,7 +1,5 @@
 """A recorded window tells a model what the flight told it, and a fit sees the same, to the bit."""
 
-from dataclasses import fields
-
 import pytest
 import torch
 from faultpath_quadrotor.evidence.inputs import Subject
@@ -22,14 +20,9 @@ torch.set_num_threads(1)
 
 def parts(inputs: PredictorInputs, row: int) -> dict[str, torch.Tensor]:
     """All that a predictor is told of one vehicle, by name."""
-    found = {}
-    for field in fields(inputs):
-        value = getattr(inputs, field.name)
-        if isinstance(value, torch.Tensor):
-            found[field.name] = value[..., row, 0]
-        elif value is not None:
-            found |= {f"{field.name}.{k}": each[..., row, 0] for k, each in vars(value).items()}
-    return found
+    state = {f"state.{name}": value for name, value in vars(inputs.state).items()}
+    told = {f"{channel} at {place}": value for (channel, place), value in inputs.delivered.items()}
+    return {name: value[..., row, 0] for name, value in (state | told).items()}
 
 
 def assert_same(here: PredictorInputs, row: int, there: PredictorInputs, beside: int) -> None:

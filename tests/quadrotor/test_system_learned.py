@@ -5,7 +5,6 @@ import pytest
 import torch
 from faultpath_quadrotor.choices import STATE_NOISE_STD
 from faultpath_quadrotor.models import predictor, reconstruction
-from faultpath_quadrotor.predictors import History
 from faultpath_quadrotor.predictors.history import STEPS as HISTORY
 from faultpath_quadrotor.variants import setups
 from flights import fault, fly, quadrotor
@@ -85,13 +84,13 @@ def test_the_deployed_history_is_the_one_that_training_knows(monkeypatch):
     model = predictor("wm-a", 0)
     mass = torch.from_numpy(taps.delivered("mass", "predictor.history")[now]).float()
     code = model.encode(
-        History(
-            velocity_mps=past("velocity", 0),
-            rotation=past("attitude", 0),
-            rate_radps=past("body_rate", 0),
-            commands=past("action", 1),
-            mass_kg=mass.expand(32),
-        )
+        {
+            ("velocity", "history"): past("velocity", 0),
+            ("attitude", "history"): past("attitude", 0),
+            ("body_rate", "history"): past("body_rate", 0),
+            ("action", "history"): past("action", 1),
+            ("mass", "history"): mass.expand(32),
+        }
     )
     deployed = taps.delivered("history_code", "predictor.latent")[now, 0]
     assert np.allclose(code[:, 0].numpy(), deployed, atol=1e-6)

@@ -1,8 +1,9 @@
 """Batch axes: taps have scenes first, arithmetic has lanes last, planners take chunks of scenes."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import TypeAlias
 
 import torch
 from torch import Tensor
@@ -10,6 +11,12 @@ from torch import Tensor
 from faultpath.loop import Batch
 from faultpath_quadrotor.device import host_readable, send
 from faultpath_quadrotor.state import padded_lanes
+
+Read: TypeAlias = tuple[str, str]
+"""A channel and the place in the module where it enters: one tap."""
+
+Delivered: TypeAlias = Mapping[Read, Tensor]
+"""What each tap delivered at this step, `[..., *batch]`: one entry for each read."""
 
 CHUNK = 13
 """Most scenes planned at once on the CPU: they share the cost of each kernel's start, and their

@@ -32,7 +32,6 @@ from faultpath_quadrotor.reconstruction import (
     Delivered,
     DisturbanceObserver,
     ObserverMemory,
-    Sensed,
 )
 from faultpath_quadrotor.training.parts import Part, make_missing
 from faultpath_quadrotor.training.provenance import code_of
@@ -128,7 +127,7 @@ class _NominalAcceleration(DisturbanceObserver):
 
     @override
     def update(self, memory: ObserverMemory, delivered: Delivered) -> ObserverMemory:
-        explained = self.nominal(memory, Sensed.of(delivered))
+        explained = self.nominal(memory, delivered)
         return replace(super().update(memory, delivered), wind_mps=explained)
 
 

@@ -2,8 +2,6 @@
 
 from faultpath_quadrotor.predictors.anchored import AnchoredPredictor
 from faultpath_quadrotor.predictors.base import (
-    Calibration,
-    History,
     Memory,
     Physics,
     Predictor,

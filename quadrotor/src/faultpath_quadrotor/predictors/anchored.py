@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath_quadrotor.predictors.base import History, Memory, Predictor, PredictorInputs
+from faultpath_quadrotor.lanes import Delivered
+from faultpath_quadrotor.predictors.base import Memory, Predictor, PredictorInputs
 from faultpath_quadrotor.predictors.kinematic import Constants, KinematicIntegrator, Residual
 from faultpath_quadrotor.predictors.network import FoldedNetwork, LatentNetwork
 from faultpath_quadrotor.state import State
@@ -52,15 +53,16 @@ class AnchoredPredictor(Predictor):
         return LatentNetwork(HIDDEN, outputs=6)
 
     @override
-    def encode(self, history: History) -> Tensor:
+    def encode(self, history: Delivered) -> Tensor:
         return self.network.encode(history)
 
     def begin(self, inputs: PredictorInputs) -> Memory:
         """Start every candidate with the history code."""
-        assert inputs.code is not None
-        assert inputs.thrust_mass_kg is not None
         return _Memory(
-            self.network.fold(), inputs.code, self.kinematics.begin(inputs), inputs.thrust_mass_kg
+            self.network.fold(),
+            inputs["history_code", "latent"],
+            self.kinematics.begin(inputs),
+            inputs["mass", "normalise_thrust"],
         )
 
     def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:

@@ -1,30 +1,21 @@
 """What the planner, training and probes need of a predictor."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Sequence
+from dataclasses import dataclass
 from os import PathLike
-from typing import Any, TypeVar
+from typing import Any
 
 import torch
 from torch import Tensor
 
+from faultpath.core.errors import SystemMistake
+from faultpath_quadrotor.lanes import Delivered, Read
 from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import GRAVITY_MPS2
 
 Memory = Any
 """What a predictor carries from step to step; opaque to everybody else."""
-
-
-@dataclass(frozen=True)
-class Calibration:
-    """Supplied mass and thrust scale, each `[*batch]`: the values that a tap delivered."""
-
-    mass_kg: Tensor
-    thrust_scale: Tensor
-
-    def hover_thrust(self, gravity: float) -> Tensor:
-        """Collective thrust command that holds the vehicle if the calibration is right, N."""
-        return self.mass_kg * gravity / self.thrust_scale
 
 
 @dataclass(frozen=True)
@@ -53,67 +44,38 @@ class Physics:
 
 
 @dataclass(frozen=True)
-class History:
-    """The last intervals as the predictor's taps delivered them, oldest first, batch `[*batch]`."""
-
-    velocity_mps: Tensor
-    """World frame, at the start of each interval, `[3, T, *batch]`."""
-    rotation: Tensor
-    """Body to world, `[3, 3, T, *batch]`."""
-    rate_radps: Tensor
-    """Body frame, `[3, T, *batch]`."""
-    commands: Tensor
-    """Executed over each interval, `[4, T, *batch]`, N and rad/s."""
-    mass_kg: Tensor
-    """Mass that normalises the thrust, `[*batch]`."""
-    conditioning: Calibration | None = None
-    """Calibration that is appended to the features, where a predictor has it there."""
-
-
-@dataclass(frozen=True)
 class PredictorInputs:
-    """Everything a predictor is told at a replan, as its taps delivered it; batch `[S, 1]`.
-
-    Every place where a channel enters is a tap of its own, so each has its own field. A field that
-    a predictor does not read (`Predictor.reads`) is `None`.
-    """
+    """Everything a predictor reads at a replan, as its taps delivered it; batch `[S, 1]`."""
 
     state: State
-    trim: Calibration
-    """Where the planner's candidates are centred."""
-    dynamics: Calibration | None = None
-    wind_map_mass_kg: Tensor | None = None
-    wind_mps: Tensor | None = None
-    physics: Physics | None = None
-    thrust_mass_kg: Tensor | None = None
-    """Mass that normalises the thrust of the candidates."""
-    conditioning: Calibration | None = None
-    """Calibration that is appended to the features."""
-    code: Tensor | None = None
-    """History code, `[32, S, 1]`."""
+    """At `initial_state`; its attitudes are rotations."""
+    delivered: Delivered
+    """By channel and place, of the other places at which the predictor reads now."""
+
+    def __getitem__(self, read: Read) -> Tensor:
+        """Return what a tap delivered; `SystemMistake` where the predictor does not read."""
+        if read not in self.delivered:
+            channel, place = read
+            raise SystemMistake(
+                f"the predictor asks for {channel} at {place!r} and does not read there: add "
+                f"{place!r} to its reads"
+            )
+        return self.delivered[read]
 
     def take(self, scenes: Sequence[int] | Tensor) -> "PredictorInputs":
         """Return the inputs of some scenes, in the order given."""
         index = torch.as_tensor(scenes)
-
-        def pick(value: Tensor) -> Tensor:
-            return value.index_select(-2, index)
-
-        return _each(self, pick)
-
-
-_Parts = TypeVar("_Parts", State, Calibration, Physics, PredictorInputs)
+        state = self.state
+        parts = (state.position, state.velocity, state.rotation, state.rate)
+        return PredictorInputs(
+            State(*(part.index_select(-2, index) for part in parts)),
+            {read: value.index_select(-2, index) for read, value in self.delivered.items()},
+        )
 
 
-def _each(parts: _Parts, change: Callable[[Tensor], Tensor]) -> _Parts:
-    """Change every tensor of nested parts; what is `None` stays so."""
-
-    def turn(value: Any) -> Any:
-        if value is None:
-            return None
-        return change(value) if isinstance(value, Tensor) else _each(value, change)
-
-    return type(parts)(**{f.name: turn(getattr(parts, f.name)) for f in fields(parts)})
+def hover_thrust(delivered: Delivered, place: str) -> Tensor:
+    """Return the collective thrust that holds the vehicle if a place's calibration is right, N."""
+    return delivered["mass", place] * GRAVITY_MPS2 / delivered["thrust_scale", place]
 
 
 class Predictor(ABC):
@@ -132,8 +94,14 @@ class Predictor(ABC):
         """Return the names `module.place` under which the interface lists its places."""
         return frozenset(f"{module}.{place}" for place in self.reads)
 
-    def encode(self, history: History) -> Tensor | None:
-        """Return the history code `[32, *batch]`, once a replan; `None` without a memory."""
+    def encode(self, history: Delivered) -> Tensor | None:
+        """Return the history code `[32, *batch]`, once a replan; `None` without a memory.
+
+        `history` holds the last intervals, oldest first, as the taps of the places `history` and
+        `features` delivered them: motion in the world frame at the start of each, velocity
+        `[3, T, *batch]` in m/s, attitude `[3, 3, T, *batch]`, body rate `[3, T, *batch]` in rad/s;
+        the action executed over each, `[4, T, *batch]` in N and rad/s; calibration `[*batch]`.
+        """
         del history
         return None
 

@@ -15,6 +15,7 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor.device import host_readable
+from faultpath_quadrotor.lanes import Delivered, Read
 from faultpath_quadrotor.native.lending import (
     BLOCK,
     Block,
@@ -66,23 +67,23 @@ class _Kind(IntEnum):
 _SIZES = {_Kind.ANCHORED: (19, 6), _Kind.UNANCHORED: (21, OUTPUTS)}
 """Features that a network sees beside its latent, and its outputs."""
 
-_ROWS: Mapping[str, tuple[str, tuple[int, ...]]] = MappingProxyType(
+_ROWS: Mapping[Read, tuple[int, ...]] = MappingProxyType(
     {
-        "position": ("initial_state", (3,)),
-        "velocity": ("initial_state", (3,)),
-        "rotation": ("initial_state", (3, 3)),
-        "rate": ("initial_state", (3,)),
-        "mass": ("dynamics", ()),
-        "thrust_scale": ("dynamics", ()),
-        "wind": ("wind_map", (3,)),
-        "wind_mass": ("wind_map", ()),
-        "thrust_mass": ("normalise_thrust", ()),
-        "shown_mass": ("features", ()),
-        "shown_scale": ("features", ()),
-        "code": ("latent", (LATENT,)),
+        ("position", "initial_state"): (3,),
+        ("velocity", "initial_state"): (3,),
+        ("attitude", "initial_state"): (3, 3),
+        ("body_rate", "initial_state"): (3,),
+        ("mass", "dynamics"): (),
+        ("thrust_scale", "dynamics"): (),
+        ("mass", "wind_map"): (),
+        ("wind", "wind_map"): (3,),
+        ("mass", "normalise_thrust"): (),
+        ("mass", "features"): (),
+        ("thrust_scale", "features"): (),
+        ("history_code", "latent"): (LATENT,),
     }
 )
-"""The place and the rows of each input, in the order of `Inputs` of `rollout.cpp`."""
+"""The rows of each reading, in the order of `Inputs` of `rollout.cpp`."""
 
 
 class Rolled(NamedTuple):
@@ -117,7 +118,7 @@ class _Model(Block):
 class _Inputs(Block):
     """`Inputs` of `rollout.cpp`."""
 
-    _fields_ = tuple((name, ctypes.c_void_p) for name in _ROWS)
+    _fields_ = tuple((f"{channel}_at_{place}", ctypes.c_void_p) for channel, place in _ROWS)
 
 
 def uncovered(predictor: Predictor) -> str:
@@ -143,7 +144,7 @@ class HorizonLoop:
         if why := uncovered(predictor):
             raise ValueError(f"no compiled rollout of {type(predictor).__name__}: {why}")
         self._kernels = kernels
-        self._reads = frozenset(n for n, (place, _) in _ROWS.items() if place in predictor.reads)
+        self._reads = predictor.reads
         step: dict[str, Any] = {"kind": _Kind.KINEMATIC, "gravity": GRAVITY_MPS2}
         integrator = predictor if isinstance(predictor, KinematicIntegrator) else None
         if isinstance(predictor, UnanchoredPredictor):
@@ -176,13 +177,9 @@ class HorizonLoop:
         positions = commands.new_empty(3, scenes, horizon, candidates)
         velocities = torch.empty_like(positions)
         ends = commands.new_empty(12, scenes, candidates)
-        state, dynamics, shown = inputs.state, inputs.dynamics, inputs.conditioning
-        given = (
-            *(state.position, state.velocity, state.rotation, state.rate),
-            *(dynamics and dynamics.mass_kg, dynamics and dynamics.thrust_scale),
-            *(inputs.wind_mps, inputs.wind_map_mass_kg, inputs.thrust_mass_kg),
-            *(shown and shown.mass_kg, shown and shown.thrust_scale, inputs.code),
-        )
+        state = inputs.state
+        motion = (state.position, state.velocity, state.rotation, state.rate)
+        given = {**dict(zip(_ROWS, motion, strict=False)), **inputs.delivered}
         self._kernels.call(
             "faultpath_roll",
             *(self._model, _Inputs(*self._lent(given, scenes))),
@@ -194,16 +191,18 @@ class HorizonLoop:
         )
         return Rolled(positions, velocities, ends[:9].unflatten(0, (3, 3)), ends[9:])
 
-    def _lent(self, given: Iterable[Tensor | None], scenes: int) -> Iterable[Lent | None]:
-        for (name, (_, rows)), value in zip(_ROWS.items(), given, strict=True):
-            if name not in self._reads:
+    def _lent(self, given: Delivered, scenes: int) -> Iterable[Lent | None]:
+        for read, rows in _ROWS.items():
+            channel, place = read
+            if place not in self._reads:
                 yield None
-            elif value is None:
+            elif read not in given:
                 raise ValueError(
-                    f"compiled rollout: the predictor reads '{name}' and was told none"
+                    f"compiled rollout: the predictor reads {channel} at {place!r} and was told "
+                    "none"
                 )
             else:
-                yield lend(name, value.contiguous(), *rows, scenes, 1)
+                yield lend(channel, given[read].contiguous(), *rows, scenes, 1)
 
 
 def _integrator(integrator: KinematicIntegrator) -> str:

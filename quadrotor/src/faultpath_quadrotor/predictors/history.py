@@ -8,8 +8,8 @@ from torch import Tensor
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs
 from faultpath_quadrotor.lanes import lanes_of, scenes_first
 from faultpath_quadrotor.predictors import Predictor
-from faultpath_quadrotor.predictors.places import Take, calibration, history, ports, taking
-from faultpath_quadrotor.vehicle import GRAVITY_MPS2
+from faultpath_quadrotor.predictors.base import hover_thrust
+from faultpath_quadrotor.predictors.places import Take, delivered, history, ports, taking
 
 STEPS = 12  # paper, Section IV-A
 
@@ -75,7 +75,7 @@ def _recall(past: _Past, take: Take) -> _Past:
     command = take("action", "history")
     if past.latest is None:
         hover = torch.zeros_like(command)
-        hover[0] = calibration(take, "trim").hover_thrust(GRAVITY_MPS2)
+        hover[0] = hover_thrust(delivered({"trim"}, take), "trim")
         intervals = ((motion, hover),) * STEPS
     else:
         intervals = (*past.intervals[1:], (past.latest, command))

@@ -106,16 +106,14 @@ class KinematicIntegrator(Predictor):
 
     def begin(self, inputs: PredictorInputs) -> Constants:
         """Return the constants of the horizon; the memory does not change after."""
-        assert inputs.dynamics is not None
-        gain = inputs.dynamics.thrust_scale / inputs.dynamics.mass_kg
+        gain = inputs["thrust_scale", "dynamics"] / inputs["mass", "dynamics"]
         if "wind_map" not in self.reads:
             return Constants(gain, None, None)
-        assert inputs.wind_map_mass_kg is not None
-        assert inputs.wind_mps is not None
+        mass_kg = inputs["mass", "wind_map"]
         return Constants(
             thrust_gain=gain,
-            wind_acceleration=inputs.wind_mps / inputs.wind_map_mass_kg,
-            inverse_mass=1 / inputs.wind_map_mass_kg,
+            wind_acceleration=inputs["wind", "wind_map"] / mass_kg,
+            inverse_mass=1 / mass_kg,
         )
 
     def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:

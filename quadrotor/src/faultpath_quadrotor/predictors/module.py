@@ -5,9 +5,9 @@ import torch
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Query
 from faultpath_quadrotor.lanes import lanes_of, scenes_first
 from faultpath_quadrotor.predictors import Predictor
+from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.places import ports, predictor_inputs, taking
 from faultpath_quadrotor.predictors.rollout import Candidates, Predicted, rolling
-from faultpath_quadrotor.vehicle import GRAVITY_MPS2
 
 
 class Prediction(Module):
@@ -32,7 +32,7 @@ class Prediction(Module):
         """Take in what the predictor is told; its answers follow from that."""
         lanes, count, roll = memory
         known = predictor_inputs(self._predictor.reads, taking(inputs, lanes))
-        hover = known.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
+        hover = hover_thrust(known.delivered, "trim")[:, 0]
 
         def predict(asked: Candidates) -> Predicted:
             rollouts = (

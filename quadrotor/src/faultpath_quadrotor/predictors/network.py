@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
+from faultpath_quadrotor.lanes import Delivered
 from faultpath_quadrotor.native.lending import covered, tell_portable
 from faultpath_quadrotor.native.library import kernels_on
-from faultpath_quadrotor.predictors.base import Calibration, History
 from faultpath_quadrotor.predictors.recurrent import fits, recur
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
@@ -127,10 +127,10 @@ class LatentNetwork(nn.Module):
         """Return `features` `[*, 19 + conditioning, N]` in units of the training pool's spread."""
         return (features - self.feature_mean) / self.feature_std
 
-    def encode(self, history: History) -> Tensor:
+    def encode(self, history: Delivered) -> Tensor:
         """Return the history code `[32, *batch]`."""
         latent = self.encoder.last(self.standardise(history_features(history)))
-        return latent.unflatten(1, history.mass_kg.shape)
+        return latent.unflatten(1, history["mass", "history"].shape)
 
     def fold(self) -> "FoldedNetwork":
         """Return the network as the horizon loop runs it, with the weights of this moment."""
@@ -180,7 +180,7 @@ class FoldedNetwork:
         state: State,
         command: Tensor,
         mass_kg: Tensor,
-        conditioning: Calibration | None = None,
+        conditioning: tuple[Tensor, Tensor] | None = None,
     ) -> tuple[Tensor, Tensor]:
         """Advance a latent `[32, S, 1 or K]` under `command` `[4, S, K]`; return it and outputs."""
         batch = command.shape[1:]
@@ -220,7 +220,7 @@ def features(
     rate: Tensor,
     command: Tensor,
     mass_kg: Tensor,
-    conditioning: Calibration | None,
+    conditioning: tuple[Tensor, Tensor] | None,
 ) -> Tensor:
     """Return raw features `[19 or 21, *batch]`; `mass_kg` is the supplied mass.
 
@@ -235,19 +235,19 @@ def features(
         command[1:],
     ]
     if conditioning is not None:
-        values = (conditioning.mass_kg, conditioning.thrust_scale)
-        rows += [value.expand(1, *batch) for value in values]
+        rows += [value.expand(1, *batch) for value in conditioning]
     return torch.cat(rows)
 
 
-def history_features(history: History) -> Tensor:
+def history_features(history: Delivered) -> Tensor:
     """Return raw features of a history, `[T, 19 or 21, N]`, its batch flattened."""
+    mass, scale = ("mass", "features"), ("thrust_scale", "features")
     stacked = features(
-        history.velocity_mps,
-        history.rotation,
-        history.rate_radps,
-        history.commands,
-        history.mass_kg,
-        history.conditioning,
+        history["velocity", "history"],
+        history["attitude", "history"],
+        history["body_rate", "history"],
+        history["action", "history"],
+        history["mass", "history"],
+        (history[mass], history[scale]) if mass in history else None,
     )
     return stacked.movedim(1, 0).flatten(2)

@@ -1,4 +1,4 @@
-"""Which channel enters a predictor at which place, and where it goes there: the one such map.
+"""Which channel enters a predictor at which place: the one such map.
 
 Flights, training and probes all build what a predictor is told here; they differ only in where a
 delivered value comes from.
@@ -13,8 +13,8 @@ from faultpath.core.errors import SystemMistake
 from faultpath.loop import Inputs, Port
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.device import host_readable
-from faultpath_quadrotor.lanes import lanes_last
-from faultpath_quadrotor.predictors.base import Calibration, History, Physics, PredictorInputs
+from faultpath_quadrotor.lanes import Delivered, lanes_last
+from faultpath_quadrotor.predictors.base import PredictorInputs
 from faultpath_quadrotor.state import State
 
 STATE = ("position", "velocity", "attitude", "body_rate")
@@ -23,10 +23,10 @@ PLACES: dict[str, tuple[str, ...]] = {
     "initial_state": STATE,
     "trim": ("mass", "thrust_scale"),
     "dynamics": ("mass", "thrust_scale"),
-    "features": ("mass", "thrust_scale"),
-    "normalise_thrust": ("mass",),
     "wind_map": ("mass", "wind"),
     "physics": ("physics",),
+    "normalise_thrust": ("mass",),
+    "features": ("mass", "thrust_scale"),
     "latent": ("history_code",),
     "history": ("velocity", "attitude", "body_rate", "action", "mass"),
 }
@@ -70,51 +70,33 @@ def check_places(name: str, places: Collection[str]) -> None:
         )
 
 
-def calibration(take: Take, place: str) -> Calibration:
-    """Return the mass and the thrust scale of a place."""
-    return Calibration(take("mass", place), take("thrust_scale", place))
-
-
 def predictor_inputs(reads: Collection[str], take: Take) -> PredictorInputs:
     """Return what a predictor that reads at these places is told, batch `[*lanes, 1]`.
 
     `take` gives `[..., *lanes]`; of the places in `reads`, only that of the history is not asked.
     """
-
-    def column(channel: str, place: str) -> Tensor:
-        return take(channel, place)[..., None]
-
-    def calibrated(place: str) -> Calibration | None:
-        return calibration(column, place) if place in reads else None
-
-    return PredictorInputs(
-        state=_start(State(*(take(name, "initial_state") for name in STATE))),
-        trim=calibration(column, "trim"),
-        dynamics=calibrated("dynamics"),
-        wind_map_mass_kg=column("mass", "wind_map") if "wind_map" in reads else None,
-        wind_mps=column("wind", "wind_map") if "wind_map" in reads else None,
-        physics=Physics.of(column("physics", "physics")) if "physics" in reads else None,
-        thrust_mass_kg=(
-            column("mass", "normalise_thrust") if "normalise_thrust" in reads else None
-        ),
-        conditioning=calibrated("features"),
-        code=column("history_code", "latent") if "latent" in reads else None,
-    )
+    state = _start(State(*(take(channel, "initial_state") for channel in STATE)))
+    now = [place for place in reads if place not in ("initial_state", "history")]
+    known = {read: value[..., None] for read, value in delivered(now, take).items()}
+    return PredictorInputs(state, known)
 
 
-def history(reads: Collection[str], take: Take) -> History:
+def history(reads: Collection[str], take: Take) -> Delivered:
     """Return the history that a predictor is told, batch `[*lanes]`.
 
     `take` gives motion and commands with their intervals before the lanes, `[..., T, *lanes]`.
     """
-    return History(
-        velocity_mps=take("velocity", "history"),
-        rotation=take("attitude", "history"),
-        rate_radps=take("body_rate", "history"),
-        commands=take("action", "history"),
-        mass_kg=take("mass", "history"),
-        conditioning=calibration(take, "features") if "features" in reads else None,
-    )
+    return delivered({"history", "features"}.intersection(reads), take)
+
+
+def delivered(places: Collection[str], take: Take) -> Delivered:
+    """Return what the taps of some places delivered."""
+    return {
+        (channel, place): take(channel, place)
+        for place, channels in PLACES.items()
+        if place in places
+        for channel in channels
+    }
 
 
 def _start(state: State) -> State:

@@ -7,13 +7,8 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.predictors.base import (
-    History,
-    Memory,
-    Physics,
-    Predictor,
-    PredictorInputs,
-)
+from faultpath_quadrotor.lanes import Delivered
+from faultpath_quadrotor.predictors.base import Memory, Physics, Predictor, PredictorInputs
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, RATE_GAIN_PER_S
 
@@ -57,31 +52,26 @@ class TrueParameter(Predictor):
         self._h = dt_s / SUBSTEPS
 
     @override
-    def encode(self, history: History) -> Tensor:
+    def encode(self, history: Delivered) -> Tensor:
         """Return the last body rates and commands, `[32, *batch]`: what the replay starts from.
 
         The motors' parameters are read elsewhere, so the replay itself is in `begin`.
         """
-        past = torch.cat((history.rate_radps, history.commands))[:, -FOLLOWED:]
+        motion = (history["body_rate", "history"], history["action", "history"])
+        past = torch.cat(motion)[:, -FOLLOWED:]
         code = past.flatten(0, 1)
         return torch.cat((code, code.new_zeros(CODE - len(code), *code.shape[1:])))
 
     def begin(self, inputs: PredictorInputs) -> Memory:
-        """Return constants, and motors as they are now; `ValueError` without true parameters."""
-        physics = inputs.physics
-        if physics is None:
-            raise ValueError("the true-parameter predictor was given no physical parameters")
-        assert inputs.dynamics is not None
-        assert inputs.wind_map_mass_kg is not None
-        assert inputs.wind_mps is not None
-        inverse_mass = 1 / inputs.wind_map_mass_kg
+        """Return constants, and motors as they are now."""
+        physics = Physics.of(inputs["physics", "physics"])
         lag = physics.motor_time_constant_s / self._h
         keep = torch.exp(-1 / lag)
         start = _Memory(
             physics=physics,
-            thrust_gain=inputs.dynamics.thrust_scale / inputs.dynamics.mass_kg,
-            inverse_mass=inverse_mass,
-            wind=inputs.wind_mps,
+            thrust_gain=inputs["thrust_scale", "dynamics"] / inputs["mass", "dynamics"],
+            inverse_mass=1 / inputs["mass", "wind_map"],
+            wind=inputs["wind", "wind_map"],
             stiffness=torch.stack(
                 [
                     inertia * k
@@ -93,8 +83,7 @@ class TrueParameter(Predictor):
             thrust=physics.collective_thrust_n,
             torque=torch.zeros_like(inputs.state.rate),
         )
-        assert inputs.code is not None
-        return self._followed(start, inputs.code)
+        return self._followed(start, inputs["history_code", "latent"])
 
     def _followed(self, start: _Memory, code: Tensor) -> _Memory:
         """Return the memory with motors that have followed the last commands.

@@ -7,13 +7,8 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.predictors.base import (
-    Calibration,
-    History,
-    Memory,
-    Predictor,
-    PredictorInputs,
-)
+from faultpath_quadrotor.lanes import Delivered
+from faultpath_quadrotor.predictors.base import Memory, Predictor, PredictorInputs
 from faultpath_quadrotor.predictors.network import (
     FoldedNetwork,
     LatentNetwork,
@@ -39,7 +34,7 @@ class _Memory:
     network: FoldedNetwork
     latent: Tensor
     mass_kg: Tensor
-    conditioning: Calibration
+    conditioning: tuple[Tensor, Tensor]
 
 
 class UnanchoredPredictor(Predictor):
@@ -63,15 +58,17 @@ class UnanchoredPredictor(Predictor):
         return UnanchoredNetwork()
 
     @override
-    def encode(self, history: History) -> Tensor:
+    def encode(self, history: Delivered) -> Tensor:
         return self.network.encode(history)
 
     def begin(self, inputs: PredictorInputs) -> Memory:
         """Start every candidate with the history code."""
-        assert inputs.code is not None
-        assert inputs.thrust_mass_kg is not None
-        assert inputs.conditioning is not None
-        return _Memory(self.network.fold(), inputs.code, inputs.thrust_mass_kg, inputs.conditioning)
+        return _Memory(
+            self.network.fold(),
+            inputs["history_code", "latent"],
+            inputs["mass", "normalise_thrust"],
+            (inputs["mass", "features"], inputs["thrust_scale", "features"]),
+        )
 
     def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
         """Advance one interval; see `Predictor.step`."""

@@ -1,13 +1,10 @@
 """Modules that recover the wind from what the vehicle can measure."""
 
-from faultpath_quadrotor.reconstruction.base import Delivered, Memory, Read, Reconstruction
+from faultpath_quadrotor.lanes import Delivered, Read
+from faultpath_quadrotor.reconstruction.base import Memory, Reconstruction
 from faultpath_quadrotor.reconstruction.network import (
     RecurrentMemory,
     RecurrentReconstruction,
     WindNetwork,
 )
-from faultpath_quadrotor.reconstruction.observer import (
-    DisturbanceObserver,
-    ObserverMemory,
-    Sensed,
-)
+from faultpath_quadrotor.reconstruction.observer import DisturbanceObserver, ObserverMemory

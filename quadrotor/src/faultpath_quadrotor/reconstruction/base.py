@@ -1,20 +1,16 @@
 """What recovers a channel that no sensor supplies."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from os import PathLike
 from typing import Any, TypeAlias
 
 from torch import Tensor
 
+from faultpath_quadrotor.lanes import Delivered, Read
+
 Memory: TypeAlias = Any
 """What a reconstruction carries from step to step; opaque to everybody else."""
-
-Read: TypeAlias = tuple[str, str]
-"""A channel and the place in the module where it enters: one tap."""
-
-Delivered: TypeAlias = Mapping[Read, Tensor]
-"""What each tap delivered at this step, `[..., *batch]`: one entry for each of `reads`."""
 
 
 class Reconstruction(ABC):
@@ -22,7 +18,7 @@ class Reconstruction(ABC):
 
     `reads` is all that it may know. Whoever calls it takes exactly these from the taps, so a
     variant's consumers follow from it, and a read that is not declared has no entry to find. The
-    same channel at two places is two reads, for a fault may strike one of them alone.
+    same channel at two places is two reads, for a fault may reach one of them alone.
 
     The channel `action` holds the command executed over the interval that has just ended, N and
     rad/s. At `begin` no interval has ended, and its value means nothing.

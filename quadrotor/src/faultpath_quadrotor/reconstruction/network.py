@@ -11,8 +11,9 @@ from torch import Tensor, nn
 from torch.nn import functional
 from typing_extensions import override
 
+from faultpath_quadrotor.lanes import Delivered, Read
 from faultpath_quadrotor.predictors.network import Affine, GatedCell, draw_weights
-from faultpath_quadrotor.reconstruction.base import Delivered, Memory, Read, Reconstruction
+from faultpath_quadrotor.reconstruction.base import Memory, Reconstruction
 
 INTERVALS = 12  # paper, appendix: completed 20 Hz intervals
 STATE = 18  # position, velocity, rotation matrix, body rate (paper, Section IV-A)

@@ -9,9 +9,10 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.predictors import Calibration
+from faultpath_quadrotor.lanes import Delivered, Read
+from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.kinematic import LinearDrag
-from faultpath_quadrotor.reconstruction.base import Delivered, Memory, Read, Reconstruction
+from faultpath_quadrotor.reconstruction.base import Memory, Reconstruction
 from faultpath_quadrotor.vehicle import (
     CONTROL_DT_S,
     GRAVITY_MPS2,
@@ -22,42 +23,13 @@ LOW_PASS = 0.5  # paper, appendix: fixed before held-out evaluation
 
 
 @dataclass(frozen=True)
-class Sensed:
-    """What the observer's taps delivered at this step, batch `[*batch]`."""
-
-    velocity_mps: Tensor
-    """World frame, `[3, *batch]`."""
-    rotation: Tensor
-    """Body to world, `[3, 3, *batch]`."""
-    executed: Tensor
-    """Command executed over the interval that has just ended, `[4, *batch]`."""
-    nominal: Calibration
-    """Calibration of the nominal dynamics."""
-    wind_map_mass_kg: Tensor
-    """Mass that the wind map is inverted with, `[*batch]`."""
-
-    @classmethod
-    def of(cls, delivered: Delivered) -> "Sensed":
-        """Name what was delivered."""
-        return cls(
-            velocity_mps=delivered["velocity", "velocity_difference"],
-            rotation=delivered["attitude", "nominal_model"],
-            executed=delivered["action", "nominal_model"],
-            nominal=Calibration(
-                delivered["mass", "nominal_model"], delivered["thrust_scale", "nominal_model"]
-            ),
-            wind_map_mass_kg=delivered["mass", "wind_map"],
-        )
-
-
-@dataclass(frozen=True)
 class ObserverMemory:
     """The estimate, and what the next difference needs."""
 
     wind_mps: Tensor
     thrust_n: Tensor
     """Thrust that the motors are believed to hold at this moment, N."""
-    before: Sensed
+    before: Delivered
 
 
 class DisturbanceObserver(Reconstruction):
@@ -96,48 +68,53 @@ class DisturbanceObserver(Reconstruction):
 
     def begin(self, delivered: Delivered) -> Memory:
         """Start at zero wind, with the motors believed to hover."""
-        first = Sensed.of(delivered)
         return ObserverMemory(
-            wind_mps=torch.zeros_like(first.velocity_mps),
-            thrust_n=first.nominal.hover_thrust(GRAVITY_MPS2),
-            before=first,
+            wind_mps=torch.zeros_like(delivered["velocity", "velocity_difference"]),
+            thrust_n=hover_thrust(delivered, "nominal_model"),
+            before=delivered,
         )
 
     @override
     def update(self, memory: Memory, delivered: Delivered) -> Memory:
         now: ObserverMemory = memory
-        sensed = Sensed.of(delivered)
-        middle = _halfway(now.before.rotation, sensed.rotation)
-        residual = self.observed(now, sensed) - self.nominal(now, sensed)
-        raw = self._air.inverse(middle, residual * sensed.wind_map_mass_kg)
-        command = sensed.executed[0]
+        middle = _halfway(now, delivered)
+        residual = self.observed(now, delivered) - self.nominal(now, delivered)
+        raw = self._air.inverse(middle, residual * delivered["mass", "wind_map"])
+        command = delivered["action", "nominal_model"][0]
         return ObserverMemory(
             wind_mps=torch.lerp(now.wind_mps, raw, self._alpha),
             thrust_n=command + (now.thrust_n - command) * self._keep,
-            before=sensed,
+            before=delivered,
         )
 
     @override
     def wind(self, memory: Memory) -> Tensor:
         return memory.wind_mps
 
-    def observed(self, memory: ObserverMemory, sensed: Sensed) -> Tensor:
+    def observed(self, memory: ObserverMemory, delivered: Delivered) -> Tensor:
         """Mean acceleration over the interval, `[3, *batch]`, m/s^2."""
-        return (sensed.velocity_mps - memory.before.velocity_mps) / self._dt
+        read = ("velocity", "velocity_difference")
+        return (delivered[read] - memory.before[read]) / self._dt
 
-    def nominal(self, memory: ObserverMemory, sensed: Sensed) -> Tensor:
+    def nominal(self, memory: ObserverMemory, delivered: Delivered) -> Tensor:
         """Acceleration a_0 that thrust, gravity and drag explain, `[3, *batch]`, m/s^2."""
-        command = sensed.executed[0]
+        command = delivered["action", "nominal_model"][0]
         thrust = command + (memory.thrust_n - command) * self._mean
-        middle = _halfway(memory.before.rotation, sensed.rotation)
-        calibration = sensed.nominal
-        acceleration = middle[:, 2] * (calibration.thrust_scale * thrust / calibration.mass_kg)
-        velocity = 0.5 * (memory.before.velocity_mps + sensed.velocity_mps)
-        acceleration += self._air.force(middle, -velocity) / calibration.mass_kg
+        mass_kg, thrust_scale = (
+            delivered[channel, "nominal_model"] for channel in ("mass", "thrust_scale")
+        )
+        middle = _halfway(memory, delivered)
+        acceleration = middle[:, 2] * (thrust_scale * thrust / mass_kg)
+        read = ("velocity", "velocity_difference")
+        velocity = 0.5 * (memory.before[read] + delivered[read])
+        acceleration += self._air.force(middle, -velocity) / mass_kg
         acceleration[2] -= GRAVITY_MPS2
         return acceleration
 
 
-def _halfway(before: Tensor, after: Tensor) -> Tensor:
+def _halfway(memory: ObserverMemory, delivered: Delivered) -> Tensor:
+    """Return the attitude in the middle of the interval."""
+    read = ("attitude", "nominal_model")
+    before, after = memory.before[read], delivered[read]
     turn = so3.log(so3.compose(before.transpose(0, 1), after))
     return so3.compose(before, so3.exp(0.5 * turn))

@@ -17,7 +17,6 @@ from faultpath_quadrotor.models import PREDICTORS
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
-    Calibration,
     LatentNetwork,
     Predictor,
     UnanchoredNetwork,
@@ -212,7 +211,7 @@ def _equal_mix(pools: list[Windows]) -> tuple[Windows, Windows]:
 def _measure(network: LatentNetwork, windows: Windows) -> None:
     """Store the training windows' statistics, under true calibration, in the network."""
     now = windows.state(HISTORY)
-    known = Calibration(windows.mass_kg, windows.thrust_scale) if network.conditioned else None
+    known = (windows.mass_kg, windows.thrust_scale) if network.conditioned else None
     raw = features(
         now.velocity, now.rotation, now.rate, windows.command[:, HISTORY], windows.mass_kg, known
     )

@@ -35,10 +35,10 @@ struct Predictor {
 // What a predictor is told, each `[rows, S]`; null where it does not read it.
 struct Inputs {
   const float *position, *velocity, *rotation, *rate;
-  const float *mass, *thrust_scale;        // of the integrator
-  const float *wind, *wind_mass;           // of its wind term
-  const float* thrust_mass;                // normalises the thrust
-  const float *shown_mass, *shown_scale;   // appended to the features
+  const float *mass_at_dynamics, *thrust_scale_at_dynamics;
+  const float *mass_at_wind_map, *wind;
+  const float* mass_at_normalise_thrust;
+  const float *mass_at_features, *thrust_scale_at_features;
   const float* code;
 };
 
@@ -68,14 +68,16 @@ Start gather(const Inputs& in, int64_t s, int64_t scenes, float gravity) {
   pick(in.velocity, 3, s, scenes, start.velocity);
   pick(in.rotation, 9, s, scenes, start.rotation);
   pick(in.rate, 3, s, scenes, start.rate);
-  if (in.mass != nullptr) start.thrust_gain = in.thrust_scale[s] / in.mass[s];
+  if (in.mass_at_dynamics != nullptr)
+    start.thrust_gain = in.thrust_scale_at_dynamics[s] / in.mass_at_dynamics[s];
   if (in.wind != nullptr) {
-    start.inverse_mass = 1.0f / in.wind_mass[s];
-    for (int i = 0; i < 3; ++i) start.wind[i] = in.wind[i * scenes + s] / in.wind_mass[s];
+    start.inverse_mass = 1.0f / in.mass_at_wind_map[s];
+    for (int i = 0; i < 3; ++i) start.wind[i] = in.wind[i * scenes + s] / in.mass_at_wind_map[s];
   }
-  if (in.thrust_mass != nullptr) start.inverse_weight = 1.0f / (in.thrust_mass[s] * gravity);
-  pick(in.shown_mass, 1, s, scenes, start.shown);
-  pick(in.shown_scale, 1, s, scenes, start.shown + 1);
+  if (in.mass_at_normalise_thrust != nullptr)
+    start.inverse_weight = 1.0f / (in.mass_at_normalise_thrust[s] * gravity);
+  pick(in.mass_at_features, 1, s, scenes, start.shown);
+  pick(in.thrust_scale_at_features, 1, s, scenes, start.shown + 1);
   pick(in.code, LATENT, s, scenes, start.code);
   return start;
 }
