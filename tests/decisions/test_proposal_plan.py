@@ -122,7 +122,7 @@ def test_a_given_error_takes_the_place_of_a_declared_one():
     [
         ("rate:scale=1.1,1.2", "takes one size"),
         ("rate:scale=1.1@model", "faults every module by itself"),
-        ("unread:scale=2", "reaches nobody in either variant"),
+        ("unread:scale=2", "reaches no consumer: neither variant"),
         ("rat:scale=2", "did you mean 'rate'"),
     ],
 )
@@ -133,11 +133,9 @@ def test_wrong_errors_are_refused(text, said):
 
 def candidate(name: str, readers: int, response: float | None = None, **more) -> Candidate:
     consumers = tuple(f"m{i}.x" for i in range(readers))
-    moved = {} if response is None else {"calibrated": {"shared": response}}
     given = {"fault": f"{name}:scale=2"} | more
-    return Candidate(
-        name=name, sources=(name,), channels=(name,), consumers=consumers, responses=moved, **given
-    )
+    same = {"sources": (name,), "channels": (name,), "consumers": consumers}
+    return Candidate(name=name, response=response, **(same | given))
 
 
 def test_consumers_come_first_then_the_probe():

@@ -36,15 +36,13 @@ def plan(
     written = found.write(out)
 
     from faultpath.decisions.tables.terminal import drawn
-    from faultpath.report.plan import by_audit, by_rank, by_response
+    from faultpath.report.plan import by_audit, by_rank
 
     if as_json:
         typer.echo(found.plan.model_dump_json(indent=2))
         return
     console = SafeConsole()
-    moved = any(each.response is not None for each in found.plan.candidates)
-    tables = (by_rank, by_response, by_audit) if moved else (by_rank, by_audit)
-    for table in (each(found.plan) for each in tables):
+    for table in (by_rank(found.plan), by_audit(found.plan)):
         console.print(drawn(table))
         for note in table.notes:
             console.print(note, markup=False)

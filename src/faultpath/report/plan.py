@@ -1,7 +1,7 @@
 """The tables of a plan: sources in order, and the audits that are proposed."""
 
 from faultpath.decisions.plan.plan import Plan
-from faultpath.decisions.tables import MISSING, Line, Table, line
+from faultpath.decisions.tables import Line, Table, line
 
 
 def by_rank(plan: Plan) -> Table:
@@ -23,28 +23,6 @@ def by_rank(plan: Plan) -> Table:
         words=columns,
         lines=tuple(lines),
         notes=notes,
-    )
-
-
-def by_response(plan: Plan) -> Table:
-    """Return how far commands move under the expected error of each source, path by path."""
-    variants = (plan.study.baseline, plan.study.repair)
-    lines: list[Line] = []
-    for each in plan.candidates:
-        paths = dict.fromkeys(path for found in each.responses.values() for path in found)
-        lines += [line(each.name)] if paths else []
-        for path in paths:
-            found = (each.responses.get(variant, {}).get(path) for variant in variants)
-            lines.append(line(path, *(MISSING if r is None else f"{r:.3g}" for r in found)))
-    return Table(
-        title="Probe responses",
-        corner="faulted",
-        columns=variants,
-        lines=tuple(lines),
-        notes=(
-            "Median change of the commands under the expected error, as a fraction of their root "
-            f"mean square, over {plan.probed} scenes. The largest of a source counts.",
-        ),
     )
 
 

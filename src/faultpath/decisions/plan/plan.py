@@ -1,6 +1,6 @@
 """A plan: sources in order, the audits of a study, how many trials they take, and why."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
@@ -56,12 +56,22 @@ def make_plan(
         if each.fault
     }
     if not laid:
-        raise UserError(_nothing_sized(system, found))
+        if not found:
+            raise UserError(
+                f"{system.name}: neither variant reads a source that may err: nothing to plan."
+            )
+        why = "; ".join(f"{each.name} {each.unsized}" for each in found)
+        channel = next((c for each in found for c in each.channels), "CHANNEL")
+        raise UserError(
+            f"{system.name}: no source says how large its errors are ({why}): declare it in the "
+            f"interface, or give the expected error, for example --fault {channel}:scale=1.1"
+        )
     repaired = repaired_modules(system, *variants, asked.module)
     scenes = next(iter(laid.values())).study.scenes
     probed = 0
     if isinstance(system, LoopSystem) and len(laid) > 1:
         probed = min(len(scenes), PROBED_SCENES)
+        responses: dict[str, float] = {}
         for done, variant in enumerate(variants):
             note(done, len(variants))
             arms = {
@@ -71,13 +81,9 @@ def make_plan(
                 if row.variant == variant.name and row.arm.faults
             }
             moved = command_responses(system, variant.name, arms, scenes[:probed], asked.seeds[0])
-            responses = {each.name: dict[str, float]() for each in found}
-            for (name, path), value in moved.items():
-                responses[name][path] = value
-            found = tuple(
-                c.model_copy(update={"responses": c.responses | {variant.name: responses[c.name]}})
-                for c in found
-            )
+            for (name, _), value in moved.items():
+                responses[name] = max(value, responses.get(name, value))
+        found = [c.model_copy(update={"response": responses.get(c.name)}) for c in found]
     order = ranked(found)
     first = next(each for each in order if each.fault)
     reached = tuple(dict.fromkeys(c.partition(".")[0] for c in first.consumers))
@@ -110,17 +116,6 @@ def make_plan(
         unplanned={c.name: why[c.name] for c in order if c.name in why and not c.fault},
         probed=probed,
         trials=tuple(len(laid[c.name].study.arms()) * len(scenes) for c in named),
-    )
-
-
-def _nothing_sized(system: System, found: Sequence[Candidate]) -> str:
-    if not found:
-        return f"{system.name}: neither variant reads a source that may err: nothing to plan."
-    why = "; ".join(f"{each.name} {each.unsized}" for each in found)
-    channel = next((c for each in found for c in each.channels), "CHANNEL")
-    return (
-        f"{system.name}: no source says how large its errors are ({why}): declare it in the "
-        f"interface, or give the expected error, for example --fault {channel}:scale=1.1"
     )
 
 

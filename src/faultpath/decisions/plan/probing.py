@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.arrays import Array, is_array, to_numpy
+from faultpath.core.arrays import is_array, to_numpy
 from faultpath.core.error_source import described
 from faultpath.core.errors import Notice
 from faultpath.faults import AnyFault
@@ -40,22 +40,17 @@ def command_responses(
 
     Empty where nothing that faultpath sees reaches the plant. Raises what the run raises.
     """
-    probe = _Probe(system, variant, faults, tuple(scenes), seed)
     loop = system.loop(variant, seed)
-    probe.past = {
-        (port.channel, f"{part.name}.{port.place}")
-        for part in loop.graph.parts
-        for port in part.reads_past
-    }
-    observed = _with_plant(loop, _Observed(loop.graph.plant, probe))
-    system.execute(observed, scenes, _Taps(probe, (), first=True), seed)
-    if not probe.commands or probe.commands[0].shape[1] == 0:
+    first = _First(system, variant, faults, tuple(scenes), seed, loop)
+    taps = _Taps(first, (), records=True)
+    system.execute(_with_plant(loop, first), scenes, taps, seed)
+    if not first.commands or first.commands[0].shape[1] == 0:
         return {}
-    commands, running = np.stack(probe.commands), np.stack(probe.running)
+    commands, running = np.stack(first.commands), np.stack(first.running)
     size = np.sqrt(np.mean(commands[running] ** 2, axis=0))
     size[size == 0.0] = 1.0
     found: dict[Key, float] = {}
-    for key, moved in probe.moved.items():
+    for key, moved in first.moved.items():
         apart = (np.stack(moved) - commands)[running] / size
         median = float(np.median(np.sqrt(np.mean(apart**2, axis=1))))
         if np.isfinite(median):
@@ -63,8 +58,8 @@ def command_responses(
     return found
 
 
-class _Probe:
-    """What the first run shows of itself, and the modules that run beside it."""
+class _First(Plant):
+    """The plant of the first run. Before it moves, the modules beside it take the same step."""
 
     def __init__(
         self,
@@ -73,31 +68,50 @@ class _Probe:
         faults: Mapping[Key, Sequence[AnyFault]],
         scenes: tuple[str, ...],
         seed: int,
+        loop: Loop,
     ) -> None:
+        plant = loop.graph.plant
+        self.name, self.steps = plant.name, plant.steps
+        self.reads, self.reads_past = plant.reads, plant.reads_past
+        self.senses, self.shows = plant.senses, plant.shows
         self.system, self.variant, self.scenes, self.seed = system, variant, scenes, seed
-        self.past: set[tuple[str, str]] = set()
+        self.past = {
+            (port.channel, f"{part.name}.{port.place}")
+            for part in loop.graph.parts
+            for port in part.reads_past
+        }
         """Taps, by channel and consumer, at which a port reads what was held one step before."""
         self.readings: dict[tuple[str, str], Reading] = {}
-        """Of the past, at the first run's present step."""
+        """Of the past, at the present step."""
         self.sensed: Mapping[str, Any] = {}
-        self.progress: Progress | None = None
+        self.stands: Progress | None = None
         self.moved: dict[Key, list[Floats]] = {key: [] for key in faults}
         self.commands: list[Floats] = []
         self.running: list[NDArray[np.bool_]] = []
-        self._faults = faults
+        self._plant, self._faults = plant, faults
         self._others: dict[Key, Any] = {}
 
-    def step(self, inputs: Inputs) -> None:
-        """Take in a command of the first run, and let the others make theirs."""
+    def start(self, batch: Batch) -> Any:
+        return self._plant.start(batch)
+
+    def sense(self, state: Any) -> Mapping[str, Any]:
+        self.sensed = self._plant.sense(state)
+        return self.sensed
+
+    def progress(self, state: Any) -> Progress:
+        self.stands = self._plant.progress(state)
+        return self.stands
+
+    def advance(self, state: Any, inputs: Inputs) -> Any:
         if not self.commands:
             batch = Batch(self.scenes, self.seed, self.system.control_dt_s)
             for key, faults in self._faults.items():
                 loop = self.system.loop(self.variant, self.seed)
-                beside = _with_plant(loop, _Copied(loop.graph.plant, self))
-                self._others[key] = beside.execute(batch, _Taps(self, faults, first=False))
-        assert self.progress is not None
+                beside = _with_plant(loop, _Beside(loop.graph.plant, self))
+                self._others[key] = beside.execute(batch, _Taps(self, faults, records=False))
+        assert self.stands is not None
         self.commands.append(self._command(inputs))
-        self.running.append(np.array(to_numpy(self.progress.running), dtype=bool))
+        self.running.append(np.array(to_numpy(self.stands.running), dtype=bool))
         for key in list(self._others):
             try:
                 self.moved[key].append(self._command(next(self._others[key]).inputs))
@@ -106,6 +120,7 @@ class _Probe:
                 said = f"{' '.join(map(str, key))}, {self.variant}: no probe response, since its "
                 said += f"modules stop at such an input ({described(error)})."
                 warnings.warn(Notice(said), stacklevel=1)
+        return self._plant.advance(state, inputs)
 
     def _command(self, inputs: Inputs) -> Floats:
         n = len(self.scenes)
@@ -116,80 +131,61 @@ class _Probe:
         ]
         return np.concatenate(parts, axis=1) if parts else np.empty((n, 0))
 
-
-class _Taps:
-    """Taps that note the first run's readings of the past, or deliver these instead of their
-    own."""
-
-    def __init__(self, probe: _Probe, faults: Sequence[AnyFault], first: bool) -> None:
-        arm = Arm(variant=probe.variant, faults=tuple(faults), seed=probe.seed)
-        self._taps: Taps = taps_of(probe.system, arm, probe.scenes)
-        self._probe, self._first = probe, first
-        self.set_active = self._taps.set_active
-
-    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
-        """Deliver as `Taps` does."""
-        tap = (channel, consumer)
-        if tap in self._probe.past:
-            if self._first:
-                self._probe.readings[tap] = reading
-            reading = self._probe.readings[tap]
-        return self._taps.deliver(channel, consumer, reading, step)
-
-
-def _with_plant(loop: Loop, plant: Plant) -> Loop:
-    return replace(loop, graph=replace(loop.graph, plant=plant))
-
-
-class _Observed(Plant):
-    """The plant of the first run; others get what it senses, and run before it moves."""
-
-    def __init__(self, plant: Plant, probe: _Probe) -> None:
-        self.name, self.steps = plant.name, plant.steps
-        self.reads, self.reads_past = plant.reads, plant.reads_past
-        self.senses, self.shows = plant.senses, plant.shows
-        self._plant, self._probe = plant, probe
-
-    def start(self, batch: Batch) -> Any:
-        return self._plant.start(batch)
-
-    def sense(self, state: Any) -> Mapping[str, Any]:
-        self._probe.sensed = self._plant.sense(state)
-        return self._probe.sensed
-
-    def advance(self, state: Any, inputs: Inputs) -> Any:
-        self._probe.step(inputs)
-        return self._plant.advance(state, inputs)
-
-    def progress(self, state: Any) -> Progress:
-        self._probe.progress = self._plant.progress(state)
-        return self._probe.progress
-
     def conditions(self, state: Any) -> tuple[Sequence[str], Sequence[str]]:
         return self._plant.conditions(state)
 
     def over(self, state: Any, step: int) -> bool:
         return self._plant.over(state, step)
 
-    def position(self, state: Any) -> Array | None:
-        return self._plant.position(state)
 
-
-class _Copied(_Observed):
+class _Beside(Plant):
     """In place of a plant: what the first run's senses at the same step, whatever is commanded."""
+
+    def __init__(self, plant: Plant, first: _First) -> None:
+        self.name, self.steps = plant.name, plant.steps
+        self.reads, self.reads_past = plant.reads, plant.reads_past
+        self.senses, self.shows = plant.senses, plant.shows
+        self._first = first
 
     def start(self, batch: Batch) -> Any:
         return None
 
     def sense(self, state: Any) -> Mapping[str, Any]:
-        return self._probe.sensed
+        return self._first.sensed
 
     def advance(self, state: Any, inputs: Inputs) -> Any:
         return state
 
     def progress(self, state: Any) -> Progress:
-        assert self._probe.progress is not None
-        return self._probe.progress
+        assert self._first.stands is not None
+        return self._first.stands
+
+    def conditions(self, state: Any) -> tuple[Sequence[str], Sequence[str]]:
+        return (), ()
 
     def over(self, state: Any, step: int) -> bool:
         return False
+
+
+class _Taps:
+    """Taps that record the first run's readings of the past, or deliver these in place of their
+    own."""
+
+    def __init__(self, first: _First, faults: Sequence[AnyFault], records: bool) -> None:
+        arm = Arm(variant=first.variant, faults=tuple(faults), seed=first.seed)
+        self._taps: Taps = taps_of(first.system, arm, first.scenes)
+        self._first, self._records = first, records
+        self.set_active = self._taps.set_active
+
+    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
+        """Deliver as `Taps` does."""
+        tap = (channel, consumer)
+        if tap in self._first.past:
+            if self._records:
+                self._first.readings[tap] = reading
+            reading = self._first.readings[tap]
+        return self._taps.deliver(channel, consumer, reading, step)
+
+
+def _with_plant(loop: Loop, plant: Plant) -> Loop:
+    return replace(loop, graph=replace(loop.graph, plant=plant))

@@ -2,11 +2,9 @@
 
 from collections.abc import Sequence
 
-from pydantic import Field
-
 from faultpath.core.errors import UserError
 from faultpath.core.frozen import Frozen
-from faultpath.faults import AnyFault, FaultText
+from faultpath.faults import FaultText
 from faultpath.interface import Interface, Provenance, Source
 from faultpath.trials import System, Variant
 
@@ -27,17 +25,12 @@ class Candidate(Frozen, allow_inf_nan=False):
     unsized: str = ""
     """Why there is no fault."""
     note: str = ""
-    responses: dict[str, dict[str, float]] = Field(default_factory=dict[str, dict[str, float]])
-    """By variant and path of the fault, how far a probe moves the commands; see `probing`."""
+    response: float | None = None
+    """How far a probe moves the commands, see `probing`: the largest of both variants and all paths
+    of the fault. Errors of several modules may cancel, and that is no reason to audit their source
+    last."""
     rank: int | None = None
     """Sources that nothing tells apart share one; `None` before they are ranked."""
-
-    @property
-    def response(self) -> float | None:
-        """The largest of all: errors of several modules may cancel, and that is no reason to audit
-        their source last."""
-        moved = (found for each in self.responses.values() for found in each.values())
-        return max(moved, default=None)
 
 
 def candidates(
@@ -46,15 +39,21 @@ def candidates(
     """Return the uncertain sources that a variant reads, in the order of declaration.
 
     Uncertain is what is measured, estimated or reconstructed, or declares an uncertainty. The
-    faults `given` take the place of declared sizes. `UserError` for one that reaches nobody, and
-    for two of one source.
+    faults `given` take the place of declared sizes. `UserError` for one that reaches no consumer,
+    and for two of one source.
     """
     members: dict[str, list[Source]] = {}
     for source in system.interface.sources:
         uncertain = source.provenance in _UNCERTAIN or source.uncertainty is not None
         if uncertain and _channels(system.interface, variants, source.name):
             members.setdefault(source.correlation_group or source.name, []).append(source)
-    found = [_declared(system, variants, name, sources) for name, sources in members.items()]
+    found: list[Candidate] = []
+    for name, sources in members.items():
+        every = [c for each in sources for c in _channels(system.interface, variants, each.name)]
+        channels = tuple(dict.fromkeys(every))
+        fault, unsized = _expected(system, name, sources, channels)
+        names = tuple(each.name for each in sources)
+        found.append(_candidate(system, variants, name, names, channels, fault, unsized))
     for text in given:
         made = _given(system, variants, text)
         replaced = [each for each in found if set(each.channels) <= set(made.channels)]
@@ -83,26 +82,6 @@ def _channels(interface: Interface, variants: Sequence[Variant], source: str) ->
     }
 
 
-def _declared(
-    system: System, variants: Sequence[Variant], name: str, sources: Sequence[Source]
-) -> Candidate:
-    interface = system.interface
-    every = [c for each in sources for c in _channels(interface, variants, each.name)]
-    channels = tuple(dict.fromkeys(every))
-    text, unsized = _expected(system, name, sources, channels)
-    read = (c for channel in channels for c in interface.channel(channel).consumers)
-    present = {c: None for c in read if any(c in variant.consumers for variant in variants)}
-    return Candidate(
-        name=name,
-        sources=tuple(each.name for each in sources),
-        channels=channels,
-        consumers=_reached(system, variants, system.fault(text)) if text else tuple(present),
-        fault=text,
-        unsized=unsized,
-        note=_note(interface, variants, channels),
-    )
-
-
 def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
     asked = FaultText.read(text)
     if len(asked.sizes) > 1 or asked.consumers:
@@ -114,22 +93,46 @@ def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
     parts = fault.faults if fault.kind == "coupled" else (fault,)
     channels = tuple(dict.fromkeys(part.channel for part in parts))
     sources = {bound(each, system.interface, c): None for each in variants for c in channels}
-    consumers = _reached(system, variants, fault)
-    if not consumers:
-        raise UserError(f"fault '{text}' reaches nobody in either variant: neither reads it there.")
+    made = _candidate(system, variants, asked.name, tuple(sources), channels, text)
+    if not made.consumers:
+        raise UserError(f"fault '{text}' reaches no consumer: neither variant reads it there.")
+    return made
+
+
+def _candidate(
+    system: System,
+    variants: Sequence[Variant],
+    name: str,
+    sources: tuple[str, ...],
+    channels: tuple[str, ...],
+    fault: str,
+    unsized: str = "",
+) -> Candidate:
+    interface, note = system.interface, ""
+    if fault:
+        asked = system.fault(fault)
+        parts = [p for each in variants for p in asked.resolved(interface, each.consumers)]
+        reached = [consumer for part in parts for consumer in part.consumers]
+    else:
+        read = [c for channel in channels for c in interface.channel(channel).consumers]
+        reached = [c for c in read if any(c in variant.consumers for variant in variants)]
+    for channel in channels:
+        one, two = (bound(variant, interface, channel) for variant in variants)
+        if one != two:
+            note = (
+                f"A fault on '{channel}' is one of {one} in {variants[0].name} and of {two} in "
+                f"{variants[1].name}, which feed it there."
+            )
+            break
     return Candidate(
-        name=asked.name,
-        sources=tuple(sources),
+        name=name,
+        sources=sources,
         channels=channels,
-        consumers=consumers,
-        fault=text,
-        note=_note(system.interface, variants, channels),
+        consumers=tuple(dict.fromkeys(reached)),
+        fault=fault,
+        unsized=unsized,
+        note=note,
     )
-
-
-def _reached(system: System, variants: Sequence[Variant], fault: AnyFault) -> tuple[str, ...]:
-    parts = (p for each in variants for p in fault.resolved(system.interface, each.consumers))
-    return tuple(dict.fromkeys(consumer for part in parts for consumer in part.consumers))
 
 
 def _expected(
@@ -156,14 +159,3 @@ def _expected(
         return f"{name}=+{size:g}", ""
     target = name if together else channels[0]
     return (f"{target}:scale={1.0 + size:g}" if relative else f"{target}:offset={size:g}"), ""
-
-
-def _note(interface: Interface, variants: Sequence[Variant], channels: Sequence[str]) -> str:
-    for channel in channels:
-        one, two = (bound(variant, interface, channel) for variant in variants)
-        if one != two:
-            return (
-                f"A fault on '{channel}' is one of {one} in {variants[0].name} and of {two} in "
-                f"{variants[1].name}, which feed it there."
-            )
-    return ""

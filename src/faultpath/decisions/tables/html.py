@@ -1,7 +1,7 @@
 """Tables as HTML: the paper's figure stands small below ours."""
 
 from faultpath.decisions.tables.escapes import html as escape
-from faultpath.decisions.tables.model import Entry, Line, Table
+from faultpath.decisions.tables.model import Entry, Table
 
 
 def html(table: Table, style: str = "numbers", *, caption: bool = True) -> str:
@@ -18,17 +18,13 @@ def html(table: Table, style: str = "numbers", *, caption: bool = True) -> str:
                 f'<tr class="heading"><th scope="rowgroup" colspan="{span}">'
                 f"<span>{escape(heading)}</span></th></tr>"
             )
-        parts += [_row(line, span) for line in lines]
+        for line in lines:
+            entries = "".join(map(_entry, line.entries))
+            entries += "<td></td>" * (span - 1 - len(line.entries))
+            label = f"{escape(line.label)}{_aside(line.aside)}"
+            parts.append(f'<tr><th scope="row">{label}</th>{entries}</tr>')
         parts.append("</tbody>")
     return "\n".join([*parts, "</table>"])
-
-
-def _row(line: Line, span: int) -> str:
-    entries = "".join(map(_entry, line.entries))
-    blanks = "<td></td>" * (span - 1 - len(line.entries))
-    return (
-        f'<tr><th scope="row">{escape(line.label)}{_aside(line.aside)}</th>{entries}{blanks}</tr>'
-    )
 
 
 def _entry(entry: Entry) -> str:

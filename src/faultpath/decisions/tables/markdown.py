@@ -1,7 +1,7 @@
 """Tables as Markdown: the paper's figure stands in parentheses behind ours."""
 
 from faultpath.decisions.tables.escapes import markdown as escape
-from faultpath.decisions.tables.model import Entry, Line, Table
+from faultpath.decisions.tables.model import Entry, Table
 
 
 def block(table: Table) -> str:
@@ -12,25 +12,18 @@ def block(table: Table) -> str:
 
 def grid(table: Table) -> str:
     """Return the lines of the table alone."""
-    sides = (":--" if column in table.words else "--:" for column in table.columns)
     rows = [
-        _row(escape(table.corner), *map(escape, table.columns)),
-        _row(":--", *sides),
-        *(_row(*_cells(line, len(table.columns))) for line in table.lines),
+        [escape(text) for text in (table.corner, *table.columns)],
+        [":--", *(":--" if column in table.words else "--:" for column in table.columns)],
     ]
-    return "\n".join(rows)
-
-
-def _row(label: str, *cells: str) -> str:
-    return f"| {f'{label} ' if label else ''}| {' | '.join(cells)} |"
-
-
-def _cells(line: Line, width: int) -> tuple[str, ...]:
-    if not line.entries:
-        return (f"*{escape(line.label)}*", *[""] * width)
-    label = _code(line.label) if line.name else escape(line.label)
-    aside = f" ({escape(line.aside)})" if line.aside else ""
-    return (f"{label}{aside}", *map(_entry, line.entries))
+    for line in table.lines:
+        if not line.entries:
+            rows.append([f"*{escape(line.label)}*", *[""] * len(table.columns)])
+            continue
+        label = _code(line.label) if line.name else escape(line.label)
+        label += f" ({escape(line.aside)})" if line.aside else ""
+        rows.append([label, *map(_entry, line.entries)])
+    return "\n".join(f"| {f'{row[0]} ' if row[0] else ''}| {' | '.join(row[1:])} |" for row in rows)
 
 
 def _entry(entry: Entry) -> str:

@@ -3,7 +3,7 @@
 from textwrap import fill
 from typing import TYPE_CHECKING
 
-from faultpath.decisions.tables.model import Entry, Line, Table, Tone
+from faultpath.decisions.tables.model import Entry, Table, Tone
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -30,7 +30,6 @@ def drawn(
     from rich.text import Text
 
     title = Text(table.title) if table.title else None
-    tall = _tall(table)
     made = Drawn(
         title=title, title_justify="left", box=None, pad_edge=False, padding=apart or _apart(table)
     )
@@ -45,20 +44,16 @@ def drawn(
         head = column if words or not one_line else _folded(column, index, table)
         side = "left" if words else "right"
         made.add_column(Text(head), justify=side, no_wrap=one_line and not words)
+    between = "\n" if _tall(table) else " "
     for line in table.lines:
+        label = Text(line.label, "" if line.entries else "italic")
+        if line.aside:
+            label.append(f"{between}({line.aside})", "dim")
         cells = [_text(entry) for entry in line.entries]
         for cell in cells:
             cell.no_wrap, cell.overflow = one_line, "ellipsis" if one_line else None
-        made.add_row(_label(line, below=tall), *cells)
+        made.add_row(label, *cells)
     return made
-
-
-def _tall(table: Table) -> bool:
-    return any("\n" in entry.text for line in table.lines for entry in line.entries)
-
-
-def _apart(table: Table) -> tuple[int, int, int, int]:
-    return (0, 1 if len(table.columns) > _ROOMY else 2, 1 if _tall(table) else 0, 0)
 
 
 class Parted:
@@ -69,44 +64,35 @@ class Parted:
 
     def __rich_console__(self, console: "Console", options: "ConsoleOptions") -> "RenderResult":
         """Yield the table, or as many as its columns need, each with the labels of the lines."""
-        start, title = 0, self._table.title
+        rest = self._table
         while True:
-            rest = self._part(start, len(self._table.columns), title)
             count = max(1, _columns_within(options.max_width, rest))
             # As far apart as was reckoned with, or what has room would be cut after all.
-            yield drawn(self._part(start, start + count, title), one_line=True, apart=_apart(rest))
-            start, title = start + count, ""
-            if start >= len(self._table.columns):
+            yield drawn(_columns(rest, slice(count)), one_line=True, apart=_apart(rest))
+            if count >= len(rest.columns):
                 return
+            rest = _columns(rest, slice(count, None)).model_copy(update={"title": ""})
             yield ""
 
-    def _part(self, first: int, end: int, title: str) -> Table:
-        lines = tuple(
-            line.model_copy(update={"entries": line.entries[first:end]})
-            for line in self._table.lines
-        )
-        columns = self._table.columns[first:end]
-        return self._table.model_copy(update={"title": title, "columns": columns, "lines": lines})
+
+def _columns(table: Table, which: slice) -> Table:
+    lines = tuple(line.model_copy(update={"entries": line.entries[which]}) for line in table.lines)
+    return table.model_copy(update={"columns": table.columns[which], "lines": lines})
 
 
 def _columns_within(width: int, table: Table) -> int:
     """Count the first columns that stand unfolded within `width`, beside the narrowest labels."""
     used = _longest(word for line in table.lines for word in line.label.split())
     for index, column in enumerate(table.columns):
-        head = [column]  # of words it is never folded, so it counts whole
-        if column not in table.words:
-            head = _folded(column, index, table).splitlines()
-        texts = (_text(line.entries[index]).plain for line in table.lines if line.entries)
+        # A heading of words is never folded, so it counts whole.
+        head = column if column in table.words else _folded(column, index, table)
+        texts = [_text(line.entries[index]).plain for line in table.lines if line.entries]
         used += _apart(table)[1] + _longest(
-            each for text in (*head, *texts) for each in text.splitlines()
+            each for text in (head, *texts) for each in text.splitlines()
         )
         if used > width:
             return index
     return len(table.columns)
-
-
-def _longest(texts: "Iterable[str]") -> int:
-    return max(map(len, texts), default=1)
 
 
 def _folded(column: str, index: int, table: Table) -> str:
@@ -115,12 +101,16 @@ def _folded(column: str, index: int, table: Table) -> str:
     return fill(column, max(below, _longest(column.split())), break_long_words=False)
 
 
-def _label(line: Line, *, below: bool) -> "Text":
-    from rich.text import Text
+def _longest(texts: "Iterable[str]") -> int:
+    return max(map(len, texts), default=1)
 
-    text = Text(line.label, "" if line.entries else "italic")
-    parted = "\n" if below else " "
-    return text.append(f"{parted}({line.aside})", "dim") if line.aside else text
+
+def _tall(table: Table) -> bool:
+    return any("\n" in entry.text for line in table.lines for entry in line.entries)
+
+
+def _apart(table: Table) -> tuple[int, int, int, int]:
+    return (0, 1 if len(table.columns) > _ROOMY else 2, 1 if _tall(table) else 0, 0)
 
 
 def _text(entry: Entry) -> "Text":
