@@ -8,7 +8,7 @@ import numpy as np
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Graph, Loop, Module, Plant, Port, Progress, Query, Taps, graph
 from faultpath.loop import interface_of as derived
-from faultpath.systems.checks.flights import TraceEnded
+from faultpath.systems.checks.recording import Enough
 
 DT_S = 0.1
 SCENES = ("a", "b")
@@ -102,7 +102,7 @@ def execute(modules, faults=(), place="", trace=None, guard=False):
     interface, parts = wired(modules, place)
     asked = {"scenes": SCENES, "dt_s": DT_S, "privileged": ("field",), "guard": guard}
     taps = Taps(interface, faults, **asked, observer=trace)
-    with contextlib.suppress(TraceEnded):
+    with contextlib.suppress(Enough):
         return list(Loop(interface, parts).execute(Batch(SCENES, 0, DT_S), taps)), taps
     return [], taps
 

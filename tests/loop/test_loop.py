@@ -19,7 +19,7 @@ from faultpath.loop import (
     graph,
 )
 from faultpath.loop import interface_of as derived
-from faultpath.systems.checks.flights import Trace
+from faultpath.systems.checks.recording import Recording
 
 
 def fault(text):
@@ -173,13 +173,13 @@ def test_a_module_that_forgets_its_source_is_named() -> None:
 
 
 def test_a_trace_says_who_read_what_of_which_step() -> None:
-    trace = Trace(SCENES, steps=2)
+    trace = Recording(SCENES, steps=2)
     execute((Guess(), Planner()), trace=trace, place=", latency_s: 0.1")
-    assert len(trace.held) == 2 * 5
-    assert trace.held[1, "position", "observer.seen"].valid_step == 0
-    assert trace.held[1, "position", "observer.seen"].source == "place"
-    assert trace.held[1, "action", "line.motor"].valid_step == 1
-    assert trace.held[1, "clearance", "planner.cost"].asks == 1
+    assert len(trace.reads) == 2 * 5
+    assert trace.reads[1, "position", "observer.seen"].valid_step == 0
+    assert trace.reads[1, "position", "observer.seen"].source == "place"
+    assert trace.reads[1, "action", "line.motor"].valid_step == 1
+    assert trace.reads[1, "clearance", "planner.cost"].asks == 1
 
 
 def test_the_interface_follows_from_the_ports() -> None:

@@ -8,7 +8,7 @@ from faultpath_quadrotor.system import Quadrotor
 from flights import HELD_OUT, STEPS, fault, fly, quadrotor
 
 from faultpath.loop import Batch, Graph, consumers
-from faultpath.systems.checks.flights import Trace
+from faultpath.systems.checks.recording import Recording
 from faultpath.trials import Arm
 from faultpath.trials.attempt import taps_of
 
@@ -52,12 +52,12 @@ def test_truth_has_one_door(systems):
 def test_what_flies_reads_every_port_and_commands_late(options, variant):
     system = quadrotor(**options)
     batch = Batch(HELD_OUT[:2], 0, system.control_dt_s)
-    trace = Trace(batch.scenes, steps=None)
-    taps = taps_of(system, Arm(variant=variant), batch.scenes, observer=trace)
+    recording = Recording(batch.scenes)
+    taps = taps_of(system, Arm(variant=variant), batch.scenes, observer=recording)
     with torch.inference_mode():
         instants = list(system.loop(variant, 0).execute(batch, taps))
     assert (len(instants), instants[-1].step) == (STEPS + 1, STEPS)
-    reads = trace.held.values()
+    reads = recording.reads.values()
     assert {each.consumer for each in reads} == set(system.variants[variant].consumers)
     taught = {each.consumer for each in reads if each.channel == "action"}
     late = {each.consumer for each in reads if each.valid_step < each.step}

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
 
 from faultpath.api.runs import read_run
@@ -15,11 +14,10 @@ from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import by_scene, read_pairs
 from faultpath.report.viewer_choice import choose as picked
-from faultpath.systems.checks.recording import Block, RecordedBlock, record, record_here
+from faultpath.systems.checks.blocks import Block, RecordedBlock, run_blocks
 from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
-from faultpath.trials.attempt import Died, Done, Wrong
+from faultpath.trials.attempt import Done
 from faultpath.trials.execution.again import difference
-from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
 from faultpath.trials.execution.provenance import amend
 from faultpath.trials.execution.worker import Job
 from faultpath.trials.question import AuditQuestion
@@ -145,38 +143,26 @@ def run_again(
         if scenes:
             old = tasks.get(row.arm.key())
             every = dict.fromkeys((*(old.scenes if old else ()), *scenes))
-            tasks[row.arm.key()] = Block(row.arm, tuple(every))
+            tasks[row.arm.key()] = Block(row.arm, tuple(every), signals=True)
     found: dict[TrialAddress, Replayed] = {}
-    waiting, done = list(tasks.values()), 0
+    done = 0
 
-    def settle(task: Block, reply: RecordedBlock | Died | Wrong) -> None:
+    def settle(task: Block, run: RecordedBlock) -> None:
         nonlocal done
         done += 1
-        error = reply.how if isinstance(reply, Died) else ""
-        if isinstance(reply, RecordedBlock):
-            error = reply.error
-        elif isinstance(reply, Wrong):
-            if isinstance(reply.error, UserError):
-                raise reply.error
-            error = f"{type(reply.error).__name__}: {reply.error}"
         for place, scene in enumerate(task.scenes):
             for at in addresses[task.arm.key(), scene]:
-                differs, signals = f"failed: {error}", ()
-                if isinstance(reply, RecordedBlock) and not error:
-                    again = Done((reply.outcomes[place],), ())
+                differs, signals = f"failed: {run.error}", ()
+                if not run.error:
+                    again = Done((run.outcomes[place],), ())
                     differs = difference([before[at]], again)
-                    signals = () if differs else reply.signals[place]
+                    signals = () if differs else run.signals[place]
                 found[at] = Replayed(at, before[at], differs, signals)
         note(task.arm, done, len(tasks))
 
     code = system_code(system, study.system).state
     job = Job(study.system, study.library, code, library_hash)
-    there, here = partial(record, job), partial(record_here, system)
-    call = here if executor.in_process else there
-    dispatch = Dispatch[Block](
-        executor, lambda task: partial(call, task), block_limit_s(system, None), study.system.name
-    )
-    dispatch.run(lambda _: waiting.pop(0) if waiting else None, settle)
+    run_blocks(executor, system, job, tasks.values(), settle)
     return [found[at] for at in before if at in found]
 
 

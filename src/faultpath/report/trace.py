@@ -1,12 +1,13 @@
 """A trace as a table."""
 
 from faultpath.decisions.tables import Line, Table, line
-from faultpath.systems.checks.tracing import TracedRead, TraceReport
+from faultpath.systems.checks.recording import Read
+from faultpath.systems.checks.tracing import TraceReport
 
 
 def trace_table(trace: TraceReport) -> Table:
     """Return a line for each consumer of a channel, in the order in which they read."""
-    taps: dict[tuple[str, str], list[TracedRead]] = {}
+    taps: dict[tuple[str, str], list[Read]] = {}
     for read in trace.reads:
         taps.setdefault((read.consumer, read.channel), []).append(read)
     columns = ["channel", "source", "at steps", "of steps", "made by"]

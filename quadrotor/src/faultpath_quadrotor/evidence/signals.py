@@ -7,7 +7,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath.systems.checks.recording import Recording, Values, added, laid_out, steps_of
+from faultpath.systems.checks.recording import Recording, Trial, Values, added, trials
 from faultpath.trials.attempt import Done
 from faultpath.trials.store.signals import Signal
 from faultpath_quadrotor.device import arithmetic
@@ -34,13 +34,13 @@ def quadrotor_signals(
     """
     ahead = _predicted(recording)
     found: list[tuple[Signal, ...]] = []
-    for scene, steps in enumerate(steps_of(done, system.control_dt_s)):
-        thrust = laid_out(recording.got["action", "vehicle.actuators"], scene, steps)[:, :1]
+    for trial in trials(recording, done, system.control_dt_s):
+        thrust = trial.got("action", "vehicle.actuators")[:, :1]
         named = [_signal("commanded thrust", "commanded thrust", "N", thrust)]
-        named += _errors(system, recording, scene, steps)
+        named += _errors(trial)
         for horizon, positions in ahead.items():
             said = f"position predicted {horizon * system.control_dt_s:g} s before"
-            values = laid_out(positions, scene, steps).astype(np.float32)
+            values = trial.rows(positions).astype(np.float32)
             named.append(Signal(said, "position", "m", values, ("east", "north", "up")))
         found.append(tuple(named))
     return found
@@ -50,14 +50,12 @@ def _signal(name: str, topic: str, unit: str, values: Values) -> Signal:
     return Signal(name, topic, unit, values.astype(np.float32))
 
 
-def _errors(system: Quadrotor, recording: Recording, scene: int, steps: int) -> list[Signal]:
+def _errors(trial: Trial) -> list[Signal]:
     def told(channel: str, place: str) -> Values:
-        return laid_out(recording.got[channel, f"predictor.{place}"], scene, steps)
+        return trial.got(channel, f"predictor.{place}")
 
-    def true(source: str) -> Values:
-        return laid_out(recording.sources[source], scene, steps)
-
-    if not {("mass", "predictor.dynamics"), ("mass", "predictor.wind_map")} <= recording.got.keys():
+    true, read = trial.held, trial.recording.got.keys()
+    if not {("mass", "predictor.dynamics"), ("mass", "predictor.wind_map")} <= read:
         return []
     drag = LinearDrag(PLATFORM.drag_kgps)
     rotation = true("vehicle.attitude").reshape(-1, 3, 3)
@@ -75,7 +73,7 @@ def _errors(system: Quadrotor, recording: Recording, scene: int, steps: int) -> 
         mass, scale
     )
     pairs, along = {"nominal": first}, ()
-    if ("wind", "predictor.wind_map") in recording.got:
+    if ("wind", "predictor.wind_map") in read:
         believed = force(told("wind", "wind_map")) / told("mass", "wind_map")
         second = believed - force(true("true_wind")) / mass
         pairs["combined"] = first + second

@@ -1,20 +1,17 @@
 """Run a system as a careful reviewer would, and judge what was seen."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import partial
+from collections.abc import Callable, Iterator, Sequence
 from typing import Literal
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
 from faultpath.core.text import unknown
-from faultpath.faults import AnyFault, Erase, Fault, Offset, Scale
+from faultpath.faults import AnyIntervention, Erase, Fault, Offset, Scale
 from faultpath.faults import Sequence as InTurn
-from faultpath.systems.checks import judging
-from faultpath.systems.checks.flights import Flight, Flown, Read, fly, fly_here, lost
-from faultpath.systems.checks.judging import Check, Seen
+from faultpath.systems.checks.blocks import Block, RecordedBlock, run_blocks
+from faultpath.systems.checks.judging import Check, Seen, judged
+from faultpath.systems.checks.recording import Read
 from faultpath.trials import Arm, System, SystemSpec, Variant, library_of
-from faultpath.trials.attempt import Died, Wrong
-from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
 from faultpath.trials.execution.worker import Job
 from faultpath.trials.question import CheckQuestion
 from faultpath.trials.state import system_code
@@ -68,23 +65,17 @@ def check_system(
     workers = (2 if system.parallel else 1) if asked.workers is None else asked.workers
     seen = Seen(system, variants, scenes, asked.seed, workers > 0)
     job = Job(spec, library.name, system_code(system, spec).state, library.content_hash)
-    limit_s = block_limit_s(system, None)
 
-    def run(flights: Iterable[Flight], known: int | None) -> None:
-        waiting = iter(flights)
+    def run(blocks: Sequence[Block], known: int | None) -> None:
+        def settle(block: Block, found: RecordedBlock) -> None:
+            seen.runs[block.arm.variant, block.why, block.tap] = found
+            note(len(seen.runs), known)
 
-        def settle(flight: Flight, reply: Flown | Died | Wrong) -> None:
-            flown = reply if isinstance(reply, Flown) else lost(reply)
-            seen.flights[flight.arm.variant, flight.why, flight.tap] = flown
-            note(len(seen.flights), known)
+        with local(workers) as executor:
+            run_blocks(executor, system, job, blocks, settle)
 
-        with local(workers) as held:
-            call = partial(fly_here, system) if held.in_process else partial(fly, job)
-            dispatch = Dispatch[Flight](held, lambda each: partial(call, each), limit_s, spec.name)
-            dispatch.run(lambda _: next(waiting, None), settle)
-
-    run((Flight("first", Arm(variant=v.name, seed=asked.seed), scenes) for v in variants), None)
-    again = list(_again(seen))
+    run([Block(Arm(variant=v.name, seed=asked.seed), scenes, "first") for v in variants], None)
+    again = [block for name, first in seen.firsts() for block in _again(seen, name, first)]
     run(again, len(variants) + len(again))  # in new processes: they share nothing with the first
     return Report(
         system=spec.name,
@@ -93,7 +84,7 @@ def check_system(
         library=library.name,
         scenes=scenes,
         seed=asked.seed,
-        checks=judging.checks(seen),
+        checks=judged(seen),
     )
 
 
@@ -108,37 +99,33 @@ def chosen_variants(system: System, names: Sequence[str]) -> tuple[Variant, ...]
     return tuple(every[name] for name in dict.fromkeys(chosen))
 
 
-def _again(seen: Seen) -> Iterator[Flight]:
-    """Yield what is run of each variant beside its first flight."""
-    for name, first in seen.firsts():
-
-        def arm(*faults: AnyFault, name: str = name) -> Arm:
-            return Arm(variant=name, seed=seen.seed, faults=faults)
-
-        def faulted(fault: Fault, name: str = name) -> Arm:
-            present = seen.system.variants[name].consumers
-            return arm(*fault.resolved(seen.system.interface, present))
-
-        yield Flight("again", arm(), seen.scenes)
-        if len(seen.scenes) > 1:
-            yield Flight("part", arm(), seen.scenes[::-2])
-        begins: dict[tuple[str, str], Read] = {}
-        for read in first.reads:
-            if read.given:
-                begins.setdefault(read.tap, read)
-        readers: dict[str, list[str]] = {}
-        for (channel, consumer), read in begins.items():
+def _again(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[Block]:
+    """Yield what is run of a variant beside its first run."""
+    arm = Arm(variant=variant, seed=seen.seed)
+    yield Block(arm, seen.scenes, "again")
+    if len(seen.scenes) > 1:
+        yield Block(arm, seen.scenes[::-2], "part")
+    begins: dict[tuple[str, str], Read] = {}
+    readers: dict[str, list[str]] = {}
+    for read in first.reads:
+        if read.given and read.tap not in begins:
+            begins[read.tap] = read
             if "float" in read.dtype:
-                readers.setdefault(channel, []).append(consumer)
-        if readers:
-            most = max(readers, key=lambda channel: len(readers[channel]))
-            doing, at = Scale(factor=1.05), tuple(readers[most])
-            shared = Fault(channel=most, intervention=doing, consumers=at)
-            yield Flight("faulted", faulted(shared), seen.scenes)
-        for (channel, consumer), read in begins.items():  # one that alters whatever it delivers
-            if "float" in read.dtype:
-                doing = InTurn(parts=(Scale(factor=1.5), Offset(by=0.25)))
-            else:  # keeps whole numbers and truths what they are
-                doing = Erase(default=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
-            alone = Fault(channel=channel, intervention=doing, consumers=(consumer,))
-            yield Flight("tap", faulted(alone), seen.scenes, read.step + _AFTER, read.tap)
+                readers.setdefault(read.channel, []).append(read.consumer)
+
+    def faulted(channel: str, doing: AnyIntervention, consumers: Sequence[str]) -> Arm:
+        fault = Fault(channel=channel, intervention=doing, consumers=tuple(consumers))
+        present = seen.system.variants[variant].consumers
+        faults = fault.resolved(seen.system.interface, present)
+        return Arm(variant=variant, seed=seen.seed, faults=faults)
+
+    if readers:
+        most = max(readers, key=lambda channel: len(readers[channel]))
+        yield Block(faulted(most, Scale(factor=1.05), readers[most]), seen.scenes, "faulted")
+    for (channel, consumer), read in begins.items():
+        if "float" in read.dtype:  # alters whatever it delivers
+            doing = InTurn(parts=(Scale(factor=1.5), Offset(by=0.25)))
+        else:  # keeps whole numbers and truths what they are
+            doing = Erase(default=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
+        alone = faulted(channel, doing, (consumer,))
+        yield Block(alone, seen.scenes, "tap", read.step + _AFTER, read.tap)

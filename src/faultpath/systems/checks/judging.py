@@ -1,15 +1,15 @@
 """What the runs of a check say of a system: seven checks, each a verdict and its sentences."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from faultpath.core.results import Result
-from faultpath.systems.checks.flights import MISTAKES, TRIALS, Flown
-from faultpath.trials import Outcome, System, Variant
+from faultpath.systems.checks.blocks import MISTAKES, TRIALS, RecordedBlock
+from faultpath.trials import System, Variant
 from faultpath.trials.attempt import Done
 from faultpath.trials.deliveries import unproven, unread
 from faultpath.trials.execution.again import difference
@@ -51,21 +51,21 @@ class Seen:
     seed: int
     apart: bool
     """Whether runs were repeated in processes of their own."""
-    flights: dict[tuple[str, str, tuple[str, str]], Flown] = field(
-        default_factory=dict[tuple[str, str, tuple[str, str]], Flown]
+    runs: dict[tuple[str, str, tuple[str, str]], RecordedBlock] = field(
+        default_factory=dict[tuple[str, str, tuple[str, str]], RecordedBlock]
     )
     """By variant, why it was run, and the tap that was faulted alone."""
 
-    def of(self, variant: str, why: str) -> Flown:
-        """Return what was seen of a run; nothing where there was none."""
-        return self.flights.get((variant, why, ("", "")), Flown())
+    def of(self, variant: str, why: str) -> RecordedBlock:
+        """Return what was recorded of a run; nothing where there was none."""
+        return self.runs.get((variant, why, ("", "")), RecordedBlock())
 
-    def firsts(self) -> Iterator[tuple[str, Flown]]:
+    def firsts(self) -> Iterator[tuple[str, RecordedBlock]]:
         """Yield the first run, under correct inputs, of each variant that came to its end."""
         for variant in self.variants:
-            flown = self.of(variant.name, "first")
-            if flown.outcomes and not flown.error:
-                yield variant.name, flown
+            run = self.of(variant.name, "first")
+            if run.outcomes:
+                yield variant.name, run
 
     def differs(self, variant: str, why: str) -> str:
         """Say how a second run of a variant differs from the first; empty where it does not."""
@@ -87,10 +87,10 @@ class Seen:
         return said
 
 
-def checks(seen: Seen) -> tuple[Check, ...]:
+def judged(seen: Seen) -> tuple[Check, ...]:
     """Judge all that was seen."""
+    count = sum(len(run.outcomes) for _, run in seen.firsts())
     judges = {
-        TRIALS: _trials,
         "determinism": _determinism,
         "scene independence": _independence,
         "pairing": _pairing,
@@ -98,30 +98,23 @@ def checks(seen: Seen) -> tuple[Check, ...]:
         "fault delivery": _delivery,
         "shape and unit": _readings,
     }
-    found: list[Check] = []
-    ran = any(True for _ in seen.firsts())
+    found = [Check(name=TRIALS, says=f"{count} under correct inputs")]
     for name, judge in judges.items():
+        none = Check(name=name, says="no variant ran to its end", judged=False)
+        found.append(judge(name, seen) if count else none)
+    for at, check in enumerate(found):
         stopped = {
-            flown.error: variant
-            for (variant, why, _), flown in reversed(seen.flights.items())
-            if flown.blames == name and why != "tap"
+            run.error: variant
+            for (variant, why, _), run in reversed(seen.runs.items())
+            if run.blames == check.name and why != "tap"
         }
         remedy = "; let every trial end in an outcome, see it with `faultpath audit --workers 0`"
         errors = tuple(
-            f"Variant '{variant}': {error}{'' if name in MISTAKES else remedy}."
+            f"Variant '{variant}': {error}{'' if check.name in MISTAKES else remedy}."
             for error, variant in stopped.items()
         )
-        made = Check(name=name, says="no variant ran to its end", judged=False)
-        if ran or name == TRIALS:
-            made = judge(name, seen)
-        found.append(made.model_copy(update={"failures": (*errors, *made.failures)}))
+        found[at] = check.model_copy(update={"failures": (*errors, *check.failures)})
     return tuple(found)
-
-
-def _trials(name: str, seen: Seen) -> Check:
-    """Every trial ends in an outcome."""
-    count = sum(len(flown.outcomes) for _, flown in seen.firsts())
-    return Check(name=name, says=f"{count} under correct inputs")
 
 
 def _determinism(name: str, seen: Seen) -> Check:
@@ -148,7 +141,17 @@ def _independence(name: str, seen: Seen) -> Check:
     for variant, first in seen.firsts():
         if not (differs := seen.differs(variant, "part")):
             continue
-        gap = _gap(first.outcomes, seen.of(variant, "part").outcomes)
+        part = seen.of(variant, "part").outcomes
+        by_scene, gap = {each.scene: each for each in first.outcomes}, 0.0 if part else math.inf
+        for outcome in part:  # by how much of their size metrics differ at most
+            before = by_scene[outcome.scene]
+            ends = [(each.status, each.time_s) for each in (before, outcome)]
+            if ends[0] != ends[1] or unlike(before, outcome):
+                gap = math.inf
+            for metric, value in outcome.metrics.items():
+                off = abs((value or 0.0) - (before.metrics.get(metric) or 0.0))
+                whole = max(abs(each.metrics.get(metric) or 0.0) for each in first.outcomes)
+                gap = max(gap, off / whole if whole else off)
         said = f"Variant '{variant}' run in another order, without some of the scenes beside it,"
         if gap <= max(_FEW, 4 * coarsest):
             remarks.append(
@@ -165,65 +168,51 @@ def _independence(name: str, seen: Seen) -> Check:
     return Check(name=name, says=says, failures=tuple(failures), remarks=tuple(remarks))
 
 
-def _gap(first: Sequence[Outcome], again: Sequence[Outcome]) -> float:
-    """Return by how much of their size metrics differ at most; infinite for another end."""
-    by_scene, worst = {outcome.scene: outcome for outcome in first}, 0.0 if again else math.inf
-    for b in again:
-        a = by_scene[b.scene]
-        if (a.status, a.time_s) != (b.status, b.time_s) or unlike(a, b):
-            return math.inf
-        for name, value in b.metrics.items():
-            gap = abs((value or 0.0) - (a.metrics.get(name) or 0.0))
-            whole = max(abs(each.metrics.get(name) or 0.0) for each in first)
-            worst = max(worst, gap / whole if whole else gap)
-    return worst
-
-
 def _pairing(name: str, seen: Seen) -> Check:
     """Two arms meet the same conditions in each scene."""
     firsts = list(seen.firsts())
-    sides = [(Side(variant, "correct inputs"), flown) for variant, flown in firsts]
+    sides = [(Side(variant, "correct inputs"), run) for variant, run in firsts]
     faulted = ((variant, seen.of(variant, "faulted")) for variant, _ in firsts)
-    sides += [(Side(variant, "a fault"), flown) for variant, flown in faulted if flown.outcomes]
+    sides += [(Side(variant, "a fault"), run) for variant, run in faulted if run.outcomes]
     (one, base), *others = sides
     mismatches = [
         Mismatch(one, two, a.scene, seen.seed, found)
-        for two, flown in others
-        for a, b in zip(base.outcomes, flown.outcomes, strict=True)
+        for two, run in others
+        for a, b in zip(base.outcomes, run.outcomes, strict=True)
         if (found := unlike(a, b))
     ]
     remedy = "draw what a scene meets by scene and seed, whatever the variant and the fault."
     failures = [
         f"{said[0].upper()}{said[1:].rstrip('.')}; {remedy}" for said in mismatch_words(mismatches)
     ]
-    failures += unproven([outcome for _, flown in firsts for outcome in flown.outcomes])
+    failures += unproven([outcome for _, run in firsts for outcome in run.outcomes])
     says = f"{len(sides)} arms, the same initial states, disturbances and planner noise"
     return Check(name=name, says=says, failures=tuple(failures))
 
 
 def _reads(name: str, seen: Seen) -> Check:
     """What is declared to be read is read."""
-    failures = tuple(unread((v, count) for v, flown in seen.firsts() for count in flown.counts))
-    taps = sum(len({read.tap for read in flown.reads}) for _, flown in seen.firsts())
+    failures = tuple(unread((v, count) for v, run in seen.firsts() for count in run.counts))
+    taps = sum(len({read.tap for read in run.reads}) for _, run in seen.firsts())
     return Check(name=name, says=f"{taps} taps declared and read", failures=failures)
 
 
 def _delivery(name: str, seen: Seen) -> Check:
     """A fault at a tap alters what its consumer gets, and has an effect."""
     failures, remarks, altered, dt_s = list[str](), list[str](), 0, seen.system.control_dt_s
-    alone = {key: flown for key, flown in seen.flights.items() if key[1] == "tap"}
-    for (variant, _, tap), flown in alone.items():
+    alone = {key: run for key, run in seen.runs.items() if key[1] == "tap"}
+    for (variant, _, tap), run in alone.items():
         said = f"Tap {tap[0]} -> {tap[1]} of variant '{variant}', faulted in {len(seen.scenes)} "
         said += "trials,"
-        here = [read for read in flown.reads if read.tap == tap]
+        here = [read for read in run.reads if read.tap == tap]
         count = sum(read.given[scene] != read.got[scene] for read in here for scene in read.given)
         altered += count
         first = seen.of(variant, "first")
         then = first.readings(dt_s)
-        now = {key: value for key, value in flown.readings(dt_s).items() if key in then}
-        ends = tuple(replace(each, struck_steps=0, altered_steps=0) for each in flown.outcomes)
-        if flown.blames == name:
-            failures.append(f"{said} is not reached: {flown.error}.")
+        now = {key: value for key, value in run.readings(dt_s).items() if key in then}
+        ends = tuple(replace(each, struck_steps=0, altered_steps=0) for each in run.outcomes)
+        if run.blames == name:
+            failures.append(f"{said} is not reached: {run.error}.")
         elif not here:
             failures.append(
                 f"{said} delivered nothing, though it did without the fault; deliver at every "
@@ -235,7 +224,7 @@ def _delivery(name: str, seen: Seen) -> Check:
                 "can change."
             )
         elif (
-            not flown.error
+            not run.error
             and all(then[key] == value for key, value in now.items())
             and not (ends and difference(first.outcomes, Done(ends, ())))
         ):
@@ -252,8 +241,8 @@ def _readings(name: str, seen: Seen) -> Check:
     """Each source gives finite numbers of its unit; taps refuse other shapes by themselves."""
     failures: dict[str, str] = {}
     spans: dict[str, tuple[float, float]] = {}
-    for variant, flown in seen.firsts():
-        for read in flown.reads:
+    for variant, run in seen.firsts():
+        for read in run.reads:
             if read.lost:
                 failures.setdefault(
                     read.source,

@@ -1,28 +1,29 @@
-"""Running an arm once more and recording, as named signals, what its taps and its plant say.
+"""What an arm's taps and its plant say while it runs: who read what, and named signals.
 
 Nothing that runs knows of it: an observer sees what taps deliver, and the plant of a loop senses
-what it senses. Recorded are small arrays of numbers: what a source held, what a consumer got where
+what it senses. Signals are small arrays of numbers: what a source held, what a consumer got where
 a fault changed it, by how much, and when a fault was in force.
 """
 
-import copy
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
+from hashlib import blake2b
 from typing import Any, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 from typing_extensions import override
 
 from faultpath.core.arrays import is_array, to_numpy
 from faultpath.core.error_source import described
 from faultpath.core.errors import SystemMistake
-from faultpath.interface import Interface, Provenance
-from faultpath.loop import Loop, Observer, Query, Reading, Tap
-from faultpath.trials import Arm, LoopSystem, Outcome, System
-from faultpath.trials.attempt import Done, Raised, Wrong, attempt
-from faultpath.trials.execution.worker import Job, building
+from faultpath.core.results import Result
+from faultpath.interface import Provenance
+from faultpath.loop import Observer, Query, Reading, Tap
+from faultpath.trials import System
+from faultpath.trials.attempt import Done
 from faultpath.trials.registry import named
 from faultpath.trials.store.signals import IN_FORCE, TOGETHER, Signal
 from faultpath.trials.terms import Recorded
@@ -35,40 +36,99 @@ _MOST_NUMBERS = 9
 """Of a scene's reading, a rotation matrix; images and candidates are no signals."""
 
 
-@dataclass
-class Recording(Observer):
-    """What a run said."""
+class Enough(BaseException):
+    """All steps that were asked for are recorded. No `Exception`: a system may catch those."""
 
-    interface: Interface
-    sources: dict[str, Steps] = field(default_factory=dict[str, Steps])
-    """By source, or by `plant.truth` for what the plant shows to estimators alone."""
-    got: dict[tuple[str, str], Steps] = field(default_factory=dict[tuple[str, str], Steps])
-    """By channel and consumer."""
-    given: dict[tuple[str, str], Steps] = field(default_factory=dict[tuple[str, str], Steps])
-    """What the source had held, where it was delivered."""
-    force: dict[int, Any] = field(default_factory=dict[int, Any])
-    """Scenes in which a fault was in force at some tap."""
-    queries: dict[str, dict[int, Query]] = field(default_factory=dict[str, dict[int, Query]])
-    """By source: what could be asked at a step."""
-    asked: dict[str, Any] = field(default_factory=dict[str, Any])
-    """By source: the first thing that was asked of it."""
+
+class Read(Result):
+    """What one consumer got of one channel in one control step."""
+
+    step: int
+    consumer: str
+    channel: str
+    source: str
+    valid_step: int
+    """Step of the reading: before `step` for what is late, held or read of the past; -1 is what
+    the source held before the first step."""
+    asks: int = 0
+    """Answers that the consumer got of a query."""
+    altered_by: tuple[str, ...] = ()
+    """Faults at the tap, where what was delivered differs from the reading."""
+    dtype: str = Field(default="", exclude=True)
+    low: float = Field(default=math.inf, exclude=True)
+    high: float = Field(default=-math.inf, exclude=True)
+    """Of the finite numbers of all scenes."""
+    lost: str = Field(default="", exclude=True)
+    """A scene with a number that is not finite."""
+    given: Mapping[str, bytes] = Field(default={}, exclude=True)
+    """A digest of what the source held, by scene."""
+    got: Mapping[str, bytes] = Field(default={}, exclude=True)
+    """A digest of what the consumer got, by scene."""
+
+    @property
+    def tap(self) -> tuple[str, str]:
+        """Channel and consumer."""
+        return self.channel, self.consumer
+
+
+class Recording(Observer):
+    """What the taps of a run deliver.
+
+    Args:
+        scenes: Of the run, for the digests of its reads; none where only signals are wanted.
+        steps: After so many it raises `Enough`; `None`: never.
+    """
+
+    def __init__(self, scenes: Sequence[str] = (), steps: int | None = None) -> None:
+        self._scenes, self._steps = scenes, steps
+        self.reads: dict[tuple[int, str, str], Read] = {}
+        """By step, channel and consumer, in the order in which they happened."""
+        self.sources: dict[str, Steps] = {}
+        """By source, or by `plant.truth` for what the plant shows to estimators alone."""
+        self.got: dict[tuple[str, str], Steps] = {}
+        """By channel and consumer."""
+        self.given: dict[tuple[str, str], Steps] = {}
+        """What the source had held, where it was delivered."""
+        self.force: dict[int, Any] = {}
+        """Scenes in which a fault was in force at some tap."""
+        self.queries: dict[str, dict[int, Query]] = {}
+        """By source: what could be asked at a step."""
+        self.asked: dict[str, Any] = {}
+        """By source: the first thing that was asked of it."""
 
     @override
     def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
+        if self._steps is not None and step >= self._steps:
+            raise Enough
+        key = step, tap.channel, tap.consumer
+        new = key not in self.reads
+        if new:
+            self.reads[key] = Read(
+                step=step,
+                consumer=tap.consumer,
+                channel=tap.channel,
+                source=reading.source,
+                valid_step=reading.step,
+            )
         if isinstance(reading.value, Query):
             self.queries.setdefault(reading.source, {})[reading.step] = reading.value
             return
+        if new and self._scenes:
+            self._note(key, reading.value, got, asks=0)
         self.source(reading.source, reading.value, reading.step)
         given, had = _numbers(reading.value), _numbers(got)
         if given is not None and had is not None:
-            self.given.setdefault((tap.channel, tap.consumer), {})[step] = given
-            self.got.setdefault((tap.channel, tap.consumer), {})[step] = had
+            self.given.setdefault(key[1:], {})[step] = given
+            self.got.setdefault(key[1:], {})[step] = had
 
     @override
     def answered(
         self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
     ) -> None:
         self.asked.setdefault(tap.source, request)
+        if self._scenes:
+            key = step, tap.channel, tap.consumer
+            self._note(key, query.value(answer), query.value(got), asks=1)
 
     @override
     def faulted(self, step: int, held: Any) -> None:
@@ -85,76 +145,73 @@ class Recording(Observer):
         if step >= 0 and step not in held and (numbers := _numbers(value)) is not None:
             held[step] = numbers
 
+    def _note(self, key: tuple[int, str, str], given: Any, got: Any, asks: int) -> None:
+        read, values = self.reads[key], to_numpy(given)
+        numbers, finite = values.astype(np.float64), np.isfinite(values)
+        lost = np.flatnonzero(~finite.reshape(len(values), -1).all(axis=1))
+        changed: dict[str, Any] = {
+            "dtype": str(values.dtype),
+            "low": float(np.min(numbers, initial=read.low, where=finite)),
+            "high": float(np.max(numbers, initial=read.high, where=finite)),
+            "lost": self._scenes[lost[0]] if lost.size else read.lost,
+            "asks": read.asks + asks,
+        }
+        for name, before, rows in (
+            ("given", read.given, values),
+            ("got", read.got, to_numpy(got)),
+        ):
+            changed[name] = {
+                scene: blake2b(before.get(scene, b"") + row.tobytes(), digest_size=8).digest()
+                for scene, row in zip(self._scenes, rows, strict=False)
+            }
+        self.reads[key] = read.model_copy(update=changed)
+
+
+def _numbers(value: Any) -> Values | None:
+    if not is_array(value) or math.prod(value.shape[1:]) > _MOST_NUMBERS:
+        return None
+    host = np.array(to_numpy(value))
+    return host.reshape(len(host), -1).astype(np.float64) if host.dtype.kind in "fiub" else None
+
 
 @dataclass(frozen=True)
-class Block:
-    """An arm over some scenes, to be recorded."""
+class Trial(Recorded):
+    """One scene of a recording, while its trial ran."""
 
-    arm: Arm
-    scenes: tuple[str, ...]
+    recording: Recording
+    scene: int
+    steps: int
 
+    @override
+    def held(self, source: str) -> Values:
+        return self.rows(self.recording.sources[source])
 
-@dataclass(frozen=True)
-class RecordedBlock:
-    """What came of it, by scene."""
+    @override
+    def got(self, channel: str, consumer: str) -> Values:
+        return self.rows(self.recording.got[channel, consumer])
 
-    outcomes: tuple[Outcome, ...] = ()
-    signals: tuple[tuple[Signal, ...], ...] = ()
-    error: str = ""
-    """What kept it from its end."""
-
-
-def record(job: Job, block: Block) -> RecordedBlock:
-    """Run in a worker process, which keeps what it has built for the next block."""
-    with building(job) as built:
-        return record_here(built.system, block)
-
-
-def record_here(system: System, block: Block) -> RecordedBlock:
-    """Run with a system that is built."""
-    done, recording = run_recorded(system, block.arm, block.scenes)
-    if not isinstance(done, Done):
-        return RecordedBlock(error=str(done.error))
-    more = named(system.more_signals) if system.more_signals else error_signals
-    beside: list[tuple[Signal, ...]] = more(system, recording, done)
-    pairs = zip(signals(recording, done, system.control_dt_s), beside, strict=True)
-    return RecordedBlock(done.outcomes, tuple(a + b for a, b in pairs))
+    def rows(self, held: Mapping[int, Values]) -> Values:
+        """Return the scene's numbers by step, `[T, P]`, not a number where nothing was noted."""
+        values = np.full((self.steps, next(iter(held.values())).shape[1]), np.nan)
+        for step, rows in held.items():
+            if step < self.steps:
+                values[step] = rows[self.scene]
+        return values
 
 
-def run_recorded(
-    system: System, arm: Arm, scenes: Sequence[str]
-) -> tuple[Done | Raised | Wrong, Recording]:
-    """Run an arm over some scenes and record it; an error comes back as a value."""
-    recording = Recording(system.interface)
-    if not isinstance(system, LoopSystem):
-        return attempt(system, arm, scenes, observer=recording), recording
-    inner = system.loop
-
-    def recorded(variant: str, seed: int | None) -> Loop:
-        loop = inner(variant, seed)
-        plant = copy.copy(loop.graph.plant)
-        sense, step = plant.sense, iter(range(plant.steps + 1))
-
-        def sensed(state: Any) -> Mapping[str, Any]:
-            outputs, now = sense(state), next(step)
-            for name, value in outputs.items():
-                # What a plant shows to estimators alone is named after the plant.
-                shown = plant.name if isinstance(value, Mapping) else name
-                if not isinstance(value, Query):
-                    recording.source(shown, value, now)
-            return outputs
-
-        vars(plant)["sense"] = sensed
-        return replace(loop, graph=replace(loop.graph, plant=plant))
-
-    system = copy.copy(system)
-    vars(system)["loop"] = recorded
-    return attempt(system, arm, scenes, observer=recording), recording
+def trials(recording: Recording, done: Done, dt_s: float) -> list[Trial]:
+    """Return each trial of a recorded run."""
+    steps = (math.ceil(outcome.time_s / dt_s - 1e-6) for outcome in done.outcomes)
+    return [Trial(recording, scene, each) for scene, each in enumerate(steps)]
 
 
-def signals(recording: Recording, done: Done, dt_s: float) -> list[tuple[Signal, ...]]:
-    """Return the signals of each scene, while its trial ran."""
-    interface = recording.interface
+def signals(system: System, recording: Recording, done: Done) -> list[tuple[Signal, ...]]:
+    """Return the signals of each scene, with those that the system adds.
+
+    Beside its own there are, for a system that names two `errors`, these and their sum, unless the
+    variant has not got what they are taken from; `SystemMistake` where they cannot be computed.
+    """
+    interface = system.interface
     topics = {name: channel.name for channel in interface.channels for name in channel.sources}
     units = {source.name: source.unit for source in interface.sources}
     fed = {channel.name: channel.sources[0] for channel in interface.channels}
@@ -181,35 +238,34 @@ def signals(recording: Recording, done: Done, dt_s: float) -> list[tuple[Signal,
             for step, mask in recording.force.items()
         }
         found.append((IN_FORCE, IN_FORCE, "1", force))
+    every = trials(recording, done, system.control_dt_s)
+    if system.more_signals:
+        more: list[tuple[Signal, ...]] = named(system.more_signals)(system, recording, done)
+    else:
+        more = [_error_signals(system, trial) for trial in every]
     return [
         tuple(
-            Signal(name, topic, unit, laid_out(held, at, steps).astype(np.float32))
+            Signal(name, topic, unit, trial.rows(held).astype(np.float32))
             for name, topic, unit, held in found
             if held
         )
-        for at, steps in enumerate(steps_of(done, dt_s))
+        + beside
+        for trial, beside in zip(every, more, strict=True)
     ]
 
 
-def error_signals(system: System, recording: Recording, done: Done) -> list[tuple[Signal, ...]]:
-    """Return the two errors that a system names and their sum, of each scene.
-
-    None where the variant has not got what they are taken from.
-    """
+def _error_signals(system: System, trial: Trial) -> tuple[Signal, ...]:
     errors = system.errors
-    found: list[tuple[Signal, ...]] = []
-    for scene, steps in enumerate(steps_of(done, system.control_dt_s)):
-        trial = _Trial(recording, scene, steps)
-        try:
-            terms = {term.words: term.of(trial) for term in errors.terms} if errors else {}
-            found.append(added(errors.words, errors.unit, terms) if errors else ())
-        except KeyError:
-            found.append(())
-        except Exception as error:
-            raise SystemMistake(
-                f"system '{system.name}': its `errors` cannot be computed ({described(error)})"
-            ) from error
-    return found
+    if errors is None:
+        return ()
+    try:
+        return added(errors.words, errors.unit, {t.words: t.of(trial) for t in errors.terms})
+    except KeyError:
+        return ()
+    except Exception as error:
+        raise SystemMistake(
+            f"system '{system.name}': its `errors` cannot be computed ({described(error)})"
+        ) from error
 
 
 def added(topic: str, unit: str, terms: Mapping[str, Values]) -> tuple[Signal, ...]:
@@ -219,42 +275,3 @@ def added(topic: str, unit: str, terms: Mapping[str, Values]) -> tuple[Signal, .
         Signal(name, topic, unit, np.asarray(values, np.float32).reshape(len(together), 1))
         for name, values in {**terms, TOGETHER: together}.items()
     )
-
-
-@dataclass(frozen=True)
-class _Trial(Recorded):
-    """One scene of what was recorded."""
-
-    recording: Recording
-    scene: int
-    steps: int
-
-    @override
-    def held(self, source: str) -> Values:
-        return laid_out(self.recording.sources[source], self.scene, self.steps)
-
-    @override
-    def got(self, channel: str, consumer: str) -> Values:
-        return laid_out(self.recording.got[channel, consumer], self.scene, self.steps)
-
-
-def steps_of(done: Done, dt_s: float) -> list[int]:
-    """Return how many control steps each trial took."""
-    return [math.ceil(outcome.time_s / dt_s - 1e-6) for outcome in done.outcomes]
-
-
-def laid_out(held: Mapping[int, Values], scene: int, steps: int) -> Values:
-    """Return a scene's numbers by step, `[T, P]`, not a number where nothing was noted."""
-    parts = next(iter(held.values())).shape[1]
-    values = np.full((steps, parts), np.nan)
-    for step, rows in held.items():
-        if step < steps:
-            values[step] = rows[scene]
-    return values
-
-
-def _numbers(value: Any) -> Values | None:
-    if not is_array(value) or math.prod(value.shape[1:]) > _MOST_NUMBERS:
-        return None
-    host = np.array(to_numpy(value))
-    return host.reshape(len(host), -1).astype(np.float64) if host.dtype.kind in "fiub" else None

@@ -6,24 +6,9 @@ from faultpath.core.errors import UserError
 from faultpath.core.results import Result
 from faultpath.core.text import unknown
 from faultpath.faults import AnyFault
-from faultpath.systems.checks.flights import Flight, fly_here
+from faultpath.systems.checks.blocks import Block, run_block
+from faultpath.systems.checks.recording import Read
 from faultpath.trials import Arm, LoopSystem, System, SystemSpec, library_of
-
-
-class TracedRead(Result):
-    """One read: a consumer, a channel and a control step."""
-
-    step: int
-    consumer: str
-    channel: str
-    source: str
-    valid_step: int
-    """Step of the reading: before `step` for what is late, held or read of the past; -1 is what
-    the source held before the first step."""
-    asks: int = 0
-    """Answers that the consumer got of a query."""
-    altered_by: tuple[str, ...] = ()
-    """Faults at the tap, where what was delivered differs from the reading."""
 
 
 class TraceReport(Result):
@@ -38,7 +23,7 @@ class TraceReport(Result):
     seed: int
     steps: int
     fault: str = ""
-    reads: tuple[TracedRead, ...]
+    reads: tuple[Read, ...]
     """In the order in which they happened."""
     reconstructed: dict[str, tuple[str, tuple[str, ...]]]
     """Source to the module that reconstructs it and the channels that this one read."""
@@ -73,13 +58,11 @@ def trace_system(
     faults = () if fault is None else fault.resolved(system.interface, consumers)
     if fault is not None and not faults:
         raise UserError(f"the fault ({fault.describe()}) reaches nobody in variant '{variant}'.")
-    flown = fly_here(
-        system,
-        Flight("trace", Arm(variant=variant, faults=faults, seed=seed), (chosen,), steps),
-    )
-    if flown.error and not flown.reads:
-        raise UserError(f"variant '{variant}' does not run: {flown.error}")
-    read = {each.tap for each in flown.reads}
+    arm = Arm(variant=variant, faults=faults, seed=seed)
+    run = run_block(system, Block(arm, (chosen,), steps=steps))
+    if run.error and not run.reads:
+        raise UserError(f"variant '{variant}' does not run: {run.error}")
+    read = {each.tap for each in run.reads}
     findings = tuple(
         f"Variant '{variant}' declares that {consumer} reads '{channel.name}', but in the first "
         f"{steps} steps it did not; trace more --steps, or take it out of the variant's consumers."
@@ -87,18 +70,26 @@ def trace_system(
         for consumer in channel.consumers
         if consumer in consumers and (channel.name, consumer) not in read
     )
-    if flown.error:
-        findings = (f"The run ended early: {flown.error}.",)
+    if run.error:
+        findings = (f"The run ended early: {run.error}.",)
     words = {
         (each.channel, consumer): each.intervention.words()
         for each in faults
         for consumer in each.consumers
     }
-    sources = {each.source for each in flown.reads}
+    sources = {each.source for each in run.reads}
+    readers: dict[str, list[str]] = {}
+    for each in run.reads:
+        readers.setdefault(each.consumer.partition(".")[0], []).append(each.channel)
     permitted = {
         each.consumer: each.source
-        for each in flown.reads
+        for each in run.reads
         if each.source in system.variants[variant].privileged
+    }
+    reconstructed = {
+        source: (module, tuple(dict.fromkeys(readers.get(module, ()))))
+        for module, source in system.interface.reconstructions
+        if source in sources
     }
     modules = system.modules(variant, None) if isinstance(system, LoopSystem) else ()
     return TraceReport(
@@ -111,31 +102,12 @@ def trace_system(
         steps=steps,
         fault="" if fault is None else fault.describe(),
         reads=tuple(
-            TracedRead(
-                step=each.step,
-                consumer=each.consumer,
-                channel=each.channel,
-                source=each.source,
-                valid_step=each.valid_step,
-                asks=each.asks,
-                altered_by=(words[each.tap],) if each.given != each.got else (),
-            )
-            for each in flown.reads
+            each.model_copy(update={"altered_by": (words[each.tap],)})
+            if each.given != each.got
+            else each
+            for each in run.reads
         ),
-        reconstructed={
-            source: (
-                module,
-                tuple(
-                    dict.fromkeys(
-                        each.channel
-                        for each in flown.reads
-                        if each.consumer.partition(".")[0] == module
-                    )
-                ),
-            )
-            for module, source in system.interface.reconstructions
-            if source in sources
-        },
+        reconstructed=reconstructed,
         privileged=(
             *(
                 f"{consumer} reads '{source}', which is privileged, by permission of the variant."

@@ -1,10 +1,9 @@
-"""What a heard flight of the quadrotor says: it is the flight, and its errors are the paper's."""
+"""What a recorded flight of the quadrotor says, and that its errors are the paper's."""
 
 import numpy as np
-from faultpath_quadrotor.evidence.signals import quadrotor_signals
 
 from faultpath.faults import parse_fault
-from faultpath.systems.checks.recording import run_recorded, signals
+from faultpath.systems.checks.blocks import Block, run_block
 from faultpath.trials import Arm, SystemSpec, load_system
 from faultpath.trials.attempt import Done, attempt
 from faultpath.trials.execution.again import difference
@@ -13,7 +12,7 @@ from faultpath.trials.store.signals import TOGETHER
 SCENE = ("selection/002",)
 
 
-def test_a_heard_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
+def test_a_recorded_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
     system = load_system(SystemSpec(name="quadrotor", options={"clearance": "true", "wind": "L3"}))
     fault = parse_fault(
         "calibration=+0.1", system.interface, system.fault_presets, system.control_dt_s
@@ -22,16 +21,14 @@ def test_a_heard_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
     told: list[dict[str, np.ndarray]] = []
     for faults in ((), struck):
         arm = Arm(variant="dob", faults=faults)
-        done, heard = run_recorded(system, arm, SCENE)
-        assert isinstance(done, Done)
+        run = run_block(system, Block(arm, SCENE, signals=True))
+        assert run.error == ""
         if faults:
             again = attempt(system, arm, SCENE)
             assert isinstance(again, Done)
-            assert difference(again.outcomes, done) == ""
-        named = signals(heard, done, system.control_dt_s)[0]
-        named += quadrotor_signals(system, heard, done)[0]
-        told.append({each.name: each.values for each in named})
-        trace = done.outcomes[0].trace
+            assert difference(again.outcomes, Done(run.outcomes, ())) == ""
+        told.append({each.name: each.values for each in run.signals[0]})
+        trace = run.outcomes[0].trace
         assert trace is not None
         assert np.array_equal(told[-1]["vehicle.position"], trace[:-1])
     correct, wrong = told

@@ -1,0 +1,180 @@
+"""Blocks of scenes that a check, a trace or a replay runs and records, and what came of them."""
+
+import copy
+import math
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from faultpath.core.error_source import described
+from faultpath.core.errors import UserError
+from faultpath.loop import (
+    FaultedElsewhere,
+    IllegalRead,
+    Loop,
+    MalformedReading,
+    NotDelivered,
+    NotFinite,
+    Query,
+    TapCount,
+    UndeclaredReader,
+)
+from faultpath.systems.checks.recording import Enough, Read, Recording, signals
+from faultpath.trials import Arm, LoopSystem, Outcome, System
+from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
+from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
+from faultpath.trials.execution.worker import Job, building
+from faultpath.trials.store.signals import Signal
+from faultpath.trials.work import Executor
+
+MISTAKES: dict[str, tuple[type[Exception], ...]] = {
+    "declared reads": (UndeclaredReader, IllegalRead),
+    "shape and unit": (MalformedReading, NotFinite),
+    "fault delivery": (NotDelivered, FaultedElsewhere),
+}
+"""What taps refuse, by the check that reports it; all else keeps trials from their end."""
+TRIALS = "trials end"
+
+
+@dataclass(frozen=True)
+class Block:
+    """An arm over some scenes."""
+
+    arm: Arm
+    scenes: tuple[str, ...]
+    why: str = ""
+    steps: int | None = None
+    """After so many it is stopped; `None`: it runs to its end."""
+    tap: tuple[str, str] = ("", "")
+    """The only one that a fault reaches."""
+    signals: bool = False
+    """Whether signals are wanted, and not reads."""
+
+
+@dataclass(frozen=True)
+class RecordedBlock:
+    """What came of a block."""
+
+    outcomes: tuple[Outcome, ...] = ()
+    """One a scene; fewer where it was stopped or an error ended it."""
+    counts: tuple[TapCount, ...] = ()
+    reads: tuple[Read, ...] = ()
+    signals: tuple[tuple[Signal, ...], ...] = ()
+    """Of each scene."""
+    error: str = ""
+    """What stopped it, or kept a scene from its end."""
+    blames: str = ""
+    """The check that reports the error."""
+
+    def readings(self, dt_s: float) -> dict[tuple[str, int, str, str], bytes]:
+        """Return the digest of each reading by scene, step, channel and consumer, while it ran."""
+        ends = {o.scene: math.ceil(o.time_s / dt_s) for o in self.outcomes}
+        return {
+            (scene, read.step, *read.tap): digest
+            for read in self.reads
+            for scene, digest in read.given.items()
+            if read.step < ends.get(scene, read.step + 1)
+        }
+
+
+def run_blocks(
+    executor: Executor,
+    system: System,
+    job: Job,
+    blocks: Iterable[Block],
+    settle: Callable[[Block, RecordedBlock], None],
+) -> None:
+    """Run blocks with a system that is built, or by a job's workers; `settle` gets each result.
+
+    Raises a `UserError` that ended a worker.
+    """
+    waiting = iter(blocks)
+    call = partial(run_block, system) if executor.in_process else partial(_run_there, job)
+
+    def settled(block: Block, reply: RecordedBlock | Died | Wrong) -> None:
+        if isinstance(reply, Wrong):
+            if isinstance(reply.error, UserError):
+                raise reply.error
+            reply = RecordedBlock(error=described(reply.error), blames=TRIALS)
+        elif isinstance(reply, Died):
+            reply = RecordedBlock(error=reply.how, blames=TRIALS)
+        settle(block, reply)
+
+    limit_s = block_limit_s(system, None)
+    dispatch = Dispatch[Block](executor, lambda each: partial(call, each), limit_s, job.system.name)
+    dispatch.run(lambda _: next(waiting, None), settled)
+
+
+def _run_there(job: Job, block: Block) -> RecordedBlock:
+    with building(job) as built:  # a process keeps it for its next block
+        return run_block(built.system, block)
+
+
+def run_block(system: System, block: Block) -> RecordedBlock:
+    """Run with a system that is built, in blocks of its size; an error ends it."""
+    outcomes, counts, reads = list[Outcome](), list[TapCount](), list[Read]()
+    found_signals = list[tuple[Signal, ...]]()
+    error = blames = ""
+    for first in range(0, len(block.scenes), system.block_size):
+        scenes = block.scenes[first : first + system.block_size]
+        recording = Recording(() if block.signals else scenes, block.steps)
+        shown, found = _with_plant(system, recording) if block.signals else system, None
+        with suppress(Enough):
+            found = attempt(shown, block.arm, scenes, observer=recording)
+        reads += () if block.signals else recording.reads.values()
+        if isinstance(found, Done):
+            outcomes += found.outcomes
+            counts += found.taps
+            if block.signals:
+                found_signals += signals(system, recording, found)
+            elif lost := next((o for o in found.outcomes if o.failed), None):
+                error, blames = f"{lost.error} in scene {lost.scene!r}", TRIALS
+        elif isinstance(found, Raised):
+            kind, _, text = found.error.partition(": ")
+            error, blames = found.error, TRIALS
+            if kind == NotFinite.__name__:
+                error, blames = text, "shape and unit"
+        elif isinstance(found, Wrong):
+            error = str(found.error)
+            blamed = (name for name, kinds in MISTAKES.items() if isinstance(found.error, kinds))
+            blames = next(blamed, TRIALS)
+        if error:
+            break
+    return RecordedBlock(
+        () if error else tuple(outcomes),
+        tuple(counts),
+        tuple(reads),
+        tuple(found_signals),
+        error,
+        blames,
+    )
+
+
+def _with_plant(system: System, recording: Recording) -> System:
+    """Return a system whose plant, where it has one, is recorded too."""
+    if not isinstance(system, LoopSystem):
+        return system
+    inner = system.loop
+
+    def recorded(variant: str, seed: int | None) -> Loop:
+        loop = inner(variant, seed)
+        plant = copy.copy(loop.graph.plant)
+        sense, step = plant.sense, iter(range(plant.steps + 1))
+
+        def sensed(state: Any) -> Mapping[str, Any]:
+            outputs, now = sense(state), next(step)
+            for name, value in outputs.items():
+                # What a plant shows to estimators alone is named after the plant.
+                shown = plant.name if isinstance(value, Mapping) else name
+                if not isinstance(value, Query):
+                    recording.source(shown, value, now)
+            return outputs
+
+        vars(plant)["sense"] = sensed
+        return replace(loop, graph=replace(loop.graph, plant=plant))
+
+    system = copy.copy(system)
+    vars(system)["loop"] = recorded
+    return system
