@@ -20,9 +20,10 @@ from faultpath.faults import parse_fault
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import SystemSpec, load_system, system_shown
-from faultpath.trials.store import read_outcomes, read_traces
-from faultpath.trials.store.sealed import seal
+from faultpath.trials.store import read_outcomes
+from faultpath.trials.store.folder import seal
 from faultpath.trials.store.signals import SIGNALS, decode_signals
+from faultpath.trials.store.tables import decode_traces
 
 
 def conclude_all(tell: Callable[[str], None]) -> None:
@@ -69,7 +70,7 @@ def audit(folder: Path) -> DecisionRecord:
             interface=shown.interface,
             variants=shown.variants,
             outcomes=outcomes,
-            traces=Traces(read_traces(folder / TRACES), shown.control_dt_s),
+            traces=Traces(decode_traces((folder / TRACES).read_bytes()), shown.control_dt_s),
             plans=shown.plans,
             signals=decode_signals((folder / SIGNALS).read_bytes()) if kept else {},
         ),

@@ -25,8 +25,7 @@ from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.trials import SystemSpec, library_of, load_system
 from faultpath.trials.question import MapQuestion
 from faultpath.trials.store import read_outcomes
-from faultpath.trials.store.folder import OUTCOMES
-from faultpath.trials.store.sealed import seal
+from faultpath.trials.store.folder import OUTCOMES, seal
 
 TAKEN = (*MADE_FROM, "provenance.json")
 PICTURES = {"map": map_picture, "correlation": correlation_picture}

@@ -18,11 +18,11 @@ from faultpath.interface import read_interface
 from faultpath.learning.model_card import read_card
 from faultpath.learning.record import FitRecord
 from faultpath.systems.flightlog import read_columns, read_flight
-from faultpath.trials.store import RunFolder, read_outcomes, read_traces
+from faultpath.trials.store import RunFolder, read_outcomes
 from faultpath.trials.store.atomic import locked
+from faultpath.trials.store.folder import read_regular
 from faultpath.trials.store.manifest import read_manifest
-from faultpath.trials.store.parquet import Unreadable, rows_in
-from faultpath.trials.store.sealed import read_regular
+from faultpath.trials.store.parquet import Unreadable
 
 Read = Callable[[Path], object]
 
@@ -67,11 +67,9 @@ READERS: dict[str, tuple[str, Read]] = {
     "manifest": ("manifest.json", read_manifest),
     "any file of a run": ("record.json", read_regular),
     "outcomes": ("outcomes.parquet", read_outcomes),
-    "traces": ("traces.parquet", read_traces),
     "evidence": ("evidence.parquet", _evidence),
     "reproduction": ("reproduction.json", lambda path: read_results(path.parent)),
     "shard": ("shards/key-digest.parquet", _shard),
-    "length of a table": ("table.parquet", rows_in),
 }
 """By what it reads: the name of the file, and the reader."""
 

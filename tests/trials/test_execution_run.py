@@ -11,7 +11,8 @@ from faultpath.core.errors import UserError
 from faultpath.loop import NotDelivered, UndeclaredReader
 from faultpath.trials.arm import Arm, Row, Study
 from faultpath.trials.execution import RunResult, run_study
-from faultpath.trials.store import read_outcomes, read_traces
+from faultpath.trials.store import read_outcomes
+from faultpath.trials.store.tables import decode_traces
 from faultpath.trials.table import TrialRow
 from faultpath.trials.work import Progress
 
@@ -65,7 +66,7 @@ def test_the_tables_read_back(whole):
     result, folder = whole
     table = read_outcomes(folder / "outcomes.parquet")
     assert _comparable(table.rows) == _comparable(result.outcomes.rows)
-    traces = read_traces(folder / "traces.parquet")
+    traces = decode_traces((folder / "traces.parquet").read_bytes())
     assert traces.keys() == result.traces.keys()
     assert len(traces) == len(table.rows)
     for address, trace in traces.items():

@@ -12,7 +12,7 @@ from faultpath.loop import TapCount
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.code import CodeState
 from faultpath.trials.outcome import Outcome, Status
-from faultpath.trials.store import FORMAT, Manifest, RunFolder, Shard, read_outcomes, read_traces
+from faultpath.trials.store import FORMAT, Manifest, RunFolder, Shard, read_outcomes
 from faultpath.trials.store.tables import encode_shard
 
 
@@ -185,6 +185,6 @@ def test_what_a_killed_writer_left_is_swept(folder):
 def test_tables_that_cannot_be_read_say_so(folder, tmp_path):
     with pytest.raises(UserError, match=r"outcomes\.parquet"):
         read_outcomes(folder.outcomes)
-    (tmp_path / "traces.parquet").write_bytes(b"PAR1 nothing PAR1")
+    (tmp_path / "outcomes.parquet").write_bytes(b"PAR1 nothing PAR1")
     with pytest.raises(UserError, match="damaged"):
-        read_traces(tmp_path / "traces.parquet")
+        read_outcomes(tmp_path / "outcomes.parquet")

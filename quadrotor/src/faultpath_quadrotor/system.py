@@ -14,7 +14,7 @@ from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.loop import Deliverer, Loop, Module, Plant
 from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
-from faultpath.trials.metrics import VEHICLE
+from faultpath.trials.outcome import VEHICLE
 from faultpath_quadrotor import native
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.choices import ClearanceName, DeviceName, calibration, noisy_state

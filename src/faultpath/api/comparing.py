@@ -11,7 +11,7 @@ from faultpath.core.errors import UserError
 from faultpath.report.compared import Compared, differing, together
 from faultpath.report.comparison import headline, page, sentences
 from faultpath.trials.store import write_text
-from faultpath.trials.store.sealed import read_regular
+from faultpath.trials.store.folder import read_regular
 
 
 @dataclass(frozen=True, repr=False, eq=False)

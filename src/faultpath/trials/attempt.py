@@ -91,7 +91,17 @@ def attempt(
     """
     try:
         taps = taps_of(system, arm, scenes, guard, observer)
-        outcomes, counts = _run(system, arm, scenes, taps)
+        outcomes = _checked(system, scenes, system.run(arm.variant, scenes, taps, arm.seed))
+        dt_s = system.control_dt_s
+        steps = [0 if o.failed else math.ceil(o.time_s / dt_s - 1e-6) for o in outcomes]
+        taps.verify(np.array(steps, dtype=np.int64) - 1)
+        receipts = taps.receipts()
+        counts = zip(receipts.steps_faulted, receipts.steps_altered, strict=True)
+        noted = tuple(
+            replace(outcome, struck_steps=int(faulted), altered_steps=int(altered))
+            for outcome, (faulted, altered) in zip(outcomes, counts, strict=True)
+        )
+        return Done(noted, receipts.counts())
     except UserError as error:
         return Wrong(located(error))
     except SystemExit as error:
@@ -102,29 +112,9 @@ def attempt(
         if isinstance(error, ValueError) and "read-only" in said:
             said += " (what a tap delivers cannot be written to: copy it first)"
         return Raised(said, traceback.format_exc())
-    return Done(outcomes, counts)
 
 
-def _run(
-    system: System, arm: Arm, scenes: Sequence[str], taps: Taps
-) -> tuple[tuple[Outcome, ...], tuple[TapCount, ...]]:
-    outcomes = _outcomes(system, scenes, system.run(arm.variant, scenes, taps, arm.seed))
-    dt_s = system.control_dt_s
-    steps = [0 if o.failed else math.ceil(o.time_s / dt_s - 1e-6) for o in outcomes]
-    taps.verify(np.array(steps, dtype=np.int64) - 1)
-    receipts = taps.receipts()
-    noted = tuple(
-        replace(
-            outcome,
-            struck_steps=int(receipts.steps_faulted[i]),
-            altered_steps=int(receipts.steps_altered[i]),
-        )
-        for i, outcome in enumerate(outcomes)
-    )
-    return noted, receipts.counts()
-
-
-def _outcomes(system: System, scenes: Sequence[str], returned: object) -> tuple[Outcome, ...]:
+def _checked(system: System, scenes: Sequence[str], returned: object) -> list[Outcome]:
     several = isinstance(returned, Iterable)
     found = list(cast("Iterable[Any]", returned)) if several else []
     odd = [type(each).__name__ for each in found if not isinstance(each, Outcome)]
@@ -139,4 +129,4 @@ def _outcomes(system: System, scenes: Sequence[str], returned: object) -> tuple[
             f"system {system.name!r} was asked for scenes {list(scenes)} and returned outcomes of "
             f"{said}: run() returns one for each, in order"
         )
-    return tuple(checked(outcome, system.metrics) for outcome in found)
+    return [checked(outcome, system.metrics) for outcome in found]

@@ -12,8 +12,7 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.interface import Interface
 from faultpath.loop.taps import wire
 from faultpath.trials.declared import Library, Variant, check_name, shown
-from faultpath.trials.metrics import Metric
-from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.outcome import Metric, Outcome, Status
 from faultpath.trials.system import System
 
 UNNAMED = ("held-out", "selection")

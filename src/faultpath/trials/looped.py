@@ -59,16 +59,17 @@ class LoopSystem(System):
         for name, wiring in self.wirings.items():
             parts = self._graph(name, None)
             bound = {parts.bindings[port.channel] for part in parts.parts for port in part.ports}
+            privileged = [
+                source
+                for source in bound
+                if self.interface.source(source).provenance is Provenance.PRIVILEGED
+            ]
             found[name] = Variant(
-                name=name,
-                description=wiring.description,
-                consumers=consumers(parts.parts),
-                bindings=wiring.bindings,
-                privileged=frozenset(
-                    source
-                    for source in bound
-                    if self.interface.source(source).provenance is Provenance.PRIVILEGED
-                ),
+                name,
+                wiring.description,
+                consumers(parts.parts),
+                wiring.bindings,
+                frozenset(privileged),
             )
         return found
 
@@ -97,43 +98,34 @@ class LoopSystem(System):
         for instant in loop.execute(batch, taps):
             state = instant.state
             path.append(plant.position(state))
-        hashes = [each.noise_hashes(batch) for each in loop.graph.modules]
-        drawn = [each for each in hashes if each is not None]
+        drawn = [h for part in loop.graph.modules if (h := part.noise_hashes(batch)) is not None]
         noise = ["-".join(each) for each in zip(*drawn, strict=True)] or ["none"] * len(scenes)
-        return _outcomes(plant, state, batch, path, noise)
+        # Reading the end of the trials waits for the plant's device, once a batch.
+        end = plant.progress(state)
+        initial, disturbed = plant.conditions(state)
+        succeeded, crashed, times = map(to_numpy, (end.succeeded, end.crashed, end.time_s))
+        metrics = {name: to_numpy(values) for name, values in end.metrics.items()}
+        traced = path[0] is not None
+        traces = to_numpy(namespace(path[0]).stack(path)) if traced else None
+        outcomes: list[Outcome] = []
+        for i, scene in enumerate(batch.scenes):
+            time_s = float(times[i])
+            status = Status.SUCCESS if succeeded[i] else Status.TIMEOUT
+            instants = int(np.ceil(time_s / batch.dt_s - 1e-6)) + 1
+            outcomes.append(
+                Outcome(
+                    scene=scene,
+                    status=Status.CRASH if crashed[i] else status,
+                    time_s=time_s,
+                    initial_hash=initial[i],
+                    disturbance_hash=disturbed[i],
+                    planner_noise_hash=noise[i],
+                    metrics={name: float(values[i]) for name, values in metrics.items()},
+                    trace=None if traces is None else traces[:instants, i].astype(np.float32),
+                )
+            )
+        return outcomes
 
     def _graph(self, variant: str, seed: int | None) -> Graph:
         bindings = self.wirings[variant].bindings
         return graph(self.interface, self.plant(), self.modules(variant, seed), bindings)
-
-
-def _outcomes(
-    plant: Plant, state: object, batch: Batch, path: Sequence[Array], noise: Sequence[str]
-) -> list[Outcome]:
-    """Read the end of the trials off the plant; this waits for its device, once a batch."""
-    end = plant.progress(state)
-    initial, disturbed = plant.conditions(state)
-    succeeded, crashed, times = (
-        to_numpy(part) for part in (end.succeeded, end.crashed, end.time_s)
-    )
-    metrics = {name: to_numpy(values) for name, values in end.metrics.items()}
-    there = path[0] is not None
-    traces = to_numpy(namespace(path[0]).stack(list(path))) if there else None
-    outcomes: list[Outcome] = []
-    for i, scene in enumerate(batch.scenes):
-        time_s = float(times[i])
-        status = Status.SUCCESS if succeeded[i] else Status.TIMEOUT
-        instants = int(np.ceil(time_s / batch.dt_s - 1e-6)) + 1
-        outcomes.append(
-            Outcome(
-                scene=scene,
-                status=Status.CRASH if crashed[i] else status,
-                time_s=time_s,
-                initial_hash=initial[i],
-                disturbance_hash=disturbed[i],
-                planner_noise_hash=noise[i],
-                metrics={name: float(values[i]) for name, values in metrics.items()},
-                trace=None if traces is None else traces[:instants, i].astype(np.float32),
-            )
-        )
-    return outcomes

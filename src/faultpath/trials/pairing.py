@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
+from itertools import compress, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +42,7 @@ class Trials:
 
     success: Bools
     crash: Bools
+    failed: Bools
     time_s: Floats
     metrics: Mapping[str, Floats]
     """Those that all of the trials have."""
@@ -51,6 +52,7 @@ class Trials:
         return Trials(
             self.success[keep],
             self.crash[keep],
+            self.failed[keep],
             self.time_s[keep],
             {name: values[keep] for name, values in self.metrics.items()},
         )
@@ -90,47 +92,34 @@ def mismatch_words(mismatches: Iterable[Mismatch]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class Ended:
-    """How all trials of one side ended, void pairs included; every array is `[scenes, seeds]`."""
-
-    success: Bools
-    failed: Bools
-
-
-@dataclass(frozen=True)
 class Pairs:
     """Paired trials without the void ones.
 
     A pair is void where a trial failed, or where the two met different conditions. A scene with a
     void pair in any seed is left out whole, so that the arrays stay rectangular and every seed is
-    seen over the same scenes; `void` counts the pairs and `void_scenes` names what was left out.
+    seen over the same scenes; `void` counts the pairs.
     """
 
     scenes: tuple[str, ...]
     scene_indices: tuple[int, ...]
-    topologies: tuple[str, ...]
     seeds: tuple[int, ...]
     first: Trials
     second: Trials
     void: int
-    void_scenes: tuple[str, ...]
     all_scenes: tuple[str, ...]
-    ended: tuple[Ended, Ended]
-    """Of both sides, over `all_scenes`."""
+    ended: tuple[Trials, Trials]
+    """Of both sides, over `all_scenes`, void pairs included."""
     mismatches: tuple[Mismatch, ...] = ()
     """The pairs that are void because their trials met different conditions."""
 
-    def only(self, scenes: Sequence[str]) -> "Pairs":
+    def only(self, scenes: Iterable[str]) -> "Pairs":
         """Return the pairs of `scenes`, to cut several contrasts to what all of them have."""
         wanted = set(scenes)
-        kept = [i for i, scene in enumerate(self.scenes) if scene in wanted]
-        keep = np.zeros(len(self.scenes), dtype=np.bool_)
-        keep[kept] = True
+        keep = np.array([scene in wanted for scene in self.scenes], dtype=np.bool_)
         return replace(
             self,
-            scenes=tuple(self.scenes[i] for i in kept),
-            scene_indices=tuple(self.scene_indices[i] for i in kept),
-            topologies=tuple(self.topologies[i] for i in kept),
+            scenes=tuple(compress(self.scenes, keep)),
+            scene_indices=tuple(compress(self.scene_indices, keep)),
             first=self.first.only(keep),
             second=self.second.only(keep),
         )
@@ -153,59 +142,45 @@ def pair(
     same seeds and scenes.
     """
     seeds = table.seeds(first.variant, first.path) if seeds is None else tuple(seeds)
-
-    def arm(side: Side, seed: int) -> tuple[TrialRow, ...]:
+    if not seeds:
+        raise PairingRefused(f"cannot pair {first} with {second}: the table has no trial of it")
+    ones, twos = list[tuple[TrialRow, ...]](), list[tuple[TrialRow, ...]]()
+    every: list[str] = []
+    for seed, (side, arms) in product(seeds, ((first, ones), (second, twos))):
         try:
-            return table.arm(side.variant, side.path, seed)
+            arm = table.arm(side.variant, side.path, seed)
         except KeyError:
             raise PairingRefused(f"the table has no trial of {side} with seed {seed}") from None
-
-    ones, twos = ([arm(side, seed) for seed in seeds] for side in (first, second))
-    if not ones:
-        raise PairingRefused(f"cannot pair {first} with {second}: the table has no trial of it")
-    for seed, one, two in zip(seeds, ones, twos, strict=True):
-        _check_scenes(ones[0], one, first, first, seed)
-        _check_scenes(one, two, first, second, seed)
+        arms.append(arm)
+        scenes = [row.outcome.scene for row in arm]
+        every = every or scenes
+        if scenes != every:
+            odd = sorted(set(scenes) ^ set(every)) or every
+            raise PairingRefused(
+                f"cannot pair {first} with {second} (seed {seed}): they ran in different scenes, "
+                f"for example {odd[0]!r}"
+            )
+    ended = _trials(ones), _trials(twos)
+    void = ended[0].failed | ended[1].failed
     hashes = [name for name in _HASHES if name != "planner_noise_hash" or not other_noise]
     mismatches: list[Mismatch] = []
-    ends = [
-        Ended(_flags(arms, Status.SUCCESS), _flags(arms, Status.FAILED)) for arms in (ones, twos)
-    ]
-    void = ends[0].failed | ends[1].failed
     for at, (seed, one, two) in enumerate(zip(seeds, ones, twos, strict=True)):
         for scene, (a, b) in enumerate(zip(one, two, strict=True)):
             if found := unlike(a.outcome, b.outcome, hashes):
                 mismatches.append(Mismatch(first, second, a.outcome.scene, seed, found))
                 void[scene, at] = True
     keep: Bools = np.asarray(~void.any(axis=1), dtype=np.bool_)
-    every = [row.outcome.scene for row in ones[0]]
-    kept = [row for row, stays in zip(ones[0], keep, strict=True) if stays]
     return Pairs(
-        scenes=tuple(row.outcome.scene for row in kept),
-        scene_indices=tuple(row.scene_index for row in kept),
-        topologies=tuple(row.topology for row in kept),
+        scenes=tuple(compress(every, keep)),
+        scene_indices=tuple(row.scene_index for row in compress(ones[0], keep)),
         seeds=tuple(seeds),
-        first=_trials(ones, keep),
-        second=_trials(twos, keep),
+        first=_trials([tuple(compress(arm, keep)) for arm in ones]),
+        second=_trials([tuple(compress(arm, keep)) for arm in twos]),
         void=int(void.sum()),
-        void_scenes=tuple(s for s, stays in zip(every, keep, strict=True) if not stays),
-        mismatches=tuple(mismatches),
         all_scenes=tuple(every),
-        ended=(ends[0], ends[1]),
+        ended=ended,
+        mismatches=tuple(mismatches),
     )
-
-
-def _check_scenes(
-    one: Sequence[TrialRow], two: Sequence[TrialRow], first: Side, second: Side, seed: int
-) -> None:
-    left = [row.outcome.scene for row in one]
-    right = [row.outcome.scene for row in two]
-    if left != right:
-        odd = sorted(set(left) ^ set(right)) or left
-        raise PairingRefused(
-            f"cannot pair {first} with {second} (seed {seed}): they ran in different scenes, "
-            f"for example {odd[0]!r}"
-        )
 
 
 def unlike(
@@ -218,20 +193,16 @@ def unlike(
     return tuple((name, one, two) for name, one, two in values if one != two)
 
 
-def _flags(arms: Sequence[Sequence[TrialRow]], status: Status) -> Bools:
-    flags = [[row.outcome.status is status for row in arm] for arm in arms]
-    return np.array(flags, dtype=np.bool_).T
-
-
-def _trials(arms: Sequence[Sequence[TrialRow]], keep: Bools) -> Trials:
-    outcomes = [[r.outcome for r, stays in zip(arm, keep, strict=True) if stays] for arm in arms]
-    return Trials(
-        success=_flags(arms, Status.SUCCESS)[keep],
-        crash=_flags(arms, Status.CRASH)[keep],
-        time_s=np.array([[o.time_s for o in arm] for arm in outcomes], dtype=np.float64).T,
-        metrics={
-            name: np.array(values, dtype=np.float64).T
-            for name in dict.fromkeys(name for arm in outcomes for o in arm for name in o.metrics)
-            if None not in chain(*(values := [[o.metrics.get(name) for o in a] for a in outcomes]))
-        },
+def _trials(arms: Sequence[Sequence[TrialRow]]) -> Trials:
+    outcomes = [[row.outcome for row in arm] for arm in arms]
+    success, crash, failed = (
+        np.array([[o.status is status for o in arm] for arm in outcomes], dtype=np.bool_).T
+        for status in (Status.SUCCESS, Status.CRASH, Status.FAILED)
     )
+    metrics: dict[str, Floats] = {}
+    for name in dict.fromkeys(name for arm in outcomes for o in arm for name in o.metrics):
+        values = [[o.metrics.get(name) for o in arm] for arm in outcomes]
+        if not any(None in arm for arm in values):
+            metrics[name] = np.array(values, dtype=np.float64).T
+    time_s = np.array([[o.time_s for o in arm] for arm in outcomes], dtype=np.float64).T
+    return Trials(success, crash, failed, time_s, metrics)

@@ -3,17 +3,14 @@
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.checks import library_of
 from faultpath.trials.declared import FloorPlan, Library, Pillar, Prism, SceneRef, Variant
-from faultpath.trials.deliveries import Deliveries, RowDeliveries
 from faultpath.trials.looped import LoopSystem, Wiring
-from faultpath.trials.metrics import Metric
 from faultpath.trials.options import Offered, Option
-from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.outcome import Metric, Outcome, Status
 from faultpath.trials.pairing import PairingRefused, Pairs, Side, pair
 from faultpath.trials.registry import load_system, system_options
 from faultpath.trials.shown import SystemShown, VariantShown, system_shown
-from faultpath.trials.system import System
-from faultpath.trials.table import OutcomeTable, TrialRow
-from faultpath.trials.terms import ErrorSum, ErrorTerm
+from faultpath.trials.system import ErrorSum, ErrorTerm, System
+from faultpath.trials.table import Deliveries, OutcomeTable, RowDeliveries, TrialRow
 
 __all__ = [
     "Arm",

@@ -1,17 +1,58 @@
 """The closed loop that an audit runs, as the rest of faultpath sees it."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from os import PathLike
 from types import MappingProxyType
+from typing import Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
 
 from faultpath.faults import AnyFault, FaultPreset, parse_fault
 from faultpath.interface import Interface
 from faultpath.loop import Taps
 from faultpath.trials.declared import FloorPlan, Library, Variant
-from faultpath.trials.metrics import Metric
-from faultpath.trials.outcome import Outcome, Status
-from faultpath.trials.terms import ErrorSum
+from faultpath.trials.outcome import Metric, Outcome, Status
+
+Values: TypeAlias = NDArray[np.float64]
+
+
+class Recorded(Protocol):
+    """What was recorded of one trial, `[T, P]`: a row a control step, not a number where nothing
+    was read. `KeyError` for what the variant has not got."""
+
+    def held(self, source: str) -> Values:
+        """What a source held."""
+        ...
+
+    def got(self, channel: str, consumer: str) -> Values:
+        """What a tap delivered, faults included."""
+        ...
+
+
+@dataclass(frozen=True)
+class ErrorTerm:
+    """The error of one module, believed minus true."""
+
+    words: str
+    """The module, and what it has wrong: `controller: gain`."""
+    of: Callable[[Recorded], Values]
+    """Takes it from a trial, a number a step; a pure function."""
+
+
+@dataclass(frozen=True)
+class ErrorSum:
+    """Two errors that act together: what the system feels is their sum.
+
+    A system that knows of such has one as its attribute `errors`.
+    """
+
+    words: str
+    """What they are errors of: `error of the expected acceleration`."""
+    unit: str
+    terms: tuple[ErrorTerm, ErrorTerm]
 
 
 class System(ABC):

@@ -14,8 +14,7 @@ from faultpath.core.errors import Stopped, UserError
 from faultpath.decisions import RunProvenance
 from faultpath.decisions.tables import markdown
 from faultpath.trials.store import write_text
-from faultpath.trials.store.folder import DELIVERIES
-from faultpath.trials.store.sealed import AGAIN, unseal
+from faultpath.trials.store.folder import AGAIN, DELIVERIES, unseal
 from faultpath.trials.work import Progress
 from faultpath_quadrotor.evidence.table import EvidenceTable
 from faultpath_quadrotor.paper.answers import Reproduction

@@ -24,9 +24,8 @@ from faultpath.trials.store import (
     read_outcomes,
     write_text,
 )
-from faultpath.trials.store.folder import OUTCOMES
+from faultpath.trials.store.folder import OUTCOMES, read_regular, unseal
 from faultpath.trials.store.manifest import keyed
-from faultpath.trials.store.sealed import read_regular, unseal
 from faultpath_quadrotor.evidence.table import (
     EvidenceTable,
     Measurement,

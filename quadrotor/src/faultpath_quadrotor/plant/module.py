@@ -9,7 +9,7 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress, Query
-from faultpath.trials.metrics import VEHICLE
+from faultpath.trials.outcome import VEHICLE
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.device import host_readable
 from faultpath_quadrotor.estimators.protocol import Errors, raw

@@ -11,9 +11,9 @@ from faultpath.core.results import Result
 from faultpath.systems.checks.blocks import MISTAKES, TRIALS, RecordedBlock
 from faultpath.trials import System, Variant
 from faultpath.trials.attempt import Done
-from faultpath.trials.deliveries import unproven, unread
 from faultpath.trials.execution.again import difference
 from faultpath.trials.pairing import Mismatch, Side, mismatch_words, unlike
+from faultpath.trials.table import unproven, unread
 
 _FEW = 1e-12
 """Of a number in double precision: what other orders of a sum leave after some steps."""

@@ -26,7 +26,7 @@ from faultpath.trials import System
 from faultpath.trials.attempt import Done
 from faultpath.trials.registry import named
 from faultpath.trials.store.signals import IN_FORCE, TOGETHER, Signal
-from faultpath.trials.terms import Recorded
+from faultpath.trials.system import Recorded
 
 Values: TypeAlias = NDArray[np.float64]
 Steps: TypeAlias = dict[int, Values]

@@ -12,7 +12,7 @@ from faultpath.core.version import __version__
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store import write_text
-from faultpath.trials.store.sealed import seal
+from faultpath.trials.store.folder import seal
 from faultpath.trials.work import Executor
 
 PROVENANCE = "provenance.json"

@@ -14,7 +14,6 @@ from faultpath.trials.arm import Arm, Study
 from faultpath.trials.attempt import Reply
 from faultpath.trials.checks import library_of
 from faultpath.trials.code import Code
-from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.execution.again import Rechecks
 from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
 from faultpath.trials.execution.schedule import Schedule, Task, Unit, plan
@@ -27,7 +26,7 @@ from faultpath.trials.store.folder import RunFolder
 from faultpath.trials.store.manifest import Manifest
 from faultpath.trials.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.system import System
-from faultpath.trials.table import OutcomeTable, assemble, check_rows, selected
+from faultpath.trials.table import Deliveries, OutcomeTable, assemble, check_rows, selected
 from faultpath.trials.work import Call, Executor, Progress, local
 
 _log = logging.getLogger("faultpath")

@@ -88,13 +88,17 @@ def make_folder(path: Path) -> None:
 
 def sweep(folder: Path) -> None:
     """Remove what killed writers left in a folder. Call it with the folder locked."""
-    for leftover in folder.glob(_PREFIX + "*"):
-        leftover.unlink(missing_ok=True)
+    try:
+        for leftover in folder.glob(_PREFIX + "*"):
+            leftover.unlink(missing_ok=True)
+    except OSError as error:
+        raise _unwritable(folder, error) from error
 
 
 def _unwritable(path: Path, error: OSError) -> UserError:
     return UserError(
-        f"cannot write {path} ({error.strerror}): choose a place that you may write to"
+        f"cannot write {path} ({error.strerror}): choose a place that you may write to and that "
+        "has room"
     )
 
 

@@ -1,29 +1,35 @@
-"""A run on disk."""
+"""A run on disk, and whether its files are still as the run left them.
+
+A run folder may come from anybody and may have been edited by anybody. Its provenance names each
+file that a report is made from with a digest; whoever reads the folder reads all of them, compares,
+and parses the very bytes that it has compared.
+"""
 
 import hashlib
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
-from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.store import atomic
-from faultpath.trials.store.atomic import Say, locked
+from faultpath.trials.store.atomic import Say, locked, make_folder, write_file
 from faultpath.trials.store.manifest import Manifest, check_same, read_manifest
 from faultpath.trials.store.parquet import Unreadable
 from faultpath.trials.store.tables import (
     Shard,
+    decode_outcomes,
     decode_shard,
     encode_outcomes,
     encode_shard,
     encode_traces,
 )
-from faultpath.trials.table import OutcomeTable
+from faultpath.trials.table import Deliveries, OutcomeTable
 
 OUTCOMES, TRACES, DELIVERIES = "outcomes.parquet", "traces.parquet", "deliveries.json"
 """What is assembled at the end of a run."""
+AGAIN = "run it again, into a new folder"
 
 
 class RunFolder:
@@ -54,29 +60,23 @@ class RunFolder:
         `shared` lets studies with other arms use the folder one after the other. `UserError` when
         the folder cannot be written, or holds something else.
         """
-        try:
-            self.path.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise self._unwritable(error) from error
+        make_folder(self.path)
         with locked(self.path, notice):
             found = read_manifest(self.manifest)
             if found is not None:
                 check_same(self.path, found, manifest, shared)
-            try:
-                for folder in (self.shards, self.failures):
-                    folder.mkdir(exist_ok=True)
-                for folder in (self.path, self.shards, self.failures):
-                    atomic.sweep(folder)
-                if found != manifest:
-                    atomic.write(self.manifest, manifest.encode(), self.path)
-            except OSError as error:
-                raise self._unwritable(error) from error
+            for folder in (self.shards, self.failures):
+                make_folder(folder)
+            for folder in (self.path, self.shards, self.failures):
+                atomic.sweep(folder)
+            if found != manifest:
+                self._write(self.manifest, manifest.encode())
             yield
 
     def save_shard(self, key: str, shard: Shard) -> None:
         """Store a finished block. The name carries a digest of the bytes, checked on reading."""
         data = encode_shard(key, shard)
-        path = self.shards / f"{key}-{_digest(data)}.parquet"
+        path = self.shards / f"{key}-{_digest(data)[:32]}.parquet"
         self._write(path, data)
         for other in self.files_of(key):
             if other != path:  # the block as it was before its failed trials were tried again
@@ -96,7 +96,7 @@ class RunFolder:
             except OSError as error:
                 raise UserError(f"{path} cannot be read ({error.strerror}): remove it.") from error
             try:
-                if path.stem != f"{key}-{_digest(data)}":
+                if path.stem != f"{key}-{_digest(data)[:32]}":
                     raise Unreadable("its contents are not those that were written")
                 shard = decode_shard(data, key)
                 if [outcome.scene for outcome in shard.outcomes] != list(scenes):
@@ -127,24 +127,64 @@ class RunFolder:
         self._write(self.deliveries, f"{deliveries.model_dump_json(indent=1)}\n".encode())
         self._write(self.traces, encode_traces(table))
         self._write(self.outcomes, data)
-        return hashlib.sha256(data).hexdigest()
+        return _digest(data)
 
     def files_of(self, key: str) -> list[Path]:
         """Return the files of a finished block."""
         return sorted(self.shards.glob(f"{key}-*.parquet"))
 
     def _write(self, path: Path, data: bytes) -> None:
-        try:
-            atomic.write(path, data, self.path)
-        except OSError as error:
-            raise self._unwritable(error) from error
+        write_file(path, data, self.path)
 
-    def _unwritable(self, error: OSError) -> UserError:
-        return UserError(
-            f"cannot write to {self.path} ({error.strerror}): choose a folder that you may write "
-            "to and that has room"
+
+def read_outcomes(path: Path) -> OutcomeTable:
+    """Read an assembled outcome table (without traces); `UserError` when there is none to read."""
+    try:
+        return decode_outcomes(read_regular(path))
+    except Unreadable as error:
+        raise UserError(f"{path} is damaged ({error}): run the study again to rebuild it") from None
+
+
+def read_regular(path: Path) -> bytes:
+    """Return the contents of a file; `UserError` where there is none to read."""
+    try:
+        return contents(path)
+    except FileNotFoundError:
+        raise UserError(
+            f"{path.parent} holds no {path.name}: give the folder of a finished run."
+        ) from None
+    except OSError as error:
+        raise UserError(
+            f"{path} cannot be read ({error.strerror}): give the folder of a finished run."
+        ) from error
+
+
+def seal(folder: Path, names: Iterable[str]) -> dict[str, str]:
+    """Return the SHA-256 of each file by name."""
+    return {name: _digest(contents(folder / name)) for name in names}
+
+
+def unseal(folder: Path, digests: Mapping[str, str], needed: Iterable[str]) -> dict[str, bytes]:
+    """Return the contents of every file that `digests` names, by name.
+
+    Raises `UserError`, with the names, where one that is needed has no digest, one is missing, or
+    one has another digest: it was changed.
+    """
+    unnamed = [name for name in needed if name not in digests]
+    if unnamed:
+        raise UserError(
+            f"{folder / 'provenance.json'} has no digest of {', '.join(unnamed)}, as if an earlier "
+            f"faultpath had written it: {AGAIN}."
         )
+    found = {name: read_regular(folder / name) for name in digests}
+    changed = [name for name, data in found.items() if _digest(data) != digests[name]]
+    if changed:
+        raise UserError(
+            f"{folder}: {', '.join(changed)} changed since the run, by the SHA-256 in "
+            f"provenance.json: bring back what the run wrote, or {AGAIN}."
+        )
+    return found
 
 
 def _digest(data: bytes) -> str:
-    return hashlib.sha256(data).hexdigest()[:32]
+    return hashlib.sha256(data).hexdigest()

@@ -7,13 +7,10 @@ The bytes depend on the rows and on the version of pyarrow alone.
 # pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 # pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from pathlib import Path
 from typing import Any, TypeAlias
 
 import pyarrow as pa
 import pyarrow.parquet as pq
-
-from faultpath.core.files.opening import opened
 
 TEXT, INTEGER, NUMBER = pa.string(), pa.int64(), pa.float64()
 NUMBERS = pa.list_(pa.float32())
@@ -28,11 +25,11 @@ class Unreadable(Exception):
 
 
 def encode(schema: Schema, rows: Iterable[Row], notes: Mapping[str, str] | None = None) -> bytes:
-    """Return a Parquet file with these columns of `rows`, and `notes` in its metadata."""
+    """Return a Parquet file of `rows`, a column empty where a row lacks it, and of `notes`."""
     columns: dict[str, list[Any]] = {name: [] for name in schema}
     for row in rows:
         for name, values in columns.items():
-            values.append(row[name])
+            values.append(row.get(name))
     table = pa.table({name: pa.array(columns[name], type=kind) for name, kind in schema.items()})
     if notes:
         table = table.replace_schema_metadata(dict(notes))
@@ -50,49 +47,33 @@ def read_table(data: bytes) -> pa.Table:
     return pq.ParquetFile(pa.BufferReader(data), pre_buffer=False).read(use_threads=False)
 
 
-def rows_in(path: Path) -> int:
-    """Return how many rows a Parquet file has, from its footer; `Unreadable` for anything else."""
-    try:
-        with opened(path) as file:
-            return pq.read_metadata(file).num_rows
-    except (pa.ArrowException, OSError) as error:
-        raise Unreadable(str(error)) from error
-
-
-def numbers_in(data: bytes) -> list[str]:
-    """Return the columns of a Parquet file that hold numbers; `Unreadable` for anything else."""
-    try:
-        schema = pq.read_schema(pa.BufferReader(data))
-    except (pa.ArrowException, OSError) as error:
-        raise Unreadable(str(error)) from error
-    return [field.name for field in schema if field.type == NUMBER]
-
-
 def decode(
-    data: bytes, schema: Schema, may_lack: Collection[str] = ()
+    data: bytes, schema: Schema, may_lack: Collection[str] = (), more: Any = None
 ) -> tuple[Iterator[dict[str, Any]], dict[str, str]]:
     """Return the rows of a Parquet file and its notes.
 
-    `Unreadable` when it has not got the columns of `schema`, or one has gaps that is not among
-    those that `may_lack` values.
+    Beside the columns of `schema` the rows have all others of the type `more`, which may have gaps.
+    `Unreadable` when a column of `schema` is not there, or has gaps and is not in `may_lack`.
     """
     try:
         table = read_table(data)
     except (pa.ArrowException, OSError) as error:
         raise Unreadable(str(error)) from error
+    others = [each.name for each in table.schema if each.type == more and each.name not in schema]
+    kinds = {**schema, **dict.fromkeys(others, more)}
     columns: list[list[Any]] = []
-    for name, kind in schema.items():
+    for name, kind in kinds.items():
         if name not in table.column_names:
             raise Unreadable(f"there is no column {name!r}")
         column = table.column(name)
         if column.type != kind:
             raise Unreadable(f"a column is {column.type}, not {kind}")
-        if column.null_count and name not in may_lack:
+        if column.null_count and name not in (*may_lack, *others):
             raise Unreadable(f"column {name!r} has gaps")
         if kind is NUMBERS:
             columns.append([each.values.to_numpy() if each.is_valid else None for each in column])
         else:
             columns.append(column.to_pylist())
-    rows = (dict(zip(schema, row, strict=True)) for row in zip(*columns, strict=True))
+    rows = (dict(zip(kinds, row, strict=True)) for row in zip(*columns, strict=True))
     notes = table.schema.metadata or {}
     return rows, {key.decode(): text.decode() for key, text in notes.items()}

@@ -1,19 +1,15 @@
 """Outcomes and traces as Parquet: one schema for the shards, one for the assembled tables."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import contents
 from faultpath.loop import TapCount
-from faultpath.trials.metrics import VEHICLE
-from faultpath.trials.outcome import Outcome, Status, checked
+from faultpath.trials.outcome import VEHICLE, Outcome, Status, checked
 from faultpath.trials.store.parquet import (
     INTEGER,
     NUMBER,
@@ -24,24 +20,17 @@ from faultpath.trials.store.parquet import (
     Unreadable,
     decode,
     encode,
-    numbers_in,
 )
 from faultpath.trials.table import OutcomeTable, TrialRow
 
 Trace = NDArray[np.float32]
-_Read = TypeVar("_Read")
 
 _ADDRESS = {"variant": TEXT, "path": TEXT, "seed": INTEGER, "scene": TEXT}
 _PLACE = {"scene_index": INTEGER, "topology": TEXT}
 _END = {"status": TEXT, "time_s": NUMBER}
-_RESULT = {
-    "struck_steps": INTEGER,
-    "altered_steps": INTEGER,
-    "initial_hash": TEXT,
-    "disturbance_hash": TEXT,
-    "planner_noise_hash": TEXT,
-    "error": TEXT,
-}
+_COUNTS = {"struck_steps": INTEGER, "altered_steps": INTEGER}
+_HASHES = dict.fromkeys(("initial_hash", "disturbance_hash", "planner_noise_hash"), TEXT)
+_RESULT = {**_COUNTS, **_HASHES, "error": TEXT}
 _TRACE = dict.fromkeys(("x_m", "y_m", "z_m"), NUMBERS)
 _MAY_LACK = ("time_s", "error", *_TRACE)
 _TRACES = {**_ADDRESS, **_TRACE}
@@ -49,7 +38,7 @@ _KEY = "faultpath.key"
 """Under which name a shard's metadata keeps the key of its unit."""
 _TAPS = "faultpath.loop.taps"
 """Under which name a shard's metadata keeps what the taps did."""
-_COUNTS = TypeAdapter(tuple[TapCount, ...])
+_TAP_COUNTS = TypeAdapter(tuple[TapCount, ...])
 
 
 class TrialAddress(NamedTuple):
@@ -72,55 +61,45 @@ class Shard:
 
 def encode_shard(key: str, shard: Shard) -> bytes:
     """Return one block, traces included, with the key of its unit inside."""
-    notes = {_KEY: key, _TAPS: _COUNTS.dump_json(shard.taps).decode()}
-    schema = _shard(_metrics(shard.outcomes))
-    return encode(schema, ({**dict.fromkeys(schema), **_cells(o)} for o in shard.outcomes), notes)
+    notes = {_KEY: key, _TAPS: _TAP_COUNTS.dump_json(shard.taps).decode()}
+    schema = {"scene": TEXT, **_columns(shard.outcomes), **_TRACE}
+    return encode(schema, map(_cells, shard.outcomes), notes)
 
 
 def decode_shard(data: bytes, key: str) -> Shard:
     """Return one block; `Unreadable` when the bytes are not the shard of `key`, whole."""
-    names = _metrics_in(data)
-    rows, notes = decode(data, _shard(names), (*_MAY_LACK, *names))
+    schema = {"scene": TEXT, **_END, **_RESULT, **_TRACE}
+    rows, notes = decode(data, schema, _MAY_LACK, more=NUMBER)
     if _TAPS not in notes:
         raise Unreadable("it is of an earlier version, which kept no receipts of the taps")
     if notes.get(_KEY) != key:
         raise Unreadable("it was written under another key")
     try:
-        taps = _COUNTS.validate_json(notes[_TAPS])
+        taps = _TAP_COUNTS.validate_json(notes[_TAPS])
     except ValidationError as error:
         raise Unreadable("its receipts of the taps cannot be read") from error
-    return Shard(tuple(_outcome(row, _trace(row), names) for row in rows), taps)
+    return Shard(tuple(_outcome(row, _trace(row)) for row in rows), taps)
 
 
 def encode_outcomes(table: OutcomeTable) -> bytes:
     """Return the table without its traces."""
-    schema = _outcomes(_metrics(row.outcome for row in table.rows))
-    return encode(schema, (_flat(row, schema) for row in table.rows))
+    schema = {**_ADDRESS, **_PLACE, **_columns(row.outcome for row in table.rows)}
+    return encode(schema, ({**vars(row), **_cells(row.outcome)} for row in table.rows))
+
+
+def decode_outcomes(data: bytes) -> OutcomeTable:
+    """Return an assembled outcome table (without traces); `Unreadable` when it is not one."""
+    schema = {**_ADDRESS, **_PLACE, **_END, **_RESULT}
+    rows, _ = decode(data, schema, _MAY_LACK, more=NUMBER)
+    at = ("variant", "path", "seed", *_PLACE)
+    placed = (({name: row[name] for name in at}, _outcome(row, None)) for row in rows)
+    return OutcomeTable(tuple(TrialRow(**place, outcome=outcome) for place, outcome in placed))
 
 
 def encode_traces(table: OutcomeTable) -> bytes:
     """Return the traces of the trials that have one."""
     traced = (row for row in table.rows if row.outcome.trace is not None)
-    return encode(_TRACES, (_flat(row, _TRACES) for row in traced))
-
-
-def read_outcomes(path: Path) -> OutcomeTable:
-    """Read an assembled outcome table (without traces); `UserError` when there is none to read."""
-    return _read(path, decode_outcomes)
-
-
-def read_traces(path: Path) -> dict[TrialAddress, Trace]:
-    """Read assembled traces, `[T, 3]` each, metres; `UserError` when there are none to read."""
-    return _read(path, decode_traces)
-
-
-def decode_outcomes(data: bytes) -> OutcomeTable:
-    """Return an assembled outcome table (without traces); `Unreadable` when it is not one."""
-    names = _metrics_in(data)
-    rows, _ = decode(data, _outcomes(names), (*_MAY_LACK, *names))
-    at = ("variant", "path", "seed", *_PLACE)
-    placed = (({name: row[name] for name in at}, _outcome(row, None, names)) for row in rows)
-    return OutcomeTable(tuple(TrialRow(**place, outcome=outcome) for place, outcome in placed))
+    return encode(_TRACES, ({**vars(row), **_cells(row.outcome)} for row in traced))
 
 
 def decode_traces(data: bytes) -> dict[TrialAddress, Trace]:
@@ -142,37 +121,11 @@ def traces_of(table: OutcomeTable) -> dict[TrialAddress, Trace]:
     }
 
 
-def _read(path: Path, decoded: Callable[[bytes], _Read]) -> _Read:
-    try:
-        return decoded(contents(path))
-    except OSError as error:
-        raise UserError(
-            f"cannot read {path} ({error.strerror}): finish the run that writes it"
-        ) from error
-    except Unreadable as error:
-        raise UserError(f"{path} is damaged ({error}): run the study again to rebuild it") from None
-
-
-def _shard(metrics: Iterable[str]) -> Schema:
-    return {"scene": TEXT, **_END, **dict.fromkeys(metrics, NUMBER), **_RESULT, **_TRACE}
-
-
-def _outcomes(metrics: Iterable[str]) -> Schema:
-    return {**_ADDRESS, **_PLACE, **_END, **dict.fromkeys(metrics, NUMBER), **_RESULT}
-
-
-def _metrics(outcomes: Iterable[Outcome]) -> list[str]:
+def _columns(outcomes: Iterable[Outcome]) -> Schema:
+    """Return the columns of some outcomes; a metric that only some of them have is one too."""
     found = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
     vehicle = VEHICLE if any(name in VEHICLE for name in found) else ()
-    return list(dict.fromkeys((*vehicle, *found)))
-
-
-def _metrics_in(data: bytes) -> list[str]:
-    return [name for name in numbers_in(data) if name not in _END]
-
-
-def _flat(row: TrialRow, schema: Schema) -> Row:
-    return {**dict.fromkeys(schema), **vars(row), **_cells(row.outcome)}
+    return {**_END, **dict.fromkeys((*vehicle, *found), NUMBER), **_RESULT}
 
 
 def _cells(outcome: Outcome) -> Row:
@@ -192,26 +145,25 @@ def _trace(row: Row) -> Trace | None:
     return trace
 
 
-def _outcome(row: Mapping[str, Any], trace: Trace | None, metrics: Iterable[str]) -> Outcome:
-    fields = {name: row[name] for name in (*_END, *_RESULT)}
-    found = {name: row[name] for name in metrics if row[name] is not None}
+def _outcome(row: Mapping[str, Any], trace: Trace | None) -> Outcome:
+    """Return the outcome in a row; refuse what no trial leaves behind, whoever wrote it."""
+    fixed = {"scene", *_END, *_RESULT}
+    others = fixed.union(_ADDRESS, _PLACE, _TRACE)
+    fields = {name: row[name] for name in fixed}
+    metrics = {k: v for k, v in row.items() if k not in others and v is not None}
     try:
-        status = Status(fields.pop("status"))
+        fields["status"] = Status(fields["status"])
     except ValueError as error:
         raise Unreadable(str(error)) from error
-    outcome = Outcome(scene=row["scene"], status=status, trace=trace, metrics=found, **fields)
-    _check(outcome)
-    return outcome
-
-
-def _check(outcome: Outcome) -> None:
-    """Refuse what no trial leaves behind: whoever wrote it may have been anybody."""
-    steps = (outcome.struck_steps, outcome.altered_steps)
-    wrong = "a count of steps is below 0" if min(steps) < 0 else ""
-    if not outcome.failed:
-        found = checked(outcome, outcome.metrics)
-        wrong = wrong or (found.error or "") * found.failed
-    elif outcome.time_s is not None and not np.isfinite(outcome.time_s):  # pyright: ignore[reportUnnecessaryComparison]
-        wrong = wrong or "time_s is not finite"
+    outcome = Outcome(**fields, trace=trace, metrics=metrics)
+    wrong: str | None = None
+    if min(outcome.struck_steps, outcome.altered_steps) < 0:
+        wrong = "a count of steps is below 0"
+    elif not outcome.failed:
+        found = checked(outcome, metrics)
+        wrong = found.error if found.failed else None
+    elif fields["time_s"] is not None and not np.isfinite(fields["time_s"]):
+        wrong = "time_s is not finite"
     if wrong:
         raise Unreadable(f"scene '{outcome.scene}': {wrong}")
+    return outcome
