@@ -1,7 +1,13 @@
 """What a system declares: sources, channels, consumers, reconstructions."""
 
-from faultpath.interface.checks import Interface
-from faultpath.interface.graph import groups, module_of, modules, rank, transitive_consumers
+from faultpath.interface.interface import (
+    Interface,
+    groups,
+    module_of,
+    modules,
+    rank,
+    transitive_consumers,
+)
 from faultpath.interface.model import Channel, Gap, Provenance, Source, Uncertainty
 from faultpath.interface.yaml_io import read_interface
 

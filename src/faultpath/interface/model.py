@@ -6,7 +6,6 @@ correlation) are recorded; a gap is one of fidelity (an estimate replaces the tr
 availability (a channel that the trained module expects is missing).
 """
 
-from collections.abc import Mapping
 from enum import StrEnum
 from typing import Annotated, Self, cast
 
@@ -20,9 +19,8 @@ from pydantic import (
 )
 
 from faultpath.core.arrays import Constant
-from faultpath.core.errors import UserError
 from faultpath.core.frozen import Frozen
-from faultpath.core.text import steers, unknown
+from faultpath.core.text import steers
 
 Name = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]
 Consumer = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*$")]
@@ -148,48 +146,3 @@ class Channel(Frozen, allow_inf_nan=False):
     """What a consumer gets when the channel is erased."""
     gap: Gap = Gap.NONE
     description: Words = ""
-
-
-class Declared(Frozen, allow_inf_nan=False):
-    """All sources and channels of a system, and which modules produce a source themselves."""
-
-    name: Name
-    sources: tuple[Source, ...]
-    channels: tuple[Channel, ...]
-    reconstructs: dict[Name, Made] = Field(default_factory=dict[str, tuple[str, ...]])
-    """Module to the sources that it produces; a file may name a single one without a list."""
-
-    @property
-    def reconstructions(self) -> tuple[tuple[str, str], ...]:
-        """Each module that produces a source, with the source."""
-        return tuple((module, made) for module, all_ in self.reconstructs.items() for made in all_)
-
-    def source(self, name: str) -> Source:
-        """Return the source called `name`; raises `UserError` with the known names."""
-        for source in self.sources:
-            if source.name == name:
-                return source
-        known = (source.name for source in self.sources)
-        raise UserError(f"interface {self.name}: {unknown('source', name, known)}")
-
-    def shaped(self, shapes: Mapping[str, tuple[int, ...]]) -> Self:
-        """Return the interface with other shapes of some sources, by name.
-
-        For what a setting decides: how many candidates a planner draws, how many windows are laid
-        out as one scene. Raises `UserError` for an unknown source.
-        """
-        for name in shapes:
-            self.source(name)
-        sources = (
-            source.model_copy(update={"shape": shapes.get(source.name, source.shape)})
-            for source in self.sources
-        )
-        return self.model_copy(update={"sources": tuple(sources)})
-
-    def channel(self, name: str) -> Channel:
-        """Return the channel called `name`; raises `UserError` with the known names."""
-        for channel in self.channels:
-            if channel.name == name:
-                return channel
-        known = (channel.name for channel in self.channels)
-        raise UserError(f"interface {self.name}: {unknown('channel', name, known)}")

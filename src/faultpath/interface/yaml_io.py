@@ -11,7 +11,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml
 from faultpath.core.misfits import misfit_of
-from faultpath.interface.checks import Interface
+from faultpath.interface.interface import Interface
 
 
 def read_interface(

@@ -29,8 +29,8 @@ from faultpath.loop.reading import (
     WrittenTo,
 )
 from faultpath.loop.receipts import Receipts, TapCount, added
-from faultpath.loop.tap import Tap
-from faultpath.loop.taps import Observer, Taps
+from faultpath.loop.tap import Observer, Tap
+from faultpath.loop.taps import Taps
 
 __all__ = [
     "Batch",

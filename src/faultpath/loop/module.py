@@ -1,7 +1,7 @@
 """The parts of a closed loop: modules that read and write, and the plant under them."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 
@@ -28,11 +28,11 @@ class Port(NamedTuple):
     place: str
 
 
-class Inputs(Mapping[Port, Any]):
+class Inputs(dict[Port, Any]):
     """What the taps delivered to one module at one step: an entry for each of its ports.
 
     A signal is an array `[B, ...]`, one row a scene; a query is a function of a request. A port
-    that the module did not declare has no entry to find.
+    that the module did not declare has no entry: looking for one raises `UndeclaredReader`.
     """
 
     def __init__(
@@ -43,41 +43,20 @@ class Inputs(Mapping[Port, Any]):
         truths: Mapping[str, Any],
         running: Array = None,
     ) -> None:
+        super().__init__(delivered)
         self.module = module
         self.step = step
         """Control step, from 0."""
         self.running = running
         """Which scenes still run, bool `[B]`, for modules that save work; `None`: all."""
-        self._delivered = delivered
         self._truths = truths
 
-    def __getitem__(self, port: tuple[str, str]) -> Any:
-        """Return what came at a port; raises `UndeclaredReader` for one that is not declared."""
-        found = Port(*port)
-        try:
-            return self._delivered[found]
-        except KeyError:
-            raise UndeclaredReader(
-                f"module '{self.module}' looked for channel '{found.channel}' at "
-                f"'{found.place}', a port that it does not declare: add "
-                f"Port('{found.channel}', '{found.place}') to its reads"
-            ) from None
-
-    def __contains__(self, port: object) -> bool:
-        """Return whether the port is declared."""
-        return port in self._delivered
-
-    def get(self, port: Port, default: Any = None) -> Any:
-        """Return what came at a port, `default` for one that is not declared."""
-        return self[port] if port in self._delivered else default
-
-    def __iter__(self) -> Iterator[Port]:
-        """Iterate over the ports."""
-        return iter(self._delivered)
-
-    def __len__(self) -> int:
-        """Return the number of ports."""
-        return len(self._delivered)
+    def __missing__(self, port: tuple[str, str]) -> Any:
+        channel, place = port
+        raise UndeclaredReader(
+            f"module '{self.module}' looked for channel '{channel}' at '{place}', a port that it "
+            f"does not declare: add Port('{channel}', '{place}') to its reads"
+        )
 
     def truth(self, name: str) -> Any:
         """Return what the plant shows of its own state; `IllegalRead` for an undeclared one."""

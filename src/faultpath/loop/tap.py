@@ -1,123 +1,27 @@
 """One consumer's end of one channel: the faults that act there, and what is counted."""
 
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faultpath.core.arrays import (
     Array,
     HostArray,
-    copy,
     device_kind,
     differs,
     is_array,
     namespace,
-    place,
     to_numpy,
-    together,
 )
 from faultpath.core.errors import UserError
+from faultpath.core.text import unknown
 from faultpath.faults import Draws, Fault, Moment
 from faultpath.faults.base import Memory
-from faultpath.loop.reading import MalformedReading, NotFinite
-from faultpath.loop.receipts import CorruptionReceipt, Receipt
-
-
-class Tally:
-    """Steps at which something held in a scene.
-
-    Counts stay on the device of the masks, so that counting costs no host wait. Several taps may
-    report the same step; it counts once.
-    """
-
-    __slots__ = ("_done", "_pending", "_step")
-
-    def __init__(self) -> None:
-        self._done: Any = 0
-        self._pending: Any = False
-        self._step = -1
-
-    def note(self, step: int, held: Any) -> None:
-        """Report that the bool or boolean array `[B]` `held` at `step`."""
-        if step != self._step:
-            self._done, self._pending, self._step = self._total(), held, step
-        elif self._pending is False:
-            self._pending = held
-        elif held is not False:
-            one, other = together(self._pending, held)
-            self._pending = one | other
-
-    def _total(self) -> Any:
-        if self._pending is False:
-            return self._done
-        done, pending = together(self._done, self._pending)
-        return done + pending
-
-    def counts(self, n_scenes: int) -> NDArray[np.int64]:
-        """Return the counts `[B]`; this waits for the device."""
-        total = to_numpy(self._total()).astype(np.int64)
-        return np.broadcast_to(total, (n_scenes,)).copy()
-
-
-class Running:
-    """Which scenes are still running, at hand on the device of any reading."""
-
-    __slots__ = ("_mask", "_placed")
-
-    def __init__(self, mask: Array | None) -> None:
-        self._mask = mask
-        self._placed: Array = mask
-
-    def among(self, held: Any, reading: Array) -> Any:
-        """Return `held`, a bool or boolean array `[B]`, where the scene runs."""
-        if self._mask is None or held is False:
-            return held
-        placed = self._placed
-        if namespace(placed) is not namespace(reading) or placed.device != reading.device:
-            placed = self._placed = place(to_numpy(self._mask), reading)
-        return placed if held is True else held & placed
-
-
-class Guard:
-    """Hands out copies of a tap's values and sees whether somebody wrote into them.
-
-    NumPy arrays are read-only views and need none of this. A tensor tells by its version counter;
-    one that keeps none (inference mode) is compared with what it was.
-    """
-
-    __slots__ = ("_given", "_mark", "_written")
-
-    def __init__(self) -> None:
-        self._given: Array = None
-        self._mark: Any = None
-        self._written: Any = False
-
-    def hand_out(self, value: Array) -> Array:
-        """Return a copy for the consumer, after a look at the last one."""
-        self._look()
-        self._given = copy(value)
-        try:
-            self._mark = int(self._given._version)
-        except (AttributeError, RuntimeError):
-            self._mark = copy(self._given)
-        return self._given
-
-    def written(self) -> bool:
-        """Return whether a consumer wrote; this waits for the device."""
-        self._look()
-        return bool(to_numpy(self._written))
-
-    def _look(self) -> None:
-        if self._given is None:
-            return
-        if isinstance(self._mark, int):
-            changed = bool(self._given._version != self._mark)
-        else:
-            unequal = differs(self._given, self._mark)
-            changed = namespace(unequal).any(unequal)
-        self._written = self._written | changed
+from faultpath.interface import Interface, Provenance
+from faultpath.loop.reading import MalformedReading, NotFinite, Query, Reading
+from faultpath.loop.receipts import CorruptionReceipt, Guard, Receipt, Tally
 
 
 class Corruption:
@@ -286,3 +190,53 @@ def _real(value: Array) -> bool:
     if isinstance(value, np.ndarray):
         return cast(HostArray, value).dtype.kind in "biuf"
     return bool(namespace(value).isdtype(value.dtype, ("bool", "integral", "real floating")))
+
+
+def wire(
+    interface: Interface,
+    bindings: Mapping[str, str],
+    consumers: Collection[str] | None,
+    privileged: Collection[str],
+    n_scenes: int,
+) -> dict[tuple[str, str], Tap]:
+    """Return the taps of a variant by channel and consumer; raises `UserError` for wrong names."""
+    for name in bindings:
+        interface.channel(name)
+    for name in privileged:
+        interface.source(name)
+    declared = {name for channel in interface.channels for name in channel.consumers}
+    for name in consumers or ():
+        if name not in declared:
+            raise UserError(f"this variant's consumers: {unknown('consumer', name, declared)}")
+    taps: dict[tuple[str, str], Tap] = {}
+    for channel in interface.channels:
+        bound = bindings.get(channel.name, channel.sources[0])
+        if bound not in channel.sources:
+            said = unknown("source", bound, channel.sources)
+            raise UserError(f"channel '{channel.name}' cannot be bound: {said}")
+        source = interface.source(bound)
+        secret = source.provenance is Provenance.PRIVILEGED
+        shape = (n_scenes, *source.shape)
+        for name in channel.consumers:
+            if consumers is None or name in consumers:
+                legal = bound in privileged or not secret
+                taps[channel.name, name] = Tap(channel.name, name, bound, legal, shape)
+    return taps
+
+
+class Observer:
+    """Sees what passes the taps of one run; a subclass overrides what it wants to see.
+
+    Readings are those of the run itself: an observer copies what it keeps and writes to nothing.
+    """
+
+    def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
+        """See that a consumer got `got` of a reading; of a query, the function that answers."""
+
+    def answered(
+        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
+    ) -> None:
+        """See what a query answered to a request, and what the consumer got of that answer."""
+
+    def faulted(self, step: int, held: Any) -> None:
+        """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""

@@ -13,7 +13,7 @@ from faultpath.core.arrays import Array, differs, read_only
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.faults import Coupled, Draws, Fault
-from faultpath.interface import Interface, Provenance, modules
+from faultpath.interface import Interface, modules
 from faultpath.loop.reading import (
     IllegalRead,
     MalformedReading,
@@ -23,58 +23,8 @@ from faultpath.loop.reading import (
     UndeclaredReader,
     WrittenTo,
 )
-from faultpath.loop.receipts import Receipts, check_delivered
-from faultpath.loop.tap import Corruption, Guard, Running, Tally, Tap
-
-
-def wire(
-    interface: Interface,
-    bindings: Mapping[str, str],
-    consumers: Collection[str] | None,
-    privileged: Collection[str],
-    n_scenes: int,
-) -> dict[tuple[str, str], Tap]:
-    """Return the taps of a variant by channel and consumer; raises `UserError` for wrong names."""
-    for name in bindings:
-        interface.channel(name)
-    for name in privileged:
-        interface.source(name)
-    declared = {name for channel in interface.channels for name in channel.consumers}
-    for name in consumers or ():
-        if name not in declared:
-            raise UserError(f"this variant's consumers: {unknown('consumer', name, declared)}")
-    taps: dict[tuple[str, str], Tap] = {}
-    for channel in interface.channels:
-        bound = bindings.get(channel.name, channel.sources[0])
-        if bound not in channel.sources:
-            said = unknown("source", bound, channel.sources)
-            raise UserError(f"channel '{channel.name}' cannot be bound: {said}")
-        source = interface.source(bound)
-        secret = source.provenance is Provenance.PRIVILEGED
-        shape = (n_scenes, *source.shape)
-        for name in channel.consumers:
-            if consumers is None or name in consumers:
-                legal = bound in privileged or not secret
-                taps[channel.name, name] = Tap(channel.name, name, bound, legal, shape)
-    return taps
-
-
-class Observer:
-    """Sees what passes the taps of one run; a subclass overrides what it wants to see.
-
-    Readings are those of the run itself: an observer copies what it keeps and writes to nothing.
-    """
-
-    def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
-        """See that a consumer got `got` of a reading; of a query, the function that answers."""
-
-    def answered(
-        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
-    ) -> None:
-        """See what a query answered to a request, and what the consumer got of that answer."""
-
-    def faulted(self, step: int, held: Any) -> None:
-        """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""
+from faultpath.loop.receipts import Guard, Receipts, Running, Tally, check_delivered
+from faultpath.loop.tap import Corruption, Observer, Tap, wire
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +81,8 @@ class Taps:
         for tap in self._taps.values() if guard else ():
             tap.guard = Guard()
         first = {channel.name: channel.sources[0] for channel in interface.channels}
-        self._bindings = MappingProxyType(first | dict(bindings or {}))
+        self.bindings: Mapping[str, str] = MappingProxyType(first | dict(bindings or {}))
+        """The source that feeds each channel here."""
         self._add(faults, dt_s, seed)
 
     def _add(self, faults: Iterable[Fault | Coupled], dt_s: float, seed: int) -> None:
@@ -161,11 +112,6 @@ class Taps:
                     f"{listed(names)}; leave the fault out or name other consumers"
                 )
 
-    @property
-    def bindings(self) -> Mapping[str, str]:
-        """The source that feeds each channel here."""
-        return self._bindings
-
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
         """Return what `consumer` gets of `channel` at control step `step`.
 
@@ -182,13 +128,13 @@ class Taps:
         """
         tap = self._taps.get((channel, consumer))
         if tap is None:
-            raise self._undeclared(channel, consumer)
+            raise self._refused(channel, consumer, reading, step)
         try:
             value = reading.value
             if reading.source != tap.source or not tap.legal or reading.step > step:
-                raise self._illegal(tap, reading, step)
+                raise self._refused(channel, consumer, reading, step)
         except AttributeError:
-            raise self._no_reading(tap, reading) from None
+            raise self._refused(channel, consumer, reading, step) from None
         if step != tap.last_step:
             if step < tap.last_step:
                 raise MalformedReading(
@@ -200,24 +146,23 @@ class Taps:
             tap.last_step = step
             tap.deliveries += 1
             tap.given = value
-            tap.cached = self._handed(tap, value, step)
+            if isinstance(value, Query):
+                tap.asked = 0
+                got = partial(self._answer, tap, value, step)
+            else:
+                got = self._corrupted(tap, value, step) if tap.corruptions else value
+                if isinstance(got, np.ndarray):
+                    if got is not self._open:  # consumers of one array share the view of it
+                        self._open, self._closed = got, read_only(got)
+                    got = self._closed
+                elif tap.guard is not None:
+                    got = tap.guard.hand_out(got)
+            tap.cached = got
         elif value is not tap.given:
             tap.check_same(value, step)
         if self._observer is not None:
             self._observer.delivered(tap, reading, step, tap.cached)
         return tap.cached
-
-    def _handed(self, tap: Tap, value: Any, step: int) -> Any:
-        if isinstance(value, Query):
-            tap.asked = 0
-            return partial(self._answer, tap, value, step)
-        if tap.corruptions:
-            value = self._corrupted(tap, value, step)
-        if isinstance(value, np.ndarray):
-            if value is not self._open:  # consumers of one array share the view of it
-                self._open, self._closed = value, read_only(value)
-            return self._closed
-        return value if tap.guard is None else tap.guard.hand_out(value)
 
     def _answer(self, tap: Tap, query: Query, step: int, request: Any) -> Any:
         if step != tap.last_step:
@@ -304,36 +249,36 @@ class Taps:
         last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
         check_delivered(self.receipts(), faulted, last)
 
-    def _undeclared(self, channel: str, consumer: str) -> UndeclaredReader:
-        declared = self._interface.channel(channel).consumers
-        if consumer in declared:
+    def _refused(self, channel: str, consumer: str, given: Any, step: int) -> TapError:
+        """Return what is wrong with a delivery that the interface or the variant does not allow."""
+        here = f"tap {channel} -> {consumer}"
+        tap = self._taps.get((channel, consumer))
+        if tap is None:
+            declared = self._interface.channel(channel).consumers
+            if consumer in declared:
+                return UndeclaredReader(
+                    f"{here}: this variant has no such consumer; name it in the variant's consumers"
+                )
             return UndeclaredReader(
-                f"tap {channel} -> {consumer}: this variant has no such consumer; name it in the "
-                "variant's consumers"
+                f"{here}: the channel does not declare this consumer; add it to the interface, "
+                f"declared: {listed(declared)}"
             )
-        return UndeclaredReader(
-            f"tap {channel} -> {consumer}: the channel does not declare this consumer; add it to "
-            f"the interface, declared: {listed(declared)}"
-        )
-
-    def _no_reading(self, tap: Tap, given: object) -> MalformedReading:
-        return MalformedReading(
-            f"tap {tap}: deliver() was given a {type(given).__name__}; wrap it: "
-            f"Reading(value, '{tap.source}', step)"
-        )
-
-    def _illegal(self, tap: Tap, reading: Reading, step: int) -> IllegalRead:
-        if reading.source != tap.source:
+        if not isinstance(given, Reading):
+            return MalformedReading(
+                f"{here}: deliver() was given a {type(given).__name__}; wrap it: "
+                f"Reading(value, '{tap.source}', step)"
+            )
+        if given.source != tap.source:
             return IllegalRead(
-                f"tap {tap}: the reading is of source '{reading.source}', but the channel is "
-                f"bound to '{tap.source}'; deliver that one, or bind the channel in the variant"
+                f"{here}: the reading is of source '{given.source}', but the channel is bound to "
+                f"'{tap.source}'; deliver that one, or bind the channel in the variant"
             )
         if not tap.legal:
             return IllegalRead(
-                f"tap {tap}: source '{tap.source}' is privileged and this arm does not permit it; "
+                f"{here}: source '{tap.source}' is privileged and this arm does not permit it; "
                 "read another one, or name it in the variant's privileged sources"
             )
         return IllegalRead(
-            f"tap {tap}: the reading is of step {reading.step}, which is after step {step}; "
-            "deliver what is known by then"
+            f"{here}: the reading is of step {given.step}, which is after step {step}; deliver "
+            "what is known by then"
         )

@@ -10,7 +10,7 @@ from typing import Any, cast
 from faultpath.core.error_source import described, place
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.interface import Interface
-from faultpath.loop.taps import wire
+from faultpath.loop.tap import wire
 from faultpath.trials.declared import Library, Variant, check_name, shown
 from faultpath.trials.outcome import Metric, Outcome, Status
 from faultpath.trials.system import System
