@@ -45,7 +45,13 @@ def reversal_map(
     asked, chosen = begun.asked, begun.chosen
     plan = plan_map(begun.system, chosen.spec, asked, begun.library)
     found = plan.question
-    named = [plan.name, asked.fault, *found.against, f"{found.up_to:g}", Path(asked.library).stem]
+    named = [
+        plan.study(()).name,
+        asked.fault,
+        *found.against,
+        f"{found.up_to:g}",
+        Path(asked.library).stem,
+    ]
     place = run_folder(asked, chosen, named)
     with executor_of(begun.system, chosen.workers, chosen.executor) as executor:
         run = _carry_out(
@@ -95,7 +101,7 @@ def _carry_out(plan: MapPlan, job: Job) -> MapRun:
             result = run(recheck=False)
             said.add("Kept ")  # what later rounds keep, this call has run itself
             computed += result.blocks_computed
-            found = plan.differences(points, plan.compared(points, result.outcomes))
+            found, _ = plan.differences(points, result.outcomes)
             new = next_points(found, asked.against, asked.points, asked.library_hash)
             if not new:
                 break

@@ -1,6 +1,6 @@
 """Which trials an audit compares: the pairs of all paths, cut to what they have in common."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -71,14 +71,15 @@ def compared(
 
     Of seeds that repeat others one is kept, unless not only those that are `distinct` are asked
     for: a sequential audit keeps all, because which differ is only seen later, and the value of a
-    scene has to be what it was when it was flown.
+    scene has to be what it was when it was run.
     """
     pairs = {path: pair(table, Side(repair, path), Side(baseline, path)) for path in paths}
     mismatches = tuple(each for path in pairs.values() for each in path.mismatches)
     left = dict(pairs)
     # A fault under which every trial fails must not cost what the other paths show: those with the
     # fewest pairs go first.
-    while not (kept := _shared_scenes(left.values())):
+    scenes = {row.outcome.scene for row in table.rows}
+    while not (kept := scenes.intersection(*(each.scenes for each in left.values()))):
         faulty = [name for name in left if name != CORRECT]
         if not faulty or not left[CORRECT].scenes:
             raise UserError(
@@ -87,44 +88,32 @@ def compared(
                 + "".join(f" {words}" for words in mismatch_words(mismatches))
             )
         del left[min(faulty, key=lambda name: len(left[name].scenes))]
-    cut = {name: each.only(kept) for name, each in left.items()}
+    cut = {name: each.only(tuple(kept)) for name, each in left.items()}
     success = {name: (each.first.success, each.second.success) for name, each in cut.items()}
     every = np.concatenate([arm for arms in success.values() for arm in arms])
     seeds = list(range(every.shape[1]))
     if distinct:
         first = {column.tobytes(): seed for seed, column in reversed(list(enumerate(every.T)))}
         seeds = sorted(first.values())
+    voids: dict[str, Voids] = {}
+    if any(side.failed.any() for each in left.values() for side in each.ended):
+        unlike = {mismatch.scene for each in left.values() for mismatch in each.mismatches}
+        every_scene = next(iter(left.values())).all_scenes
+        keep = np.array([scene not in unlike for scene in every_scene])
+        for name, each in left.items():
+            ours, theirs = (side.failed for side in each.ended)
+            won, lost = (side.success[keep][:, seeds] for side in each.ended)
+            alone = ours & ~theirs, theirs & ~ours
+            voids[name] = Voids(
+                failed=(int(ours.sum()), int(theirs.sum())),
+                alone=(int(alone[0].sum()), int(alone[1].sum())),
+                against=(won, lost | alone[1][keep][:, seeds]),
+                favour=(won | alone[0][keep][:, seeds], lost),
+            )
     return Compared(
         pairs=cut,
         arms={name: (one[:, seeds], two[:, seeds]) for name, (one, two) in success.items()},
         void=tuple(name for name in pairs if name not in left),
         mismatches=mismatches,
-        voids=_voids(left, seeds),
+        voids=voids,
     )
-
-
-def _shared_scenes(pairs: Iterable[Pairs]) -> tuple[str, ...]:
-    first, *others = pairs
-    every = [set(each.scenes) for each in others]
-    return tuple(scene for scene in first.scenes if all(scene in scenes for scenes in every))
-
-
-def _voids(pairs: Mapping[str, Pairs], seeds: Sequence[int]) -> dict[str, Voids]:
-    if not any(side.failed.any() for each in pairs.values() for side in each.ended):
-        return {}
-    unlike = {mismatch.scene for each in pairs.values() for mismatch in each.mismatches}
-    scenes = next(iter(pairs.values())).all_scenes
-    keep = np.array([scene not in unlike for scene in scenes])
-    found: dict[str, Voids] = {}
-    for name, each in pairs.items():
-        first, second = each.ended
-        repair, baseline = (side.success[keep][:, seeds] for side in each.ended)
-        alone = first.failed & ~second.failed, second.failed & ~first.failed
-        ours, theirs = (side[keep][:, seeds] for side in alone)
-        found[name] = Voids(
-            failed=(int(first.failed.sum()), int(second.failed.sum())),
-            alone=(int(alone[0].sum()), int(alone[1].sum())),
-            against=(repair, baseline | theirs),
-            favour=(repair | ours, baseline),
-        )
-    return found

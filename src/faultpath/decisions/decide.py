@@ -123,25 +123,23 @@ def after_looks(record: DecisionRecord, earlier: Iterable[DecisionRecord]) -> De
     same question asked again is no look, and one with too few scenes to announce anything is none.
     A sequential audit allows for all looks with the same primary contrast.
     """
+
+    def look(asked: Question) -> EarlierLook:
+        return EarlierLook(
+            scenes=None if asked.stop else asked.n_scenes,
+            primary=asked.primary,
+            generalise="scenes" if asked.stop else asked.generalise,
+            rule="exact" if asked.stop else asked.rule,
+        )
+
     known: list[EarlierLook] = []
     for each in earlier:
-        known += each.earlier if each.few else (*each.earlier, _look(each.question))
-    looks = tuple(look for look in dict.fromkeys(known) if look != _look(record.question))
+        known += each.earlier if each.few else (*each.earlier, look(each.question))
+    looks = tuple(each for each in dict.fromkeys(known) if each != look(record.question))
     if not looks:
         return record
     record = record.model_copy(update={"earlier": looks})
     return record.model_copy(update={"findings": (*record.findings, phrases.looks(record))})
-
-
-def _look(asked: Question) -> EarlierLook:
-    if asked.stop is not None:
-        return EarlierLook(scenes=None, primary=asked.primary)
-    return EarlierLook(
-        scenes=asked.n_scenes,
-        primary=asked.primary,
-        generalise=asked.generalise,
-        rule=asked.rule,
-    )
 
 
 def _family(
@@ -174,31 +172,28 @@ def _family(
 
 
 def _stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped | None:
-    """Return how a sequential audit stands with these trials; `None` of one that is not."""
+    """Return how a sequential audit stands with these trials; `None` of one that is not.
+
+    Every claim on a contrast, of who is ahead or of how little, follows from its one interval, at
+    the level of its share.
+    """
     rule = question.stop
     if rule is None:
         return None
-    small = tuple(p for p in family.effects if _within(family, p, rule.margin_pp or 0.0))
+    small: list[str] = []
+    for path, effect in family.effects.items():
+        if effect.decision is None or effect.n_scenes < family.scenes_needed:
+            continue
+        level, margin = 1.0 - effect.decision.critical_p, rule.margin_pp or 0.0
+        # Whatever failed trials would have been.
+        filled = (effect, *family.fills.get(path, ()))
+        ends = [each.ends(level) or (-100.0, 100.0) for each in filled]
+        if all(-margin < low and high < margin for low, high in ends):
+            small.append(path)
     settled = {path for path, effect in family.effects.items() if effect.sign or path in small}
     wanted = set(family.effects) if rule.when == "all-decided" else {question.primary}
     scenes = len({row.outcome.scene for row in table.rows})
-    return Stopped(scenes=scenes, reached=wanted <= settled, small=small)
-
-
-def _within(family: Family, path: str, margin_pp: float) -> bool:
-    """Return whether the effect is smaller than the margin, at the level of its share.
-
-    Every claim on a contrast, of who is ahead or of how little, follows from this one interval.
-    """
-    effect = family.effects[path]
-    if effect.decision is None or effect.n_scenes < family.scenes_needed:
-        return False
-    level = 1.0 - effect.decision.critical_p
-    for each in (effect, *family.fills.get(path, ())):  # whatever failed trials would have been
-        low, high = each.ends(level) or (-100.0, 100.0)
-        if low <= -margin_pp or high >= margin_pp:
-            return False
-    return True
+    return Stopped(scenes=scenes, reached=wanted <= settled, small=tuple(small))
 
 
 def _effect(

@@ -15,7 +15,7 @@ from faultpath.statistics import (
     success_effect,
 )
 from faultpath.trials.outcome import Status
-from faultpath.trials.pairing import Bools, Pairs, Trials
+from faultpath.trials.pairing import Bools, Pairs
 from faultpath.trials.table import OutcomeTable
 
 MIN_SCENES = fewest_scenes()
@@ -66,62 +66,53 @@ def secondary(pairs: Pairs, resamples: Resamples, asked: Question) -> dict[str, 
 
     Of a sequential audit time and metrics have no interval: theirs need a fixed number of scenes.
     """
+
+    def honest(estimate: Estimate, what: str) -> Estimate:
+        if asked.stop is not None:
+            why = f"{what} of the scenes until the audit stopped: no interval"
+        elif estimate.n_scenes < MIN_SCENES:
+            why = f"{what} of {estimate.n_scenes} scenes, too few for an interval"
+        elif estimate.low == estimate.high:
+            why = f"{what} of {estimate.n_scenes} scenes that hardly differ: no interval"
+        else:
+            return estimate
+        return estimate.model_copy(update={"low": None, "high": None, "method": why})
+
     first, second = pairs.first, pairs.second
     joint = first.success & second.success
     time_s = None
     if joint.any():
         time_s = median_effect(first.time_s, second.time_s, joint, resamples).estimate()
-    means = None
+    both = [name for name in asked.metrics if name in first.metrics and name in second.metrics]
+    metrics: dict[str, Estimate] = {}
+    for name in both:
+        arms, unit = (first.metrics[name], second.metrics[name]), asked.metrics[name].unit
+        metrics[name] = honest(mean_effect(*arms, resamples, unit).estimate(), "mean")
+    means, thresholds = None, list[AtThreshold]()
     if asked.metric in first.metrics and asked.metric in second.metrics:
-        arms = second.metrics[asked.metric], first.metrics[asked.metric]
-        means = float(arms[0].mean()), float(arms[1].mean())
-    return {
-        "time_s": time_s and _honest(time_s, "median", asked),
-        "joint_successes": int(joint.sum()),
-        "metrics": {
-            name: _honest(
-                mean_effect(
-                    first.metrics[name], second.metrics[name], resamples, metric.unit
-                ).estimate(),
-                "mean",
-                asked,
+        values = second.metrics[asked.metric], first.metrics[asked.metric]
+        means = float(values[0].mean()), float(values[1].mean())
+        for threshold in asked.thresholds:
+            less = asked.metrics[asked.metric].better == "less"
+            baseline, repair = (
+                ~side.crash & (value <= threshold if less else value >= threshold)
+                for side, value in zip((second, first), values, strict=True)
             )
-            for name, metric in asked.metrics.items()
-            if name in first.metrics and name in second.metrics
-        },
+            difference = success_effect(
+                repair, baseline, resamples, sequential=asked.stop is not None, rule=asked.rule
+            )
+            thresholds.append(
+                AtThreshold(
+                    threshold=threshold,
+                    baseline_percent=percent(baseline),
+                    repair_percent=percent(repair),
+                    difference=difference.estimate(),
+                )
+            )
+    return {
+        "time_s": time_s and honest(time_s, "median"),
+        "joint_successes": int(joint.sum()),
+        "metrics": metrics,
         "metric_means": means,
-        "thresholds": tuple(_at(pairs, asked, each, resamples) for each in asked.thresholds)
-        if means
-        else (),
+        "thresholds": tuple(thresholds),
     }
-
-
-def _honest(estimate: Estimate, what: str, asked: Question) -> Estimate:
-    if asked.stop is not None:
-        why = f"{what} of the scenes until the audit stopped: no interval"
-    elif estimate.n_scenes < MIN_SCENES:
-        why = f"{what} of {estimate.n_scenes} scenes, too few for an interval"
-    elif estimate.low == estimate.high:
-        why = f"{what} of {estimate.n_scenes} scenes that hardly differ: no interval"
-    else:
-        return estimate
-    return estimate.model_copy(update={"low": None, "high": None, "method": why})
-
-
-def _at(pairs: Pairs, asked: Question, threshold: float, resamples: Resamples) -> AtThreshold:
-    less = asked.metrics[asked.metric].better == "less"
-
-    def reached(side: Trials) -> Bools:
-        value = side.metrics[asked.metric]
-        return ~side.crash & (value <= threshold if less else value >= threshold)
-
-    repair, baseline = reached(pairs.first), reached(pairs.second)
-    difference = success_effect(
-        repair, baseline, resamples, sequential=asked.stop is not None, rule=asked.rule
-    )
-    return AtThreshold(
-        threshold=threshold,
-        baseline_percent=percent(baseline),
-        repair_percent=percent(repair),
-        difference=difference.estimate(),
-    )

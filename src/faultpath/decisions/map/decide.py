@@ -22,7 +22,6 @@ from faultpath.decisions.map.surface import Combined, Differences, sign_of, simu
 from faultpath.statistics import Sign
 from faultpath.statistics.inputs import Floats
 from faultpath.trials import OutcomeTable
-from faultpath.trials.pairing import mismatch_words
 
 _BETWEEN = 4
 """Looks at a ray for each unit."""
@@ -35,23 +34,37 @@ def conclude(
 
     `UserError` where a point has no pair left.
     """
-    points = sorted(points)
-    compared = plan.compared(points, table)
-    found = plan.differences(points, compared)
-    found_too = (*mismatch_words(compared.mismatches), *findings)
-    return decided(plan.question, found, len(table.failed()), found_too)
+    found, unlike = plan.differences(sorted(points), table)
+    return decided(plan.question, found, len(table.failed()), (*unlike, *findings))
 
 
 def decided(
     question: MapQuestion, found: Differences, failed: int = 0, findings: Sequence[str] = ()
 ) -> MapRecord:
     """Return the record of differences, which may be simulated ones."""
-    flips, z = turns(found, question.against, question.up_to, question.library_hash)
+    ways = rays(question.against)
+    looks = {key: _ray_weights(found, way) for key, way in ways.items()}
+    points, between = np.eye(len(found.points)), surface_weights(found.points)
+    # One critical value for all that is said of places: points, surface and paths.
+    every = np.concatenate([points, between, *looks.values()])
+    z = simultaneous(every, found, question.library_hash)
+    flips = tuple(
+        _flip(path, sign_of(direction), found, way, signs, question.up_to)
+        for (path, direction), way in ways.items()
+        for signs in [Combined.of(looks[path, direction], found).signs(z).tolist()]
+    )
+    surface = Combined.of(between, found)
+    side = 2 * UNITS // SHOWN + 1
+    means, signs = (each.reshape(side, side) for each in (surface.means, surface.signs(z)))
     record = MapRecord(
         question=question,
         scenes=found.values.shape[1],
-        points=_points(question, found, z),
-        surface=_surface(Combined.of(surface_weights(found.points), found), question.up_to, z),
+        points=_points(question, found, Combined.of(points, found), z),
+        surface=MapSurface(
+            sizes=tuple(question.size(u) for u in range(-UNITS, UNITS + 1, SHOWN)),
+            difference=tuple(tuple(float(v) for v in row) for row in means),
+            sign=tuple(tuple(sign_of(v) for v in row) for row in signs),
+        ),
         flips=flips,
         joint=joint(question, found),
         critical=z,
@@ -65,32 +78,14 @@ def decided(
     return record.model_copy(update=said)
 
 
-def turns(
-    found: Differences, against: Sequence[str], up_to: float, label: str
-) -> tuple[tuple[Flip, ...], float]:
-    """Return which errors reverse the ranking on each path, and the critical value of the map.
-
-    There is one value for all that is said of places: points, surface and paths.
-    """
-    ways = rays(against)
-    looks = {key: _ray_weights(found, way) for key, way in ways.items()}
-    points = np.eye(len(found.points))
-    every = np.concatenate([points, surface_weights(found.points), *looks.values()])
-    z = simultaneous(every, found, label)
-    flips: list[Flip] = []
-    for (path, direction), way in ways.items():
-        signs = Combined.of(looks[path, direction], found).signs(z).tolist()
-        flips.append(_flip(path, sign_of(direction), found, way, signs, up_to))
-    return tuple(flips), z
-
-
-def _points(question: MapQuestion, found: Differences, z: float) -> tuple[MapPoint, ...]:
-    all_ = Combined.of(np.eye(len(found.points)), found)
-    low, high = all_.ends(z)
-    signs, means = all_.signs(z), all_.means
+def _points(
+    question: MapQuestion, found: Differences, at: Combined, z: float
+) -> tuple[MapPoint, ...]:
+    low, high = at.ends(z)
+    signs, means = at.signs(z), at.means
     return tuple(
         MapPoint(
-            errors=(_size(point[0], question.up_to), _size(point[1], question.up_to)),
+            errors=(question.size(x), question.size(y)),
             baseline_percent=100.0 * float(found.baseline[i].mean()),
             repair_percent=100.0 * float(found.repair[i].mean()),
             difference=float(means[i]),
@@ -100,22 +95,8 @@ def _points(question: MapQuestion, found: Differences, z: float) -> tuple[MapPoi
             won=int((found.values[i] > 0).sum()),
             lost=int((found.values[i] < 0).sum()),
         )
-        for i, point in sorted(enumerate(found.points), key=lambda each: each[1])
+        for i, (x, y) in sorted(enumerate(found.points), key=lambda each: each[1])
     )
-
-
-def _surface(all_: Combined, up_to: float, z: float) -> MapSurface:
-    side = 2 * UNITS // SHOWN + 1
-    means, signs = (each.reshape(side, side) for each in (all_.means, all_.signs(z)))
-    return MapSurface(
-        sizes=tuple(_size(u, up_to) for u in range(-UNITS, UNITS + 1, SHOWN)),
-        difference=tuple(tuple(float(v) for v in row) for row in means),
-        sign=tuple(tuple(sign_of(v) for v in row) for row in signs),
-    )
-
-
-def _size(units: float, up_to: float) -> float:
-    return round(up_to * units / UNITS, 12) + 0.0
 
 
 def _ray_weights(found: Differences, way: Point) -> Floats:

@@ -4,6 +4,7 @@ from pydantic import Field
 
 from faultpath.core.frozen import Frozen
 from faultpath.core.results import Result
+from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.wording import MINUS
 from faultpath.statistics import Sign
 
@@ -37,6 +38,10 @@ class MapQuestion(Frozen, allow_inf_nan=False):
     n_scenes: int
     seeds: tuple[int, ...]
     trained: bool = False
+
+    def size(self, units: int) -> float:
+        """Return an error from a coordinate of a point."""
+        return round(self.up_to * units / UNITS, 12) + 0.0
 
     def said(self, size: float) -> str:
         """Return a size in words: `+20 %`, or `+0.2 m`."""

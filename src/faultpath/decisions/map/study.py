@@ -8,12 +8,12 @@ import numpy as np
 
 from faultpath.core.errors import UserError
 from faultpath.decisions import CORRECT
-from faultpath.decisions.compared import Compared, compared
-from faultpath.decisions.map.lattice import COARSE, UNITS, Point, lattice
+from faultpath.decisions.compared import compared
+from faultpath.decisions.map.lattice import COARSE, Point, lattice
 from faultpath.decisions.map.model import MapQuestion
 from faultpath.decisions.map.surface import Differences
 from faultpath.decisions.planning import scenes_of, two_variants
-from faultpath.faults import AnyFault, Fault, FaultText
+from faultpath.faults import AnyFault, FaultText
 from faultpath.interface import module_of
 from faultpath.trials import (
     Arm,
@@ -26,6 +26,7 @@ from faultpath.trials import (
     Variant,
 )
 from faultpath.trials import question as asking
+from faultpath.trials.pairing import mismatch_words
 
 _MOST_POINTS = 10_000
 """A hundred errors of each module."""
@@ -40,62 +41,48 @@ class MapPlan:
     spec: SystemSpec
     scenes: tuple[str, ...] = field(repr=False)
 
-    @property
-    def name(self) -> str:
-        """Name of its studies: the same whatever spread or number of points is asked for."""
-        asked = self.question
-        return f"{self.spec.name}-map-{asked.repair}-vs-{asked.baseline}"
-
-    def size(self, units: int) -> float:
-        """Return an error from a coordinate of a point."""
-        return round(self.question.up_to * units / UNITS, 12)
-
     def path(self, point: Point) -> str:
         """Return what rows of a point are called in the outcome table."""
-        return ",".join(f"{self.size(each):+.6g}" for each in point) if any(point) else CORRECT
+        sizes = (f"{self.question.size(each):+.6g}" for each in point)
+        return ",".join(sizes) if any(point) else CORRECT
 
     def study(self, points: Sequence[Point]) -> Study:
-        """Return the study of all points. Arms that a fault cannot reach run once."""
-        variants = [self.system.variants[n] for n in (self.question.baseline, self.question.repair)]
-        rows = tuple(
-            Row(
-                variant=variant.name,
-                path=self.path(point),
-                seed=seed,
-                arm=Arm(variant=variant.name, faults=self._faults(point, variant), seed=seed),
-            )
-            for point in points
-            for variant in variants
-            for seed in self.question.seeds
-        )
-        return Study(
-            name=self.name,
-            system=self.spec,
-            library=self.question.library,
-            scenes=self.scenes,
-            rows=rows,
-        )
+        """Return the study of all points. Arms that a fault cannot reach run once.
 
-    def _faults(self, point: Point, variant: Variant) -> tuple[Fault, ...]:
-        """Return the faults of a point, in a variant; equal errors are one fault that is shared,
-        as in an audit."""
-        by_size: dict[int, list[str]] = {}
-        for module, units in zip(self.question.against, point, strict=True):
-            if units:
-                by_size.setdefault(units, []).append(module)
-        return tuple(
-            part
-            for units, modules in by_size.items()
-            for part in _sized(self.system, self.question.fault, self.size(units))
-            .aimed_at(*modules)
-            .resolved(self.system.interface, variant.consumers)
-        )
-
-    def compared(self, points: Sequence[Point], table: OutcomeTable) -> Compared:
-        """Return the pairs of all points, cut to the scenes that every one has.
-
-        `UserError` where a point has none.
+        Equal errors are one fault that is shared, as in an audit. Studies have the same name
+        whatever spread or number of points is asked for.
         """
+        asked, rows = self.question, list[Row]()
+        for point in points:
+            by_size: dict[int, list[str]] = {}
+            for module, units in zip(asked.against, point, strict=True):
+                if units:
+                    by_size.setdefault(units, []).append(module)
+            faults = [
+                _sized(self.system, asked.fault, asked.size(units)).aimed_at(*modules)
+                for units, modules in by_size.items()
+            ]
+            for name in (asked.baseline, asked.repair):
+                consumers = self.system.variants[name].consumers
+                parts = [
+                    p for each in faults for p in each.resolved(self.system.interface, consumers)
+                ]
+                for seed in asked.seeds:
+                    arm = Arm(variant=name, faults=tuple(parts), seed=seed)
+                    rows.append(Row(variant=name, path=self.path(point), seed=seed, arm=arm))
+        return Study(
+            name=f"{self.spec.name}-map-{asked.repair}-vs-{asked.baseline}",
+            system=self.spec,
+            library=asked.library,
+            scenes=self.scenes,
+            rows=tuple(rows),
+        )
+
+    def differences(
+        self, points: Sequence[Point], table: OutcomeTable
+    ) -> tuple[Differences, tuple[str, ...]]:
+        """Return success at all points, cut to the scenes that every one has, and what is to be
+        said of pairs that met different conditions; `UserError` where a point has no pair."""
         names = [self.path(point) for point in points]
         found = compared(self.question.repair, self.question.baseline, names, table)
         if found.void:
@@ -103,13 +90,9 @@ class MapPlan:
                 f"at the errors {' and '.join(found.void[:3])} no pair is left to compare, because "
                 "trials failed there: mend what made them fail, or choose a smaller --up-to."
             )
-        return found
-
-    def differences(self, points: Sequence[Point], found: Compared) -> Differences:
-        """Return success at all points."""
-        arms = [found.arms[self.path(point)] for point in points]
-        repair, baseline = (np.array(each, dtype=np.float64) for each in zip(*arms, strict=True))
-        return Differences(tuple(points), repair, baseline)
+        arms = zip(*(found.arms[name] for name in names), strict=True)
+        repair, baseline = (np.array(each, dtype=np.float64) for each in arms)
+        return Differences(tuple(points), repair, baseline), mismatch_words(found.mismatches)
 
 
 def plan_map(
@@ -126,7 +109,21 @@ def plan_map(
         s.uncertainty for s in sources if s.uncertainty and s.uncertainty.relative is relative
     ]
     expected = max((each.expected_std for each in unsure), default=None)
-    largest = _largest(asked.up_to, expected, relative)
+    largest = asked.up_to
+    if largest is None:
+        if expected is None:
+            raise UserError(
+                "the interface declares no uncertainty of that source: say how large errors may "
+                "be, for example --up-to 0.2 for 20 % to either side."
+            )
+        largest = float(f"{3.0 * expected:.2g}")  # three declared spreads
+    elif not 0.0 < largest < math.inf:
+        raise UserError(f"--up-to {largest:g} is no size: give a number above 0.")
+    elif relative and largest >= 1.0:
+        raise UserError(
+            f"--up-to {largest:g} would take all of the reading away: errors are fractions of it, "
+            "so give less than 1."
+        )
     faults = [_sized(system, asked.fault, end) for end in (-largest, largest)]
     modules, others = _places(system, faults[1], asked.against, variants)
     least = len(lattice(COARSE))
@@ -193,25 +190,6 @@ def _sized(system: System, text: str, size: float) -> AnyFault:
     if asked.kind is None and asked.name not in system.fault_presets:
         asked = replace(asked, kind="scale")
     return system.fault(str(asked.at(f"{1.0 + size if asked.kind == 'scale' else size:.12g}")))
-
-
-def _largest(up_to: float | None, expected: float | None, relative: bool) -> float:
-    """Return the largest error, by default three declared spreads."""
-    if up_to is None:
-        if expected is None:
-            raise UserError(
-                "the interface declares no uncertainty of that source: say how large errors may "
-                "be, for example --up-to 0.2 for 20 % to either side."
-            )
-        return float(f"{3.0 * expected:.2g}")
-    if not 0.0 < up_to < math.inf:
-        raise UserError(f"--up-to {up_to:g} is no size: give a number above 0.")
-    if relative and up_to >= 1.0:
-        raise UserError(
-            f"--up-to {up_to:g} would take all of the reading away: errors are fractions of it, so "
-            "give less than 1."
-        )
-    return up_to
 
 
 def _places(
