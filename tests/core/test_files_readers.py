@@ -15,8 +15,7 @@ from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_json, read_yaml, yaml_text
 from faultpath.decisions.plan.study import read_study
 from faultpath.interface import read_interface
-from faultpath.learning.model_card import read_card
-from faultpath.learning.record import FitRecord
+from faultpath.learning.model_card import FitRecord, read_card
 from faultpath.systems.flightlog import read_columns, read_flight
 from faultpath.trials.store import RunFolder, read_outcomes
 from faultpath.trials.store.atomic import locked

@@ -38,6 +38,8 @@ class Net(nn.Module):
 class Toy(ModelTask):
     """Regression of a sum; `magnitude` scales the corruption that each epoch draws."""
 
+    count, order_key = 150, "toy order"
+
     def __init__(self, seed: int = 0, magnitude: float | None = None, **schedule: Any) -> None:
         self.name = "toy" if magnitude is None else "toy+dcc"
         self.seed = seed
@@ -51,14 +53,6 @@ class Toy(ModelTask):
         self.weight = 1.0
         self.data_sha256 = "3fa9"
         self._epoch, self._batch = 0, 0
-
-    @property
-    def count(self) -> int:
-        return 150
-
-    @property
-    def order_key(self) -> str:
-        return "toy order"
 
     def load(self) -> None:
         self._input = draw("toy/input", 0, 3, 200)

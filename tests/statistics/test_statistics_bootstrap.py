@@ -17,10 +17,10 @@ from faultpath.statistics import (
     change,
     mean_effect,
     median_effect,
-    percentile_interval,
     success_effect,
     success_rate,
 )
+from faultpath.statistics.contrast import percentile_interval
 from faultpath.statistics.estimate import SCENES, SCENES_AND_SEEDS
 
 N = 20

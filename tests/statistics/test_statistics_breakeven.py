@@ -11,11 +11,9 @@ from faultpath.statistics import (
     mixture_curve,
     success_effect,
 )
-from faultpath.statistics.breakeven import break_even_point
 
 N = 100
 RESAMPLES = Resamples.draw("break-even", N, n_resamples=400)
-DELTA = st.floats(-100, 100).filter(lambda delta: delta == 0 or abs(delta) > 1e-3)
 
 
 def effect(wins, losses, first_scene=0):
@@ -37,7 +35,10 @@ def effect(wins, losses, first_scene=0):
     ],
 )
 def test_the_point_is_where_the_estimates_cross(delta_0, delta_f, expected):
-    assert break_even_point(delta_0, delta_f) == expected
+    wins, losses = (
+        tuple(int(max(0, sign * each)) for each in (delta_0, delta_f)) for sign in (1, -1)
+    )
+    assert break_even(*map(effect, wins, losses)).p_star == expected
 
 
 def test_a_clear_crossing():

@@ -11,10 +11,10 @@ from faultpath.statistics import (
     Resamples,
     break_even,
     change,
-    percentile_interval,
     success_effect,
     with_test,
 )
+from faultpath.statistics.contrast import percentile_interval
 from faultpath.statistics.distributions import sign_p_value
 
 PUBLISHED = yaml.safe_load((Path(__file__).parent / "published.yaml").read_text())

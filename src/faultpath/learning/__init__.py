@@ -7,8 +7,7 @@ faults of an audit. Nothing here loads torch before a module is fitted.
 from faultpath.learning.fitting import Fit, evaluate, fit, load, mean_squared_error
 from faultpath.learning.in_loop import Learned, withheld
 from faultpath.learning.matched import Comparison, matched
-from faultpath.learning.model_card import Schedule
-from faultpath.learning.record import FitRecord
+from faultpath.learning.model_card import FitRecord, Schedule
 from faultpath.learning.repair import (
     Repair,
     errors,

@@ -21,8 +21,16 @@ from faultpath.core.streams import key
 from faultpath.core.version import __version__
 from faultpath.faults import AnyFault
 from faultpath.learning.loop import Task, minibatches, run
-from faultpath.learning.model_card import Schedule, fill, parameter_count, save, weights_sha256
-from faultpath.learning.record import Architecture, FitRecord, Machine
+from faultpath.learning.model_card import (
+    Architecture,
+    FitRecord,
+    Machine,
+    Schedule,
+    fill,
+    parameter_count,
+    save,
+    weights_sha256,
+)
 from faultpath.learning.repair import Repair, kept, understood
 from faultpath.learning.windows import VALIDATION, Windows, delivered, named
 from faultpath.loop import TapCount, added
@@ -193,6 +201,8 @@ def load(module: nn.Module, path: Path | str) -> Fit:
 class _WindowTask(Task):
     """Windows as samples, with a delivery through the taps for each minibatch."""
 
+    order_key = "repairs"
+
     def __init__(
         self,
         net: nn.Module,
@@ -213,6 +223,7 @@ class _WindowTask(Task):
         self.device = torch.device("cpu") if parameter is None else parameter.device
         self.host_targets = data.learned(repairs)
         self.training, self._held_out = data.split(validation)
+        self.count = len(self.training)
         self.order: list[str] = []
         """Digest of the order of the windows in each epoch."""
         self.taps: tuple[TapCount, ...] = ()
@@ -222,16 +233,6 @@ class _WindowTask(Task):
         read = {port.channel for port in data.ports}
         self._readings = {name: tensor(v) for name, v in data.readings.items() if name in read}
         self._targets = {name: tensor(v) for name, v in named(self.host_targets).items()}
-
-    @property
-    @override
-    def count(self) -> int:
-        return len(self.training)
-
-    @property
-    @override
-    def order_key(self) -> str:
-        return "repairs"
 
     @override
     def begin_epoch(self, epoch: int) -> None:

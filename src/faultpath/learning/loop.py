@@ -66,16 +66,10 @@ class Task(ABC):
     """Name of the model, for example `wm-a+dcc`; with the seed it names the files."""
     seed: int
     schedule: Schedule
-
-    @property
-    @abstractmethod
-    def count(self) -> int:
-        """Number of training samples."""
-
-    @property
-    @abstractmethod
-    def order_key(self) -> str:
-        """Stream of the minibatch order; a baseline and its repair share it."""
+    count: int
+    """Number of training samples."""
+    order_key: str
+    """Stream of the minibatch order; a baseline and its repair share it."""
 
     @abstractmethod
     def begin_epoch(self, epoch: int) -> None:

@@ -8,8 +8,7 @@ from typing import TypeAlias
 from faultpath.core.frozen import Frozen
 from faultpath.core.text import listed
 from faultpath.learning.fitting import Fit
-from faultpath.learning.model_card import read_card
-from faultpath.learning.record import Data, FitRecord
+from faultpath.learning.model_card import Data, FitRecord, read_card
 
 _SAME_LOSS = 1e-4
 """Relative difference of a first loss that machines may cause and another computation does not."""

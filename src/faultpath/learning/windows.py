@@ -13,7 +13,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.faults import AnyFault
 from faultpath.interface import Interface, Provenance, module_of
-from faultpath.learning.record import Data
+from faultpath.learning.model_card import Data
 from faultpath.learning.repair import Repair
 from faultpath.loop import Port, Reading, TapCount, Taps
 

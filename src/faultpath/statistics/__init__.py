@@ -1,10 +1,15 @@
 """Outcome arrays in, estimates and intervals out; no plots and no files."""
 
 from faultpath.statistics.breakeven import break_even, mixture_curve, only
-from faultpath.statistics.clustered import WindowQuantiles
-from faultpath.statistics.contrast import Contrast, change, percentile_interval, weighted_sum
+from faultpath.statistics.contrast import Contrast, change, weighted_sum
 from faultpath.statistics.decisions import Turn, decide_family, turn, with_test
-from faultpath.statistics.effects import mean_effect, median_effect, success_effect, success_rate
+from faultpath.statistics.effects import (
+    WindowQuantiles,
+    mean_effect,
+    median_effect,
+    success_effect,
+    success_rate,
+)
 from faultpath.statistics.estimate import (
     IN_FORCE,
     RULES,
@@ -12,7 +17,6 @@ from faultpath.statistics.estimate import (
     Estimate,
     Region,
     RuleName,
-    SeedCounts,
     Sign,
 )
 from faultpath.statistics.power import detectable, fewest_scenes
@@ -27,7 +31,6 @@ __all__ = [
     "Region",
     "Resamples",
     "RuleName",
-    "SeedCounts",
     "Sign",
     "Turn",
     "WindowQuantiles",
@@ -40,7 +43,6 @@ __all__ = [
     "median_effect",
     "mixture_curve",
     "only",
-    "percentile_interval",
     "success_effect",
     "success_rate",
     "turn",

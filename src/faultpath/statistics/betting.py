@@ -30,7 +30,13 @@ def log_capital(
     ``counts`` [..., values] says how often each of ``values`` occurred, none of them further from 0
     than ``bound`` [...]; ``null`` [...] is above ``-bound``.
     """
-    return _mixed((counts[..., np.newaxis] * _log_factors(values, null, bound)).sum(axis=-2))
+    bound, null = np.asarray(bound), np.asarray(null, dtype=np.float64)
+    gain = (bound[..., np.newaxis] + values) / (bound + null)[..., np.newaxis]
+    factors = np.log1p(_SHARES * (gain[..., np.newaxis] - 1.0))
+    logs = (counts[..., np.newaxis] * factors).sum(axis=-2)
+    top = logs.max(axis=-1)
+    mean = np.exp(logs - top[..., np.newaxis]).mean(axis=-1)
+    return np.asarray(top + np.log(mean), dtype=np.float64)
 
 
 def p_value(values: Floats, counts: Floats, bound: float) -> tuple[float, int]:
@@ -74,19 +80,6 @@ def fewest_scenes(alpha: float) -> int:
 
 def _needed(level: float) -> float:
     return float(np.log(2.0 / (1.0 - level)))
-
-
-def _log_factors(values: Floats, null: Floats | float, bound: Floats | float) -> Floats:
-    gain = (np.asarray(bound)[..., np.newaxis] + values) / (
-        np.asarray(bound) + np.asarray(null, dtype=np.float64)
-    )[..., np.newaxis]
-    return np.log1p(_SHARES * (gain[..., np.newaxis] - 1.0))
-
-
-def _mixed(logs: Floats) -> Floats:
-    top = logs.max(axis=-1)
-    mean = np.exp(logs - top[..., np.newaxis]).mean(axis=-1)
-    return np.asarray(top + np.log(mean), dtype=np.float64)
 
 
 def _low(values: Floats, counts: Floats, bound: Floats, level: float) -> Floats:

@@ -27,16 +27,6 @@ Bools = NDArray[np.bool_]
 Piece = tuple[float, float]
 
 
-def break_even_point(delta_0: float, delta_f: float) -> float | None:
-    """Return where ``(1 - p) delta_0 + p delta_f`` is 0, or None when it is nowhere or everywhere.
-
-    ``p* = -delta_0 / (delta_f - delta_0)``, when that lies between 0 and 1.
-    """
-    if delta_0 == delta_f or delta_0 * delta_f > 0.0:
-        return None
-    return delta_0 / (delta_0 - delta_f) + 0.0
-
-
 def break_even(correct: Contrast, faulty: Contrast, level: float = 0.95) -> BreakEven:
     """Return at which fault frequencies who is ahead is decided, and at which it is not.
 
@@ -45,9 +35,11 @@ def break_even(correct: Contrast, faulty: Contrast, level: float = 0.95) -> Brea
     (`mixture_curve`) touches 0 exactly where a frequency is in the set.
     """
     mixture = _Mixture(correct, faulty, level)
-    p_star = break_even_point(correct.value, faulty.value)
+    delta_0, delta_f = correct.value, faulty.value
     grid = np.linspace(0.0, 1.0, _GRID + 1)
-    if p_star is not None:
+    p_star = None
+    if delta_0 != delta_f and delta_0 * delta_f <= 0.0:
+        p_star = delta_0 / (delta_0 - delta_f) + 0.0
         grid = np.unique(np.append(grid, p_star))
     pieces = list(pieces_of(mixture.undecided, grid))
     while len(pieces) > 2:  # not known to happen; closing a gap only claims less

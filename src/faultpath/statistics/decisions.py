@@ -17,7 +17,6 @@ from faultpath.statistics.estimate import (
     Decision,
     PairedTest,
     RuleName,
-    Sign,
 )
 
 Turn: TypeAlias = Literal["reversal", "interaction", "none"]
@@ -32,28 +31,29 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
     bets on the mean (`betting`). ``ValueError`` for contrasts that have no test, as means and
     medians of unbounded outcomes.
     """
+    scenes, seeds, ahead = contrast.scenes, contrast.n_seeds, contrast.value
     if contrast.estimand == SCENES_AND_SEEDS:
+        name = "t test of the seeds' effects"
         p = t_p_value(np.asarray(contrast.per_seed), contrast.rounding)
-        test = PairedTest("t test of the seeds' effects", p, _sign(contrast.value))
-        return replace(contrast, test=test)
-    scenes, seeds = contrast.scenes, contrast.n_seeds
-    if scenes is None or not contrast.against_zero:
+    elif scenes is None or not contrast.against_zero:
         raise ValueError(f"an effect in {contrast.unit} by {contrast.method} has no test")
-    first, second = int((scenes.values > 0).sum()), int((scenes.values < 0).sum())
-    if scenes.sequential:
-        p, leans = betting.p_value(*scenes.kinds(), scenes.bound)
-        test = PairedTest("bets on the mean", p, _sign(leans))
-    elif rule == "unconditional" and contrast.arms is not None and seeds == 1:
-        p = unconditional.p_value(first, second, contrast.n_scenes)
-        test = PairedTest(EM, p, _sign(first - second))
-    elif rule == "unconditional":
+    elif scenes.sequential:
+        name = "bets on the mean"
+        p, ahead = betting.p_value(*scenes.kinds(), scenes.bound)
+    elif rule == "unconditional" and (contrast.arms is None or seeds > 1):
+        name = FLIPS
         p = max(signflip.p_value(scenes.values, seeds), score.p_value(*scenes.kinds(), scenes.far))
-        test = PairedTest(FLIPS, p, _sign(contrast.value))
     else:
-        name = "exact McNemar" if seeds == 1 else "sign test on scene means"
-        name = "sign test on scene differences" if contrast.arms is None else name
-        test = PairedTest(name, sign_p_value(first, second), _sign(first - second))
-    return replace(contrast, test=test)
+        first, second = int((scenes.values > 0).sum()), int((scenes.values < 0).sum())
+        ahead = first - second
+        if rule == "unconditional":
+            name, p = EM, unconditional.p_value(first, second, contrast.n_scenes)
+        else:
+            name = "exact McNemar" if seeds == 1 else "sign test on scene means"
+            name = "sign test on scene differences" if contrast.arms is None else name
+            p = sign_p_value(first, second)
+    leans = 1 if ahead > 0 else -1 if ahead < 0 else 0
+    return replace(contrast, test=PairedTest(name, p, leans))
 
 
 def decide_family(
@@ -78,11 +78,22 @@ def decide_family(
     adjusted = holm(p_values, weighs)
     if shares is not None:
         adjusted = {name: min(1.0, p / shares[name]) for name, p in p_values.items()}
+    ordered = sorted(p_values, key=lambda name: p_values[name] / weighs[name])
     decided: dict[str, Contrast] = {}
     for name, each in contrasts.items():
         leans = tests[name].leans if adjusted[name] <= alpha else 0
         sign = leans if leans and leans == each.side else 0
-        critical = alpha * shares[name] if shares else _critical(name, p_values, weighs, alpha)
+        if shares:
+            critical = alpha * shares[name]
+        else:
+            left = dict(weighs)
+            for other in ordered:
+                if other == name:
+                    continue
+                if p_values[other] > alpha * weighs[other] / sum(left.values()):
+                    break
+                del left[other]
+            critical = alpha * weighs[name] / sum(left.values())
         decided[name] = replace(each, decision=Decision(sign, adjusted[name], critical))
     return decided
 
@@ -108,19 +119,3 @@ def turn(isolated: Contrast, shared: Contrast, change: Contrast) -> Turn:
     if isolated.sign * shared.sign < 0:
         return "reversal"
     return "interaction" if change.sign else "none"
-
-
-def _critical(
-    name: str, p_values: Mapping[str, float], weights: Mapping[str, float], alpha: float
-) -> float:
-    left = dict(weights)
-    others = (other for other in p_values if other != name)
-    for other in sorted(others, key=lambda other: p_values[other] / weights[other]):
-        if p_values[other] > alpha * weights[other] / sum(left.values()):
-            break
-        del left[other]
-    return alpha * weights[name] / sum(left.values())
-
-
-def _sign(value: float) -> Sign:
-    return 1 if value > 0 else -1 if value < 0 else 0

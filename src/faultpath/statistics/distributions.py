@@ -1,13 +1,14 @@
 """The few distribution functions that the tests and power need, typed.
 
 SciPy ships no type stubs, so everything untyped is kept in this file. ``scipy.special`` is used
-rather than ``scipy.stats``: it is exact enough, far faster on arrays and quick to import. It loads
-with the first call all the same, so that what only reads estimates does without.
+rather than ``scipy.stats``: it is exact enough, far faster on arrays and quick to import. SciPy
+loads it with the first call, so that what only reads estimates does without.
 """
 # pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 # pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from faultpath.statistics.inputs import Floats
@@ -15,26 +16,22 @@ from faultpath.statistics.inputs import Floats
 
 def binomial_cdf(successes: ArrayLike, trials: ArrayLike, probability: ArrayLike) -> Floats:
     """Return P(X <= successes), broadcast; 0 below 0 and 1 from ``trials`` on."""
-    from scipy import special
-
     k, n, p = np.broadcast_arrays(
         *(np.asarray(x, dtype=np.float64) for x in (successes, trials, probability))
     )
     inside = (k >= 0) & (k < n)
     result = np.where(k < 0, 0.0, 1.0)
-    result[inside] = special.betainc(n[inside] - k[inside], k[inside] + 1.0, 1.0 - p[inside])
+    result[inside] = scipy.special.betainc(n[inside] - k[inside], k[inside] + 1.0, 1.0 - p[inside])
     return result
 
 
 def binomial_pmf(successes: ArrayLike, trials: int, probability: ArrayLike) -> Floats:
     """Return P(X = successes), broadcast."""
-    from scipy import special
-
     k = np.asarray(successes, dtype=np.float64)
-    choose = special.gammaln(trials + 1.0) - special.gammaln(k + 1.0)
-    choose = choose - special.gammaln(trials - k + 1.0)
+    choose = scipy.special.gammaln(trials + 1.0) - scipy.special.gammaln(k + 1.0)
+    choose = choose - scipy.special.gammaln(trials - k + 1.0)
     share = np.asarray(probability, dtype=np.float64)
-    chance = special.xlogy(k, share) + special.xlog1py(trials - k, -share)
+    chance = scipy.special.xlogy(k, share) + scipy.special.xlog1py(trials - k, -share)
     return np.asarray(np.exp(choose + chance), dtype=np.float64)
 
 
@@ -48,15 +45,13 @@ def t_p_value(values: Floats, least_variance: float = 0.0) -> float:
 
     Their variance is taken to be ``least_variance`` at least.
     """
-    from scipy import special
-
     mean = float(values.mean())
     if mean == 0.0 or len(values) < 2:
         return 1.0
     error = np.sqrt(max(float(values.var(ddof=1)), least_variance) / len(values))
     if error == 0.0:
         return 0.0
-    return min(1.0, 2.0 * float(special.stdtr(len(values) - 1.0, -abs(mean) / error)))
+    return min(1.0, 2.0 * float(scipy.special.stdtr(len(values) - 1.0, -abs(mean) / error)))
 
 
 def t_interval(values: Floats, level: float, least_variance: float = 0.0) -> tuple[Floats, Floats]:
@@ -73,20 +68,14 @@ def t_interval(values: Floats, level: float, least_variance: float = 0.0) -> tup
 
 def t_quantile(probability: float, freedom: float) -> float:
     """Return the quantile of Student's t distribution."""
-    from scipy import special
-
-    return float(special.stdtrit(freedom, probability))
+    return float(scipy.special.stdtrit(freedom, probability))
 
 
 def normal_quantile(probability: float) -> float:
     """Return the standard normal quantile."""
-    from scipy import special
-
-    return float(special.ndtri(probability))
+    return float(scipy.special.ndtri(probability))
 
 
 def normal_p_value(z: float) -> float:
     """Return the chance that a standard normal value lies beyond ``z`` on either side."""
-    from scipy import special
-
-    return float(2.0 * special.ndtr(-abs(z)))
+    return float(2.0 * scipy.special.ndtr(-abs(z)))

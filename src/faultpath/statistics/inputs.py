@@ -9,37 +9,28 @@ Numbers = NDArray[np.bool_ | np.integer[Any] | np.floating[Any]]
 Floats = NDArray[np.float64]
 
 
-def by_scene_and_seed(values: Numbers, name: str = "values") -> Floats:
-    """Return ``values`` ([scenes, seeds], or [scenes] for one seed) as float64 [scenes, seeds]."""
+def by_scene_and_seed(values: Numbers, name: str = "values", *, binary: bool = False) -> Floats:
+    """Return ``values`` ([scenes, seeds], or [scenes] for one seed) as float64 [scenes, seeds].
+
+    ``binary`` ones are zeros and ones.
+    """
     array = np.asarray(values, dtype=np.float64)
-    if array.ndim == 1:
-        array = array[:, np.newaxis]
+    array = array[:, np.newaxis] if array.ndim == 1 else array
     if array.ndim != 2:
         raise ValueError(f"{name} must be [scenes, seeds] or [scenes], not {array.ndim}-d")
     if array.size == 0:
         raise ValueError(f"{name} holds no outcomes: its shape is {array.shape}")
     if not np.isfinite(array).all():
         raise ValueError(f"{name} holds NaN or infinity; leave void pairs out before")
+    if binary and not ((array == 0.0) | (array == 1.0)).all():
+        raise ValueError(f"{name} must hold only 0 and 1 (or booleans)")
     return array
 
 
-def paired(first: Numbers, second: Numbers) -> tuple[Floats, Floats]:
+def paired(first: Numbers, second: Numbers, *, binary: bool = False) -> tuple[Floats, Floats]:
     """Return both arms as float64 [scenes, seeds], refusing arms of different shape."""
-    one = by_scene_and_seed(first, "first")
-    two = by_scene_and_seed(second, "second")
+    one = by_scene_and_seed(first, "first", binary=binary)
+    two = by_scene_and_seed(second, "second", binary=binary)
     if one.shape != two.shape:
         raise ValueError(f"paired arms need one shape, got {one.shape} and {two.shape}")
     return one, two
-
-
-def binary(values: Floats, name: str) -> Floats:
-    """Return ``values`` unchanged, refusing anything but 0 and 1."""
-    if not ((values == 0.0) | (values == 1.0)).all():
-        raise ValueError(f"{name} must hold only 0 and 1 (or booleans)")
-    return values
-
-
-def paired_binary(first: Numbers, second: Numbers) -> tuple[Floats, Floats]:
-    """Return both binary arms as float64 [scenes, seeds] of zeros and ones."""
-    one, two = paired(first, second)
-    return binary(one, "first"), binary(two, "second")

@@ -13,7 +13,7 @@ from faultpath.core.streams import generator
 from faultpath.statistics import signflip, unconditional
 from faultpath.statistics.distributions import binomial_cdf, binomial_pmf
 from faultpath.statistics.estimate import ALPHA, RULES, RuleName
-from faultpath.statistics.inputs import Floats, Numbers, paired_binary
+from faultpath.statistics.inputs import Floats, Numbers, paired
 from faultpath.statistics.score import quantile, reach, rejects
 
 LEVEL = 0.95
@@ -142,14 +142,20 @@ def detectable(
     ``on_top`` takes what was seen for noise that favours neither arm, and the difference for wins
     beside it, so that pairs are discordant more often: the number to plan by.
     """
-    one, two = paired_binary(first, second)
+    one, two = paired(first, second, binary=True)
     n_scenes = len(one)
     seeds = np.unique(one - two, axis=1)
     rate, alike = float(np.abs(seeds).mean()), 1.0
     if rate == 0.0:
         rate = 1.0 - ((1.0 - LEVEL) / 2.0) ** (1.0 / n_scenes)
-    elif seeds.shape[1] > 1:
-        alike = _alike(seeds)
+    elif (n_seeds := seeds.shape[1]) > 1:
+        # Two seeds' product has the mean ``alike * rate + (1 - alike) * mean ** 2``. A little is
+        # added as if seen, on either side, because few discordant pairs tell little.
+        sums = seeds.sum(axis=1) ** 2 - np.abs(seeds).sum(axis=1)
+        products = float(sums.sum()) / (n_seeds * (n_seeds - 1))
+        by_chance = n_scenes * float(seeds.mean()) ** 2
+        seen = n_scenes * rate - by_chance + _PRIOR_SCENES
+        alike = min(1.0, max(0.0, (products - by_chance + _PRIOR_ALIKE * _PRIOR_SCENES) / seen))
 
     def reached(difference: float) -> float:
         share = min(1.0, rate + difference if on_top else max(rate, difference))
@@ -165,18 +171,3 @@ def detectable(
         middle = 0.5 * (low + high)
         low, high = (low, middle) if reached(middle) >= power else (middle, high)
     return 100.0 * high
-
-
-def _alike(seeds: Floats) -> float:
-    """Return the share of scenes in which all seeds end alike, from differences [scenes, seeds].
-
-    Two seeds' product has the mean ``alike * rate + (1 - alike) * mean ** 2``. A little is added
-    as if seen, on either side, because few discordant pairs tell little.
-    """
-    n_scenes, n_seeds = seeds.shape
-    pairs = n_seeds * (n_seeds - 1)
-    products = float((seeds.sum(axis=1) ** 2 - np.abs(seeds).sum(axis=1)).sum()) / pairs
-    by_chance = n_scenes * float(seeds.mean()) ** 2
-    discordant = n_scenes * float(np.abs(seeds).mean())
-    seen = discordant - by_chance + _PRIOR_SCENES
-    return min(1.0, max(0.0, (products - by_chance + _PRIOR_ALIKE * _PRIOR_SCENES) / seen))

@@ -12,7 +12,7 @@ width zero, because what was not observed in n scenes may still exist.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,12 +59,11 @@ class SceneValues:
         """
         if sequential:
             return cls(values, bound, far=bound, scale=scale, sequential=True)
-        kinds, counts = np.unique(values, return_counts=True)
-        often = counts.astype(np.float64)
+        found = cls(values, bound, bound, scale)
+        kinds, often = found.kinds()
         # Summed in both orders, since swapping the arms turns the order round.
         orders = ((kinds, often), (kinds[::-1], often[::-1]))
-        far = max(reach(*each, bound, prior) for each in orders)
-        return cls(values=values, bound=bound, far=float(far), scale=scale)
+        return replace(found, far=float(max(reach(*each, bound, prior) for each in orders)))
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Return the interval of the mean, in the unit of the effect: by score, or by betting."""

@@ -19,7 +19,13 @@ def p_value(values: Floats, n_seeds: int) -> float:
 
     The chance that the sum of the values with random signs lies as far from 0 as theirs.
     """
-    sums = _whole(values, n_seeds)
+    for halving in range(_HALVINGS):
+        parts = n_seeds * 2.0**halving
+        sums = np.rint(values * parts).astype(np.int64)
+        if (np.abs(values * parts - sums) < _SLACK * parts).all():
+            break
+    else:
+        raise ValueError(f"scene differences are no parts of 1 / {n_seeds}")
     total, seen = int(np.abs(sums).sum()), abs(int(sums.sum()))
     law = np.zeros(total + 1)  # of the sum of those that are positive
     law[0] = 1.0
@@ -61,12 +67,3 @@ def rejects(values: Floats, counts: Floats, alpha: float) -> NDArray[np.bool_]:
     if len(open_):
         found[open_] = p_values(values, counts[open_]) <= alpha
     return found
-
-
-def _whole(values: Floats, n_seeds: int) -> NDArray[np.int64]:
-    for halving in range(_HALVINGS):
-        scaled = values * (n_seeds * 2.0**halving)
-        whole = np.rint(scaled)
-        if (np.abs(scaled - whole) < _SLACK * n_seeds * 2.0**halving).all():
-            return whole.astype(np.int64)
-    raise ValueError(f"scene differences are no parts of 1 / {n_seeds}")

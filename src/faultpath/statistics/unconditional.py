@@ -131,8 +131,16 @@ def _law(n_pairs: int) -> _Law:
     share = discordants / n_pairs
     points = 32 + 16 * int(np.ceil(np.sqrt(n_pairs)))
     shares = np.sin(np.linspace(0.0, np.pi / 2.0, points)) ** 2
+    split = np.zeros(n_pairs // 2 + 2)  # of one more discordant pair with each row of the tails
+    split[0] = 1.0
+    tails = np.zeros((n_pairs + 1, len(split)))
+    for total in range(n_pairs + 1):
+        if total:
+            split[1:] = 0.5 * (split[1:] + split[:-1])
+            split[0] *= 0.5
+        tails[total, 1:] = np.minimum(1.0, 2.0 * np.cumsum(split[:-1]))
     return _Law(
-        tails=_tails(n_pairs),
+        tails=tails,
         others=others,
         roots=np.sqrt(others / np.maximum(discordants, 1)[:, np.newaxis]),
         chances=binomial_pmf(others, n_pairs, share[:, np.newaxis]),
@@ -143,16 +151,3 @@ def _law(n_pairs: int) -> _Law:
 
 def _mixed(n_pairs: int, shares: Floats) -> Floats:
     return binomial_pmf(np.arange(n_pairs + 1), n_pairs, shares[:, np.newaxis])
-
-
-def _tails(n_pairs: int) -> Floats:
-    widest = n_pairs // 2 + 1
-    tails = np.zeros((n_pairs + 1, widest + 1))
-    split = np.zeros(widest + 1)
-    split[0] = 1.0
-    for total in range(n_pairs + 1):
-        if total:
-            split[1:] = 0.5 * (split[1:] + split[:-1])
-            split[0] *= 0.5
-        tails[total, 1:] = np.minimum(1.0, 2.0 * np.cumsum(split[:widest]))
-    return tails

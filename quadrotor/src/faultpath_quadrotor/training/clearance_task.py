@@ -37,7 +37,7 @@ class ClearanceTask(ModelTask):
     left to right with their points, since no scene prefers a side.
     """
 
-    name = "clearance"
+    name = order_key = "clearance"
 
     def __init__(self, seed: int, data_folder: Path, recipe: Recipe | None = None) -> None:
         self.seed = seed
@@ -56,19 +56,10 @@ class ClearanceTask(ModelTask):
         kept = samples.scene < VALIDATION_FROM
         self._training = samples.take(kept.nonzero()[:, 0])
         self._validation = samples.take((~kept).nonzero()[:, 0])
+        self.count = len(self._training)
         self._sha256 = _digest(samples)
         self._mirrored = torch.empty(0)
         self._chosen = torch.empty(0)
-
-    @property
-    @override
-    def count(self) -> int:
-        return len(self._training)
-
-    @property
-    @override
-    def order_key(self) -> str:
-        return self.name
 
     @override
     def module(self) -> nn.Module:

@@ -79,10 +79,10 @@ class PredictorTask(ModelTask):
     ) -> None:
         self.name = name
         self.seed = seed
-        self._base = name.removesuffix(DCC)
-        if self._base not in RECIPES:
+        self.order_key = name.removesuffix(DCC)
+        if self.order_key not in RECIPES:
             raise UserError(f"there is no predictor '{name}' to fit: choose from {known()}.")
-        self._recipe = RECIPES[self._base]
+        self._recipe = RECIPES[self.order_key]
         self.schedule = Schedule(
             epochs=self._recipe.epochs, batch_size=BATCH_SIZE, clip_norm=CLIP_NORM
         )
@@ -94,7 +94,7 @@ class PredictorTask(ModelTask):
         """See `Task.load`; several pools contribute equally many windows."""
         pools = [windows_of(self._data / f"{name}.parquet") for name in self._recipe.pools]
         training, self._validation = _equal_mix(pools)
-        self._train = training
+        self._train, self.count = training, len(training)
         self._scales = scales(training)
         self._consumers = self._blank().consumers()
         self._faults = [dcc(self._consumers, self._half_range)] if self.is_dcc else []
@@ -105,20 +105,10 @@ class PredictorTask(ModelTask):
         """Whether the calibration is corrupted in training."""
         return self.name.endswith(DCC)
 
-    @property
-    @override
-    def count(self) -> int:
-        return len(self._train)
-
-    @property
-    @override
-    def order_key(self) -> str:
-        return self._base
-
     @override
     def module(self) -> nn.Module:
         network = self._blank().network
-        stream = generator("training/weights", self._base, self.seed)
+        stream = generator("training/weights", self.order_key, self.seed)
         network.initialise(torch.Generator().manual_seed(int(stream.integers(2**62))))
         _measure(network, self._train)
         return network
@@ -166,7 +156,7 @@ class PredictorTask(ModelTask):
         }
 
     def _blank(self) -> AnchoredPredictor | UnanchoredPredictor:
-        made = PREDICTORS[self._base].build()
+        made = PREDICTORS[self.order_key].build()
         assert isinstance(made, AnchoredPredictor | UnanchoredPredictor)
         return made
 

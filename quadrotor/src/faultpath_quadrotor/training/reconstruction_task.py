@@ -99,7 +99,7 @@ class ReconstructionTask(ModelTask):
         self.schedule = Schedule(epochs=40, batch_size=256, optimiser="adam")  # paper, appendix
         self._model = MODELS[name]
         self._data = data_folder
-        self._base = name.removesuffix("+dcc")
+        self.order_key = name.removesuffix("+dcc")
         self._scaled = WindNetwork(self._model.calibrated)
 
     @override
@@ -111,29 +111,20 @@ class ReconstructionTask(ModelTask):
         history = _history(training)
         self._scaled.measure(*history, _calibration(training), _wind(training))
         self._training = _Samples.of(training, self._scaled)
+        self.count = len(training.ids)
         self._validation = _Samples.of(validation, self._scaled)
         self._known = self._delivered = torch.empty(0)
-
-    @property
-    @override
-    def count(self) -> int:
-        return len(self._training.ids)
-
-    @property
-    @override
-    def order_key(self) -> str:
-        return self._base
 
     @override
     def module(self) -> nn.Module:
         network = copy.deepcopy(self._scaled)
-        stream = generator("initial weights", self._base, self.seed)
+        stream = generator("initial weights", self.order_key, self.seed)
         network.initialise(torch.Generator().manual_seed(int(stream.integers(2**63))))
         return network
 
     def begin_epoch(self, epoch: int) -> None:
         """Draw the lengths of the histories and what the head gets of the calibration."""
-        stream = generator("short histories", self._base, self.seed, epoch)
+        stream = generator("short histories", self.order_key, self.seed, epoch)
         short = stream.random(self.count) < SHORT_HISTORIES
         lengths = stream.integers(1, INTERVALS, size=self.count)
         self._known = torch.from_numpy(lengths).masked_fill(torch.from_numpy(~short), INTERVALS)

@@ -11,8 +11,8 @@ from pydantic import BaseModel, ConfigDict
 
 from faultpath.core.errors import UserError
 from faultpath.statistics import Contrast, Estimate, WindowQuantiles
-from faultpath.statistics.clustered import N_RESAMPLES
 from faultpath.statistics.distributions import t_quantile
+from faultpath.statistics.effects import N_RESAMPLES
 from faultpath.systems.flightlog.flight import INTERVAL_S, Flight, nominal, through_air
 from faultpath.systems.flightlog.reading import Floats
 

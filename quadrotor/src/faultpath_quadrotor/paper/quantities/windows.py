@@ -87,7 +87,7 @@ def quantile(results: Results, measurement: Measurement, q: float = 0.5) -> floa
     values = results.measured(measurement).values
     if not len(values):
         raise NotRun(f"a window for {measurement.subject}")
-    # As `statistics.clustered` takes it, so that tables and claims agree to the bit.
+    # As `statistics.effects` takes it, so that tables and claims agree to the bit.
     return float(np.quantile(values, q, method="averaged_inverted_cdf"))
 
 
