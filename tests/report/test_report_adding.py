@@ -28,7 +28,7 @@ def errors(one: float, other: float):
 @pytest.fixture
 def heard(one_seed: ReportInput) -> ReportInput:
     """The first scene of the viewer's choice, with the errors of all its trials."""
-    scene, seed = choose(one_seed.record, one_seed.traces, pairs_of(one_seed))[0]
+    scene, seed = choose(one_seed.record, pairs_of(one_seed))[0]
     asked = one_seed.record.question
     signals = {
         TrialAddress(variant, path, seed, scene): errors(*sizes)

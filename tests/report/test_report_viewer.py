@@ -14,9 +14,8 @@ from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
 
 
-def _unpacked(source: ReportInput, **more: Any) -> tuple[dict[str, Any], list[Any]]:
-    pairs = read_pairs(source.outcomes, source.record)
-    made = viewer_data(source.record, source.traces, source.plans, pairs, **more)
+def _unpacked(source: ReportInput) -> tuple[dict[str, Any], list[Any]]:
+    made = viewer_data(source, read_pairs(source.outcomes, source.record))
     assert made is not None
     return unpack(made.packed)
 
@@ -59,7 +58,7 @@ def test_a_player_with_nothing_to_play_is_not_shown(one_seed: ReportInput) -> No
     scene = next(iter(one_seed.plans))
     steps = np.arange(5, dtype=np.float32)[:, None]
     heard = {TrialAddress("gru", "shared", 0, scene): (Signal("thrust", "thrust", "N", steps),)}
-    data, _ = _unpacked(still, signals=heard)
+    data, _ = _unpacked(replace(still, signals=heard))
     assert [each["scene"] for each in data["scenes"]] == [scene]
 
 
@@ -80,7 +79,7 @@ def test_signals_are_plotted_beside_what_they_are_compared_with(one_seed: Report
     heard = {TrialAddress(v, "shared", 0, scene): told(i) for i, v in enumerate(("gru", "gru-dcc"))}
     again = decode_signals(encode_signals(heard))
     assert again.keys() == heard.keys()
-    data, series = _unpacked(one_seed, signals=again)
+    data, series = _unpacked(replace(one_seed, signals=again))
     lines = ["true_wind, wind_again", "reconstructed_wind"]
     assert data["plots"] == [
         {"title": "wind error", "unit": "m/s", "lines": ["wind error at a.b"], "zero": True},

@@ -231,7 +231,7 @@ def _recorded(
 
     What goes wrong here is a finding, never an error of the audit.
     """
-    few = shown_first(record, result.outcomes, traces)[: 1 + record.scenes // _SCENES_FOR_ONE]
+    few = shown_first(record, result.outcomes)[: 1 + record.scenes // _SCENES_FOR_ONE]
     named = {path.name for path in record.paths}
     before = outcomes_at(result.outcomes, traces)
     wanted = [

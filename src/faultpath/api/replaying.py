@@ -55,15 +55,13 @@ def chosen_scenes(
                 raise UserError(f"the run: {unknown(what, name, known)}")
     if scenes:
         return tuple(dict.fromkeys(scenes))
-    return tuple(scene for scene, _ in shown_first(held.record, held.outcomes, held.traces))
+    return tuple(scene for scene, _ in shown_first(held.record, held.outcomes))
 
 
-def shown_first(
-    record: DecisionRecord, outcomes: OutcomeTable, traces: Traces
-) -> tuple[tuple[str, int], ...]:
+def shown_first(record: DecisionRecord, outcomes: OutcomeTable) -> tuple[tuple[str, int], ...]:
     """Return the scenes that the report begins with, and the seed of each."""
     pairs = read_pairs(outcomes, record)
-    return picked(record, traces, pairs) or tuple(by_scene(pairs))[:1]
+    return picked(record, pairs) or tuple(by_scene(pairs))[:1]
 
 
 def replay(

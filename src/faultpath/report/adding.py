@@ -68,7 +68,7 @@ def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
     `None` where the system names no errors, or nothing was recorded.
     """
     groups = by_scene(pairs)
-    for at in choose(source.record, source.traces, pairs) if source.signals else ():
+    for at in choose(source.record, pairs) if source.signals else ():
         found = _of(source, at[0], groups[at])
         if found is not None:
             return found

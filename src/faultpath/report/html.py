@@ -27,14 +27,13 @@ from faultpath.report.viewer import viewer_data
 from faultpath.trials.store import make_folder, write_text
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
-_SCRIPTS = ("page.js", "viewer.js")
 
 
 def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
     record, asked = source.record, source.record.question
     pairs = read_pairs(source.outcomes, record)
-    viewer = viewer_data(record, source.traces, source.plans, pairs, source.signals)
+    viewer = viewer_data(source, pairs)
     titles = {path.name: path.title for path in record.paths}
     effects = {effect.path: effect for effect in record.effects}
     why = adding(source, pairs)
@@ -42,7 +41,7 @@ def report_page(source: ReportInput) -> str:
     return render(
         "report.html.j2",
         _STYLES,
-        _SCRIPTS,
+        ("viewer.js",),
         record=record,
         asked=asked,
         provenance=source.provenance,

@@ -197,7 +197,9 @@ def _cell(
     )
     note = f" ({WORDS[Kind.LEFT_OUT]})" if pair.kind is Kind.LEFT_OUT else ""
     tip = f"{pair.scene}, seed {pair.seed}: {pair.void_reason or ends}{note}"
-    with svg.group("pair", tip, data_scene=pair.scene, link=link):
+    # By key, scenes are chosen from the viewer's list.
+    tab = {"tabindex": "-1"} if link else {}
+    with svg.group("pair", tip, link, data_scene=pair.scene, **tab):
         svg.rect(x, y, side, side, "void-cell" if pair.kind is Kind.VOID else "cell", 2)
         _glyph(svg, pair.kind, x + side / 2, y + side / 2)
 

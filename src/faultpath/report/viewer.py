@@ -3,33 +3,36 @@
 import json
 import zlib
 from base64 import b64encode
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.decisions import SHARED, DecisionRecord, Path, wording
-from faultpath.report.inputs import Traces
+from faultpath.decisions import SHARED, wording
+from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.viewer_choice import captions, choose
-from faultpath.report.viewer_signals import drawn, in_force, plots
-from faultpath.trials import FloorPlan
+from faultpath.trials import Outcome
 from faultpath.trials.store import TrialAddress
-from faultpath.trials.store.signals import Signal, Signals
+from faultpath.trials.store.signals import IN_FORCE, Signal, Signals
 
 _MOST_WITH_SIGNALS = 12
 """Scenes, with a seed each, whose signals go into a page."""
 _FARTHEST_M = 1e6
 """Beyond this a position is no longer drawn where it was: in centimetres it must stay a number."""
+_MOST_COMPONENTS = 4
+"""A rotation matrix or an image says little as lines."""
+_LEVELS = 4095
+_GAP = -1
+"""In place of a level, where nothing was read."""
 
 
 @dataclass(frozen=True)
 class Viewer:
     """What a page needs of the viewer beside its script."""
 
-    paths: tuple[Path, ...]
     space: str
     """`space`: trials are drawn from above; `line`: their positions lie on one axis and are plotted
     over time; `none`: the system gives no positions."""
@@ -39,56 +42,80 @@ class Viewer:
     """All else, for the script."""
 
 
-def viewer_data(
-    record: DecisionRecord,
-    traces: Traces,
-    plans: Mapping[str, FloorPlan],
-    pairs: Sequence[Pair],
-    signals: Signals | None = None,
-) -> Viewer | None:
+def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     """Return every trial for the page's script; `None` where there is nothing to play.
 
     Left out are scenes without any track and, where no trial has one, those without signals.
     """
-    asked, space, kept = record.question, _space(traces, plans), signals or {}
-    tracked = {(at.scene, at.seed) for at, track in traces.positions.items() if len(track)}
-    playable = tracked if space != "none" else {(at.scene, at.seed) for at in kept}
+    asked, plans, positions = source.record.question, source.plans, source.traces.positions
+    space = "space"
+    if not any(map(len, positions.values())):
+        space = "none"
+    elif not any(plan.prisms or plan.pillars for plan in plans.values()):
+        flat = all(not track[:, 1:].any() for track in positions.values())
+        space = "line" if flat else "space"
+    recorded = {(at.scene, at.seed) for at in source.signals}
+    tracked = {(at.scene, at.seed) for at, track in positions.items() if len(track)}
+    playable = recorded if space == "none" else tracked
     groups = {at: group for at, group in by_scene(pairs).items() if at in playable}
     if not groups:
         return None
-    chosen = [at for at in choose(record, traces, pairs) if at in groups]
-    kept = _of_few(kept, dict.fromkeys((*chosen, *groups)))
+    chosen = [at for at in choose(source.record, pairs) if at in groups]
+    order = dict.fromkeys((*chosen, *groups))
+    few = [at for at in order if at in recorded][:_MOST_WITH_SIGNALS]
+    signals = {at: s for at, s in source.signals.items() if (at.scene, at.seed) in few}
     if space == "line":
-        kept = _with_positions(kept, traces)
-    lines, series, why = plots(kept), list[NDArray[np.int32]](), captions(record, pairs)
+        signals = _with_positions(signals, positions)
+    plots, series, why = _plots(signals), list[NDArray[np.int32]](), captions(pairs)
 
-    def arm(variant: str, pair: Pair, role: str) -> dict[str, Any] | None:
-        trial = pair.baseline if role == "baseline" else pair.repair
+    def packed(variant: str, pair: Pair, trial: Outcome | None) -> dict[str, Any] | None:
         if trial is None:
             return None
         address = TrialAddress(variant, pair.path, pair.seed, pair.scene)
-        named = {each.name: each for each in kept.get(address, ())}
-        track = traces.positions.get(address, np.empty((0, 3), np.float32))
-        place = len(series)
-        held = np.clip(np.nan_to_num(track[:, :2]), -_FARTHEST_M, _FARTHEST_M)
-        series.extend(np.rint(100.0 * held).astype(np.int32).T if len(track) else ())
+        named = {each.name: each for each in signals.get(address, ())}
+        place, track = None, positions.get(address, np.empty((0, 3), np.float32))
+        if len(track):
+            place = len(series)
+            held = np.clip(np.nan_to_num(track[:, :2]), -_FARTHEST_M, _FARTHEST_M)
+            series.extend(np.rint(100.0 * held).astype(np.int32).T)
+        struck: list[list[int]] = []
+        if IN_FORCE in named:
+            on = named[IN_FORCE].values[:, 0] > 0
+            edges = np.flatnonzero(np.diff(on, prepend=False, append=False))
+            struck = edges.reshape(-1, 2).tolist()
         return {
             "status": trial.status.value,
             "ended": wording.ended(asked, trial.status),
             "time_s": trial.time_s,
-            "track": place if len(track) else None,
-            "lines": drawn(named, lines, series),
-            "struck": in_force(named),
+            "track": place,
+            "lines": _levels(named, plots, series),
+            "struck": struck,
         }
 
+    # First marked is a path on which the first scene shows what was decided.
+    first = groups[next(iter(order))]
+    signs = {effect.path: effect.sign for effect in source.record.effects if effect.leads}
+    apart = [path for path, pair in first.items() if pair.sign and signs.get(path) == pair.sign]
+    primary = asked.primary or SHARED
+    drawn = {scene: asdict(plans[scene]) for scene, _ in groups if scene in plans}
+    for prism in (prism for plan in drawn.values() for prism in plan["prisms"]):
+        prism["corners"] = [[round(v, 3) for v in corner] for corner in prism["corners"]]
     content = {
-        "dt_s": traces.dt_s,
+        "dt_s": source.traces.dt_s,
         "space": space,
-        "paths": [{"name": path.name, "title": path.title} for path in record.paths],
+        "paths": [{"name": path.name, "title": path.title} for path in source.record.paths],
         "picked": [list(groups).index(at) for at in chosen],
-        "path": _begin(record, groups[chosen[0] if chosen else next(iter(groups))]),
-        "plots": [plot.shown for plot in lines],
-        "plans": {name: _plan(plans[name]) for name, _ in groups if name in plans},
+        "path": apart[0] if apart and primary not in apart else primary,
+        "plots": [
+            {
+                "title": plot.title,
+                "unit": wording.unit(plot.unit),
+                "lines": [name for _, name in plot.lines],
+                "zero": plot.of_errors,
+            }
+            for plot in plots
+        ],
+        "plans": drawn,
         "scenes": [
             {
                 "scene": scene,
@@ -99,8 +126,8 @@ def viewer_data(
                     {
                         "path": pair.path,
                         "void": pair.void_reason,
-                        "baseline": arm(asked.baseline, pair, "baseline"),
-                        "repair": arm(asked.repair, pair, "repair"),
+                        "baseline": packed(asked.baseline, pair, pair.baseline),
+                        "repair": packed(asked.repair, pair, pair.repair),
                     }
                     for pair in group.values()
                 ],
@@ -108,7 +135,7 @@ def viewer_data(
             for (scene, seed), group in groups.items()
         ],
     }
-    return Viewer(record.paths, space, frozenset(groups), pack(content, series))
+    return Viewer(space, frozenset(groups), pack(content, series))
 
 
 def pack(content: Mapping[str, Any], series: Sequence[NDArray[np.int32]]) -> str:
@@ -122,26 +149,12 @@ def pack(content: Mapping[str, Any], series: Sequence[NDArray[np.int32]]) -> str
     return b64encode(zlib.compress(text.encode(), 9)).decode()
 
 
-def _begin(record: DecisionRecord, first: Mapping[str, Pair]) -> str:
-    """Return the path that is marked first: one on which its scene shows what was decided."""
-    signs = {effect.path: effect.sign for effect in record.effects if effect.leads}
-    apart = [path for path, pair in first.items() if pair.sign and signs.get(path) == pair.sign]
-    primary = record.question.primary or SHARED
-    return apart[0] if apart and primary not in apart else primary
-
-
-def _space(traces: Traces, plans: Mapping[str, FloorPlan]) -> str:
-    if not any(map(len, traces.positions.values())):
-        return "none"
-    solid = any(plan.prisms or plan.pillars for plan in plans.values())
-    flat = not solid and all(not track[:, 1:].any() for track in traces.positions.values())
-    return "line" if flat else "space"
-
-
-def _with_positions(signals: Signals, traces: Traces) -> Signals:
+def _with_positions(
+    signals: Signals, positions: Mapping[TrialAddress, NDArray[np.float32]]
+) -> Signals:
     """Return the signals with the position before them, and nothing that only repeats it."""
     found: dict[TrialAddress, tuple[Signal, ...]] = {}
-    for at, track in traces.positions.items():
+    for at, track in positions.items():
         axis = track[:, :1]
         others = (
             each
@@ -152,16 +165,88 @@ def _with_positions(signals: Signals, traces: Traces) -> Signals:
     return found
 
 
-def _of_few(signals: Signals, order: Iterable[tuple[str, int]]) -> Signals:
-    """Return the signals of the first scenes that have some."""
-    there = {(at.scene, at.seed) for at in signals}
-    few = set([at for at in order if at in there][:_MOST_WITH_SIGNALS])
-    return {at: named for at, named in signals.items() if (at.scene, at.seed) in few}
+_Line: TypeAlias = tuple[str, int]
+"""A signal and its component."""
+_Trials: TypeAlias = dict[TrialAddress, NDArray[Any]]
 
 
-def _plan(plan: FloorPlan) -> dict[str, Any]:
-    shown = asdict(plan)
-    del shown["title"]
-    for prism in shown["prisms"]:
-        prism["corners"] = [[round(v, 3) for v in corner] for corner in prism["corners"]]
-    return shown
+@dataclass(frozen=True)
+class _Plot:
+    """Lines of one unit on one pair of axes."""
+
+    title: str
+    unit: str
+    lines: tuple[tuple[_Line, str], ...]
+    """Each with what it is called."""
+
+    @property
+    def of_errors(self) -> bool:
+        """Whether it is held against zero."""
+        return "error" in self.title
+
+
+def _plots(signals: Signals) -> list[_Plot]:
+    """Return what is plotted of the signals: first errors, then what differs within its topic.
+
+    A plot is one component of one topic: the wind that is reconstructed with the wind that blew.
+    Lines that are the same in every trial are one line with two names. A plot in which nothing ever
+    changes or differs is left out, unless it is an error, which exists only where a fault made it;
+    one that is zero throughout is left out too.
+    """
+    topics: dict[tuple[str, str, int], dict[_Line, _Trials]] = {}
+    for address, named in signals.items():
+        for each in named:
+            if each.name == IN_FORCE or each.values.shape[1] > _MOST_COMPONENTS:
+                continue
+            for part, values in enumerate(each.values.T):
+                lines = topics.setdefault((each.topic, each.unit, part), {})
+                lines.setdefault((each.name, part), {})[address] = values
+    many = {(topic, unit): part + 1 for topic, unit, part in topics}
+    made: list[_Plot] = []
+    for (topic, unit, part), lines in topics.items():
+        for at in {at for trials in lines.values() for at in trials}:
+            values = np.concatenate([trials[at] for trials in lines.values() if at in trials])
+            values = values[np.isfinite(values)]
+            if values.size and (("error" in topic and values.any()) or np.ptp(values) > 0):
+                break
+        else:
+            continue
+        title, units = topic.replace("_", " "), unit.split(", ")
+        if (count := many[topic, unit]) > 1:
+            title, unit = f"{title}, {part + 1}", units[part] if len(units) == count else unit
+        same: dict[_Line, list[str]] = {}
+        for line, trials in lines.items():
+            twin = next((other for other in same if _alike(trials, lines[other])), line)
+            same.setdefault(twin, []).append(line[0])
+        named = tuple((line, ", ".join(names)) for line, names in same.items())
+        made.append(_Plot(title, unit, named))
+    return sorted(made, key=lambda plot: (not plot.of_errors, len(plot.lines) < 2))
+
+
+def _alike(one: _Trials, other: _Trials) -> bool:
+    # What the loop ends with may be missing in one of two signals.
+    return one.keys() == other.keys() and all(
+        abs(len(a) - len(b)) < 2 and np.array_equal(a[: len(b)], b[: len(a)], equal_nan=True)
+        for a, b in ((one[at], other[at]) for at in one)
+    )
+
+
+def _levels(
+    named: Mapping[str, Signal], plots: Sequence[_Plot], series: list[NDArray[np.int32]]
+) -> list[list[float | int]]:
+    """Return a trial's lines as `[plot, line, place in series, lowest value, value of a level]`."""
+    found: list[list[float | int]] = []
+    for number, plot in enumerate(plots):
+        for place, ((name, part), _) in enumerate(plot.lines):
+            if name not in named:
+                continue
+            values = named[name].values[:, part].astype(np.float64)
+            finite = values[np.isfinite(values)]
+            if not finite.size:
+                continue
+            low = float(finite.min())
+            level = float(finite.max() - low) / _LEVELS or 1.0
+            whole = np.where(np.isfinite(values), np.rint((values - low) / level), _GAP)
+            found.append([number, place, len(series), float(f"{low:.7g}"), float(f"{level:.7g}")])
+            series.append(whole.astype(np.int32))
+    return found

@@ -1,3 +1,7 @@
+"use strict";
+// What is folded is printed.
+addEventListener("beforeprint", () => document.querySelectorAll("details.more").forEach((d) => (d.open = true)));
+
 // Every trial again: a scene on one clock, a column a path; scene, path and time are in the address.
 if (document.getElementById("viewer-data")) {
   const ARMS = ["baseline", "repair"], SIGNS = { success: "✓", crash: "✕" };
@@ -12,8 +16,7 @@ if (document.getElementById("viewer-data")) {
     const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
     for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
     node.textContent = text;
-    parent.append(node);
-    return node;
+    return parent.appendChild(node);
   };
   const picture = (host, title) => {
     const w = Math.max(host.clientWidth, 80), h = Math.max(host.clientHeight, 60);
@@ -114,13 +117,12 @@ if (document.getElementById("viewer-data")) {
       draw(svg, "line", { x1: x(state.step), x2: x(state.step), y1: 8, y2: under, class: "v-now" });
     };
 
-    const option = (place) => {
-      const { scene, title, seed } = data.scenes[place], name = title.includes(scene) ? title : scene + (title && `, ${title}`);
-      return make("option", several ? `${name}, seed ${seed}` : name, { value: place });
-    };
     const group = (label, places) => {
       const made = make("optgroup", "", { label });
-      made.append(...places.map(option));
+      for (const place of places) {
+        const { scene, title, seed } = data.scenes[place], name = title.includes(scene) ? title : scene + (title && `, ${title}`);
+        made.append(make("option", several ? `${name}, seed ${seed}` : name, { value: place }));
+      }
       return made;
     };
     get("scene").replaceChildren(...(data.picked.length ? [group("Shown first", data.picked)] : []), group("All", [...data.scenes.keys()]));
@@ -220,19 +222,13 @@ if (document.getElementById("viewer-data")) {
       get("play").textContent = "Pause";
       state.playing = requestAnimationFrame(frame);
     };
-    const by = (steps) => () => { stop(); show(state.step + steps); tell(); };
 
     get("scene").addEventListener("change", (e) => { stop(); state.scene = Number(e.target.value); reset(); tell(); });
     get("signal").addEventListener("change", (e) => { chooseSignal(Number(e.target.value)); redraw(); });
     get("time").addEventListener("input", (e) => { stop(); show(Number(e.target.value)); tell(); });
-    get("back").addEventListener("click", by(-1));
-    get("on").addEventListener("click", by(1));
     get("play").addEventListener("click", () => { if (state.playing) { stop(); tell(); } else play(); });
     addEventListener("hashchange", listen);
-    // Drawn anew in the next frame, when sizes are known.
-    let waiting = 0;
-    addEventListener("resize", () => { cancelAnimationFrame(waiting); waiting = requestAnimationFrame(redraw); });
-    addEventListener("beforeprint", redraw);
+    for (const sized of ["resize", "beforeprint"]) addEventListener(sized, redraw);
     document.getElementById("viewer").hidden = false;
     if (!listen()) reset();
     document.getElementById("viewer").dataset.ready = "";
