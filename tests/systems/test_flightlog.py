@@ -12,7 +12,9 @@ from typer.testing import CliRunner
 from faultpath.cli.app import build
 from faultpath.core.errors import UserError
 from faultpath.report.compensation import sentences
-from faultpath.systems.flightlog import Compensation, compensation, read_columns, read_flight
+from faultpath.systems.flightlog.compensation import Compensation, compensation
+from faultpath.systems.flightlog.flight import read_flight
+from faultpath.systems.flightlog.reading import read_columns
 
 COLUMNS = flown()
 

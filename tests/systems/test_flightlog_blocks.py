@@ -6,9 +6,16 @@ from flown import MAP, flown, write
 from scipy.signal import lfilter
 
 from faultpath.report.compensation import sentences
-from faultpath.systems.flightlog import Compensation, compensation, read_columns, read_flight
-from faultpath.systems.flightlog.compensation import LEAST, LEAST_S, Medians, correlation_time
-from faultpath.systems.flightlog.flight import INTERVAL_S
+from faultpath.systems.flightlog.compensation import (
+    LEAST,
+    LEAST_S,
+    Compensation,
+    Medians,
+    compensation,
+    correlation_time,
+)
+from faultpath.systems.flightlog.flight import INTERVAL_S, read_flight
+from faultpath.systems.flightlog.reading import read_columns
 
 
 def drifting(rng: np.random.Generator, seconds: float, alike_s: float) -> np.ndarray:

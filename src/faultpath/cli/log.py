@@ -26,8 +26,9 @@ def command(
     as_json: Json = False,
 ) -> None:
     """Compute from a recorded flight what a calibration error leaves, isolated and shared."""
-    from faultpath.systems.flightlog import compensation, read_columns, read_flight
-    from faultpath.systems.flightlog.reading import HEAVIEST_KG
+    from faultpath.systems.flightlog.compensation import compensation
+    from faultpath.systems.flightlog.flight import read_flight
+    from faultpath.systems.flightlog.reading import HEAVIEST_KG, read_columns
 
     said = read_columns(columns)
     if mass is not None:

@@ -7,9 +7,9 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict
 
 from faultpath.core.errors import UserError
+from faultpath.core.frozen import Frozen
 from faultpath.statistics import Contrast, Estimate, WindowQuantiles
 from faultpath.statistics.distributions import t_quantile
 from faultpath.statistics.effects import N_RESAMPLES
@@ -31,11 +31,7 @@ WARM_UP_S = 1.0
 Decided: TypeAlias = Literal["more", "less", "not decided"]
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class Combination(_Frozen):
+class Combination(Frozen):
     """What remains with one calibration error in the observer and one in the predictor."""
 
     observer: float
@@ -48,7 +44,7 @@ class Combination(_Frozen):
     """Whether the error is greater or smaller than with correct calibration."""
 
 
-class SharedAgainstIsolated(_Frozen):
+class SharedAgainstIsolated(Frozen):
     """The same error in both modules beside the error in the observer alone."""
 
     error: float
@@ -56,7 +52,7 @@ class SharedAgainstIsolated(_Frozen):
     decided: Decided
 
 
-class Compensation(_Frozen):
+class Compensation(Frozen):
     """What a recorded flight shows of an observer and a predictor that share a calibration."""
 
     flown_s: float
@@ -110,18 +106,7 @@ def compensation(flight: Flight, sizes: tuple[float, ...] = (0.1, -0.1)) -> Comp
         pairs += [pair for pair in product((0.0, size), repeat=2) if pair != correct]
     of = {pair: _error(flight, settled, *pair) for pair in pairs}
     medians = Medians(flight.stretch[settled], list(of.values()))
-    combinations: list[Combination] = []
-    for pair in pairs:
-        ratio = None if pair == correct else medians.log_ratio(of[pair], of[correct])
-        combinations.append(
-            Combination(
-                observer=pair[0],
-                predictor=pair[1],
-                error_mps2=medians.value(of[pair], "m/s^2"),
-                log_ratio=ratio,
-                decided=ratio and _decided(ratio),
-            )
-        )
+    ratios = {pair: medians.log_ratio(of[pair], of[correct]) for pair in pairs[1:]}
     shared = {size: medians.log_ratio(of[size, size], of[size, 0.0]) for size in sizes}
     return Compensation(
         flown_s=len(settled) * INTERVAL_S,
@@ -132,7 +117,16 @@ def compensation(flight: Flight, sizes: tuple[float, ...] = (0.1, -0.1)) -> Comp
         mass_kg=flight.mass_kg,
         newton_per_unit=flight.newton_per_unit,
         drag_kgps=flight.drag_kgps,
-        combinations=tuple(combinations),
+        combinations=tuple(
+            Combination(
+                observer=pair[0],
+                predictor=pair[1],
+                error_mps2=medians.value(of[pair], "m/s^2"),
+                log_ratio=ratios.get(pair),
+                decided=_decided(ratios[pair]) if pair in ratios else None,
+            )
+            for pair in pairs
+        ),
         shared=tuple(
             SharedAgainstIsolated(error=size, log_ratio=ratio, decided=_decided(ratio))
             for size, ratio in shared.items()
@@ -198,29 +192,28 @@ class Medians:
         found = self._windows.value(errors, 0.5, unit)
         with np.errstate(divide="ignore", invalid="ignore"):
             factor = np.exp(self._half(np.log(found.draws)))
-        return self._with_ends(found, found.value / factor, found.value * factor)
+        return self._estimate(found, found.value / factor, found.value * factor)
 
     def log_ratio(self, one: Floats, two: Floats) -> Estimate:
         """Return the logarithm of the ratio of two medians."""
         found = self._windows.log_ratio(one, two, 0.5)
         half = self._half(found.draws)
-        return self._with_ends(found, found.value - half, found.value + half)
+        return self._estimate(found, found.value - half, found.value + half)
 
     def _half(self, draws: Floats) -> float:
-        """Return half the width of an interval; a resample of `K` blocks has `(K - 1) / K` of the
-        variance."""
         if self.blocks < LEAST:
             return float("nan")
+        # A resample of K blocks has (K - 1) / K of the variance.
         spread = float(draws.std()) * np.sqrt(self.blocks / (self.blocks - 1.0))
         return spread * t_quantile(0.975, self.blocks - 1)
 
-    def _with_ends(self, found: Contrast, low: float, high: float) -> Estimate:
-        what = found.method.partition(",")[0]
-        sure = bool(np.isfinite([low, high]).all())
-        how = f"t interval from {self.blocks} resampled blocks of {round(self.block_s, 1):g} s"
-        ends = {"low": low, "high": high} if sure else {"low": None, "high": None}
+    def _estimate(self, found: Contrast, low: float, high: float) -> Estimate:
+        what, how, ends = found.method.partition(",")[0], "too few blocks", (None, None)
+        if np.isfinite([low, high]).all():
+            ends = low, high
+            how = f"t interval from {self.blocks} resampled blocks of {round(self.block_s, 1):g} s"
         return found.estimate().model_copy(
-            update={**ends, "method": f"{what}, {how if sure else 'too few blocks'}"}
+            update={"low": ends[0], "high": ends[1], "method": f"{what}, {how}"}
         )
 
 

@@ -51,16 +51,21 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
     if columns.mass_kg is None:
         raise UserError("the mass of the vehicle is not given: add mass_kg to the map, or --mass")
     series = read_series(path, columns)
-    edges, gaps = _edges(path, series)
+    grids, gaps = _grids(path, series)
     attitude = _attitude(path, columns, series)
     # NED: half turns about x on both sides, so that z is up in world and body.
     up = np.array([1.0, -1.0, -1.0]) if columns.frame == "NED" else np.ones(3)
     speed = [series[name] for name in columns.velocity.columns]
+    command = series[columns.thrust.column]
+    # A command holds until the next one: its integral is known at every time.
+    done = np.concatenate([[0.0], np.cumsum(np.diff(command.time_s) * command.values[:-1])])
     parts: list[tuple[Floats, ...]] = []
-    for number, grid in enumerate(edges):
+    for number, grid in enumerate(grids):
         velocity = np.stack([np.interp(grid, each.time_s, each.values) for each in speed], axis=1)
         velocity *= SPEED_UNITS[columns.velocity.unit] * up
         middle = 0.5 * (grid[1:] + grid[:-1])
+        last = np.clip(np.searchsorted(command.time_s, grid, side="right") - 1, 0, None)
+        integral = done[last] + (grid - command.time_s[last]) * command.values[last]
         parts.append(
             (
                 np.full(len(middle), float(number)),
@@ -68,43 +73,42 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
                 attitude(middle).as_quat(),
                 np.diff(velocity, axis=0) / INTERVAL_S,
                 0.5 * (velocity[1:] + velocity[:-1]),
-                _means(series[columns.thrust.column], grid),
+                np.diff(integral) / INTERVAL_S,
             )
         )
     stretch, time_s, quaternion, acceleration, speeds, thrust = (
         np.concatenate(each) for each in zip(*parts, strict=True)
     )
-    flight = Flight(
-        stretch=stretch,
-        time_s=time_s,
-        rotation=Rotation.from_quat(quaternion),
-        acceleration_mps2=acceleration,
-        velocity_mps=speeds,
-        thrust_n=thrust,
-        mass_kg=columns.mass_kg,
-        drag_kgps=columns.drag_kgps,
-        newton_per_unit=1.0,
-        gaps=gaps,
-    )
-    axis = flight.rotation.apply([0.0, 0.0, 1.0])
+    rotation = Rotation.from_quat(quaternion)
     needed = acceleration + np.array([0.0, 0.0, GRAVITY_MPS2])
-    wanted = flight.mass_kg * (needed * axis).sum(1)
+    wanted = columns.mass_kg * (needed * rotation.apply([0.0, 0.0, 1.0])).sum(1)
     factor = columns.thrust.newton_per_unit
     if factor == "fit":
         power = float((thrust**2).sum())
         factor = float((thrust * wanted).sum()) / power if power else 0.0
-    carried = float(np.median(factor * thrust)) / (flight.mass_kg * GRAVITY_MPS2)
+    carried = float(np.median(factor * thrust)) / (columns.mass_kg * GRAVITY_MPS2)
     if not 0.5 <= carried <= 2.0:
         raise UserError(
             f"{path}: the median thrust is {carried:.3g} times the weight: correct mass_kg, or "
             "newton_per_unit of the thrust (a factor, or fit)"
         )
-    flight = replace(flight, thrust_n=factor * thrust, newton_per_unit=factor)
+    flight = Flight(
+        stretch=stretch,
+        time_s=time_s,
+        rotation=rotation,
+        acceleration_mps2=acceleration,
+        velocity_mps=speeds,
+        thrust_n=factor * thrust,
+        mass_kg=columns.mass_kg,
+        drag_kgps=columns.drag_kgps,
+        newton_per_unit=factor,
+        gaps=gaps,
+    )
     _check_order(path, columns, flight)
     return flight
 
 
-def _edges(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]:
+def _grids(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]:
     """Return the ends of the control intervals of each stretch, and how many pauses there are."""
     columns = list(series.values())
     pauses: list[tuple[float, float]] = []
@@ -156,27 +160,19 @@ def _attitude(path: Path, columns: ColumnMap, series: Mapping[str, Series]) -> S
     return Slerp(time_s, Rotation.from_quat(quaternion))
 
 
-def _means(command: Series, edges: Floats) -> Floats:
-    # A command holds until the next one: its integral is known at every time.
-    done = np.concatenate([[0.0], np.cumsum(np.diff(command.time_s) * command.values[:-1])])
-    last = np.clip(np.searchsorted(command.time_s, edges, side="right") - 1, 0, None)
-    integral = done[last] + (edges - command.time_s[last]) * command.values[last]
-    return np.diff(integral) / INTERVAL_S
-
-
 def _check_order(path: Path, columns: ColumnMap, flight: Flight) -> None:
     """Refuse an attitude that would explain the motion far better in the other order."""
-    x, y, z, w = flight.rotation.as_quat().T
     flip = np.array([1.0, -1.0, -1.0, 1.0]) if columns.frame == "NED" else np.ones(4)
-    raw = np.stack([x, y, z, w], axis=1) * flip
-    other = raw[:, [3, 0, 1, 2]] if columns.attitude.order == "wxyz" else raw[:, [1, 2, 3, 0]]
+    order, turned = "wxyz", [1, 2, 3, 0]
+    if columns.attitude.order == "wxyz":
+        order, turned = "xyzw", [3, 0, 1, 2]
+    other = (flight.rotation.as_quat() * flip)[:, turned]
     swapped = replace(flight, rotation=Rotation.from_quat(other * flip))
     here, there = (
         float(np.median(np.linalg.norm(nominal(f) - f.acceleration_mps2, axis=1)))
         for f in (flight, swapped)
     )
     if there < 0.5 * here:
-        order = "xyzw" if columns.attitude.order == "wxyz" else "wxyz"
         raise UserError(
             f"{path}: thrust and weight explain the motion to {here:.3g} m/s^2 with the "
             f"quaternion's order {columns.attitude.order}, and to {there:.3g} m/s^2 with {order}: "

@@ -12,11 +12,12 @@ import pyarrow as pa
 import pyarrow.csv as csv
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml
+from faultpath.core.frozen import Frozen
 from faultpath.core.text import extra, one_line, unknown
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -34,32 +35,28 @@ PX4 = "px4"
 """The map that ships, for ULog files of PX4."""
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class TimeColumn(_Frozen):
+class TimeColumn(Frozen):
     """When a row was recorded; ULog files bring a time with every message, and need none."""
 
     column: str
     unit: Literal["s", "ms", "us", "ns"]
 
 
-class Attitude(_Frozen):
+class Attitude(Frozen):
     """A unit quaternion from the body to the world."""
 
     columns: tuple[str, str, str, str]
     order: Literal["wxyz", "xyzw"]
 
 
-class Velocity(_Frozen):
+class Velocity(Frozen):
     """Velocity in the world frame."""
 
     columns: tuple[str, str, str]
     unit: Literal["m/s", "cm/s", "mm/s"] = "m/s"
 
 
-class Thrust(_Frozen):
+class Thrust(Frozen):
     """The collective thrust that was commanded."""
 
     column: str
@@ -68,7 +65,7 @@ class Thrust(_Frozen):
     commands; the sign is then found as well."""
 
 
-class ColumnMap(_Frozen):
+class ColumnMap(Frozen):
     """What a log's columns mean, and what is known of its vehicle."""
 
     time: TimeColumn | None = None
@@ -125,7 +122,32 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
     reader = readers.get(path.suffix.lower())
     if reader is None:
         raise UserError(f"{path}: is not a .csv, .parquet or .ulg file: convert it to one")
-    return {name: _checked(path, name, *found) for name, found in reader(path, columns).items()}
+    series: dict[str, Series] = {}
+    for name, (time_s, values) in reader(path, columns).items():
+        for what, found, most in (("times", time_s, _LONGEST_S), ("values", values, _LARGEST)):
+            if (odd := np.flatnonzero(np.abs(found) > most)).size:  # infinite ones too
+                raise UserError(
+                    f"{path}: the {what} of column '{name}' reach {found[odd[0]]:g} at its reading "
+                    f"{odd[0]}, which no flight does: correct the log, or leave the cell empty"
+                )
+        there = np.isfinite(time_s) & np.isfinite(values)  # what is empty is not a number
+        times, numbers = time_s[there], values[there]
+        if len(times) < 2:
+            raise UserError(f"{path}: column '{name}' has fewer than two numbers: name another")
+        if (back := np.flatnonzero(np.diff(times) < 0)).size:
+            raise UserError(
+                f"{path}: the times of column '{name}' go back at its reading {back[0] + 1}: sort "
+                "the rows, or name the column of time"
+            )
+        times, first = np.unique(times, return_index=True)
+        rate_hz = (len(times) - 1) / max(float(times[-1] - times[0]), 1e-9)
+        if not 2 <= rate_hz <= 20_000:
+            raise UserError(
+                f"{path}: column '{name}' has {rate_hz:.3g} readings a second, which no flight log "
+                "has: correct the unit of time"
+            )
+        series[name] = Series(times, numbers[first])
+    return series
 
 
 def _table(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
@@ -189,30 +211,3 @@ def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
 def _why(error: Exception) -> str:
     said = (error.strerror if isinstance(error, OSError) else "") or str(error)
     return one_line(said) or type(error).__name__
-
-
-def _checked(path: Path, name: str, time_s: Floats, values: Floats) -> Series:
-    for what, found, most in (("times", time_s, _LONGEST_S), ("values", values, _LARGEST)):
-        if (odd := np.flatnonzero(np.abs(found) > most)).size:  # infinite ones too
-            raise UserError(
-                f"{path}: the {what} of column '{name}' reach {found[odd[0]]:g} at its reading "
-                f"{odd[0]}, which no flight does: correct the log, or leave the cell empty"
-            )
-    there = np.isfinite(time_s) & np.isfinite(values)  # what is empty is not a number
-    time_s, values = time_s[there], values[there]
-    if len(time_s) < 2:
-        raise UserError(f"{path}: column '{name}' has fewer than two numbers: name another")
-    if (np.diff(time_s) < 0).any():
-        row = int(np.flatnonzero(np.diff(time_s) < 0)[0]) + 1
-        raise UserError(
-            f"{path}: the times of column '{name}' go back at its reading {row}: sort the rows, or "
-            "name the column of time"
-        )
-    time_s, first = np.unique(time_s, return_index=True)
-    rate_hz = (len(time_s) - 1) / max(float(time_s[-1] - time_s[0]), 1e-9)
-    if not 2 <= rate_hz <= 20_000:
-        raise UserError(
-            f"{path}: column '{name}' has {rate_hz:.3g} readings a second, which no flight log "
-            "has: correct the unit of time"
-        )
-    return Series(time_s, values[first])
