@@ -33,7 +33,6 @@ class Learned(Module):
         reads: Ports of this step.
         reads_past: Ports of the step before.
         steps: T; `None` where the fit's windows had no steps.
-        first: What the source held before the first step, for others that read its past.
     """
 
     def __init__(
@@ -44,17 +43,10 @@ class Learned(Module):
         reads: Iterable[Port],
         reads_past: Iterable[Port] = (),
         steps: int | None = None,
-        first: float | None = None,
     ) -> None:
         self.name, self.writes = name, (writes,)
         self.reads, self.reads_past = frozenset(reads), frozenset(reads_past)
-        self._net, self._steps, self._first = net, steps, first
-
-    @override
-    def before(self, batch: Batch) -> Outputs:
-        if self._first is None:
-            return {}
-        return {self.writes[0]: np.full(len(batch.scenes), self._first)}
+        self._net, self._steps = net, steps
 
     @override
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.estimate import RULES, SCENES, SCENES_AND_SEEDS, RuleName
@@ -105,7 +104,15 @@ def median_effect(
     """
     mask = np.asarray(joint, dtype=np.bool_)
     mask = mask[:, np.newaxis] if mask.ndim == 1 else mask
-    difference = _masked(first, mask, "first") - _masked(second, mask, "second")
+
+    def counted(values: Numbers, name: str) -> Floats:
+        array = np.asarray(values, dtype=np.float64)
+        array = array[:, np.newaxis] if array.ndim == 1 else array
+        if array.shape != mask.shape:
+            raise ValueError(f"{name} has shape {array.shape}, joint has {mask.shape}")
+        return by_scene_and_seed(np.where(mask, array, 0.0), name)
+
+    difference = counted(first, "first") - counted(second, "second")
     resamples.check(len(difference))
     used = mask.any(axis=1)
     if not used.any():
@@ -125,14 +132,6 @@ def median_effect(
         n_seeds=mask.shape[1],
         resamples=resamples,
     )
-
-
-def _masked(values: Numbers, mask: NDArray[np.bool_], name: str) -> Floats:
-    array = np.asarray(values, dtype=np.float64)
-    array = array[:, np.newaxis] if array.ndim == 1 else array
-    if array.shape != mask.shape:
-        raise ValueError(f"{name} has shape {array.shape}, joint has {mask.shape}")
-    return by_scene_and_seed(np.where(mask, array, 0.0), name)
 
 
 class WindowQuantiles:

@@ -6,7 +6,9 @@ to be said with ``None`` and a reason. Differences are always *first minus secon
 
 from typing import Literal, NamedTuple, Self, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
+
+from faultpath.core.frozen import Frozen
 
 ALPHA = 0.05
 Sign: TypeAlias = Literal[-1, 0, 1]
@@ -15,13 +17,7 @@ SCENES = "new scenes like these, for these trained models and recorded execution
 SCENES_AND_SEEDS = "new scenes like these and models newly trained with other seeds"
 
 
-class FrozenResult(BaseModel):
-    """Base of all results: frozen, no unknown fields, no NaN and no infinity."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class Discordant(FrozenResult):
+class Discordant(Frozen, allow_inf_nan=False):
     """Pairs in which exactly one arm succeeded; printed as the paper prints them, ``2:15``."""
 
     first_only: int = Field(ge=0)
@@ -39,7 +35,7 @@ class Discordant(FrozenResult):
         return f"{self.first_only}:{self.second_only}"
 
 
-class SeedCounts(FrozenResult):
+class SeedCounts(Frozen, allow_inf_nan=False):
     """Discordant counts of each seed, in seed order; printed ``2:15/2:11/2:9``."""
 
     per_seed: tuple[Discordant, ...] = Field(min_length=1)
@@ -48,7 +44,7 @@ class SeedCounts(FrozenResult):
         return "/".join(str(c) for c in self.per_seed)
 
 
-class Estimate(FrozenResult):
+class Estimate(Frozen, allow_inf_nan=False):
     """A value, its interval, and what that interval generalises to.
 
     ``low`` and ``high`` are both None when no interval was asked for or none exists. ``per_seed``
@@ -105,7 +101,7 @@ class Decision(NamedTuple):
     """What the test had to reach, given the others' p-values."""
 
 
-class Region(FrozenResult):
+class Region(Frozen, allow_inf_nan=False):
     """Fault frequencies at which it is decided who is ahead; ``sign`` 1: the first arm."""
 
     low: float = Field(ge=0.0, le=1.0)
@@ -113,7 +109,7 @@ class Region(FrozenResult):
     sign: Literal[-1, 1]
 
 
-class BreakEven(FrozenResult):
+class BreakEven(Frozen, allow_inf_nan=False):
     """Fault frequency at which a repair's gain under faults offsets its cost without (Table V).
 
     ``pieces`` are the frequencies at which the expected difference cannot be distinguished from 0,

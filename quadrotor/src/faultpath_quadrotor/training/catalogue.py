@@ -5,7 +5,7 @@ The tasks load when they are built: the names alone must not cost their imports,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -122,9 +122,18 @@ def choose(
     """
     if wrong := [seed for seed in seeds if seed < 0]:
         raise UserError(f"the seed {wrong[0]} is negative: seeds start at 0.")
-    wanted = {entry.name for name in names or ("all",) for entry in _named(name)}
+    wanted: set[str] = set()
+    for name in names or ("all",):
+        found = GROUPS.get(name) or [entry for entry in ALL if entry.name == name]
+        if not found:
+            known = ", ".join(entry.name for entry in ALL)
+            raise UserError(
+                f"the quadrotor has no model '{name}' to train; it has {known}, and the groups "
+                f"{', '.join(GROUPS)}."
+            )
+        wanted |= {entry.name for entry in found}
     entries = [entry for entry in ALL if entry.name in wanted]
-    return tuple(_jobs(entries, seeds))
+    return tuple(Job(entry, s) for entry in entries for s in dict.fromkeys(seeds or entry.seeds))
 
 
 def stages(jobs: Sequence[Job]) -> tuple[tuple[Job, ...], ...]:
@@ -132,21 +141,3 @@ def stages(jobs: Sequence[Job]) -> tuple[tuple[Job, ...], ...]:
     first = tuple(job for job in jobs if not job.entry.after)
     rest = tuple(job for job in jobs if job.entry.after)
     return tuple(stage for stage in (first, rest) if stage)
-
-
-def _named(name: str) -> tuple[Entry, ...]:
-    if name in GROUPS:
-        return GROUPS[name]
-    found = tuple(entry for entry in ALL if entry.name == name)
-    if not found:
-        known = ", ".join(entry.name for entry in ALL)
-        raise UserError(
-            f"the quadrotor has no model '{name}' to train; it has {known}, and the groups "
-            f"{', '.join(GROUPS)}."
-        )
-    return found
-
-
-def _jobs(entries: Iterable[Entry], seeds: Sequence[int]) -> Iterable[Job]:
-    for entry in entries:
-        yield from (Job(entry, seed) for seed in dict.fromkeys(seeds or entry.seeds))

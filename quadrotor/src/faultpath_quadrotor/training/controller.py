@@ -47,35 +47,27 @@ def draw(stream: np.random.Generator, steps: int, settings: PerturbationSettings
     thrust, rates = stream.uniform(low, high, 2)
     sigma = np.array((settings.thrust_sigma, *settings.rate_sigma_radps))
     sigma *= np.array((thrust, rates, rates, rates))
-    noise = _autoregressive(stream, steps, stream.uniform(*settings.correlation))
+    # Stationary AR(1) noise of unit standard deviation.
+    correlation = stream.uniform(*settings.correlation)
+    fresh = np.sqrt(1 - correlation**2)
+    innovations = fresh * stream.standard_normal((4, steps))
+    innovations[:, 0] /= fresh
+    noise = lfilter([1.0], [1.0, -correlation], innovations, axis=1)
     jitter = stream.uniform(0.0, settings.jitter) * stream.standard_normal((4, steps))
     pulses = np.zeros((4, steps))
     for _ in range(stream.poisson(settings.pulses_per_s * steps / CONTROL_RATE_HZ)):
-        _add_pulse(stream, pulses, settings)
+        # A held step of one axis or, every other time, a doublet: a step and its reverse.
+        axis, first = stream.integers(4), stream.integers(steps)
+        width = stream.integers(*settings.pulse_steps, endpoint=True)
+        height = stream.uniform(*settings.pulse_sigmas) * stream.choice((-1.0, 1.0))
+        pulses[axis, first : first + width] += height
+        if stream.uniform() < 0.5:
+            pulses[axis, first + width : first + 2 * width] -= height
     held = np.zeros(steps, dtype=bool)
     for _ in range(stream.poisson(high * settings.holds_per_s * steps / CONTROL_RATE_HZ)):
         first = stream.integers(1, steps)
         held[first : first + stream.integers(*settings.hold_steps, endpoint=True)] = True
     return Perturbation(sigma[:, None] * (noise + jitter + pulses), held)
-
-
-def _autoregressive(stream: np.random.Generator, steps: int, correlation: float) -> Array:
-    """Stationary AR(1) noise of unit standard deviation, [4, steps]."""
-    fresh = np.sqrt(1 - correlation**2)
-    innovations = fresh * stream.standard_normal((4, steps))
-    innovations[:, 0] /= fresh
-    return lfilter([1.0], [1.0, -correlation], innovations, axis=1)
-
-
-def _add_pulse(stream: np.random.Generator, pulses: Array, settings: PerturbationSettings) -> None:
-    """Add a held step or, every other time, a doublet (a step and its reverse) to one axis."""
-    axis = stream.integers(4)
-    first = stream.integers(pulses.shape[1])
-    width = stream.integers(*settings.pulse_steps, endpoint=True)
-    height = stream.uniform(*settings.pulse_sigmas) * stream.choice((-1.0, 1.0))
-    pulses[axis, first : first + width] += height
-    if stream.uniform() < 0.5:
-        pulses[axis, first + width : first + 2 * width] -= height
 
 
 LEAST_LIFT = 0.3
@@ -186,12 +178,30 @@ class WaypointController:
         return command.float().to(command.dtype)
 
     def _feedback(self, state: State, wind_mps: Tensor) -> Tensor:
-        way = self._way(state.position)
-        velocity = self._wanted_velocity(way)
-        force = self._wanted_force(state, velocity, wind_mps)
+        """Return the command [4, L] that the state and the leg ask for."""
+        course, vehicle = self._course, self._vehicle
+        velocity = course.gains[0] * self._way(state.position)
+        speed = (velocity * velocity).sum(0).sqrt() + _TINY
+        velocity = velocity * (self._at_leg(course.speed_mps) / speed).clamp(max=1.0)
+
+        air = so3.rotate_back(state.rotation, wind_mps - state.velocity)
+        drag = so3.rotate(state.rotation, vehicle.drag_kgps * air) / vehicle.mass_kg
+        force = course.gains[1] * (velocity - state.velocity) - course.drag_share * drag
+        up = (force[2] + GRAVITY_MPS2).clamp(min=LEAST_LIFT * GRAVITY_MPS2)
+        level = (force[0] * force[0] + force[1] * force[1]).sqrt() + _TINY
+        shrink = (course.tilt_slope * up / level).clamp(max=1.0)
+        force = torch.stack((force[0] * shrink, force[1] * shrink, up))
         lift = (state.rotation[:, 2] * force).sum(0)
-        thrust = lift * self._vehicle.mass_kg / self._vehicle.thrust_scale
-        rate = torch.cat((self._tilt_rate(state, force), self._heading_rate(state, velocity)))
+        thrust = lift * vehicle.mass_kg / vehicle.thrust_scale
+
+        wanted = so3.rotate_back(state.rotation, force)
+        sine = (wanted[0] * wanted[0] + wanted[1] * wanted[1]).sqrt() + _TINY
+        tilt = course.gains[2] * torch.atan2(sine, wanted[2]) / sine
+        travel = torch.atan2(velocity[1], velocity[0])
+        heading = torch.atan2(state.rotation[1, 0], state.rotation[0, 0])
+        error = travel + self._at_leg(course.heading_offset_rad) - heading
+        error = error - 2 * math.pi * torch.round(error / (2 * math.pi))
+        rate = torch.stack((-wanted[1] * tilt, wanted[0] * tilt, course.gains[3] * error))
         return torch.cat((thrust[None], torch.clamp(rate, -self._limit, self._limit)))
 
     def _way(self, position: Tensor) -> Tensor:
@@ -206,30 +216,3 @@ class WaypointController:
     def _at_leg(self, values: Tensor) -> Tensor:
         index = self._leg.expand(*values.shape[:-2], 1, -1)
         return values.gather(-2, index).squeeze(-2)
-
-    def _wanted_velocity(self, way: Tensor) -> Tensor:
-        velocity = self._course.gains[0] * way
-        speed = (velocity * velocity).sum(0).sqrt() + _TINY
-        return velocity * (self._at_leg(self._course.speed_mps) / speed).clamp(max=1.0)
-
-    def _wanted_force(self, state: State, velocity: Tensor, wind_mps: Tensor) -> Tensor:
-        air = so3.rotate_back(state.rotation, wind_mps - state.velocity)
-        drag = so3.rotate(state.rotation, self._vehicle.drag_kgps * air) / self._vehicle.mass_kg
-        force = self._course.gains[1] * (velocity - state.velocity) - self._course.drag_share * drag
-        up = (force[2] + GRAVITY_MPS2).clamp(min=LEAST_LIFT * GRAVITY_MPS2)
-        level = (force[0] * force[0] + force[1] * force[1]).sqrt() + _TINY
-        shrink = (self._course.tilt_slope * up / level).clamp(max=1.0)
-        return torch.stack((force[0] * shrink, force[1] * shrink, up))
-
-    def _tilt_rate(self, state: State, force: Tensor) -> Tensor:
-        wanted = so3.rotate_back(state.rotation, force)
-        sine = (wanted[0] * wanted[0] + wanted[1] * wanted[1]).sqrt() + _TINY
-        gain = self._course.gains[2] * torch.atan2(sine, wanted[2]) / sine
-        return torch.stack((-wanted[1] * gain, wanted[0] * gain))
-
-    def _heading_rate(self, state: State, velocity: Tensor) -> Tensor:
-        travel = torch.atan2(velocity[1], velocity[0])
-        heading = torch.atan2(state.rotation[1, 0], state.rotation[0, 0])
-        error = travel + self._at_leg(self._course.heading_offset_rad) - heading
-        error = error - 2 * math.pi * torch.round(error / (2 * math.pi))
-        return (self._course.gains[3] * error)[None]

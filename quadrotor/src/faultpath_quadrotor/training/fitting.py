@@ -77,6 +77,13 @@ def fit(
     if task.count < 1:
         raise UserError(f"{path.stem} has no training samples: collect its data again.")
     net = task.module()
+    initial = weights_sha256(net)
+    # Before any step the loss depends on data, features, corruption, order and loss, so that a
+    # change of their code shows without a digest of the code.
+    task.begin_epoch(0)
+    net.train()
+    with torch.no_grad():
+        first_loss = float(task.loss(net, minibatches(task, 0)[0]))
     described = dict(task.describe())
     description = str(described.pop("description", ""))
     recipe = {
@@ -88,8 +95,8 @@ def fit(
         "order_key": task.order_key,
         "data_sha256": described.pop("data_sha256", {}),
         "config": json.loads(json.dumps(described)),
-        "initial_sha256": weights_sha256(net),
-        "first_loss": _first_loss(task, net),
+        "initial_sha256": initial,
+        "first_loss": first_loss,
     }
     if _is_finished(path, recipe, notice):
         return path
@@ -112,18 +119,6 @@ def fit(
 def journal_path(weights: Path) -> Path:
     """Return the journal's place for the weights file of a model."""
     return weights.with_name(f"{weights.stem}.unfinished.safetensors")
-
-
-def _first_loss(task: ModelTask, net: nn.Module) -> float:
-    """Return the loss of the first minibatch before any step.
-
-    It depends on data, features, corruption, order and loss, so that a change of their code shows
-    without a digest of the code.
-    """
-    task.begin_epoch(0)
-    net.train()
-    with torch.no_grad():
-        return float(task.loss(net, minibatches(task, 0)[0]))
 
 
 def _is_finished(path: Path, recipe: Mapping[str, Any], notice: Callable[[str], None]) -> bool:
