@@ -10,7 +10,7 @@ from faultpath.cli.main import main
 from faultpath.core.errors import UserError
 from faultpath.faults import parse_fault
 from faultpath.interface import Provenance
-from faultpath.report.trace import trace_table
+from faultpath.report.terminal import trace_table
 from faultpath.systems.checks.tracing import trace_system
 from faultpath.trials import SystemSpec, load_system
 

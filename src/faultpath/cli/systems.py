@@ -40,8 +40,7 @@ def trace(system: SystemName, as_json: Json = False, **given: Any) -> int:
     from faultpath.api.display import SafeConsole
     from faultpath.api.reviewing import traced
     from faultpath.decisions.tables.terminal import STYLES, Parted
-    from faultpath.report.terminal import interface_table
-    from faultpath.report.trace import trace_table
+    from faultpath.report.terminal import interface_table, trace_table
 
     begun = begin("trace", TraceQuestion, system, given, display())
     trace = traced(begun)

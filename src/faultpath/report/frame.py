@@ -20,42 +20,28 @@ from faultpath.report.svg import template
 
 def render(page: str, styles: Sequence[str], scripts: Sequence[str], **content: object) -> str:
     """Return the template `page` with its styles and scripts inside, and the policy on them."""
-    style, script = ("".join(map(template, names)) for names in (styles, scripts))
-    return (
-        _environment()
-        .get_template(page)
-        .render(
-            policy=_policy(style, script),
-            styles=Markup(style),
-            scripts=Markup(script),
-            version=__version__,
-            **content,
-        )
+    texts = ["".join(map(template, names)) for names in (styles, scripts)]
+    style, script = (
+        f"sha256-{b64encode(hashlib.sha256(text.encode()).digest()).decode()}" for text in texts
     )
-
-
-def _policy(style: str, script: str) -> str:
     # `data:` is the empty icon, without which a browser asks the server of the page for one.
-    return (
-        f"default-src 'none'; style-src '{_digest(style)}'; script-src '{_digest(script)}'; "
+    policy = (
+        f"default-src 'none'; style-src '{style}'; script-src '{script}'; "
         "img-src data:; base-uri 'none'; form-action 'none'"
     )
-
-
-def _digest(text: str) -> str:
-    return f"sha256-{b64encode(hashlib.sha256(text.encode()).digest()).decode()}"
-
-
-def _shown(value: object) -> object:
-    return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
+    inside = {"policy": policy, "styles": Markup(texts[0]), "scripts": Markup(texts[1])}
+    return _environment().get_template(page).render(**inside, version=__version__, **content)
 
 
 @cache
 def _environment() -> Environment:
+    def shown(value: object) -> object:
+        return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
+
     return Environment(
         loader=PackageLoader("faultpath.report"),
         autoescape=True,
-        finalize=_shown,
+        finalize=shown,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -1,6 +1,5 @@
 """A map as tables, pictures, terminal and page; all numbers are the record's."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 from markupsafe import Markup
@@ -9,7 +8,7 @@ from rich.text import Text
 
 from faultpath.decisions import RunProvenance, wording
 from faultpath.decisions.map.lattice import SHARED
-from faultpath.decisions.map.model import Flip, MapPoint, MapQuestion, MapRecord
+from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.words import cut
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
@@ -33,21 +32,23 @@ def tables(record: MapRecord) -> tuple[Table, ...]:
 def _paths(record: MapRecord) -> Table:
     asked = record.question
     of = {point.errors: point for point in record.points}
-    sizes = sorted({x or y for x, y in of if x == y or not x or not y})
-    places: tuple[Callable[[float], tuple[float, float]], ...] = (
-        lambda size: (size, 0.0),
-        lambda size: (0.0, size),
-        lambda size: (size, size),
-    )
+    lines: list[Line] = []
+    for size in sorted({x or y for x, y in of if x == y or not x or not y}):
+        entries: list[Entry] = []
+        for errors in ((size, 0.0), (0.0, size), (size, size)):
+            entry = Entry(text=MISSING)
+            if point := of.get(errors):
+                ends = f"[{wording.plain(point.low)}, {wording.plain(point.high)}]"
+                text = f"{wording.signed(point.difference)} {ends}"
+                entry = Entry(text=text, detected=point.sign != 0)
+            entries.append(entry)
+        lines.append(line(asked.said(size), *entries))
     return Table(
         name="paths",
         title=f"{asked.repair} minus {asked.baseline}, success, pp",
         corner="Error",
         columns=(*(f"{name} alone" for name in asked.against), "shared"),
-        lines=tuple(
-            line(_said(asked, size), *(_difference(of.get(place(size))) for place in places))
-            for size in sizes
-        ),
+        lines=tuple(lines),
         notes=(
             f"{wording.counted(record.scenes, 'scene')} of {asked.library}, "
             f"{wording.seeds(asked.seeds)}. Bold: decided. Intervals hold at all "
@@ -56,21 +57,28 @@ def _paths(record: MapRecord) -> Table:
     )
 
 
-def _difference(point: MapPoint | None) -> Entry:
-    if point is None:
-        return Entry(text=MISSING)
-    ends = f"[{wording.plain(point.low)}, {wording.plain(point.high)}]"
-    text = f"{wording.signed(point.difference)} {ends}"
-    return Entry(text=text, detected=point.sign != 0)
-
-
 def _flips(record: MapRecord) -> Table:
+    asked = record.question
+    ahead = {1: asked.repair, -1: asked.baseline}
+    lines: list[Line] = []
+    for flip in record.flips:
+        kept, turned = MISSING, MISSING
+        if flip.start and flip.until is not None:
+            kept = f"{ahead[flip.start]}, {asked.said(cut(flip.until, out=False))}"
+        if flip.turned and flip.first is not None and flip.last is not None:
+            turned = f"{ahead[flip.turned]}, {asked.said(cut(flip.first, out=True))}"
+            if abs(flip.last) < asked.up_to:
+                turned += f" to {asked.said(cut(flip.last, out=False))}"
+        path = SHARED if flip.path == SHARED else f"{flip.path} alone"
+        direction = "above 0" if flip.direction > 0 else "below 0"
+        estimate = MISSING if flip.estimate is None else asked.said(flip.estimate)
+        lines.append(line(path, direction, kept, estimate, turned))
     return Table(
         name="flips",
         title="Smallest error that reverses the ranking",
         corner="Path",
         columns=("Error", "Ahead without error, up to", "Estimate turns at", "Ahead beyond, from"),
-        lines=tuple(_flip(record, flip) for flip in record.flips),
+        lines=tuple(lines),
         notes=(
             "Ahead is who is decided to be, at all sizes up to that one, or from that one on. The "
             "turn lies between the two, which are its interval. A dash: no size on the map is "
@@ -78,25 +86,6 @@ def _flips(record: MapRecord) -> Table:
             "no ranking to reverse. All of it holds at once, with the intervals of the map.",
         ),
     )
-
-
-def _flip(record: MapRecord, flip: Flip) -> Line:
-    asked = record.question
-    ahead = {1: asked.repair, -1: asked.baseline}
-    kept, turned = MISSING, MISSING
-    if flip.start and flip.until is not None:
-        kept = f"{ahead[flip.start]}, {_said(asked, cut(flip.until, out=False))}"
-    if flip.turned and flip.first is not None and flip.last is not None:
-        turned = f"{ahead[flip.turned]}, {_said(asked, cut(flip.first, out=True))}"
-        if abs(flip.last) < asked.up_to:
-            turned += f" to {_said(asked, cut(flip.last, out=False))}"
-    path = SHARED if flip.path == SHARED else f"{flip.path} alone"
-    direction = "above 0" if flip.direction > 0 else "below 0"
-    return line(path, direction, kept, _said(asked, flip.estimate), turned)
-
-
-def _said(asked: MapQuestion, size: float | None) -> str:
-    return MISSING if size is None else asked.said(size)
 
 
 def shown(record: MapRecord) -> RenderableType:

@@ -1,4 +1,4 @@
-"""What the command line prints of a decision record and of an interface."""
+"""What the command line prints of a decision record, of an interface and of a trace."""
 
 from rich.console import Group, RenderableType
 from rich.padding import Padding
@@ -8,8 +8,10 @@ from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.summary import not_standing
 from faultpath.decisions.tables import Line, Table, line
 from faultpath.decisions.tables.terminal import Parted, drawn
-from faultpath.interface import Channel, Gap, Interface, rank, transitive_consumers
+from faultpath.interface import Gap, Interface, rank, transitive_consumers
 from faultpath.report.tables import DIFFERENCE, by_path, by_quantity, by_threshold
+from faultpath.systems.checks.recording import Read
+from faultpath.systems.checks.tracing import TraceReport
 
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 
@@ -52,23 +54,53 @@ def _list(title: str, items: tuple[str, ...], style: str) -> list[RenderableType
 
 
 def interface_table(interface: Interface) -> RenderableType:
-    """Return the channels of an interface, most consumers first, and what is reconstructed."""
+    """Return the channels of an interface, most consumers first: who feeds each, who reads it and
+    who is reached through a reconstruction; and what is reconstructed."""
+    lines: list[Line] = []
+    for channel in rank(interface):
+        sources = (f"{name} {interface.source(name).provenance.value}" for name in channel.sources)
+        reached = set(transitive_consumers(interface, channel.name)) - set(channel.consumers)
+        consumers = (*channel.consumers, *(f"reaches {name}" for name in sorted(reached)))
+        gap = "no" if channel.gap is Gap.NONE else channel.gap.value
+        said = ("\n".join(sources), "\n".join(consumers))
+        lines.append(line(channel.name, *said, aside=f"{gap} gap"))
     columns = ("fed by", "read by")
     table = Table(
         title=f"Information interface of {interface.name}",
         corner="channel",
         columns=columns,
         words=columns,
-        lines=tuple(_line(interface, channel) for channel in rank(interface)),
+        lines=tuple(lines),
     )
     made = [Text(f"{module} reconstructs {name}.") for module, name in interface.reconstructions]
     return Group(drawn(table), *made)
 
 
-def _line(interface: Interface, channel: Channel) -> Line:
-    """Who feeds a channel, who reads it, and who is reached through a reconstruction."""
-    sources = (f"{name} {interface.source(name).provenance.value}" for name in channel.sources)
-    further = sorted(set(transitive_consumers(interface, channel.name)) - set(channel.consumers))
-    consumers = (*channel.consumers, *(f"reaches {name}" for name in further))
-    gap = "no" if channel.gap is Gap.NONE else channel.gap.value
-    return line(channel.name, "\n".join(sources), "\n".join(consumers), aside=f"{gap} gap")
+def trace_table(trace: TraceReport) -> Table:
+    """Return a line for each consumer of a channel, in the order in which they read."""
+    taps: dict[tuple[str, str], list[Read]] = {}
+    for read in trace.reads:
+        taps.setdefault((read.consumer, read.channel), []).append(read)
+    columns = ["channel", "source", "at steps", "of steps", "made by"]
+    lines: list[Line] = []
+    for (consumer, channel), reads in taps.items():
+        source = reads[0].source
+        steps = (" ".join(str(r.step) for r in reads), " ".join(str(r.valid_step) for r in reads))
+        entries = [channel, source, *steps, trace.reconstructed.get(source, ("",))[0]]
+        if trace.fault:
+            by = (name for read in reads for name in read.altered_by)
+            entries.insert(1, ", ".join(dict.fromkeys(by)))
+        lines.append(line(consumer, *entries))
+    if trace.fault:
+        columns.insert(1, "altered by")
+    return Table(
+        title=f"{trace.variant} of {trace.system}, {trace.steps} steps in {trace.scene}",
+        corner="who",
+        columns=tuple(columns),
+        words=tuple(columns),
+        lines=tuple(lines),
+        notes=tuple(
+            f"{source} is reconstructed by {module} from {', '.join(channels) or 'nothing'}."
+            for source, (module, channels) in trace.reconstructed.items()
+        ),
+    )
