@@ -33,7 +33,7 @@ def test_only_the_variant_that_says_so_reads_the_true_wind(variant, monkeypatch)
     _mistake(monkeypatch, "true_wind", lambda wind: torch.full_like(wind, 99.0))
     (blind,), taps = fly(system, variant)
     assert (bits(blind) == bits(plain)) == (variant != "true-wind")
-    source = taps.receipts().at("wind", "predictor.wind_map").source
+    source = taps.bindings["wind"]
     assert source == {"zero-wind": "zero_wind", "dob": "reconstructed_wind"}.get(
         variant, "true_wind"
     )

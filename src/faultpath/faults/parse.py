@@ -28,15 +28,7 @@ from faultpath.interface import Interface, groups
 FaultPreset: TypeAlias = Callable[[float], Coupled]
 """A system's named fault: its size in, the faults out; raises `UserError` for a wrong size."""
 
-KINDS = {
-    kind: intervention
-    for kind, intervention in INTERVENTIONS.items()
-    if all(
-        name == intervention.value_field
-        for name, field in intervention.model_fields.items()
-        if field.is_required()
-    )
-}
+KINDS = {kind: each for kind, each in INTERVENTIONS.items() if kind != "sequence"}
 """Interventions that text can state: those that need no more than one value."""
 
 _WINDOW = {

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.arrays import Array, copy, differs, namespace, place, to_numpy, together
+from faultpath.core.arrays import Array, copy, differs, namespace, to_numpy, together
 from faultpath.loop.reading import FaultedElsewhere, NotDelivered, UndeclaredReader
 
 
@@ -47,47 +47,23 @@ class Tally:
         return np.broadcast_to(total, (n_scenes,)).copy()
 
 
-class Running:
-    """Which scenes are still running, at hand on the device of any reading."""
-
-    __slots__ = ("_mask", "_placed")
-
-    def __init__(self, mask: Array | None) -> None:
-        self._mask = mask
-        self._placed: Array = mask
-
-    def among(self, held: Any, reading: Array) -> Any:
-        """Return `held`, a bool or boolean array `[B]`, where the scene runs."""
-        if self._mask is None or held is False:
-            return held
-        placed = self._placed
-        if namespace(placed) is not namespace(reading) or placed.device != reading.device:
-            placed = self._placed = place(to_numpy(self._mask), reading)
-        return placed if held is True else held & placed
-
-
 class Guard:
     """Hands out copies of a tap's values and sees whether somebody wrote into them.
 
-    NumPy arrays are read-only views and need none of this. A tensor tells by its version counter;
-    one that keeps none (inference mode) is compared with what it was.
+    NumPy arrays are read-only views and need none of this. Any other is compared with what it was.
     """
 
-    __slots__ = ("_given", "_mark", "_written")
+    __slots__ = ("_given", "_kept", "_written")
 
     def __init__(self) -> None:
         self._given: Array = None
-        self._mark: Any = None
+        self._kept: Array = None
         self._written: Any = False
 
     def hand_out(self, value: Array) -> Array:
         """Return a copy for the consumer, after a look at the last one."""
         self._look()
-        self._given = copy(value)
-        try:
-            self._mark = int(self._given._version)
-        except (AttributeError, RuntimeError):
-            self._mark = copy(self._given)
+        self._given, self._kept = copy(value), copy(value)
         return self._given
 
     def written(self) -> bool:
@@ -96,14 +72,9 @@ class Guard:
         return bool(to_numpy(self._written))
 
     def _look(self) -> None:
-        if self._given is None:
-            return
-        if isinstance(self._mark, int):
-            changed = bool(self._given._version != self._mark)
-        else:
-            unequal = differs(self._given, self._mark)
-            changed = namespace(unequal).any(unequal)
-        self._written = self._written | changed
+        if self._given is not None:
+            unequal = differs(self._given, self._kept)
+            self._written = self._written | namespace(unequal).any(unequal)
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +121,6 @@ class Receipt:
 
     channel: str
     consumer: str
-    source: str
     deliveries: int
     """Control steps at which the consumer got the channel."""
     asks: int

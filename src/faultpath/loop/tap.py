@@ -107,7 +107,6 @@ class Tap:
         return Receipt(
             channel=self.channel,
             consumer=self.consumer,
-            source=self.source,
             deliveries=self.deliveries,
             asks=self.asks,
             corruptions=tuple(

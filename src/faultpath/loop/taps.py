@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.arrays import Array, differs, read_only
+from faultpath.core.arrays import Array, differs, namespace, place, read_only, to_numpy
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.faults import Coupled, Draws, Fault
@@ -23,7 +23,7 @@ from faultpath.loop.reading import (
     UndeclaredReader,
     WrittenTo,
 )
-from faultpath.loop.receipts import Guard, Receipts, Running, Tally, check_delivered
+from faultpath.loop.receipts import Guard, Receipts, Tally, check_delivered
 from faultpath.loop.tap import Corruption, Observer, Tap, wire
 
 
@@ -73,7 +73,8 @@ class Taps:
         self._interface = interface
         self._observer = observer
         self._scenes = tuple(scenes)
-        self._running = Running(None)
+        self._active: Array = None
+        self._placed: Array = None
         self._faulted, self._altered = Tally(), Tally()
         self._open: Array = None
         self._closed: Array = None
@@ -193,7 +194,7 @@ class Taps:
         value, faulted = reading, False
         for each in tap.corruptions:
             value, in_force = each.act(value, step, ask)
-            in_force = self._running.among(in_force, reading)
+            in_force = self._running(in_force, reading)
             each.in_force.note(step, in_force)
             faulted = in_force if faulted is False else faulted | in_force
         if len(tap.corruptions) > 1:
@@ -202,14 +203,23 @@ class Taps:
         if self._observer is not None:
             self._observer.faulted(step, faulted)
         if value is not reading and faulted is not False:
-            altered = self._running.among(differs(value, reading), reading)
+            altered = self._running(differs(value, reading), reading)
             tap.altered.note(step, altered)
             self._altered.note(step, altered)
         return value
 
     def set_active(self, mask: Array | None) -> None:
         """Say which scenes still run, a boolean array `[B]`; `None`: all. Receipts count these."""
-        self._running = Running(mask)
+        self._active = self._placed = mask
+
+    def _running(self, held: Any, reading: Array) -> Any:
+        """Return `held`, a bool or boolean array `[B]`, where the scene runs."""
+        if self._active is None or held is False:
+            return held
+        placed = self._placed
+        if namespace(placed) is not namespace(reading) or placed.device != reading.device:
+            placed = self._placed = place(to_numpy(self._active), reading)
+        return placed if held is True else held & placed
 
     def for_module(self, module: str) -> ModuleTaps:
         """Return the view that `module` gets; raises `TapError` for an unknown module."""
