@@ -46,11 +46,7 @@ def reach(record: DecisionRecord) -> Iterator[str]:
         same = "All" if differ == 1 else "Some of the"
         once = "together they count as one" if differ == 1 else f"they count as {differ}"
         yield f"{same} {run} seeds gave the same outcome in every trial: {once}."
-    yield from _stopping(record)
-
-
-def _stopping(record: DecisionRecord) -> Iterator[str]:
-    held, rule, most = record.stopped, record.question.stop, record.question.n_scenes
+    held, rule, most = record.stopped, asked.stop, asked.n_scenes
     if held is None or rule is None:
         return
     whole = held.scenes == most
@@ -59,7 +55,7 @@ def _stopping(record: DecisionRecord) -> Iterator[str]:
     if rule.when == "all-decided":
         also = f" or smaller than {margin(record)}" if rule.margin_pp else ""
         why = f"{'every' if held.reached else 'not every'} effect was decided{also}"
-    elif record.question.primary in held.small:
+    elif asked.primary in held.small:
         why = f"the primary contrast was shown to be smaller than {margin(record)}"
     took = f"it {'stopped after' if held.reached else 'took'} {counted(held.scenes, 'scene')}"
     took += f" of at most {most}"

@@ -99,27 +99,27 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
     sequential = asked.stop_when is not None
     chosen = scenes_of(library, asked.scenes, in_order=not sequential)
     fault = system.fault(asked.fault)
-    strikes = _strikes(system, fault, variants)
+    faults = _faults_by_path(system, fault, variants)
     titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
     paths = [
         Path(
             name=name,
             title=titles.get(name, f"{name.replace('_', ' ').capitalize()} only"),
-            consumers=_consumers(system, struck, variants[1]),
-            baseline_consumers=_consumers(system, struck, variants[0]),
+            consumers=_consumers(of[asked.repair]),
+            baseline_consumers=_consumers(of[asked.baseline]),
         )
-        for name, struck in strikes.items()
+        for name, of in faults.items()
     ]
     # Where the fault cannot reach a variant, that is the arm under correct inputs: it runs once.
     rows = [
         Row(
-            variant=variant.name,
+            variant=variant,
             path=path,
             seed=seed,
-            arm=Arm(variant=variant.name, faults=_faults(system, struck, variant), seed=seed),
+            arm=Arm(variant=variant, faults=parts, seed=seed),
         )
-        for path, struck in strikes.items()
-        for variant in variants
+        for path, of in faults.items()
+        for variant, parts in of.items()
         for seed in asked.seeds
     ]
     _check(system, asked)
@@ -165,44 +165,42 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
     return Audit(question, tuple(paths), study)
 
 
-def _strikes(
+def _faults_by_path(
     system: System, fault: AnyFault, variants: Sequence[Variant]
-) -> dict[str, AnyFault | None]:
-    """Return the fault of each path; `None` under correct inputs. With a single module there is
-    nothing to share: the isolated fault is all of it.
+) -> dict[str, dict[str, tuple[Fault, ...]]]:
+    """Return the faults of each path in each variant; none under correct inputs. With a single
+    module there is nothing to share: the isolated fault is all of it.
 
     `UserError` for a fault that reaches no variant, and a module named like a path.
     """
-    reached = [c for variant in variants for c in _consumers(system, fault, variant)]
-    if not reached:
+
+    def within(part: AnyFault) -> dict[str, tuple[Fault, ...]]:
+        return {v.name: part.resolved(system.interface, v.consumers) for v in variants}
+
+    by_module: dict[str, dict[str, None]] = {}
+    for consumer in (c for parts in within(fault).values() for p in parts for c in p.consumers):
+        by_module.setdefault(module_of(consumer), {})[consumer] = None
+    if not by_module:
         names = " nor ".join(f"'{variant.name}'" for variant in variants)
         raise UserError(
             f"the fault ({fault.describe()}) reaches neither {names}: neither reads it there."
         )
-    by_module: dict[str, list[str]] = {}
-    for consumer in reached:
-        places = by_module.setdefault(module_of(consumer), [])
-        if consumer not in places:
-            places.append(consumer)
     for reserved in {CORRECT, SHARED} & set(by_module):
         raise UserError(
             f"the interface calls a module '{reserved}', which is the name of a path of every "
             "audit: rename the module."
         )
-    paths: dict[str, AnyFault | None] = {CORRECT: None}
-    paths |= {module: fault.aimed_at(*by_module[module]) for module in sorted(by_module)}
+    paths: dict[str, dict[str, tuple[Fault, ...]]] = {CORRECT: {v.name: () for v in variants}}
+    for module in sorted(by_module):
+        paths[module] = within(fault.aimed_at(*by_module[module]))
     if len(by_module) > 1:
-        paths[SHARED] = fault.aimed_at(*(c for name in sorted(by_module) for c in by_module[name]))
+        every = [consumer for name in sorted(by_module) for consumer in by_module[name]]
+        paths[SHARED] = within(fault.aimed_at(*every))
     return paths
 
 
-def _faults(system: System, fault: AnyFault | None, variant: Variant) -> tuple[Fault, ...]:
-    return () if fault is None else fault.resolved(system.interface, variant.consumers)
-
-
-def _consumers(system: System, fault: AnyFault | None, variant: Variant) -> tuple[str, ...]:
-    struck = (c for each in _faults(system, fault, variant) for c in each.consumers)
-    return tuple(dict.fromkeys(struck))
+def _consumers(faults: Sequence[Fault]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(consumer for each in faults for consumer in each.consumers))
 
 
 def _check(system: System, asked: AuditQuestion) -> None:

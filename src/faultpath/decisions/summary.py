@@ -211,7 +211,8 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
         if at := [each for each in leading if each.sign == sign]:
             yield f"{capital(places(at))}, {record.winner(sign)} succeeds more often."
     alone = any(each.path not in (CORRECT, SHARED) for each in leading)
-    unseen = [each for each in tested if each.path == SHARED and _is_open(each)]
+    shared = [each for each in tested if each.path == SHARED]
+    unseen = [e for e in shared if not (e.sign or e.extreme or e.unsettled)]
     if unseen and alone:
         less = f", and it is smaller than {margin(record)}" if record.is_small(unseen[0]) else ""
         yield f"When the fault is shared, no difference is seen{less}."
@@ -226,10 +227,6 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
         for each in record.break_even:
             if each.path == record.question.primary and each.words:
                 yield f"By the share of trials with the fault, {where(each.path)}: {each.words}."
-
-
-def _is_open(each: Effect) -> bool:
-    return not (each.sign or each.extreme or each.unsettled)
 
 
 def _left_open(record: DecisionRecord) -> Iterator[str]:
