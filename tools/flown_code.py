@@ -7,8 +7,7 @@ from pathlib import Path
 
 from faultpath.decisions import RunProvenance
 from faultpath.trials import SystemSpec, load_system
-from faultpath.trials.code import CodeState
-from faultpath.trials.state import system_code
+from faultpath.trials.code import CodeState, system_code
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -13,7 +13,7 @@ from faultpath.api.systems import with_parts
 from faultpath.core.errors import UserError
 from faultpath.systems.checks.check import chosen_variants
 from faultpath.trials import SystemSpec
-from faultpath.trials.state import system_code
+from faultpath.trials.code import system_code
 
 PARTS = Path(__file__).with_name("own_parts.py")
 PREDICTOR, EXACT, WIND, PLANNER, BLIND = (

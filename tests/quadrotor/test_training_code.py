@@ -10,7 +10,8 @@ from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import clearance_data, flight, trajectories
 from faultpath_quadrotor.training.pool import encode_episodes, encode_rows, write_flights
 
-from faultpath.trials.code import Root, read_code
+from faultpath.trials.code import read_code
+from faultpath.trials.imports import Root
 
 ROOT = Path(__file__).resolve().parents[2]
 

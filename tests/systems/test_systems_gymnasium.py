@@ -12,8 +12,8 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Module, Port
 from faultpath.systems import ComposedSystem, Parts
 from faultpath.trials import SystemSpec
+from faultpath.trials.code import system_code
 from faultpath.trials.registry import load_parts
-from faultpath.trials.state import system_code
 
 PENDULUM = Path(__file__).resolve().parents[2] / "examples" / "pendulum.py"
 

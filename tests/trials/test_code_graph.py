@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.trials.code import CodeState, Root, read_code
+from faultpath.trials.code import CodeState, read_code
+from faultpath.trials.imports import Root
 
 Files = Callable[..., Path]
 
@@ -116,7 +117,7 @@ def test_a_project_may_move(files, tmp_path):
 def test_another_release_of_a_package_changes_the_digest(files, monkeypatch):
     root = files(zz_start="import numpy")
     before = _state(root)
-    monkeypatch.setattr("faultpath.trials.code.graph.release", lambda package: "0")
+    monkeypatch.setattr("faultpath.trials.imports.release", lambda package: "0")
     assert _state(root).changed(before) == ("numpy",)
 
 

@@ -9,7 +9,7 @@ import pytest
 from faultpath.faults import parse_fault
 from faultpath.trials import Arm, SystemSpec, load_system
 from faultpath.trials.attempt import Done, attempt
-from faultpath.trials.state import source_state, system_code
+from faultpath.trials.code import source_state, system_code
 
 ROOT = Path(__file__).resolve().parents[2]
 FLOWN = {

@@ -31,9 +31,9 @@ from faultpath.faults import each_size
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.statistics import IN_FORCE, RULES
 from faultpath.trials import System, system_shown
+from faultpath.trials.code import system_code
 from faultpath.trials.execution import RunResult
 from faultpath.trials.question import AuditQuestion, Running
-from faultpath.trials.state import system_code
 from faultpath.trials.store import TrialAddress, read_table, write_text
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.folder import OUTCOMES, read_regular, seal
@@ -246,8 +246,7 @@ def _recorded(
                 count = f"{done} of {total} arms, {counted(len(few), 'scene')}"
                 show(Progress(done, total, count))
 
-            library_hash = audit.question.library_hash
-            found = run_again(before, audit.study, library_hash, system, job.executor, wanted, note)
+            found = run_again(before, audit.study, system, job.executor, wanted, note)
     except UserError as error:
         return held, f"No signals were recorded: {error}"
     except KeyboardInterrupt:

@@ -18,10 +18,9 @@ from faultpath.systems.checks.blocks import Block, RecordedBlock, run_blocks
 from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
 from faultpath.trials.attempt import Done
 from faultpath.trials.execution.again import difference
+from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.execution.provenance import amend
-from faultpath.trials.execution.worker import Job
 from faultpath.trials.question import AuditQuestion
-from faultpath.trials.state import system_code
 from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
@@ -101,7 +100,7 @@ def replay(
         say(f"Ran {arm.variant}, seed {arm.seed}, again: {faults} ({done} of {total}).")
 
     with local(0) as executor:
-        return run_again(before, study, asked.library_hash, system, executor, wanted, note)
+        return run_again(before, study, system, executor, wanted, note)
 
 
 def outcomes_at(outcomes: OutcomeTable, traces: Traces) -> dict[TrialAddress, Outcome]:
@@ -118,7 +117,6 @@ def outcomes_at(outcomes: OutcomeTable, traces: Traces) -> dict[TrialAddress, Ou
 def run_again(
     before: Mapping[TrialAddress, Outcome],
     study: Study,
-    library_hash: str,
     system: System,
     executor: Executor,
     asked: Iterable[TrialAddress],
@@ -158,9 +156,8 @@ def run_again(
                 found[at] = Replayed(at, before[at], differs, signals)
         note(task.arm, done, len(tasks))
 
-    code = system_code(system, study.system).state
-    job = Job(study.system, study.library, code, library_hash)
-    run_blocks(executor, system, job, tasks.values(), settle)
+    built = Built.of(system, study.system, study.library)
+    run_blocks(executor, built, tasks.values(), settle)
     return [found[at] for at in before if at in found]
 
 

@@ -26,7 +26,7 @@ from faultpath.systems.episodes import (
     hashed,
 )
 from faultpath.trials import Metric
-from faultpath.trials.code import release
+from faultpath.trials.imports import release
 
 Setup = Callable[[Any, np.random.Generator], Mapping[str, Any] | None]
 

@@ -48,8 +48,6 @@ class Died:
     """The worker process died, or was stopped."""
 
     how: str
-    late: bool = False
-    """It was stopped at the time limit: another attempt at the same would take as long."""
 
 
 Reply = Done | Raised | Wrong | Died

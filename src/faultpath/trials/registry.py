@@ -26,7 +26,7 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
-from faultpath.trials.code import Graph, Root, file_of, kind_of, locate
+from faultpath.trials.imports import Graph, Root, file_of, kind_of, locate
 from faultpath.trials.options import Factory, Option, call, options_of
 from faultpath.trials.system import System
 

@@ -136,7 +136,7 @@ class System(ABC):
         """Return what decides a result and stands in no file: a device, an option, a service.
 
         Source, data files and versions of packages are found without it; see
-        `faultpath.trials.state`.
+        `faultpath.trials.code`.
         """
         return ""
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from faultpath.core.errors import UserError
 from faultpath.trials import SystemSpec, load_system
-from faultpath.trials.state import system_code
+from faultpath.trials.code import system_code
 from faultpath_quadrotor.evidence.table import Recording
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training.pool import FlightData, join_flights, write_flights

@@ -17,8 +17,8 @@ from faultpath.trials import (
     SystemSpec,
     load_system,
 )
+from faultpath.trials.code import system_code
 from faultpath.trials.execution import RunResult
-from faultpath.trials.state import system_code
 from faultpath.trials.store import (
     RunFolder,
     read_outcomes,

@@ -12,7 +12,8 @@ from pydantic import BaseModel, ConfigDict
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, model_of
-from faultpath.trials.code import Root, read_code
+from faultpath.trials.code import read_code
+from faultpath.trials.imports import Root
 
 FORMAT = 2
 

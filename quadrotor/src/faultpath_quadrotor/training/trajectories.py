@@ -16,7 +16,7 @@ import torch
 from faultpath import loop
 from faultpath.loop import Taps
 from faultpath.trials import SystemSpec
-from faultpath.trials.state import system_code
+from faultpath.trials.code import system_code
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant.module import ACTION, Flying

@@ -5,7 +5,6 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 from faultpath.core.error_source import described
@@ -24,8 +23,7 @@ from faultpath.loop import (
 from faultpath.systems.checks.recording import Enough, Read, Recording, signals
 from faultpath.trials import Arm, LoopSystem, Outcome, System
 from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
-from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
-from faultpath.trials.execution.worker import Job, building
+from faultpath.trials.execution.dispatch import Built, dispatch
 from faultpath.trials.store.signals import Signal
 from faultpath.trials.work import Executor
 
@@ -81,17 +79,15 @@ class RecordedBlock:
 
 def run_blocks(
     executor: Executor,
-    system: System,
-    job: Job,
+    built: Built,
     blocks: Iterable[Block],
     settle: Callable[[Block, RecordedBlock], None],
 ) -> None:
-    """Run blocks with a system that is built, or by a job's workers; `settle` gets each result.
+    """Run blocks on the workers of an executor; `settle` gets each result.
 
     Raises a `UserError` that ended a worker.
     """
     waiting = iter(blocks)
-    call = partial(run_block, system) if executor.in_process else partial(_run_there, job)
 
     def settled(block: Block, reply: RecordedBlock | Died | Wrong) -> None:
         if isinstance(reply, Wrong):
@@ -102,18 +98,11 @@ def run_blocks(
             reply = RecordedBlock(error=reply.how, blames=TRIALS)
         settle(block, reply)
 
-    limit_s = block_limit_s(system, None)
-    dispatch = Dispatch[Block](executor, lambda each: partial(call, each), limit_s, job.system.name)
-    dispatch.run(lambda _: next(waiting, None), settled)
-
-
-def _run_there(job: Job, block: Block) -> RecordedBlock:
-    with building(job) as built:  # a process keeps it for its next block
-        return run_block(built.system, block)
+    dispatch(executor, built, run_block, lambda _: next(waiting, None), settled)
 
 
 def run_block(system: System, block: Block) -> RecordedBlock:
-    """Run with a system that is built, in blocks of its size; an error ends it."""
+    """Run in blocks of the system's size; an error ends it."""
     outcomes, counts, reads = list[Outcome](), list[TapCount](), list[Read]()
     found_signals = list[tuple[Signal, ...]]()
     error = blames = ""

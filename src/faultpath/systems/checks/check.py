@@ -12,9 +12,8 @@ from faultpath.systems.checks.blocks import Block, RecordedBlock, run_blocks
 from faultpath.systems.checks.judging import Check, Seen, judged
 from faultpath.systems.checks.recording import Read
 from faultpath.trials import Arm, System, SystemSpec, Variant, library_of
-from faultpath.trials.execution.worker import Job
+from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.question import CheckQuestion
-from faultpath.trials.state import system_code
 from faultpath.trials.work import local
 
 MOST = 4
@@ -64,7 +63,7 @@ def check_system(
     variants = chosen_variants(system, asked.variants)
     workers = (2 if system.parallel else 1) if asked.workers is None else asked.workers
     seen = Seen(system, variants, scenes, asked.seed, workers > 0)
-    job = Job(spec, library.name, system_code(system, spec).state, library.content_hash)
+    built = Built.of(system, spec, asked.library)
 
     def run(blocks: Sequence[Block], known: int | None) -> None:
         def settle(block: Block, found: RecordedBlock) -> None:
@@ -72,7 +71,7 @@ def check_system(
             note(len(seen.runs), known)
 
         with local(workers) as executor:
-            run_blocks(executor, system, job, blocks, settle)
+            run_blocks(executor, built, blocks, settle)
 
     run([Block(Arm(variant=v.name, seed=asked.seed), scenes, "first") for v in variants], None)
     again = [block for name, first in seen.firsts() for block in _again(seen, name, first)]

@@ -6,8 +6,8 @@ itself, with guarded readings.
 
 import hashlib
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any, Literal
 
 import numpy as np
@@ -22,9 +22,6 @@ from faultpath.trials.outcome import Outcome
 from faultpath.trials.provenance import FlownAgain
 from faultpath.trials.store.folder import RunFolder
 
-Outcomes = Mapping[tuple[str, str], Outcome]
-"""By arm key and scene."""
-
 SAMPLE = 4
 """Scenes of a unit that run again."""
 
@@ -35,11 +32,7 @@ def difference(first: Sequence[Outcome], reply: Reply) -> str:
         return f"could not be run again ({reply.how}), which differs"
     if not isinstance(reply, Done):
         return f"failed the second time ({reply.error}), which differs"
-    found = {
-        one.scene: gaps
-        for one, two in zip(first, reply.outcomes, strict=True)
-        if (gaps := _gaps(one, two))
-    }
+    found = _gaps(first, reply)
     if not found:
         return ""
     ends = sum("status" in gaps for gaps in found.values())
@@ -51,19 +44,21 @@ def difference(first: Sequence[Outcome], reply: Reply) -> str:
     return f"differs in {len(found)} of {len(first)}, {next(iter(found))!r} for one ({said})"
 
 
-def _gaps(one: Outcome, two: Outcome) -> dict[str, float]:
-    """Return how far two outcomes lie apart, by name; infinity for what is no number."""
-    mine: dict[str, Any] = {**vars(one), **one.metrics}
-    theirs: dict[str, Any] = {**vars(two), **two.metrics}
-    found: dict[str, float] = {}
-    for name in dict.fromkeys((*mine, *theirs)):
-        a: Any = mine.get(name)
-        b: Any = theirs.get(name)
-        if name in ("metrics", "error") or np.array_equal(a, b):
-            continue
-        found[name] = math.inf
-        if isinstance(a, int | float) and isinstance(b, int | float):
-            found[name] = abs(a - b)
+def _gaps(first: Sequence[Outcome], again: Done) -> dict[str, dict[str, float]]:
+    """Return by scene and name how far outcomes lie apart; infinity for what is no number."""
+    found: dict[str, dict[str, float]] = {}
+    for one, two in zip(first, again.outcomes, strict=True):
+        mine: dict[str, Any] = {**vars(one), **one.metrics}
+        theirs: dict[str, Any] = {**vars(two), **two.metrics}
+        for name in dict.fromkeys((*mine, *theirs)):
+            a: Any = mine.get(name)
+            b: Any = theirs.get(name)
+            if name in ("metrics", "error") or np.array_equal(a, b):
+                continue
+            gap = math.inf
+            if isinstance(a, int | float) and isinstance(b, int | float):
+                gap = abs(a - b)
+            found.setdefault(one.scene, {})[name] = gap
     return found
 
 
@@ -75,21 +70,32 @@ class _Kept(Frozen):
 
 
 class Rechecks:
-    """What runs again of a run, and what that found; kept in the run's folder."""
+    """What runs again of a run that is done, and what that found; kept in the run's folder.
 
-    def __init__(self, units: Iterable[Unit], folder: RunFolder) -> None:
-        self._units, self._folder = tuple(units), folder
-        self._kept = {_name(each): each for each in _read(folder.rechecks).flown}
+    `outcomes` are those of `units`, by arm key and scene.
+    """
 
-    def tasks(self, outcomes: Outcomes) -> tuple[Task, ...]:
-        """Return what is to run again of a run that is done; empty when nothing is left.
+    def __init__(
+        self,
+        units: Sequence[Unit],
+        outcomes: Mapping[tuple[str, str], Outcome],
+        folder: RunFolder,
+    ) -> None:
+        self._units, self._outcomes, self._folder = units, outcomes, folder
+        kept = _Kept()
+        with suppress(OSError, Misread):
+            kept = model_of(contents(folder.rechecks, LARGEST_TEXT), _Kept)
+        self._kept = {(each.unit, each.why, each.scenes): each for each in kept.flown}
+
+    def tasks(self) -> tuple[Task, ...]:
+        """Return what is to run again; empty when nothing is left.
 
         It follows from the units' keys: the same run draws the same, whoever continues it.
         """
         sound = [
             unit
             for unit in self._units
-            if not any(outcomes[unit.arm.key(), scene].failed for scene in unit.scenes)
+            if not any(self._outcomes[unit.arm.key(), scene].failed for scene in unit.scenes)
         ]
         if not sound:
             return ()
@@ -108,19 +114,17 @@ class Rechecks:
         wanted = (Task(unit, scenes, recheck="sample"), Task(other, (alone,), recheck="guarded"))
         return tuple(t for t in wanted if (t.unit.key, t.recheck, t.scenes) not in self._kept)
 
-    def settle(self, task: Task, reply: Reply, outcomes: Outcomes) -> None:
+    def settle(self, task: Task, reply: Reply) -> None:
         """Compare what came of a second run with the first; keep what that showed."""
         assert task.recheck is not None
         arm = task.unit.arm
-        wrote = ""
+        first = [self._outcomes[arm.key(), scene] for scene in task.scenes]
+        wrote, other = "", task.scenes
         if isinstance(reply, Wrong) and isinstance(reply.error, WrittenTo):
-            wrote = str(reply.error)
-        first = [outcomes[arm.key(), scene] for scene in task.scenes]
-        other = task.scenes
-        if isinstance(reply, Done):
-            pairs = zip(first, reply.outcomes, strict=True)
-            other = tuple(one.scene for one, two in pairs if _gaps(one, two))
-        shown = FlownAgain(
+            wrote, other = str(reply.error), ()
+        elif isinstance(reply, Done):
+            other = tuple(_gaps(first, reply))
+        self._kept[task.unit.key, task.recheck, task.scenes] = FlownAgain(
             why=task.recheck,
             unit=task.unit.key,
             variant=arm.variant,
@@ -130,10 +134,9 @@ class Rechecks:
             unit_scenes=len(task.unit.scenes),
             wrote=wrote,
             differs="" if wrote else difference(first, reply),
-            other=() if wrote else other,
+            other=other,
         )
-        self._kept[_name(shown)] = shown
-        kept = _Kept(flown=tuple(self._kept[name] for name in sorted(self._kept)))
+        kept = _Kept(flown=tuple(each for _, each in sorted(self._kept.items())))
         self._folder.save_rechecks(f"{kept.model_dump_json(indent=1)}\n")
 
     def flown(self) -> tuple[FlownAgain, ...]:
@@ -166,16 +169,5 @@ class Rechecks:
                 )
 
 
-def _name(shown: FlownAgain) -> tuple[str, str, tuple[str, ...]]:
-    return shown.unit, shown.why, shown.scenes
-
-
 def _lot(*parts: str) -> str:
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
-
-
-def _read(path: Path) -> _Kept:
-    try:
-        return model_of(contents(path, LARGEST_TEXT), _Kept)
-    except (OSError, Misread):
-        return _Kept()

@@ -1,118 +1,211 @@
-"""The tasks of a study on the workers of an executor."""
+"""The tasks of a study on the workers of an executor, and what a worker does for them."""
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Generic, TypeVar
 
+from faultpath.core.error_source import explained
 from faultpath.core.errors import UserError
+from faultpath.trials.arm import SystemSpec
 from faultpath.trials.attempt import Died, Wrong
-from faultpath.trials.execution.worker import Started
+from faultpath.trials.checks import library_of
+from faultpath.trials.code import Code, CodeState, Watch, named, source_state, system_code
+from faultpath.trials.declared import Library
+from faultpath.trials.registry import load_system
 from faultpath.trials.system import System
-from faultpath.trials.work import Call, Executor, Failed, Lost, WorkerLost
+from faultpath.trials.work import Executor, Failed, Lost, WorkerLost, elsewhere, tell
 
 _TICK_S = 0.5
 _FALSE_STARTS = 4
 """So many workers in a row may die before they have built the system."""
-
-
 LONGEST_S = 3600.0
 """For a block, unless the user or the system says otherwise."""
 LEAST_S = 300.0
 """For building a system, whatever is said of a block: imports wait for a busy machine."""
 
-
-def block_limit_s(system: System, asked_s: float | None) -> float:
-    """Return the seconds that a block may take: as asked, as the system says, or an hour."""
-    if asked_s is not None and not (math.isfinite(asked_s) and asked_s > 0):
-        raise UserError(f"the time limit is {asked_s:g} s: give a number of seconds above 0")
-    return asked_s or system.time_limit_s or LONGEST_S
-
-
 T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a worker builds: a system, the library of its scenes, and what both have to be."""
+
+    system: SystemSpec
+    library: str
+    state: CodeState
+    library_hash: str
+
+
+@dataclass(frozen=True)
+class Built:
+    """The system of a job, as a process holds it for its tasks."""
+
+    job: Job
+    system: System
+    library: Library
+    code: Code
+    unread: Watch
+
+    @classmethod
+    def of(cls, system: System, spec: SystemSpec, name: str) -> "Built":
+        """Take the state that `system`, which `spec` builds, and one of its libraries have now."""
+        library, code = library_of(system, name), system_code(system, spec)
+        job = Job(spec, name, code.state, library.content_hash)
+        return cls(job, system, library, code, code.unread())
+
+    def work(self, function: Callable[[System, Any], Any], task: Any) -> Any:
+        """Return what a function of system and task returns.
+
+        `UserError` where a file that it may have read has changed since the system was built.
+        """
+        try:
+            return function(self.system, task)
+        finally:
+            if changed := self.unread.changed():
+                raise _under_way(changed)
 
 
 @dataclass
 class _Running(Generic[T]):
     task: T
+    tried: bool
+    """Whether a worker was lost over it before."""
     since: float
-    lost: int = 0
-    """How many workers were lost over it."""
     started: bool = False
     """Whether the system was built; its building has a limit of its own."""
 
+    def start(self, message: object) -> None:
+        del message
+        self.started, self.since = True, time.monotonic()
 
-class Dispatch(Generic[T]):
-    """Hands tasks to the workers of an executor, watches their time, and takes replies in.
 
-    `call` is what runs a task, and tells `Started`; `limit_s` is how long one may take; `name` is
-    that of the system.
+def dispatch(
+    executor: Executor,
+    built: Built,
+    work: Callable[[System, T], Any],
+    take: Callable[[int], T | None],
+    settle: Callable[[T, Any], None],
+    time_limit_s: float | None = None,
+    report: Callable[[], None] = lambda: None,
+) -> None:
+    """Run what `take` returns for a worker, until it returns nothing and all is settled.
+
+    `work`, a function of a module, gets the system and the task. `settle` gets what it returned,
+    `Wrong` for an error that it raised, or `Died` where a worker was lost over the task twice or
+    stopped at the time limit: as asked, as the system says, or an hour.
     """
+    if time_limit_s is not None and not (math.isfinite(time_limit_s) and time_limit_s > 0):
+        raise UserError(f"the time limit is {time_limit_s:g} s: give a number of seconds above 0")
+    limit_s = time_limit_s or built.system.time_limit_s or LONGEST_S
+    call = (
+        partial(built.work, work) if executor.in_process else partial(_elsewhere, built.job, work)
+    )
+    running: dict[int, _Running[T]] = {}
+    again: list[tuple[T, bool]] = []
+    """Tasks whose worker was lost: one loss is nobody's fault, and a second one is the task's."""
+    false_starts = 0
+    while True:
+        for worker in executor.free():
+            task, tried = again.pop(0) if again else (take(worker), False)
+            if task is not None:
+                begun = running[worker] = _Running(task, tried, time.monotonic())
+                executor.submit(worker, partial(call, task), begun.start)
+        if not running:
+            return
+        for worker, end in executor.completions(_TICK_S):
+            ended = running.pop(worker)
+            false_starts = 0 if ended.started else false_starts
+            if isinstance(end, Failed):
+                settle(ended.task, Wrong(end.error))
+            elif not isinstance(end, Lost):
+                settle(ended.task, end.value)
+            elif not ended.started:
+                false_starts += 1
+                if false_starts > _FALSE_STARTS:
+                    raise WorkerLost(f"worker processes do not come up: {end.how}")
+                again.append((ended.task, ended.tried))
+            elif not ended.tried:
+                again.append((ended.task, True))
+            else:
+                settle(ended.task, Died(end.how))
+        for worker, each in tuple(running.items()):
+            allowed = limit_s if each.started else max(LEAST_S, limit_s)
+            if time.monotonic() - each.since <= allowed:
+                continue
+            if not each.started:
+                raise UserError(
+                    f"system {built.job.system.name!r} was not built in a worker process within "
+                    f"{allowed:g} s: look for what its factory or its file waits for, or allow "
+                    "more with --time-limit"
+                )
+            executor.cancel(worker)
+            del running[worker]
+            settle(each.task, Died(f"it was stopped at the time limit of {allowed:g} s"))
+        report()
 
-    def __init__(
-        self, executor: Executor, call: Callable[[T], Call], limit_s: float, name: str
-    ) -> None:
-        self._executor, self._call, self._limit_s, self._name = executor, call, limit_s, name
-        self._running: dict[int, _Running[T]] = {}
-        self._again: list[tuple[T, int]] = []
-        """Tasks whose worker was lost, through no fault of theirs that is known."""
-        self._false_starts = 0
 
-    def run(
-        self,
-        take: Callable[[int], T | None],
-        settle: Callable[[T, Any], None],
-        report: Callable[[], None] = lambda: None,
-    ) -> None:
-        """Run what `take` returns for a worker, until it returns nothing and all is settled.
+_built: list[Built] = []
+"""What this worker process has built last."""
 
-        `settle` gets what the call returned, `Wrong` for an error that it raised, or `Died`.
-        """
-        while True:
-            for worker in self._executor.free():
-                task, lost = self._again.pop(0) if self._again else (take(worker), 0)
-                if task is not None:
-                    self._submit(worker, task, lost)
-            if not self._running:
-                return
-            for worker, end in self._executor.completions(_TICK_S):
-                running = self._running.pop(worker)
-                if isinstance(end, Failed):
-                    settle(running.task, Wrong(end.error))
-                elif not isinstance(end, Lost):
-                    settle(running.task, end.value)
-                elif not running.started:
-                    self._false_starts += 1
-                    if self._false_starts > _FALSE_STARTS:
-                        raise WorkerLost(f"worker processes do not come up: {end.how}")
-                    self._again.append((running.task, running.lost))
-                elif running.lost < self._executor.retries:
-                    self._again.append((running.task, running.lost + 1))
-                else:
-                    settle(running.task, Died(end.how))
-            now = time.monotonic()
-            for worker, running in tuple(self._running.items()):
-                allowed = self._limit_s if running.started else max(LEAST_S, self._limit_s)
-                if now - running.since <= allowed:
-                    continue
-                if not running.started:
-                    raise UserError(
-                        f"system {self._name!r} was not built in a worker process within "
-                        f"{allowed:g} s: look for what its factory or its file waits for, or allow "
-                        "more with --time-limit"
-                    )
-                self._executor.cancel(worker)
-                del self._running[worker]
-                how = f"it was stopped at the time limit of {allowed:g} s"
-                settle(running.task, Died(how, late=True))
-            report()
 
-    def _submit(self, worker: int, task: T, lost: int) -> None:
-        running = self._running[worker] = _Running(task, time.monotonic(), lost)
+def _elsewhere(job: Job, work: Callable[[System, Any], Any], task: Any) -> Any:
+    """Work on a task in a worker process, which keeps the system, and tell when that is built.
 
-        def on_message(message: Started) -> None:
-            running.started, running.since = True, time.monotonic()
-            self._false_starts = 0
+    Raises where the system cannot be built or is another one here.
+    """
+    if not _built or _built[0].job != job:
+        _built.clear()
+        try:
+            _built.append(_build(job))
+        except (Exception, SystemExit) as error:
+            mistake = explained(error) or error
+            if elsewhere() and isinstance(mistake, UserError | OSError | ImportError):
+                raise WorkerLost(
+                    f"on {elsewhere()}: {mistake} (every node needs the same files and packages, "
+                    "from a shared file system, an image, or `ray job submit --working-dir`)"
+                ) from error
+            if mistake is error:
+                raise
+            raise mistake from error
+    tell("built")
+    return _built[0].work(work, task)
 
-        self._executor.submit(worker, self._call(task), on_message)
+
+def _build(job: Job) -> Built:
+    before = source_state(job.system)
+    system = load_system(job.system)
+    built = Built.of(system, job.system, job.library)
+    _check_same(before, built.job.state)
+    if built.job != job:
+        differ = named(job.state.changed(built.job.state) or ("the library",))
+        other = f"system {job.system.name!r} is another one"
+        if place := elsewhere():
+            raise WorkerLost(f"{other} on {place} than here ({differ})")
+        _check_same(job.state, built.job.state)
+        raise WorkerLost(
+            f"{other} in a worker process than here ({differ}): nothing of it may depend on the "
+            "process that builds it"
+        )
+    return built
+
+
+def _check_same(before: CodeState, now: CodeState) -> None:
+    """Raise `UserError` where a file has other contents now; files in one of them alone may be."""
+    changed = [
+        name
+        for mine, theirs in ((before.files, now.files), (before.data, now.data))
+        for name, digest in mine.items()
+        if theirs.get(name, digest) != digest
+    ]
+    if changed:
+        raise _under_way(changed)
+
+
+def _under_way(names: Sequence[str]) -> UserError:
+    return UserError(
+        f"{named(names)} changed while the run was under way: trials of the code before are kept "
+        "as such and not mixed with others; run the command again to run the code as it is now"
+    )

@@ -41,22 +41,19 @@ def plan(
     for place, scene in enumerate(scenes):
         block = place // look if look else scene.index // block_size
         parts.setdefault(block, []).append(scene.id)
-    return tuple(
-        Unit(_key(arm, ids, library, fingerprint), arm, block, tuple(ids))
-        for block, ids in parts.items()
-        for arm in arms
-    )
-
-
-def _key(arm: Arm, scenes: Sequence[str], library: Library, fingerprint: str) -> str:
-    content = {
-        "faultpath": __version__,
-        "system": fingerprint,
-        "arm": arm.model_dump(mode="json"),
-        "scenes": list(scenes),
-        "library": library.content_hash,
-    }
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
+    units: list[Unit] = []
+    for block, ids in parts.items():
+        for arm in arms:
+            content = {
+                "faultpath": __version__,
+                "system": fingerprint,
+                "arm": arm.model_dump(mode="json"),
+                "scenes": ids,
+                "library": library.content_hash,
+            }
+            key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
+            units.append(Unit(key, arm, block, tuple(ids)))
+    return tuple(units)
 
 
 @dataclass(frozen=True)
@@ -65,8 +62,6 @@ class Task:
 
     unit: Unit
     scenes: tuple[str, ...]
-    retried: bool = False
-    """A worker process died over it before."""
     recheck: Literal["sample", "guarded"] | None = None
     """Why it runs again: a few scenes without the others, or one alone with `Taps(guard=True)`.
     Its result is compared and not stored."""

@@ -1,7 +1,8 @@
 """The state of a run: which units are done, what becomes of a reply, and where it may stop."""
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from faultpath.core.errors import UserError
@@ -36,50 +37,81 @@ class _Partial:
 
 
 class RunState:
-    """Stores each unit as soon as all its scenes have an outcome."""
+    """Stores each unit as soon as all its scenes have an outcome.
 
-    def __init__(self, units: Iterable[Unit], folder: RunFolder, rows: Mapping[str, int]) -> None:
-        """`rows`: in how many rows of the outcome table an arm's trials stand, by its key."""
-        self.units = tuple(units)
+    The looks of a study are taken in order, each as soon as all of its trials are there: the same
+    trials count whatever the number of workers, and wherever a run was interrupted.
+    """
+
+    def __init__(
+        self,
+        study: Study,
+        library: Library,
+        units: tuple[Unit, ...],
+        folder: RunFolder,
+        stop: Stop | None = None,
+    ) -> None:
         self.outcomes: dict[tuple[str, str], Outcome] = {}
+        """By arm key and scene."""
         self.kept = self.computed = 0
         """Units that were stored before, and those that this invocation ran."""
-        self._rows, self._folder = rows, folder
+        self._study, self._library, self._units, self._folder = study, library, units, folder
+        self._rows = Counter(row.arm.key() for row in study.rows)
         self._taps: dict[str, tuple[TapCount, ...]] = {}
         self._partial: dict[str, _Partial] = {}
         self._began, self._ended = time.monotonic(), 0
         self._failed, self._sound = 0, False
+        self._stop = stop if study.look else None
+        self._looks, self._over = 0, False
 
-    def keep(self, unit: Unit, shard: Shard) -> None:
-        """Take over a unit that was done before."""
-        self.kept += 1
-        self._sound = True
-        self._enter(unit, shard)
+    def resume(self, notice: Callable[[str], None]) -> list[Unit]:
+        """Take over what is stored, say how much and from when, and return what is left to do.
+
+        Units with trials that failed are left to do: what was wrong may have been the machine.
+        """
+        missing: list[Unit] = []
+        failed = 0
+        for unit in self._units:
+            shard = self._folder.load_shard(unit.key, unit.scenes, notice)
+            lost = sum(outcome.failed for outcome in shard.outcomes) if shard else 0
+            failed += lost
+            if shard is None or lost:
+                missing.append(unit)
+            else:
+                self._enter(unit, shard)
+        self.kept = len(self._taps)
+        self._sound = self.kept > 0
+        if self.kept or failed:
+            tried = f"; {failed} that failed are tried again" if failed else ""
+            when = ""
+            if self.kept:
+                written = self._folder.written(tuple(self._taps))
+                first, last = (f"{moment:%Y-%m-%d %H:%M}" for moment in written)
+                when = f", from {first}" + (f" to {last}" if first != last else "") + " UTC"
+            notice(f"Kept {self.progress().count}{when}{tried}.")
+        return missing
 
     def settle(self, task: Task, reply: Reply) -> tuple[Task, ...]:
         """Take in a reply and return the tasks that follow from it.
 
-        A block whose program raised an error is run again scene by scene, so that only the scenes
-        at fault are lost. A block over which a worker died is run again once, and then scene by
-        scene too; one that took too long scene by scene at once. `Wrong` raises its error: nothing
+        A block whose program raised an error, or that its worker did not outlive, is run again
+        scene by scene, so that only the scenes at fault are lost. `Wrong` raises its error: nothing
         that follows would mean anything. `NothingRuns` after a few failures and no trial beside.
         """
-        unit = task.unit
+        unit, taps = task.unit, tuple[TapCount, ...]()
         match reply:
-            case Wrong():
-                raise reply.error
             case Done():
                 outcomes, taps = reply.outcomes, reply.taps
                 details = {o.scene: o.error or "" for o in outcomes if o.failed}
-            case Died() if not task.retried and not reply.late:
-                return (replace(task, retried=True),)
-            case Died() | Raised() if len(task.scenes) > 1:
+            case Died() | Raised() if task.scenes[1:]:
                 return tuple(replace(task, scenes=(scene,)) for scene in task.scenes)
-            case Raised() | Died():
-                scene = next(iter(task.scenes))
+            case Died() | Raised():
+                scene = task.scenes[0]
                 error = reply.error if isinstance(reply, Raised) else reply.how
-                outcomes, taps = (failed_outcome(scene, error),), ()
-                details = {scene: reply.traceback if isinstance(reply, Raised) else reply.how}
+                outcomes = (failed_outcome(scene, error),)
+                details = {scene: reply.traceback if isinstance(reply, Raised) else error}
+            case Wrong():
+                raise reply.error
         partial = self._partial.setdefault(unit.key, _Partial())
         for scene, said in details.items():
             partial.tracebacks.append(f"{scene}: {unit.arm.model_dump_json()}\n{said}\n")
@@ -112,18 +144,41 @@ class RunState:
         self.outcomes.update(((key, outcome.scene), outcome) for outcome in shard.outcomes)
         self._taps[unit.key] = shard.taps
 
-    def taps(self, units: Iterable[Unit]) -> dict[str, tuple[TapCount, ...]]:
-        """Return what the taps did in units that are done, by the key of their arm."""
+    def enough(self) -> bool:
+        """Take the looks whose trials are all there; return whether the study stops."""
+        while self._stop and not self._over:
+            look = [unit.key for unit in self._units if unit.block == self._looks]
+            if not look or not self._taps.keys() >= set(look):
+                break
+            self._looks += 1
+            self._over = self._stop(self.table())
+        return self._over
+
+    def table(self) -> OutcomeTable:
+        """Return the trials that count: all, or those of the looks that were taken."""
+        study = self._study
+        if self._stop:
+            scenes = study.scenes[: self._looks * study.look]
+            study = study.model_copy(update={"scenes": scenes})
+        return assemble(study, self._library, self.outcomes)
+
+    @property
+    def units(self) -> tuple[Unit, ...]:
+        """The units whose trials count."""
+        return tuple(each for each in self._units if not self._stop or each.block < self._looks)
+
+    def taps(self) -> dict[str, tuple[TapCount, ...]]:
+        """Return what the taps did in the units that count, by the key of their arm."""
         counts: dict[str, list[TapCount]] = {}
-        for unit in units:
+        for unit in self.units:
             counts.setdefault(unit.arm.key(), []).extend(self._taps[unit.key])
         return {key: added(taps) for key, taps in counts.items()}
 
     def progress(self) -> Progress:
         """Return how far the run is, and how long it takes yet at the pace that it had."""
         trials = rows = done = rows_done = 0
-        for unit in self.units:
-            each, some = self._rows.get(unit.arm.key(), 1), len(unit.scenes)
+        for unit in self._units:
+            each, some = self._rows[unit.arm.key()], len(unit.scenes)
             trials, rows = trials + some, rows + each * some
             if unit.key not in self._taps:
                 partial = self._partial.get(unit.key)
@@ -133,46 +188,3 @@ class RunState:
         if self._ended:
             left = (trials - done) * (time.monotonic() - self._began) / self._ended
         return Progress(done, trials, f"{rows_done} of {rows} trials", left)
-
-
-class Looks:
-    """The looks of a study, taken in order, each as soon as all of its trials are there.
-
-    So the same trials count whatever the number of workers, and wherever a run was interrupted.
-    """
-
-    def __init__(
-        self, study: Study, library: Library, units: tuple[Unit, ...], stop: Stop | None
-    ) -> None:
-        self._study, self._library, self._units = study, library, units
-        self._stop = stop if study.look else None
-        self._missing: dict[int, set[tuple[str, str]]] = {}
-        for unit in units:
-            keys = self._missing.setdefault(unit.block, set())
-            keys.update((unit.arm.key(), scene) for scene in unit.scenes)
-        self._taken, self._over = 0, False
-
-    def enough(self, outcomes: Mapping[tuple[str, str], Outcome]) -> bool:
-        """Take the looks whose trials are all in `outcomes`; return whether the study stops."""
-        while self._stop and not self._over and self._taken in self._missing:
-            self._missing[self._taken].difference_update(outcomes)
-            if self._missing[self._taken]:
-                break
-            self._taken += 1
-            self._over = self._stop(assemble(self.study, self._library, outcomes))
-        return self._over
-
-    @property
-    def study(self) -> Study:
-        """The study, with the scenes of the looks that were taken."""
-        if self._stop is None:
-            return self._study
-        scenes = self._study.scenes[: self._taken * self._study.look]
-        return self._study.model_copy(update={"scenes": scenes})
-
-    @property
-    def units(self) -> tuple[Unit, ...]:
-        """The units whose trials count."""
-        if self._stop is None:
-            return self._units
-        return tuple(unit for unit in self._units if unit.block < self._taken)

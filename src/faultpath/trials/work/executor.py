@@ -29,15 +29,14 @@ share the processors, and a sum over several threads may differ in its last bits
 def one_thread() -> Generator[None]:
     """Keep torch, where it is loaded, to one thread, and put back what was before."""
     torch = sys.modules.get("torch")
-    before = 1 if torch is None else torch.get_num_threads()
-    if torch is None or before == 1:
-        yield
-        return
-    torch.set_num_threads(1)
+    before = torch.get_num_threads() if torch else 1
+    if torch and before != 1:
+        torch.set_num_threads(1)
     try:
         yield
     finally:
-        torch.set_num_threads(before)
+        if torch and before != 1:
+            torch.set_num_threads(before)
 
 
 T = TypeVar("T")
@@ -113,9 +112,6 @@ class Executor(ABC):
 
     in_process = False
     """Whether calls run in this process: nothing is pickled, and no call can be cancelled."""
-    retries = 0
-    """How often a call is worth handing out again whose worker was lost: machines come and go, and
-    only where a call loses one after the other is it the call's fault."""
     count: int = 0
     """Number of workers, started or not; 0 for this process."""
     name: str = ""
@@ -135,11 +131,12 @@ class Executor(ABC):
 
     @abstractmethod
     def cancel(self, worker: int) -> None:
-        """Stop the call of a worker, in the middle of its work; it yields no end."""
+        """Stop a worker, in the middle of its work if need be; its call yields no end."""
 
-    @abstractmethod
     def close(self) -> None:
-        """End every worker now, in the middle of its work if need be."""
+        """Stop every worker; what they have written to disk is whole."""
+        for worker in range(max(1, self.count)):
+            self.cancel(worker)
 
     def __enter__(self) -> Self:
         return self
@@ -246,8 +243,4 @@ class Here(Executor):
     def cancel(self, worker: int) -> None:
         """Forget the call that waits; one that runs cannot be stopped."""
         del worker
-        self._waiting = None
-
-    def close(self) -> None:
-        """Forget the call that waits."""
         self._waiting = None

@@ -27,7 +27,6 @@ from faultpath.trials.work.executor import (
     Here,
     Lost,
     OnMessage,
-    Returned,
     ended,
     ignore,
     tell,
@@ -85,10 +84,11 @@ class Processes(Executor):
         assert worker in self.free()
         packed = ForkingPickler.dumps(call)
         process = self._processes.get(worker)
-        if process is None or not process.alive:
-            self._end(worker)
+        if process is None or process.popen.poll() is not None:
+            self.cancel(worker)
             process = self._processes[worker] = _Process()
-        process.send(packed)
+        with suppress(OSError):  # a process that died already shows when we read
+            process.channel.send_bytes(packed)
         self._busy[worker] = on_message
 
     def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
@@ -96,33 +96,31 @@ class Processes(Executor):
         channels = {self._processes[worker].channel: worker for worker in self._busy}
         for channel in connections.wait(list(channels), timeout_s):
             worker = next(w for c, w in channels.items() if c is channel)
-            message = self._processes[worker].receive()
-            if not isinstance(message, (Returned, Failed, Lost)):
+            process = self._processes[worker]
+            try:
+                message: tuple[Any] | End = process.channel.recv()
+            except (EOFError, OSError):
+                message = Lost(process.obituary())
+            if isinstance(message, tuple):
                 passed_on(message, self._busy[worker])
                 continue
             del self._busy[worker]
             if isinstance(message, Lost):
-                self._end(worker)
+                self.cancel(worker)
             yield worker, message
 
     def cancel(self, worker: int) -> None:
         """Kill the process."""
-        del self._busy[worker]
-        self._end(worker)
-
-    def _end(self, worker: int) -> None:
+        self._busy.pop(worker, None)
         if process := self._processes.pop(worker, None):
-            process.stop()
-
-    def close(self) -> None:
-        """Kill the processes; what they have written to disk is whole."""
-        self._busy.clear()
-        for worker in tuple(self._processes):
-            self._end(worker)
+            process.popen.kill()
+            process.popen.wait()
+            process.channel.close()
+            os.close(process.lifeline)
 
 
 class _Process:
-    """One process.
+    """One process, the socket to it, and our end of its lifeline.
 
     It is started by command, not by `multiprocessing`: its environment limits numpy and torch to
     one thread before either is imported, and the user's script is not imported again.
@@ -130,12 +128,12 @@ class _Process:
 
     def __init__(self) -> None:
         ours, theirs = socket.socketpair()
-        lifeline, self._lifeline = os.pipe()
+        lifeline, self.lifeline = os.pipe()
         path = os.pathsep.join(entry for entry in sys.path if entry)
         # A blocked signal stays blocked in the child until it says how it takes it.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
-            self._process = subprocess.Popen(
+            self.popen = subprocess.Popen(
                 [sys.executable, "-P", "-c", _BOOT, str(theirs.fileno()), str(lifeline)],
                 pass_fds=(theirs.fileno(), lifeline),
                 env={**KEEP_MEMORY, **os.environ, **ONE_THREAD, "PYTHONPATH": path},
@@ -148,33 +146,10 @@ class _Process:
             os.close(lifeline)
         self.channel: connections.Connection[Any, Any] = connections.Connection(ours.detach())
 
-    @property
-    def alive(self) -> bool:
-        """Whether it has not ended."""
-        return self._process.poll() is None
-
-    def send(self, packed: memoryview) -> None:
-        """Send a call; a process that died already shows when we read."""
-        with suppress(OSError):
-            self.channel.send_bytes(packed)
-
-    def receive(self) -> tuple[Any] | End:
-        """Return what it tells, as a tuple of one, or the end of its call."""
+    def obituary(self) -> str:
+        """Say how it ended."""
         try:
-            return self.channel.recv()
-        except (EOFError, OSError):
-            return Lost(self._obituary())
-
-    def stop(self) -> None:
-        """End it now; harmless when it has ended."""
-        self._process.kill()
-        self._process.wait()
-        self.channel.close()
-        os.close(self._lifeline)
-
-    def _obituary(self) -> str:
-        try:
-            code = self._process.wait(timeout=10)
+            code = self.popen.wait(timeout=10)
         except subprocess.TimeoutExpired:
             return "the worker process fell silent"
         if code >= 0:
@@ -194,7 +169,12 @@ def main(channel: int, lifeline: int) -> None:
     faulthandler.enable()
     warnings.showwarning = show
     sys.stdout = sys.stderr
-    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
+
+    def end_with_parent() -> None:
+        os.read(lifeline, 1)
+        os._exit(1)
+
+    threading.Thread(target=end_with_parent, daemon=True).start()
     with connections.Connection(channel) as parent, suppress(EOFError, ConnectionError):
         while True:
             packed = parent.recv_bytes()
@@ -212,13 +192,10 @@ def show(message: Warning | str, *more: Any, **named: Any) -> None:
 def served(packed: bytes, on_message: OnMessage) -> memoryview:
     """Run a packed call and return its end, packed; `on_message` gets what it tells."""
     try:
-        call = pickle.loads(packed)  # of the parent, on a way that nobody else has: no file
+        # The call is of the parent, on a way that nobody else has: no file.
+        end = ended(pickle.loads(packed), on_message)
     except Exception as error:
-        return _packed(Failed(error))
-    return _packed(ended(call, on_message))
-
-
-def _packed(end: Returned | Failed) -> memoryview:
+        end = Failed(error)
     try:
         if isinstance(end, Failed):
             # A traceback is not sent, and not every error that can be packed can be unpacked.
@@ -230,8 +207,3 @@ def _packed(end: Returned | Failed) -> memoryview:
         instead = RuntimeError(f"{type(said).__name__}: {said}")
         instead.__notes__ = getattr(said, "__notes__", [])
         return ForkingPickler.dumps(Failed(instead))
-
-
-def _end_with(lifeline: int) -> None:
-    os.read(lifeline, 1)
-    os._exit(1)

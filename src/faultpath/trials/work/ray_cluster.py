@@ -36,14 +36,9 @@ from faultpath.trials.work.executor import (
 from faultpath.trials.work.processes import KEEP_MEMORY, passed_on, served, show
 
 _ray: Any = ray
-_QUIET = {"logging_level": "ERROR", "log_to_driver": False}
-_OWN = {"object_store_memory": 256 * 2**20, "include_dashboard": False}
-"""For a cluster of our own: what comes back is small, and fetched at once."""
 _FALSE_STARTS = 4
 """So many workers in a row may end before they have begun."""
 _REPORTS = "RAY_USAGE_STATS_ENABLED"
-_TICK_S = 0.5
-
 _ENVIRONMENT = {
     **KEEP_MEMORY,
     **ONE_THREAD,
@@ -109,11 +104,6 @@ class _Worker:
     """What its call tells and returns; `None` without a call."""
     on_message: OnMessage = ignore
 
-    @property
-    def awaited(self) -> Any:
-        """What is to come of it next; `None` where it is free."""
-        return self.stream if self.starting is None else self.starting
-
 
 class RayWorkers(Executor):
     """Runs calls on a Ray cluster.
@@ -126,8 +116,6 @@ class RayWorkers(Executor):
     node or alone, is asked for anew: Ray places it wherever there is a CPU, and until then the
     others work. Raises `UserError` where the cluster cannot be used.
     """
-
-    retries = 1
 
     def __init__(self, address: str = "", count: int | None = None) -> None:
         if count is not None and count < 1:
@@ -146,23 +134,34 @@ class RayWorkers(Executor):
     def free(self) -> Sequence[int]:
         """Return the workers that run and have no call; wait for one where none has a call."""
         while True:
-            free = [number for number, each in self._workers.items() if each.awaited is None]
-            if free or any(each.stream is not None for each in self._workers.values()):
+            workers = self._workers.items()
+            free = [n for n, each in workers if each.starting is None and each.stream is None]
+            if free or any(each.stream is not None for _, each in workers):
                 return free
-            for number in self._ready(_TICK_S):
-                self._welcome(number)
+            for _ in self.completions(0.5):  # none has a call that could end
+                pass
 
     def submit(self, worker: int, call: Call, on_message: OnMessage = ignore) -> None:
         """Send the call to an actor that runs; its stream holds one item until it is taken."""
         chosen = self._workers[worker]
-        assert chosen.awaited is None
+        assert chosen.starting is None
+        assert chosen.stream is None
         serve = chosen.actor.serve.options(_generator_backpressure_num_objects=1)
         chosen.stream = serve.remote(bytes(ForkingPickler.dumps(call)))
         chosen.on_message = on_message
 
     def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
-        """Wait for the actors; one that was lost is asked for anew."""
-        for number in self._ready(timeout_s):
+        """Wait for the actors; one that was lost, or did not come up, is asked for anew."""
+        awaited = {
+            number: each.stream if each.starting is None else each.starting
+            for number, each in self._workers.items()
+            if each.starting is not None or each.stream is not None
+        }
+        refs = list(awaited.values())
+        if not refs or not _ray.wait(refs, num_returns=1, timeout=timeout_s)[0]:
+            return
+        ready = {id(ref) for ref in _ray.wait(refs, num_returns=len(refs), timeout=0)[0]}
+        for number in [number for number, ref in awaited.items() if id(ref) in ready]:
             worker = self._workers[number]
             if worker.starting is not None:
                 self._welcome(number)
@@ -202,15 +201,6 @@ class RayWorkers(Executor):
         path = [each for each in sys.path if each and not os.path.realpath(each).startswith(own)]
         actor = self._kind.remote(os.getcwd(), path)
         return _Worker(actor, actor.ready.remote())
-
-    def _ready(self, timeout_s: float) -> list[int]:
-        """Return the workers from which something has come, waiting for the first."""
-        awaited = {n: each.awaited for n, each in self._workers.items() if each.awaited is not None}
-        refs = list(awaited.values())
-        if not refs or not _ray.wait(refs, num_returns=1, timeout=timeout_s)[0]:
-            return []
-        ready = {id(ref) for ref in _ray.wait(refs, num_returns=len(refs), timeout=0)[0]}
-        return [number for number, ref in awaited.items() if id(ref) in ready]
 
     def _welcome(self, number: int) -> None:
         """Take in the first answer of an actor, or ask for another where it has not come up."""
@@ -264,17 +254,20 @@ def _connect(address: str, count: int | None) -> bool:
                 "ray:10.0.0.1:6379, start one there with `ray start --head`, or send the command "
                 "with `ray job submit` from a machine that does not belong to it"
             ) from error
+    quiet = {"logging_level": "ERROR", "log_to_driver": False}
     with _as_before():
         try:
-            _ray.init(address=asked or "auto", **_QUIET)
+            _ray.init(address=asked or "auto", **quiet)
         except (RuntimeError, ConnectionError) as error:  # other versions of Ray, or none there
             if asked or isinstance(error, RuntimeError):
                 where = asked or "on this machine"
                 raise UserError(
                     f"cannot use the Ray cluster {where}: {' '.join(str(error).split())[:300]}"
                 ) from error
+            # What comes back is small, and fetched at once.
+            small = {"object_store_memory": 256 * 2**20, "include_dashboard": False}
             try:
-                _ray.init(address="local", num_cpus=count, **_OWN, **_QUIET)
+                _ray.init(address="local", num_cpus=count, **small, **quiet)
             except Exception as late:  # of no narrower kind, when it does not come up in time
                 raise UserError(f"Ray does not start on this machine: {_last_line(late)}") from late
     return True

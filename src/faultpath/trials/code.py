@@ -1,22 +1,31 @@
 """The state of the code behind a result: one digest, and what it is made of."""
 
 import gc
+import inspect
 import json
 import platform
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from hashlib import file_digest, sha256
 from pathlib import Path
 
 from pydantic import Field
 
-from faultpath.core.errors import UserError
+from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.files.opening import opened
 from faultpath.core.frozen import Frozen
-from faultpath.trials.code.graph import Graph, Root
+from faultpath.trials.arm import SystemSpec
+from faultpath.trials.checks import paths_of
+from faultpath.trials.declared import shown
+from faultpath.trials.imports import Graph, Root
+from faultpath.trials.registry import factory_root
+from faultpath.trials.system import System
 
 _NAMED = 3
+_ATTEMPT = Root("faultpath.trials.attempt")
+"""What runs a trial, whichever system it is."""
 
 
 class CodeState(Frozen):
@@ -44,15 +53,15 @@ class CodeState(Frozen):
 
     def changed(self, other: "CodeState") -> tuple[str, ...]:
         """Say what `other` has otherwise: files, data files, packages, Python."""
-        found = [
-            *_differences(self.files, other.files),
-            *_differences(self.data, other.data),
-            *_differences(self.packages, other.packages),
-        ]
-        if self.python != other.python:
-            found.append("Python")
-        if self.given != other.given:
-            found.append("what fingerprint() returns")
+        found: list[str] = []
+        for mine, theirs in (
+            (self.files, other.files),
+            (self.data, other.data),
+            (self.packages, other.packages),
+        ):
+            found += sorted(n for n in {*mine, *theirs} if mine.get(n) != theirs.get(n))
+        found += ["Python"] * (self.python != other.python)
+        found += ["what fingerprint() returns"] * (self.given != other.given)
         return tuple(found)
 
 
@@ -60,9 +69,6 @@ def named(names: Sequence[str]) -> str:
     """Name the first few of some names and count the others."""
     more = len(names) - _NAMED
     return ", ".join(names[:_NAMED]) + (f" and {more} more" if more > 0 else "")
-
-
-_Stamp = tuple[int, int, int]
 
 
 @dataclass(frozen=True)
@@ -107,12 +113,11 @@ class Watch:
         return tuple(found)
 
 
-def _stamp(path: Path) -> _Stamp | None:
-    try:
+def _stamp(path: Path) -> tuple[int, int, int] | None:
+    with suppress(OSError):
         found = path.stat()
-    except OSError:
-        return None
-    return found.st_mtime_ns, found.st_size, found.st_ino
+        return found.st_mtime_ns, found.st_size, found.st_ino
+    return None
 
 
 def read_code(
@@ -122,7 +127,7 @@ def read_code(
 
     Paths of data are taken from `base`. `UserError` for a file that cannot be read.
     """
-    graph, roots = Graph(), tuple(roots)
+    graph, roots, base = Graph(), tuple(roots), base or Path()
     collects = gc.isenabled()
     gc.disable()  # it would look through all of torch for the sake of syntax trees
     try:
@@ -131,11 +136,8 @@ def read_code(
     finally:
         if collects:
             gc.enable()
-    sources = dict(sorted(graph.files.items()))
     files: dict[str, tuple[Path, str]] = {}
-    base = base or Path()
-    for path in data:
-        place = base / path
+    for place in (base / path for path in data):
         try:
             held = [p for p in place.rglob("*") if p.is_file()] if place.is_dir() else [place]
             for file in held:
@@ -146,9 +148,10 @@ def read_code(
                 f"cannot read {place} ({error.strerror}), which the system names among its data "
                 "files: put it there, or take it out of data_files"
             ) from error
+    sources, files = dict(sorted(graph.files.items())), dict(sorted(files.items()))
     state = CodeState(
         files={name: digest for name, (_, digest) in sources.items()},
-        data={name: digest for name, (_, digest) in sorted(files.items())},
+        data={name: digest for name, (_, digest) in files.items()},
         packages=dict(sorted(graph.packages.items())),
         python=platform.python_version(),
         given=given,
@@ -156,18 +159,57 @@ def read_code(
     return Code(
         state,
         {name: path for name, (path, _) in sources.items()},
-        {name: path for name, (path, _) in sorted(files.items())},
+        {name: path for name, (path, _) in files.items()},
         roots[0].path if roots else None,
     )
+
+
+def system_code(system: System, spec: SystemSpec) -> Code:
+    """Return the code and data that `system`, built from `spec`, runs with, in their state.
+
+    Its own modules and all that they import, faultpath's included, those of parts that the user
+    named, the data files that it names, and what its `fingerprint()` says. Of an object that
+    nothing can build again, that is the file of its class, or its source where it was typed into a
+    notebook. `UserError` for a data file that cannot be read.
+    """
+    given, root = system.fingerprint(), None if spec.is_object else factory_root(spec)
+    # A user's method returns what it likes.
+    if not isinstance(given, str):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise SystemMistake(
+            f"system '{system.name}': `fingerprint` returned {shown(given)}: it must return text"
+        )
+    classes: dict[str, Root] = {}
+    for each in type(system).__mro__:
+        module, name = sys.modules.get(each.__module__), each.__module__
+        file = getattr(module, "__file__", None)
+        if not file or not Path(file).is_file():
+            continue
+        if each is type(system) and spec.is_object:
+            root = Root(name, Path(file))
+        elif root is None or name != root.module:
+            findable = getattr(module, "__spec__", None) is not None
+            classes[name] = Root(name, None if findable else Path(file), of_system=False)
+    if root is None:
+        with suppress(OSError, TypeError):
+            given = inspect.getsource(type(system)) + given
+    parts = (factory_root(SystemSpec(name=str(name))) for name in paths_of(system, "parts"))
+    code = read_code(
+        ((root,) if root else ()) + (*classes.values(), *parts, _ATTEMPT),
+        data=map(Path, paths_of(system, "data_files")),
+        base=root.path.parent if root and root.path else None,
+        given=given,
+    )
+    return code if root else replace(code, main=None)
+
+
+def source_state(spec: SystemSpec) -> CodeState:
+    """Return the state of the code that building `spec` will load, without loading it."""
+    return read_code((factory_root(spec), _ATTEMPT)).state
 
 
 def _digest(path: Path) -> str:
     with opened(path, sys.maxsize) as file:
         return file_digest(file, "sha256").hexdigest()
-
-
-def _differences(mine: dict[str, str], theirs: dict[str, str]) -> list[str]:
-    return sorted(name for name in {*mine, *theirs} if mine.get(name) != theirs.get(name))
 
 
 def _hash(content: object) -> str:

@@ -4,12 +4,12 @@ import ast
 import os
 import sys
 import sysconfig
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from hashlib import sha256
 from importlib.machinery import ModuleSpec
 from importlib.metadata import PackageNotFoundError, distribution, packages_distributions
+from importlib.util import resolve_name
 from pathlib import Path
 from types import ModuleType
 from typing import Literal
@@ -17,20 +17,13 @@ from weakref import WeakKeyDictionary
 
 from faultpath.core.error_source import ours
 
-_COMPUTED = tuple(
-    word.encode()
-    for word in (
-        *("import_module", "__import__", "spec_from_file_location", "SourceFileLoader"),
-        *("exec_module", "run_path", "run_module", "walk_packages", "iter_modules"),
-    )
+_COMPUTED = (
+    *(b"import_module", b"__import__", b"spec_from_file_location", b"SourceFileLoader"),
+    *(b"exec_module", b"run_path", b"run_module", b"walk_packages", b"iter_modules"),
 )
 """What imports, in a source, by a name or path that may be known only when it runs."""
 _INSTALLED = frozenset({"site-packages", "dist-packages"})
 _NO_SOURCE = frozenset({"__pycache__", "node_modules"})
-
-
-Kind = Literal["standard", "installed", "local"]
-"""Whose a file is: part of Python, of an installed package, or the user's own."""
 
 
 @dataclass(frozen=True)
@@ -48,17 +41,6 @@ class Root:
         return self.file or file_of(locate(self.module))
 
 
-@dataclass(frozen=True)
-class Contents:
-    """A file's digest and what it imports."""
-
-    sha256: str
-    imports: tuple[tuple[str, int, tuple[str, ...]], ...] = ()
-    """Module, leading dots, and names taken from it, of each import anywhere in the file."""
-    computed: bool = False
-    """Whether it may also import by a name that is known only when it runs."""
-
-
 class Graph:
     """The files and installed packages that some modules reach.
 
@@ -72,9 +54,9 @@ class Graph:
         """By name: the file and the digest of its contents."""
         self.packages: dict[str, str] = {}
         """Versions of what is installed, by top-level package."""
-        self._entered: set[str] = set()
         self.seen: set[str] = set()
         """Names of all modules that were asked for, whether they are there or not."""
+        self._entered: set[str] = set()
         self._paths: set[Path] = set()
 
     def add(self, root: Root) -> None:
@@ -97,15 +79,14 @@ class Graph:
             path = file_of(spec)
             if spec is None or path is None:
                 continue
-            if not ours(each):
-                kind = kind_of(path)
-                if kind == "standard":
+            kind = "local" if ours(each) else kind_of(path)
+            if kind == "standard":
+                continue
+            if kind == "installed" and parts[0] not in self._entered:
+                version = self.packages.get(parts[0]) or release(parts[0])
+                if version is not None:
+                    self.packages[parts[0]] = version
                     continue
-                if kind == "installed" and parts[0] not in self._entered:
-                    version = self.packages.get(parts[0]) or release(parts[0])
-                    if version is not None:
-                        self.packages[parts[0]] = version
-                        continue
             stem = each.replace(".", "/")
             label = f"{stem}/{path.name}" if path.stem == "__init__" else f"{stem}{path.suffix}"
             folder = spec.submodule_search_locations is not None
@@ -116,42 +97,33 @@ class Graph:
         if path in self._paths:
             return
         self._paths.add(path)
-        found = contents(name, path)
+        found = _contents(name, path)
         if label in self.files:
             label = f"{path.parent.name}/{label}"
         self.files[label] = (path, found.sha256)
-        for module, level, names in found.imports:
-            if base := _absolute(module, level, package):
-                self._module(base)
-                for each in names:
-                    self._module(f"{base}.{each}")
-        if found.computed and not ours(name):
-            for beside in _sources(path.parent):
+        for module, names in found.imports:
+            try:
+                base = resolve_name(module, package)
+            except ImportError:  # a file of its own has no package to look in
+                continue
+            self._module(base)
+            for each in names:
+                self._module(f"{base}.{each}")
+        if not found.computed or ours(name):
+            return
+        for place, folders, files in os.walk(path.parent):
+            folders[:] = sorted(
+                each
+                for each in folders
+                if not each.startswith(".")
+                and each not in _NO_SOURCE
+                and not os.path.exists(os.path.join(place, each, "pyvenv.cfg"))
+            )
+            for beside in (Path(place, each) for each in sorted(files) if each.endswith(".py")):
                 parts = beside.relative_to(path.parent).with_suffix("").parts
                 inside = ".".join(part for part in (package, *parts[:-1]) if part)
                 below = beside.relative_to(path.parent.parent).as_posix()
                 self._file(beside, below, inside, ".".join((package, *parts)).strip("."))
-
-
-def _absolute(module: str, level: int, package: str) -> str:
-    if not level:
-        return module
-    parts = package.split(".")
-    if not package or level > len(parts):
-        return "" if package else module  # a file of its own has no package to look in
-    return ".".join((*parts[: len(parts) - level + 1], *filter(None, (module,))))
-
-
-def _sources(folder: Path) -> Iterator[Path]:
-    for place, folders, files in os.walk(folder):
-        folders[:] = sorted(
-            each
-            for each in folders
-            if not each.startswith(".")
-            and each not in _NO_SOURCE
-            and not (Path(place) / each / "pyvenv.cfg").exists()
-        )
-        yield from (Path(place) / each for each in sorted(files) if each.endswith(".py"))
 
 
 def locate(name: str) -> ModuleSpec | None:
@@ -191,19 +163,17 @@ def file_of(spec: ModuleSpec | None) -> Path | None:
 
 
 @cache
-def _folders(*names: str) -> tuple[str, ...]:
-    paths = (sysconfig.get_path(name) for name in names)
-    return tuple(dict.fromkeys(os.path.realpath(path) + os.sep for path in paths if path))
+def kind_of(path: Path) -> Literal["standard", "installed", "local"]:
+    """Return whose a file is, by where it lies: Python's, an installed package's, the user's."""
+    real = os.path.realpath(path.parent) + os.sep
 
+    def lies_in(*names: str) -> bool:
+        folders = filter(None, map(sysconfig.get_path, names))
+        return real.startswith(tuple(os.path.realpath(each) + os.sep for each in folders))
 
-@cache
-def kind_of(path: Path) -> Kind:
-    """Return whose a file is, by where it lies."""
-    folder = path.parent
-    real = os.path.realpath(folder) + os.sep
-    if not _INSTALLED.isdisjoint(folder.parts) or real.startswith(_folders("purelib", "platlib")):
+    if not _INSTALLED.isdisjoint(path.parent.parts) or lies_in("purelib", "platlib"):
         return "installed"
-    return "standard" if real.startswith(_folders("stdlib", "platstdlib")) else "local"
+    return "standard" if lies_in("stdlib", "platstdlib") else "local"
 
 
 @cache
@@ -229,14 +199,25 @@ def release(package: str) -> str | None:
     return f"{found.version} ({sha256(repr(held).encode()).hexdigest()[:16]})"
 
 
-_read: dict[str, Contents] = {}
+@dataclass(frozen=True)
+class _Contents:
+    """A file's digest and what it imports."""
+
+    sha256: str
+    imports: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    """Module, with leading dots, and names taken from it, of each import anywhere in the file."""
+    computed: bool = False
+    """Whether it may also import by a name that is known only when it runs."""
+
+
+_read: dict[str, _Contents] = {}
 """By digest: a file is taken apart once."""
-_loaded: WeakKeyDictionary[ModuleType, Contents] = WeakKeyDictionary()
+_loaded: WeakKeyDictionary[ModuleType, _Contents] = WeakKeyDictionary()
 """What a module was when it was first asked for: later edits do not reach what is loaded."""
 
 
-def contents(name: str, path: Path) -> Contents:
-    """Return the contents of module `name`, in `path`.
+def _contents(name: str, path: Path) -> _Contents:
+    """Return the contents of module `name`, in `path`; no imports where Python cannot read it.
 
     Of a module that this process has imported they stay what they were at the first call, because
     what runs here does not change with the file. `OSError` when the file cannot be read.
@@ -246,33 +227,30 @@ def contents(name: str, path: Path) -> Contents:
     mine = module if file and os.path.realpath(file) == os.path.realpath(path) else None
     if mine is not None and mine in _loaded:
         return _loaded[mine]
-    data = path.read_bytes()
-    digest = sha256(data).hexdigest()
+    source = path.read_bytes()
+    digest = sha256(source).hexdigest()
     if digest not in _read:
-        _read[digest] = _taken_apart(data, digest) if path.suffix == ".py" else Contents(digest)
+        imports: list[tuple[str, tuple[str, ...]]] = []
+        waiting: list[ast.AST] = []
+        if path.suffix == ".py":
+            try:
+                waiting += ast.parse(source).body
+            except (SyntaxError, ValueError, RecursionError):
+                source = b""
+        while waiting:  # statements alone: imports stand in no expression
+            node = waiting.pop()
+            if isinstance(node, ast.Import):
+                imports += [(alias.name, ()) for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                names = tuple(alias.name for alias in node.names if alias.name != "*")
+                imports.append(("." * node.level + (node.module or ""), names))
+            test = getattr(node, "test", None)
+            typed = "TYPE_CHECKING" in (getattr(test, "attr", ""), getattr(test, "id", ""))
+            for inner in ("body", "orelse", "finalbody", "handlers", "cases"):
+                children = () if typed and inner == "body" else getattr(node, inner, ())
+                waiting += children if isinstance(children, list) else ()
+        computed = path.suffix == ".py" and any(word in source for word in _COMPUTED)
+        _read[digest] = _Contents(digest, tuple(imports), computed)
     if mine is not None:
         _loaded[mine] = _read[digest]
     return _read[digest]
-
-
-def _taken_apart(source: bytes, digest: str) -> Contents:
-    """Read imports off a source file; it has none where Python cannot read it."""
-    try:
-        tree = ast.parse(source)
-    except (SyntaxError, ValueError, RecursionError):
-        return Contents(digest)
-    found: list[tuple[str, int, tuple[str, ...]]] = []
-    waiting: list[ast.AST] = list(tree.body)
-    while waiting:  # statements alone: imports stand in no expression
-        node = waiting.pop()
-        if isinstance(node, ast.Import):
-            found += [(alias.name, 0, ()) for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            names = tuple(alias.name for alias in node.names if alias.name != "*")
-            found.append((node.module or "", node.level, names))
-        test = getattr(node, "test", None)
-        typed = "TYPE_CHECKING" in (getattr(test, "attr", ""), getattr(test, "id", ""))
-        for inner in ("body", "orelse", "finalbody", "handlers", "cases"):
-            children = () if typed and inner == "body" else getattr(node, inner, ())
-            waiting += children if isinstance(children, list) else ()
-    return Contents(digest, tuple(found), any(word in source for word in _COMPUTED))
