@@ -20,8 +20,7 @@ from faultpath.systems.flightlog.flight import read_flight
 from faultpath.systems.flightlog.reading import read_columns
 from faultpath.trials.store import RunFolder, read_outcomes
 from faultpath.trials.store.atomic import locked
-from faultpath.trials.store.folder import read_regular
-from faultpath.trials.store.manifest import read_manifest
+from faultpath.trials.store.folder import read_manifest, read_regular
 from faultpath.trials.store.parquet import Unreadable
 
 Read = Callable[[Path], object]

@@ -36,8 +36,7 @@ from faultpath.trials.execution import RunResult
 from faultpath.trials.question import AuditQuestion, Running
 from faultpath.trials.store import TrialAddress, read_table, write_text
 from faultpath.trials.store.atomic import write_file
-from faultpath.trials.store.folder import OUTCOMES, read_regular, seal
-from faultpath.trials.store.manifest import keyed
+from faultpath.trials.store.folder import OUTCOMES, keyed, read_regular, seal
 from faultpath.trials.store.parquet import Unreadable
 from faultpath.trials.store.signals import SIGNALS, Signal, decode_signals, encode_signals
 from faultpath.trials.work import Progress

@@ -185,7 +185,7 @@ class EpisodePlant(Plant):
     def advance(self, state: _Batch, inputs: Inputs) -> _Batch:
         """Move what runs, freeze what does not, and judge what ends."""
         now, was = state, state.running
-        action = to_numpy(inputs[self.action, "actuator"])
+        action = to_numpy(inputs[Port(self.action, "actuator")])
         rewards, ends = np.zeros(len(was)), np.zeros((2, len(was)), bool)
         info: list[Mapping[str, Any]] = [{} for _ in was]
         for i in map(int, np.flatnonzero(was)):

@@ -13,7 +13,7 @@ import types
 import typing
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, Literal, TypeVar, get_args, get_origin
 
@@ -37,6 +37,30 @@ class Option:
     """What may be chosen, as text; empty where the values cannot be listed."""
     default: str | None = None
     """`None` where there is none, or where other options decide."""
+    required: bool = field(default=False, compare=False, repr=False)
+    values: Mapping[str, Any] = field(default_factory=dict[str, Any], compare=False, repr=False)
+    """What the choices stand for, by their text."""
+    annotation: Any = field(default=None, compare=False, repr=False)
+    factories: bool = field(default=False, compare=False, repr=False)
+
+    def read(self, text: str, system: str) -> Any:
+        """Return the value that `text` stands for; `UserError` where there is none."""
+        if self.values:
+            if text in self.values:
+                return self.values[text]
+            if self.factories and ":" in text:
+                return text
+            known = ", ".join(self.values)
+            own = ", or name your own as 'path/to/file.py:factory'" if self.factories else ""
+            raise UserError(f"unknown {self.name} '{text}'; choose one of {known}{own}.")
+        try:
+            return TypeAdapter[Any](self.annotation).validate_python(text)
+        except PydanticSchemaGenerationError:
+            return text  # a type of the system's own: it may make of the text what it likes
+        except ValidationError as error:
+            raise UserError(
+                f"{system} cannot have the {self.name} '{text}': it {misfit_of(error).says}."
+            ) from None
 
 
 class Offered:
@@ -50,40 +74,9 @@ class Offered:
         self.factories = factories
 
 
-@dataclass(frozen=True)
-class _Slot:
-    """Where a factory takes an option."""
-
-    option: Option
-    annotation: Any
-    values: Mapping[str, Any]
-    """By text, where they can be listed."""
-    required: bool
-    factories: bool = False
-
-    def read(self, text: str, system: str) -> Any:
-        """Return the value that `text` stands for; `UserError` where there is none."""
-        if self.values:
-            if text in self.values:
-                return self.values[text]
-            if self.factories and ":" in text:
-                return text
-            known = ", ".join(self.values)
-            own = ", or name your own as 'path/to/file.py:factory'" if self.factories else ""
-            raise UserError(f"unknown {self.option.name} '{text}'; choose one of {known}{own}.")
-        try:
-            return TypeAdapter[Any](self.annotation).validate_python(text)
-        except PydanticSchemaGenerationError:
-            return text  # a type of the system's own: it may make of the text what it likes
-        except ValidationError as error:
-            raise UserError(
-                f"{system} cannot have the {self.option.name} '{text}': it {misfit_of(error).says}."
-            ) from None
-
-
 def options_of(factory: Factory) -> tuple[Option, ...]:
     """Return the options that a factory declares, in its order."""
-    return tuple(slot.option for slot in _slots(factory)[0].values())
+    return tuple(_declared(factory)[0].values())
 
 
 def call(factory: Callable[..., _Built], given: Mapping[str, str], system: str) -> _Built:
@@ -92,17 +85,17 @@ def call(factory: Callable[..., _Built], given: Mapping[str, str], system: str) 
     Raises `UserError`, naming `system`, for an option that the factory does not take or lacks, and
     for a value that the option cannot have.
     """
-    slots, model, any_other = _slots(factory)
-    names = ", ".join(slots)
+    options, model, any_other = _declared(factory)
+    names = ", ".join(options)
     for name in given:
-        if name not in slots and not any_other:
+        if name not in options and not any_other:
             raise UserError(
                 f"the options of {system} do not include '{name}': it takes {names or 'none'}."
             )
-    for name, slot in slots.items():
-        if slot.required and name not in given:
+    for name, option in options.items():
+        if option.required and name not in given:
             raise UserError(f"{system} needs the option '{name}': give it, it takes {names}.")
-    values = {k: slots[k].read(v, system) if k in slots else v for k, v in given.items()}
+    values = {k: options[k].read(v, system) if k in options else v for k, v in given.items()}
     if model is None:
         return factory(**values)
     try:
@@ -121,35 +114,45 @@ def as_text(options: Mapping[str, object]) -> dict[str, str]:
     return {name: _text(value) for name, value in options.items()}
 
 
-def _slots(factory: Factory) -> tuple[dict[str, _Slot], type[BaseModel] | None, bool]:
-    """Return where a factory takes its options, their model if any, and if it takes any other."""
+def _declared(factory: Factory) -> tuple[dict[str, Option], type[BaseModel] | None, bool]:
+    """Return what options a factory takes, their model if any, and whether it takes any other."""
     try:
         parameters: Mapping[str, inspect.Parameter] = inspect.signature(factory).parameters
     except (TypeError, ValueError):  # of some built-in functions nothing is known
         parameters = dict[str, inspect.Parameter]()
-    hints = _hints(factory)
+    made: Any = factory.__init__ if isinstance(factory, type) else factory
+    hints = dict[str, Any]()
+    for name, written in getattr(made, "__annotations__", {}).items():
+        holder = types.SimpleNamespace(__annotations__={name: written})
+        with suppress(NameError, TypeError, AttributeError, SyntaxError):  # for type checkers only
+            names = getattr(made, "__globals__", {})
+            hints |= typing.get_type_hints(holder, names, include_extras=True)
     only = hints.get(next(iter(parameters))) if len(parameters) == 1 else None
-    if isinstance(only, type) and issubclass(only, BaseModel):
-        return {name: _slot(name, field) for name, field in only.model_fields.items()}, only, False
-    slots: dict[str, _Slot] = {}
+    model = only if isinstance(only, type) and issubclass(only, BaseModel) else None
+    fields = dict[str, FieldInfo]() if model is None else model.model_fields
     for name, parameter in parameters.items():
-        if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY):
+        kinds = (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY)
+        if model is None and parameter.kind in kinds:
             written = parameter.annotation
             known = str if written is parameter.empty or isinstance(written, str) else written
             default = ... if parameter.default is parameter.empty else parameter.default
-            field = FieldInfo.from_annotated_attribute(hints.get(name, known), default)
-            slots[name] = _slot(name, field)
-    return slots, None, any(each.kind is each.VAR_KEYWORD for each in parameters.values())
-
-
-def _slot(name: str, field: FieldInfo) -> _Slot:
-    said = " ".join(note for note in field.metadata if isinstance(note, str))
-    offered = next((note for note in field.metadata if isinstance(note, Offered)), None)
-    values = _values(field.annotation) if offered is None else offered.choices
-    required = field.is_required()
-    shown = None if required or field.default is None else _text(field.default)
-    option = Option(name, said, tuple(values), shown)
-    return _Slot(option, field.annotation, values, required, bool(offered and offered.factories))
+            fields[name] = FieldInfo.from_annotated_attribute(hints.get(name, known), default)
+    options = dict[str, Option]()
+    for name, each in fields.items():
+        offered = next((note for note in each.metadata if isinstance(note, Offered)), None)
+        values = _values(each.annotation) if offered is None else offered.choices
+        required = each.is_required()
+        options[name] = Option(
+            name,
+            " ".join(note for note in each.metadata if isinstance(note, str)),
+            tuple(values),
+            None if required or each.default is None else _text(each.default),
+            required,
+            values,
+            each.annotation,
+            bool(offered and offered.factories),
+        )
+    return options, model, any(each.kind is each.VAR_KEYWORD for each in parameters.values())
 
 
 def _values(kind: Any) -> dict[str, Any]:
@@ -167,13 +170,3 @@ def _text(value: object) -> str:
     if isinstance(value, Enum):
         return str(value.value)
     return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-def _hints(factory: Factory) -> dict[str, Any]:
-    made: Any = factory.__init__ if isinstance(factory, type) else factory
-    names, found = getattr(made, "__globals__", {}), dict[str, Any]()
-    for name, written in getattr(made, "__annotations__", {}).items():
-        holder = types.SimpleNamespace(__annotations__={name: written})
-        with suppress(NameError, TypeError, AttributeError, SyntaxError):  # for type checkers only
-            found |= typing.get_type_hints(holder, names, include_extras=True)
-    return found

@@ -54,7 +54,7 @@ def load_system(spec: SystemSpec) -> System:
     The caller's process stays as it was, but for the modules that the system imports and its folder
     at the end of `sys.path`. Where loading fails both are put back.
     """
-    with _undone_on_failure(), _needing(spec.name):
+    with _loading(spec.name):
         said = ":".join(_target(spec.name))
         try:
             system = call(_factory(spec.name), spec.options, f"system {spec.name!r}")
@@ -75,7 +75,7 @@ def system_options(name: str) -> tuple[Option, ...]:
 
     A user's system is imported for that. `UserError` as `load_system`.
     """
-    with _undone_on_failure(), _needing(name):
+    with _loading(name):
         return options_of(_factory(name))
 
 
@@ -88,15 +88,40 @@ def load_parts(names: Iterable[str]) -> dict[str, Factory]:
     found: dict[str, Factory] = {}
     for name in names:
         place, attribute = _split(name)
-        with _needing(name):
+        with _loading(name):
             modules[place] = modules.get(place) or _module(place, name)
         found[name] = _attribute(modules[place], place, attribute)
     return found
 
 
+def _factory(name: str) -> Factory:
+    place, attribute = _target(name)
+    return _attribute(_module(place, name), place, attribute)
+
+
+def _attribute(module: ModuleType, place: str, attribute: str) -> Factory:
+    factory = getattr(module, attribute, None)
+    if not callable(factory):
+        raise UserError(f"{place} has no function {attribute!r} to build from: check the name")
+    return factory
+
+
 def _module(place: str, name: str) -> ModuleType:
+    """Import the module at `place`, a file or a name; `name` is what the user calls the system."""
     if place.endswith(".py"):
-        module = _load_file(place)
+        root = _file_root(place)
+        loader = _FromSource(root.module, str(root.path))
+        spec = importlib.util.spec_from_file_location(root.module, root.path, loader=loader)
+        if spec is None or root.path is None:
+            raise UserError(f"{place!r} cannot be imported: it must be a Python file")
+        module = importlib.util.module_from_spec(spec)
+        try:
+            loader.get_code(root.module)  # before anything of it runs
+        except (ValueError, RecursionError, MemoryError) as error:
+            raise UserError(f"{place} is not valid Python ({error}): correct it") from error
+        _check_own(root, root.path.parent)
+        sys.modules[root.module] = module  # dataclasses look their module up by name
+        loader.exec_module(module)
     else:
         if not _installed(name):
             _look_in(os.getcwd())  # where a console script does not look
@@ -115,28 +140,25 @@ def _module(place: str, name: str) -> ModuleType:
     return module
 
 
-def _attribute(module: ModuleType, place: str, attribute: str) -> Factory:
-    factory = getattr(module, attribute, None)
-    if not callable(factory):
-        raise UserError(f"{place} has no function {attribute!r} to build from: check the name")
-    return factory
-
-
-def _factory(name: str) -> Factory:
-    place, attribute = _target(name)
-    return _attribute(_module(place, name), place, attribute)
-
-
 def factory_root(spec: SystemSpec) -> Root:
     """Return the module that builds the system; `UserError` where `load_system` raises one."""
     place, _ = _target(spec.name)
-    if not place.endswith(".py"):
-        if not _installed(spec.name):
-            _look_in(os.getcwd())
-        return Root(place)
-    path = _file(place)
-    _look_beside(path)
-    return Root(_module_name(path), path)
+    if place.endswith(".py"):
+        return _file_root(place)
+    if not _installed(spec.name):
+        _look_in(os.getcwd())
+    return Root(place)
+
+
+def _file_root(place: str) -> Root:
+    """Return the module of a file, whose neighbours it may import from their sources."""
+    path = Path(os.path.realpath(place))
+    if not os.path.isfile(path):  # unlike Path.is_file, it bears names that are too long
+        raise UserError(f"there is no file {place!r} to load from: check the path")
+    _look_in(folder := str(path.parent))
+    loaders = ((ExtensionFileLoader, EXTENSION_SUFFIXES), (_FromSource, SOURCE_SUFFIXES))
+    sys.path_importer_cache[folder] = FileFinder(folder, *loaders)
+    return Root(f"faultpath_system_{path.stem}_{sha256(bytes(path)).hexdigest()[:8]}", path)
 
 
 def named(name: str) -> Any:
@@ -175,42 +197,12 @@ def _split(name: str) -> tuple[str, str]:
     return place, attribute
 
 
-def _load_file(place: str) -> ModuleType:
-    path = _file(place)
-    name = _module_name(path)
-    loader = _FromSource(name, str(path))
-    spec = importlib.util.spec_from_file_location(name, path, loader=loader)
-    if spec is None:
-        raise UserError(f"{place!r} cannot be imported: it must be a Python file")
-    _look_beside(path)
-    module = importlib.util.module_from_spec(spec)
-    try:
-        loader.get_code(name)  # before anything of it runs
-    except (ValueError, RecursionError, MemoryError) as error:
-        raise UserError(f"{place} is not valid Python ({error}): correct it") from error
-    _check_own(Root(name, path), path.parent)
-    sys.modules[name] = module  # dataclasses look their module up by name
-    loader.exec_module(module)
-    return module
-
-
 class _FromSource(SourceFileLoader):
     """Compiles what the file holds now, of which the digest is taken: compiled code that Python
     keeps stands for the file's size and its time in whole seconds."""
 
     def get_code(self, fullname: str) -> CodeType:
         return self.source_to_code(self.get_data(self.path), self.path)
-
-
-def _file(place: str) -> Path:
-    path = Path(os.path.realpath(place))
-    if not os.path.isfile(path):  # unlike Path.is_file, it bears names that are too long
-        raise UserError(f"there is no file {place!r} to load from: check the path")
-    return path
-
-
-def _module_name(path: Path) -> str:
-    return f"faultpath_system_{path.stem}_{sha256(bytes(path)).hexdigest()[:8]}"
 
 
 def _check_own(root: Root, folder: Path) -> None:
@@ -232,43 +224,27 @@ def _check_own(root: Root, folder: Path) -> None:
 
 
 @contextmanager
-def _undone_on_failure() -> Generator[None]:
-    """Put back what loading a system changed when it comes to nothing, modules of its own too."""
+def _loading(name: str) -> Generator[None]:
+    """Put back what loading a system changed when it comes to nothing, modules of its own too.
+
+    Where a package is missing, say which one `name` needs.
+    """
     path, modules = tuple(sys.path), dict(sys.modules)
     try:
         with redirect_stdout(sys.stderr):  # what a system prints is no output of a command
             yield
-    except BaseException:
+    except BaseException as error:
         sys.path[:] = path
-        for name, module in tuple(sys.modules.items()):
+        for module_name, module in tuple(sys.modules.items()):
             file = getattr(module, "__file__", None)
-            if module is modules.get(name) or not file or ours(name):
+            if module is modules.get(module_name) or not file or ours(module_name):
                 continue
             if kind_of(Path(file)) == "local":
-                del sys.modules[name]
-                if name in modules:
-                    sys.modules[name] = modules[name]
-        raise
-
-
-def _look_in(folder: str) -> None:
-    if folder not in sys.path:
-        sys.path.append(folder)
-
-
-def _look_beside(path: Path) -> None:
-    _look_in(folder := str(path.parent))
-    fresh = (_FromSource, SOURCE_SUFFIXES)
-    compiled = (ExtensionFileLoader, EXTENSION_SUFFIXES)
-    sys.path_importer_cache[folder] = FileFinder(folder, compiled, fresh)
-
-
-@contextmanager
-def _needing(name: str) -> Generator[None]:
-    """Say which package `name` needs where one is missing."""
-    try:
-        yield
-    except ModuleNotFoundError as error:
+                del sys.modules[module_name]
+                if module_name in modules:
+                    sys.modules[module_name] = modules[module_name]
+        if not isinstance(error, ModuleNotFoundError):
+            raise
         package = (error.name or "").partition(".")[0]
         hint = extra(package) if package in _EXTRAS else f"install {package!r}"
         mistake = SystemMistake(
@@ -276,3 +252,8 @@ def _needing(name: str) -> Generator[None]:
         )
         mistake.place = where(error)
         raise mistake from error
+
+
+def _look_in(folder: str) -> None:
+    if folder not in sys.path:
+        sys.path.append(folder)

@@ -24,8 +24,7 @@ from faultpath.trials.store import (
     read_outcomes,
     write_text,
 )
-from faultpath.trials.store.folder import OUTCOMES, read_regular, unseal
-from faultpath.trials.store.manifest import keyed
+from faultpath.trials.store.folder import OUTCOMES, keyed, read_regular, unseal
 from faultpath_quadrotor.evidence.table import (
     EvidenceTable,
     Measurement,

@@ -17,8 +17,7 @@ from faultpath.trials.execution.schedule import Schedule, Task, plan
 from faultpath.trials.execution.state import RunState, Stop
 from faultpath.trials.provenance import FlownAgain
 from faultpath.trials.registry import load_system
-from faultpath.trials.store.folder import RunFolder
-from faultpath.trials.store.manifest import Manifest
+from faultpath.trials.store.folder import Manifest, RunFolder
 from faultpath.trials.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.system import System
 from faultpath.trials.table import Deliveries, OutcomeTable, check_rows, selected

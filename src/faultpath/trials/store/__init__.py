@@ -2,7 +2,6 @@
 
 # pyright: reportUnusedImport=false
 from faultpath.trials.store.atomic import check_writable, make_folder, write_text
-from faultpath.trials.store.folder import RunFolder, read_outcomes
-from faultpath.trials.store.manifest import FORMAT, Manifest
+from faultpath.trials.store.folder import FORMAT, Manifest, RunFolder, read_outcomes
 from faultpath.trials.store.parquet import read_table
 from faultpath.trials.store.tables import Shard, TrialAddress, traces_of
