@@ -17,7 +17,7 @@ MAY_LOAD = {
     "help": (["--help"], set[str]()),
     "help of a verb": (["audit", "--help"], set[str]()),
     "models": (["train", "quadrotor", "--list"], {"numpy"}),
-    "no such run": (["report", "nowhere"], set[str]()),
+    "no such run": (["report", "nowhere"], ENGINE),
     "help of the quadrotor": (["audit", "quadrotor", "--help"], {"numpy"}),
     "no such system": (["audit", "quadcopter", *AUDIT], ENGINE),
     "nothing to check": (["check", TOY, "--variants", "a"], ENGINE),

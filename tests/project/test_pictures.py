@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from faultpath.api.runs import read_map
+from faultpath import open_run
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.svg import text_width
 
@@ -30,7 +30,7 @@ def tools(monkeypatch: pytest.MonkeyPatch) -> Iterator[Mapping[str, ModuleType]]
 
 def drawn() -> dict[str, str]:
     """The pictures that follow from numbers, by name."""
-    record = read_map(ROOT / "docs" / "reference" / "map-toy").record
+    record = open_run(ROOT / "docs" / "reference" / "map-toy").record
     maps = {"map.svg": map_picture(record), "correlation.svg": correlation_picture(record)}
     return {name: svg.render(standalone=True) for name, svg in maps.items()}
 

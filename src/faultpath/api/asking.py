@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 from faultpath.api.display import Display, Show, display
 from faultpath.api.systems import Chosen, choose
@@ -27,38 +27,22 @@ def asks(model: type[Request]) -> Callable[[_Call], _Call]:
 
     def described(function: _Call) -> _Call:
         signature = inspect.signature(function)
-        kept = [each for each in signature.parameters.values() if each.kind != each.VAR_KEYWORD]
-        added: list[inspect.Parameter] = []
+        found = [each for each in signature.parameters.values() if each.kind != each.VAR_KEYWORD]
         lines: list[str] = []
         for name, each in model.model_fields.items():
             default = inspect.Parameter.empty
             if not each.is_required():
                 default = each.get_default(call_default_factory=True)
             kind = inspect.Parameter.KEYWORD_ONLY
-            added.append(inspect.Parameter(name, kind, default=default, annotation=each.annotation))
+            found.append(inspect.Parameter(name, kind, default=default, annotation=each.annotation))
             said, more = f"{name}: {each.description}", " " * 12
             lines.append(textwrap.fill(said, 96, initial_indent=" " * 8, subsequent_indent=more))
-        vars(function)["__signature__"] = signature.replace(parameters=[*kept, *added])
-        described = (function.__doc__ or "").replace("        **given: ...", "\n".join(lines))
-        function.__doc__ = described
+        vars(function)["__signature__"] = signature.replace(parameters=found)
+        help = (function.__doc__ or "").replace("        **given: ...", "\n".join(lines))
+        function.__doc__ = help
         return function
 
     return described
-
-
-@dataclass(frozen=True)
-class Begun(Generic[_Asked]):
-    """A question, with the system that it is about built and the scenes that were asked for."""
-
-    asked: _Asked
-    chosen: Chosen
-    library: Library
-    display: Display
-
-    @property
-    def system(self) -> System:
-        """The system."""
-        return self.chosen.system
 
 
 def begin(
@@ -67,8 +51,8 @@ def begin(
     system: str | PathLike[str] | System,
     given: Mapping[str, object],
     progress: bool | Display,
-) -> Begun[_Asked]:
-    """Read a question and build its system; `call` is the name of the function.
+) -> tuple[_Asked, Chosen, Library, Display]:
+    """Read a question, build its system and find its scenes; `call` is the name of the function.
 
     `UserError` for what does not fit, named as its caller names it, for a library that does not
     exist, and as `choose`.
@@ -82,7 +66,7 @@ def begin(
     shown = display(progress, call, said | {"options": chosen.spec.options})
     if chosen.notice:
         shown.say(chosen.notice)
-    return Begun(asked, chosen, library, shown)
+    return asked, chosen, library, shown
 
 
 @dataclass(frozen=True)
@@ -97,12 +81,7 @@ class Job:
     stopwatch: Stopwatch = field(default_factory=Stopwatch)
 
     def run(
-        self,
-        study: Study,
-        system: System,
-        show: Show,
-        folder: Path | None = None,
-        **how: Any,
+        self, study: Study, system: System, show: Show, folder: Path | None = None, **how: Any
     ) -> RunResult:
         """Run a study, into the job's folder unless another is given; see `run_study` for `how`.
 
@@ -122,20 +101,24 @@ class Job:
         say = self.display.say
         if result.failures:
             say(f"{len(result.failures)} trials failed and void their pairs.", "bold red")
-            alike: dict[str, list[Failure]] = {}
-            for failure in result.failures:
-                alike.setdefault(failure.error, []).append(failure)
-            for error, (first, *more) in list(alike.items())[:_ERRORS_SHOWN]:
-                rest = f" and {len(more)} more trials" if more else ""
-                details = f" ({first.details})" if first.details else ""
-                say(f"  {first.scene}{rest}: {' '.join(error.split())}{details}")
-            if len(alike) > _ERRORS_SHOWN:
-                others = len(alike) - _ERRORS_SHOWN
-                say(f"  and {others} other errors, in {self.folder / 'failures'}")
+        alike: dict[str, list[Failure]] = {}
+        for failure in result.failures:
+            alike.setdefault(failure.error, []).append(failure)
+        for error, (first, *more) in list(alike.items())[:_ERRORS_SHOWN]:
+            rest = f" and {len(more)} more trials" if more else ""
+            details = f" ({first.details})" if first.details else ""
+            say(f"  {first.scene}{rest}: {' '.join(error.split())}{details}")
+        if len(alike) > _ERRORS_SHOWN:
+            say(f"  and {len(alike) - _ERRORS_SHOWN} other errors, in {self.folder / 'failures'}")
         if not self.display.is_command:
             for finding in result.findings:
                 say(finding)
-        place, command = folder or self.folder, self.display.command
         return run_provenance(
-            place, names, result, self.stopwatch, command, self.executor, system.backend
+            folder or self.folder,
+            names,
+            result,
+            self.stopwatch,
+            self.display.command,
+            self.executor,
+            system.backend,
         )

@@ -11,7 +11,7 @@ from typing import Any
 
 from faultpath.api.asking import Job, asks, begin
 from faultpath.api.display import Display
-from faultpath.api.replaying import Replayed, outcomes_at, run_again, shown_first
+from faultpath.api.replaying import outcomes_at, run_again, shown_first
 from faultpath.api.runs import (
     MADE_FROM,
     RECORD,
@@ -20,6 +20,7 @@ from faultpath.api.runs import (
     as_text,
     parsed,
     read_provenance,
+    read_run,
 )
 from faultpath.api.systems import Chosen, executor_of
 from faultpath.core.errors import UserError
@@ -28,15 +29,15 @@ from faultpath.decisions.decide import after_looks
 from faultpath.decisions.phrases import counted
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.faults import each_size
-from faultpath.report.inputs import ReportInput, Traces
+from faultpath.report.inputs import Traces
 from faultpath.statistics import IN_FORCE, RULES
 from faultpath.trials import System, system_shown
 from faultpath.trials.code import system_code
 from faultpath.trials.execution import RunResult
 from faultpath.trials.question import AuditQuestion, Running
-from faultpath.trials.store import TrialAddress, read_table, write_text
+from faultpath.trials.store import TrialAddress, write_text
 from faultpath.trials.store.atomic import write_file
-from faultpath.trials.store.folder import OUTCOMES, keyed, read_regular, seal
+from faultpath.trials.store.folder import keyed, read_regular, seal
 from faultpath.trials.store.parquet import Unreadable
 from faultpath.trials.store.signals import SIGNALS, Signal, decode_signals, encode_signals
 from faultpath.trials.work import Progress
@@ -69,11 +70,10 @@ def audit(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    begun = begin("audit", AuditQuestion, system, given, progress)
-    asked, chosen = begun.asked, begun.chosen
+    asked, chosen, library, display = begin("audit", AuditQuestion, system, given, progress)
     if len(each_size(asked.fault)) > 1:
         raise UserError(f"fault '{asked.fault}' has several sizes: use faultpath.audits.")
-    laid = plan_audit(begun.system, chosen.spec, asked, begun.library)
+    laid = plan_audit(chosen.system, chosen.spec, asked, library)
     named = [laid.study.name, asked.fault, Path(asked.library).stem]
     if asked.metric:
         named.append(f"{asked.metric}-{','.join(f'{each:g}' for each in asked.thresholds)}")
@@ -83,10 +83,10 @@ def audit(
         small = "" if asked.margin_pp is None else f"-within-{asked.margin_pp:g}"
         named.append(f"until-{asked.stop_when}{small}")
     place = run_folder(asked, chosen, named)
-    with executor_of(begun.system, chosen.workers, chosen.executor) as executor:
-        job = Job(place, executor, begun.display, {"time_limit_s": asked.time_limit_s})
-        held = _carry_out(begun.system, laid, job, asked.signals)
-    run = Run(place, held, read_table(read_regular(place / OUTCOMES)))
+    with executor_of(chosen.system, chosen.workers, chosen.executor) as executor:
+        job = Job(place, executor, display, {"time_limit_s": asked.time_limit_s})
+        _carry_out(chosen.system, laid, job, asked.signals)
+    run = Run(place, *read_run(place))
     run.report()
     return run
 
@@ -123,15 +123,6 @@ def audits(
     return tuple(runs)
 
 
-def sweep_page(runs: Sequence[Run], folder: Path | None) -> Path:
-    """Return where the page over all sizes belongs: in `folder`, else beside the runs' own."""
-    if folder is not None:
-        return folder / "sweep.html"
-    first, names = runs[0].folder, "/".join(run.folder.name for run in runs)
-    digest = hashlib.sha256(names.encode()).hexdigest()[:8]
-    return first.with_name(f"{first.name}+{len(runs) - 1}-sizes-{digest}.html")
-
-
 def run_folder(asked: Running, chosen: Chosen, named: Sequence[str]) -> Path:
     """Return the folder of a run.
 
@@ -159,34 +150,32 @@ def run_folder(asked: Running, chosen: Chosen, named: Sequence[str]) -> Path:
     return place
 
 
-def _carry_out(system: System, audit: Audit, job: Job, signals: bool) -> ReportInput:
-    """Run, decide and write what the run folder's pages are made from; return that.
+def _carry_out(system: System, audit: Audit, job: Job, signals: bool) -> None:
+    """Run, decide and write what the run folder's pages are made from.
 
     What was concluded before in the folder stands in the record: see `after_looks`. Raises
     `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing can be compared.
     """
-    folder, display, question = job.folder, job.display, audit.question
+    folder, question = job.folder, audit.question
     if system.backend:
-        display.say(f"Computing with {system.backend}.")
-    before: tuple[DecisionRecord, ...] = ()
-    earlier = None
+        job.display.say(f"Computing with {system.backend}.")
+    earlier, before = None, None
     with suppress(UserError):  # nothing sound stands there: it is made anew
         earlier = read_provenance(folder)
     with suppress(UserError):
-        before = (parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord),)
-    for decided in (each.question for each in before):
-        rule = decided.rule
-        if not (decided.stop or question.stop) and rule != question.rule:
+        before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
+    if before is not None and not (before.question.stop or question.stop):
+        rule = before.question.rule
+        if rule != question.rule:
             raise UserError(
                 f"{folder} was decided by the rule '{rule}' ({RULES[rule].words}), and a verdict "
                 f"is not redone by another: give --rule {rule}, or another folder."
             )
     shown = system_shown(system, (question.baseline, question.repair), audit.study.scenes)
-    with display.progress("Running") as show:
+    with job.display.progress("Running") as show:
         result = job.run(audit.study, system, show, stop=audit.stops)
     record = audit.conclude(result.outcomes, result.deliveries)
-    record = after_looks(record, before)
-    traces = Traces(result.traces, system.control_dt_s)
+    record = after_looks(record, () if before is None else (before,))
     held: _Signals = {}
     if earlier is not None and SIGNALS in earlier.files:
         same = (earlier.system_fingerprint, earlier.outcomes_sha256)
@@ -196,25 +185,15 @@ def _carry_out(system: System, audit: Audit, job: Job, signals: bool) -> ReportI
             ):  # of these very trials
                 held = decode_signals(read_regular(folder / SIGNALS))
     if signals:
-        held, finding = _recorded(system, audit, job, record, result, traces, held)
+        held, finding = _recorded(system, audit, job, record, result, held)
         if finding:
-            display.say(finding)
+            job.display.say(finding)
             record = record.model_copy(update={"findings": (*record.findings, finding)})
     write_text(folder / RECORD, as_text(record), folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
     if held:
         write_file(folder / SIGNALS, encode_signals(dict(sorted(held.items()))), folder)
-    provenance = job.finish(result, system, (*MADE_FROM, *([SIGNALS] if held else ())))
-    return ReportInput(
-        record=record,
-        provenance=provenance,
-        interface=shown.interface,
-        variants=shown.variants,
-        outcomes=result.outcomes,
-        traces=traces,
-        plans=shown.plans,
-        signals=held,
-    )
+    job.finish(result, system, (*MADE_FROM, *([SIGNALS] if held else ())))
 
 
 def _recorded(
@@ -223,13 +202,13 @@ def _recorded(
     job: Job,
     record: DecisionRecord,
     result: RunResult,
-    traces: Traces,
     held: _Signals,
 ) -> tuple[_Signals, str]:
     """Run the scenes that the report begins with once more; return signals and a finding.
 
     What goes wrong here is a finding, never an error of the audit.
     """
+    traces = Traces(result.traces, system.control_dt_s)
     few = shown_first(record, result.outcomes)[: 1 + record.scenes // _SCENES_FOR_ONE]
     named = {path.name for path in record.paths}
     before = outcomes_at(result.outcomes, traces)
@@ -253,7 +232,7 @@ def _recorded(
         job.display.say(f"No signals were recorded; run the same {called} again to have them.")
         return held, ""
     held = {**held, **{each.address: each.signals for each in found if each.signals}}
-    unlike: list[Replayed] = [each for each in found if each.differs]
+    unlike = [each for each in found if each.differs]
     if not unlike:
         return held, ""
     at, differs = unlike[0].address, unlike[0].differs

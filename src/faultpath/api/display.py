@@ -1,4 +1,4 @@
-"""Where a call tells what it does: a terminal, a notebook, plain lines, or nowhere."""
+"""Where a call shows what it does: a terminal, a notebook, plain lines, or nowhere."""
 
 import logging
 import time
@@ -66,17 +66,53 @@ class Display:
     @contextmanager
     def progress(self, what: str) -> Generator[Show]:
         """Show how far something has come: as a bar that moves, or in a line now and then."""
-        if self.console is None:
+        console = self.console
+        if console is None:
             yield lambda now: None
-        elif self.console.is_terminal or (self.console.is_jupyter and find_spec("ipywidgets")):
-            with _bar(self.console, what) as show:
-                yield show
+        elif console.is_terminal or (console.is_jupyter and find_spec("ipywidgets")):
+            texts = (TextColumn(f"{{task.fields[{name}]}}") for name in ("count", "left", "remark"))
+            count, left, remark = texts
+            columns = (TextColumn("{task.description}"), BarColumn(), count, TimeElapsedColumn())
+            bar = Bar(*columns, left, remark, console=console)
+            task = bar.add_task(what, total=None, count="", left="", remark="")
+
+            def move(now: Progress) -> None:
+                bar.start()  # with the first news: what is refused shows no bar
+                bar.update(
+                    task,
+                    completed=now.done,
+                    total=now.total,
+                    count=now.count,
+                    left=_left(now),
+                    remark=now.remark,
+                )
+
+            try:
+                yield move
+            finally:
+                if bar.live.is_started:
+                    bar.stop()
         else:
-            yield _Lines(self.console, what).show
+            began = last = time.monotonic()
+            ended = False
+
+            def line(now: Progress) -> None:
+                nonlocal last, ended
+                moment = time.monotonic()
+                ends = now.total is not None and now.done >= now.total
+                if ended or not (ends or moment - last >= _LINE_S):
+                    return
+                last, ended = moment, ends
+                left = "" if ends else _left(now)
+                parts = (now.count, f"{_clock(moment - began)} so far", left, now.remark)
+                said = f"{what}: {', '.join(filter(None, parts))}"
+                console.print(said, markup=False, soft_wrap=True)
+
+            yield line
 
 
 def display(progress: bool | Display, name: str, given: Mapping[str, object]) -> Display:
-    """Return who is told of a call from Python: notebooks in their cell, others on stderr.
+    """Return where a call from Python shows what it does: a notebook's cell, or stderr.
 
     `name` and `given` are what was called, and with what; left out is what is `None` or empty,
     and `progress` itself.
@@ -92,61 +128,8 @@ def display(progress: bool | Display, name: str, given: Mapping[str, object]) ->
     return Display(SafeConsole(stderr=True) if progress else None, (call,))
 
 
-def _left(seconds: float | None) -> str:
-    """Say how long it will still take, where that is known."""
-    return "" if seconds is None else f"{_clock(seconds)} left"
-
-
-@contextmanager
-def _bar(console: Console, what: str) -> Generator[Show]:
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.fields[count]}"),
-        TimeElapsedColumn(),
-        TextColumn("{task.fields[left]}"),
-        TextColumn("{task.fields[remark]}"),
-    )
-    bar = Bar(*columns, console=console)
-    task = bar.add_task(what, total=None, count="", left="", remark="")
-
-    def show(now: Progress) -> None:
-        bar.start()  # with the first news: what is refused shows no bar
-        bar.update(
-            task,
-            completed=now.done,
-            total=now.total,
-            count=now.count,
-            left=_left(now.seconds),
-            remark=now.remark,
-        )
-
-    try:
-        yield show
-    finally:
-        if bar.live.is_started:
-            bar.stop()
-
-
-class _Lines:
-    """Progress where no line can be written over: one now and then, and one at the end."""
-
-    def __init__(self, console: Console, what: str) -> None:
-        self._console = console
-        self._what = what
-        self._began = self._last = time.monotonic()
-        self._ended = False
-
-    def show(self, now: Progress) -> None:
-        moment = time.monotonic()
-        ends = now.total is not None and now.done >= now.total
-        if self._ended or not (ends or moment - self._last >= _LINE_S):
-            return
-        self._last, self._ended = moment, ends
-        so_far, left = f"{_clock(moment - self._began)} so far", "" if ends else _left(now.seconds)
-        parts = (now.count, so_far, left, now.remark)
-        line = f"{self._what}: {', '.join(filter(None, parts))}"
-        self._console.print(line, markup=False, soft_wrap=True)
+def _left(now: Progress) -> str:
+    return "" if now.seconds is None else f"{_clock(now.seconds)} left"
 
 
 def _clock(seconds: float) -> str:

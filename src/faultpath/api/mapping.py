@@ -1,6 +1,7 @@
 """`faultpath.reversal_map`: run two errors of one source against each other, decide, report."""
 
 from dataclasses import replace
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,6 @@ from faultpath.decisions.map.lattice import COARSE, lattice
 from faultpath.decisions.map.study import MapPlan, plan_map
 from faultpath.decisions.map.surface import next_points
 from faultpath.trials import System
-from faultpath.trials.execution import RunResult
 from faultpath.trials.question import MapQuestion
 from faultpath.trials.store import write_text
 from faultpath.trials.work import Progress
@@ -41,9 +41,8 @@ def reversal_map(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    begun = begin("reversal_map", MapQuestion, system, given, progress)
-    asked, chosen = begun.asked, begun.chosen
-    plan = plan_map(begun.system, chosen.spec, asked, begun.library)
+    asked, chosen, library, display = begin("reversal_map", MapQuestion, system, given, progress)
+    plan = plan_map(chosen.system, chosen.spec, asked, library)
     found = plan.question
     named = [
         plan.study(()).name,
@@ -53,10 +52,8 @@ def reversal_map(
         Path(asked.library).stem,
     ]
     place = run_folder(asked, chosen, named)
-    with executor_of(begun.system, chosen.workers, chosen.executor) as executor:
-        run = _carry_out(
-            plan, Job(place, executor, begun.display, {"time_limit_s": asked.time_limit_s})
-        )
+    with executor_of(chosen.system, chosen.workers, chosen.executor) as executor:
+        run = _carry_out(plan, Job(place, executor, display, {"time_limit_s": asked.time_limit_s}))
     run.report()
     return run
 
@@ -92,13 +89,9 @@ def _carry_out(plan: MapPlan, job: Job) -> MapRun:
             remark = f"{len(points)} pairs of errors"
             show(now.within(max(now.done, (now.total or 0.0) * most), remark=remark))
 
-        def run(recheck: bool) -> RunResult:
-            return job.run(
-                plan.study(points), plan.system, note, notice=notice, shared=True, recheck=recheck
-            )
-
+        run = partial(job.run, system=plan.system, show=note, notice=notice, shared=True)
         while True:
-            result = run(recheck=False)
+            result = run(plan.study(points), recheck=False)
             said.add("Kept ")  # what later rounds keep, this call has run itself
             computed += result.blocks_computed
             found, _ = plan.differences(points, result.outcomes)
@@ -106,7 +99,7 @@ def _carry_out(plan: MapPlan, job: Job) -> MapRun:
             if not new:
                 break
             points += new
-        result = run(recheck=True)
+        result = run(plan.study(points), recheck=True)
         trials = len(result.outcomes.rows)
         show(Progress(trials, trials, f"{len(points)} pairs of errors"))
     blocks = result.blocks_kept + result.blocks_computed

@@ -80,26 +80,18 @@ def plan(
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
     """
-    begun = begin("plan", PlanQuestion, system, given, progress)
-    if begun.chosen.own:
+    asked, chosen, library, display = begin("plan", PlanQuestion, system, given, progress)
+    if chosen.own:
         raise UserError(
             "a study file cannot hold an object: put what builds the system into a file and name "
             "that, as 'my_system.py:create'."
         )
-    with begun.display.progress("Planning") as show:
+    with display.progress("Planning") as show:
 
         def note(done: int, total: int) -> None:
             show(Progress(done, total, f"{done} of {total} runs"))
 
-        spec = begun.chosen.spec
-        return Planned(make_plan(begun.system, spec, begun.asked, begun.library, note))
-
-
-def check_new(file: Path) -> None:
-    """Raise `UserError` unless a file can be written there and none stands in its place."""
-    check_writable(file)
-    if file.exists():
-        raise UserError(f"{file} is there already: give another file with --out, or remove it.")
+        return Planned(make_plan(chosen.system, chosen.spec, asked, library, note))
 
 
 def audit_study(

@@ -3,8 +3,9 @@
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
-from faultpath.api.asking import Begun, asks, begin
+from faultpath.api.asking import asks, begin
 from faultpath.api.display import Display
+from faultpath.api.systems import Chosen
 from faultpath.trials import System
 from faultpath.trials.question import CheckQuestion, TraceQuestion
 from faultpath.trials.work import Progress
@@ -33,16 +34,15 @@ def check(
     """
     from faultpath.systems.checks.check import check_system
 
-    begun = begin("check", CheckQuestion, system, given, progress)
-    asked, chosen = begun.asked, begun.chosen
+    asked, chosen, _, display = begin("check", CheckQuestion, system, given, progress)
     if chosen.own:
         asked = asked.model_copy(update={"workers": 0})
-    with begun.display.progress("Checking") as show:
+    with display.progress("Checking") as show:
 
         def note(done: int, known: int | None) -> None:
             show(Progress(done, known, f"{done} of {known} runs" if known else f"{done} runs"))
 
-        return check_system(begun.system, chosen.spec, asked, note)
+        return check_system(chosen.system, chosen.spec, asked, note)
 
 
 @asks(TraceQuestion)
@@ -62,16 +62,17 @@ def trace(
         UserError: There is no such system, variant, library or scene, the fault reaches nobody, or
             the run fails.
     """
-    return traced(begin("trace", TraceQuestion, system, given, progress))
+    asked, chosen, _, _ = begin("trace", TraceQuestion, system, given, progress)
+    return traced(asked, chosen)
 
 
-def traced(begun: Begun[TraceQuestion]) -> "TraceReport":
+def traced(asked: TraceQuestion, chosen: Chosen) -> "TraceReport":
     """Return the trace of a system that is built; raises as `trace`."""
     from faultpath.systems.checks.tracing import trace_system
 
-    asked, system, spec = begun.asked, begun.system, begun.chosen.spec
+    system = chosen.system
     fault = None if asked.fault is None else system.fault(asked.fault)
     name = asked.variant or next(iter(system.variants))
     return trace_system(
-        system, spec, name, asked.library, asked.scene, asked.steps, asked.seed, fault
+        system, chosen.spec, name, asked.library, asked.scene, asked.steps, asked.seed, fault
     )

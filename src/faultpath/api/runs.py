@@ -5,7 +5,7 @@ from collections import Counter
 from importlib.metadata import entry_points
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import pyarrow as pa
 from pydantic import BaseModel
@@ -39,8 +39,6 @@ _Model = TypeVar("_Model", bound=BaseModel)
 class FinishedRun:
     """A finished run: what was decided, how it was made, and where its files are."""
 
-    kind: ClassVar[str]
-
     def __init__(self, folder: Path, record: Any, provenance: RunProvenance) -> None:
         self.folder = folder
         self.record = record
@@ -63,7 +61,6 @@ class Run(FinishedRun):
     A notebook shows it as the table of its effects, with the verdict below.
     """
 
-    kind = "audit"
     record: DecisionRecord
     """What was decided: `verdict.headline` in a sentence, `effects` in numbers."""
 
@@ -104,7 +101,6 @@ class Run(FinishedRun):
 class MapRun(FinishedRun):
     """A finished reversal map: what was decided, and where its files are."""
 
-    kind = "map"
     record: "MapRecord"
     """`headline` and `sentences` in words; `points`, `surface`, `flips`, `joint` in numbers."""
 
@@ -129,33 +125,23 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | Any":
     for a folder that holds none of them, or a damaged or changed one.
     """
     place = Path(folder)
-    files = read_provenance(place).files
-    if MAP in files:
-        return read_map(place)
-    if RECORD not in files:
+    provenance = read_provenance(place)
+    if MAP in provenance.files:
+        from faultpath.decisions.map.model import MapRecord
+
+        held = unseal(place, provenance.files, MAP_MADE_FROM)
+        record = parsed(held[MAP], place / MAP, MapRecord)
+        if (provenance.files[OUTCOMES], provenance.library_hash) != (
+            provenance.outcomes_sha256,
+            record.question.library_hash,
+        ):
+            raise UserError(f"the files of {place} do not belong together: {AGAIN}.")
+        return MapRun(place, record, provenance)
+    if RECORD not in provenance.files:
         for point in entry_points(group="faultpath.runs"):
-            if point.name in files:
+            if point.name in provenance.files:
                 return point.load()(place)
     return Run(place, *read_run(place))
-
-
-def read_map(folder: Path) -> MapRun:
-    """Read a finished map, every file compared with its digest in `provenance.json`.
-
-    `UserError` for a file that is missing, damaged or changed, and for files that do not belong
-    together.
-    """
-    from faultpath.decisions.map.model import MapRecord
-
-    provenance = read_provenance(folder)
-    held = unseal(folder, provenance.files, MAP_MADE_FROM)
-    record = parsed(held[MAP], folder / MAP, MapRecord)
-    if (provenance.files[OUTCOMES], provenance.library_hash) != (
-        provenance.outcomes_sha256,
-        record.question.library_hash,
-    ):
-        raise UserError(f"the files of {folder} do not belong together: {AGAIN}.")
-    return MapRun(folder, record, provenance)
 
 
 def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:

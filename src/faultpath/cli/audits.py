@@ -1,5 +1,6 @@
 """`faultpath plan`, `audit` and `map`: the verbs that compare a repair with a baseline."""
 
+import hashlib
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,11 +10,11 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import FOUND, Json, SystemName, display, path
+from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
 from faultpath.trials.question import AuditQuestion, MapQuestion, PlanQuestion, Question, Running
 
 if TYPE_CHECKING:
-    from faultpath.api.display import SafeConsole
     from faultpath.api.runs import Run
 
 
@@ -29,9 +30,12 @@ def plan(
     """Rank the uncertain sources, propose the audits of a repair with their trials, and
     write them as a study file for `faultpath audit --study`."""
     from faultpath.api.display import SafeConsole
-    from faultpath.api.planned import check_new, plan
+    from faultpath.api.planned import plan
+    from faultpath.trials.store.atomic import check_writable
 
-    check_new(out)
+    check_writable(out)
+    if out.exists():
+        raise UserError(f"{out} is there already: give another file with --out, or remove it.")
     found = plan(system, **given, progress=display())
     written = found.write(out)
 
@@ -72,23 +76,23 @@ def audit(
     arms = f"{one_line(given['repair'])} with {one_line(given['baseline'])}"
     typer.echo(f"Building {one_line(system)}, to compare {arms}.", err=as_json)
 
-    from faultpath.api.audit import audits, sweep_page
+    from faultpath.api.audit import audits
     from faultpath.api.comparing import compare
     from faultpath.api.display import SafeConsole
     from faultpath.report.comparison import shown
 
-    console = SafeConsole(stderr=as_json)
     runs = audits(system, **given, progress=display(as_json))
-    if as_json:
-        _print_json(runs)
-    if len(runs) == 1 or details:
-        _print(console, runs, details)
+    status = _print(runs, as_json, len(runs) == 1 or details, details)
     if len(runs) > 1:
-        compared = compare(runs)
-        page = compared.report(sweep_page(runs, given.get("folder")))
+        compared, first, folder = compare(runs), runs[0].folder, given.get("folder")
+        names = "/".join(run.folder.name for run in runs)
+        digest = hashlib.sha256(names.encode()).hexdigest()[:8]
+        beside = first.with_name(f"{first.name}+{len(runs) - 1}-sizes-{digest}.html")
+        page = compared.report(folder / "sweep.html" if folder else beside)
+        console = SafeConsole(stderr=as_json)
         console.print(shown(compared.runs))
         console.print(f"Page: {page}", markup=False, soft_wrap=True)
-    return FOUND if any(run.failed for run in runs) else 0
+    return status
 
 
 @takes(Running, *Question.model_fields)
@@ -101,15 +105,11 @@ def study(
 ) -> int:
     """Carry out the audits of a study file. The file says system, variants, faults, scenes and
     seeds; the same command resumes."""
-    from faultpath.api.display import SafeConsole
     from faultpath.api.planned import audit_study
     from faultpath.decisions.plan.study import read_study
 
     runs = audit_study(read_study(study), progress=display(as_json), **running)
-    if as_json:
-        _print_json(runs)
-    _print(SafeConsole(stderr=as_json), runs)
-    return FOUND if any(run.failed for run in runs) else 0
+    return _print(runs, as_json)
 
 
 @takes(MapQuestion)
@@ -132,21 +132,22 @@ def reversal_map(system: SystemName, as_json: Json = False, **given: Any) -> int
     return FOUND if run.record.failed else 0
 
 
-def _print(console: "SafeConsole", runs: "Sequence[Run]", details: bool = False) -> None:
-    """Print what was decided in each run."""
+def _print(
+    runs: "Sequence[Run]", as_json: bool, sentences: bool = True, details: bool = False
+) -> int:
+    """Print what was decided in each run, and its folder and record as JSON; return the status."""
+    from faultpath.api.comparing import compare, folder_and_record
+    from faultpath.api.display import SafeConsole
     from faultpath.report.terminal import decision
 
-    for run in runs:
+    if as_json:
+        several = len(runs) > 1  # of several sizes with what stands over all of them
+        found = compare(runs).as_json()["runs"] if several else [folder_and_record(runs[0].folder)]
+        typer.echo(json.dumps(found, indent=1))
+    console = SafeConsole(stderr=as_json)
+    for run in runs if sentences else ():
         if len(runs) > 1:
             console.print(f"\nFault {run.record.question.fault}", markup=False)
         console.print(decision(run.record, details))
         console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
-
-
-def _print_json(runs: "Sequence[Run]") -> None:
-    """Print folder and record of each run, of several sizes with what stands over all of them."""
-    from faultpath.api.comparing import compare, folder_and_record
-
-    several = len(runs) > 1
-    found = compare(runs).as_json()["runs"] if several else [folder_and_record(runs[0].folder)]
-    typer.echo(json.dumps(found, indent=1))
+    return FOUND if any(run.failed for run in runs) else 0

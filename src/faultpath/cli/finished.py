@@ -34,7 +34,6 @@ def report(
             )
         if as_json:
             raise UserError("--json prints a comparison: record.json holds the record of a run.")
-        _check_finished(folders[0])
         from faultpath.api.runs import open_run
 
         for written in open_run(folders[0]).report():
@@ -72,7 +71,6 @@ def replay(
 ) -> int:
     """Run trials of a finished run again and compare them with the run, to the bit; it runs the
     system that the run names. Exits with 1 where one differs."""
-    _check_finished(folder)
     from faultpath.api.display import SafeConsole
     from faultpath.api.replaying import chosen_scenes, keep_signals, replay
     from faultpath.api.runs import RECORD, read_provenance, read_run
@@ -104,8 +102,3 @@ def replay(
         for written in keep_signals(folder, held, found):
             console.print(f"Written: {written}", markup=False, soft_wrap=True)
     return FOUND if unlike else 0
-
-
-def _check_finished(folder: Path) -> None:
-    if not (folder / "provenance.json").exists():
-        raise UserError(f"{folder} holds no provenance.json: give the folder of a finished run.")

@@ -9,17 +9,13 @@ import re
 import signal
 import sys
 import warnings
-from collections.abc import Sequence
 from traceback import format_exception
 from types import FrameType
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from faultpath.core.errors import Notice, Stopped
 from faultpath.core.prints import show_warning
 from faultpath.core.text import one_line
-
-if TYPE_CHECKING:
-    from typer import TyperException
 
 USER_ERROR = 2
 INTERRUPTED = 130
@@ -38,9 +34,12 @@ def main() -> NoReturn:
     So does an error in the code of a user's system. An error of faultpath's own code keeps
     its traceback; `faultpath.core.error_source` tells the two apart.
     """
-    arguments, told = _arguments(sys.argv[1:])
+    given = sys.argv[1:]
+    end = given.index("--") if "--" in given else len(given)
+    traced = _TRACEBACK in given[:end]
+    arguments = [part for part in given[:end] if part != _TRACEBACK] + given[end:]
     ctrl_c = _CtrlC()
-    if told and sys.stderr is sys.__stderr__:
+    if traced and sys.stderr is sys.__stderr__:
         faulthandler.enable()
     shown, warnings.showwarning = warnings.showwarning, _show
     try:
@@ -49,20 +48,21 @@ def main() -> NoReturn:
         from faultpath.core.error_source import place
 
         theirs = bool(place(error))  # a system may raise what would mean something of ours
-        if (
-            isinstance(error, BrokenPipeError) and not theirs
-        ):  # whoever read our output has seen enough
+        if isinstance(error, BrokenPipeError) and not theirs:  # its reader has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             sys.exit(UNREAD)
         interrupted = isinstance(error, KeyboardInterrupt) and not theirs
         if ctrl_c.pressed or interrupted or isinstance(error, Stopped):
-            _end(str(error) if isinstance(error, Stopped) else _AGAIN, INTERRUPTED)
-        sentence = _sentence(error)
-        if sentence is None:
-            raise
-        if told:
-            sys.stderr.write("".join(format_exception(error)))
-        _end(sentence, USER_ERROR)
+            sentence = str(error) if isinstance(error, Stopped) else _AGAIN
+            status = INTERRUPTED
+        else:
+            sentence, status = _sentence(error), USER_ERROR
+            if sentence is None:
+                raise
+            if traced:
+                sys.stderr.write("".join(format_exception(error)))
+        if sentence:
+            sys.stderr.write(f"faultpath: {one_line(sentence)}\n")
     finally:
         ctrl_c.leave()
         warnings.showwarning = shown
@@ -96,12 +96,6 @@ class _CtrlC:
             signal.signal(signal.SIGINT, self._before)
 
 
-def _arguments(given: Sequence[str]) -> tuple[list[str], bool]:
-    end = given.index("--") if "--" in given else len(given)
-    told = _TRACEBACK in given[:end]
-    return [part for part in given[:end] if part != _TRACEBACK] + list(given[end:]), told
-
-
 def _run(arguments: list[str]) -> int:
     """Run a verb; typer would catch some errors by itself, so it only parses and calls."""
     import typer
@@ -111,10 +105,9 @@ def _run(arguments: list[str]) -> int:
     from faultpath.core.error_source import place
 
     check_arguments(arguments)
+    command = typer.main.get_command(build(arguments))
     try:
-        with typer.main.get_command(build(arguments)).make_context(
-            "faultpath", arguments
-        ) as context:
+        with command.make_context("faultpath", arguments) as context:
             status = context.command.invoke(context)
     except typer.Exit as end:
         if place(end):
@@ -130,8 +123,13 @@ def _sentence(error: BaseException) -> str | None:
 
     from faultpath.core.error_source import described, explained
 
-    if isinstance(error, TyperException):
-        return _misread(error)
+    if isinstance(error, TyperException):  # from the parser of the arguments
+        said = error.format_message().strip().rstrip(".").replace(". ", ": ")
+        if not said:
+            return ""
+        said = re.sub(r" \(Possible options: (.*)\)$", r", did you mean \1?", said)
+        command = getattr(getattr(error, "ctx", None), "command_path", "faultpath")
+        return f"{said[0].lower()}{said[1:]}; `{command} --help` shows what there is."
     mistake = explained(error)
     if mistake is not None:
         return str(mistake)
@@ -141,23 +139,6 @@ def _sentence(error: BaseException) -> str | None:
         return "there is not enough memory: ask for less, or for fewer --workers."
     if isinstance(error, OSError) and error.strerror:
         about = f"{error.filename}: " if error.filename is not None else ""
-        return (
-            f"{about}{error.strerror[0].lower()}{error.strerror[1:]}; check the path and the disk."
-        )
+        said = f"{error.strerror[0].lower()}{error.strerror[1:]}"
+        return f"{about}{said}; check the path and the disk."
     return None
-
-
-def _misread(error: "TyperException") -> str:
-    """Say what the parser of the arguments found wrong."""
-    said = error.format_message().strip().rstrip(".").replace(". ", ": ")
-    if not said:
-        return ""
-    said = re.sub(r" \(Possible options: (.*)\)$", r", did you mean \1?", said)
-    command = getattr(getattr(error, "ctx", None), "command_path", "faultpath")
-    return f"{said[0].lower()}{said[1:]}; `{command} --help` shows what there is."
-
-
-def _end(sentence: str, status: int) -> NoReturn:
-    if sentence:
-        sys.stderr.write(f"faultpath: {one_line(sentence)}\n")
-    sys.exit(status)

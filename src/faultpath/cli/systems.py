@@ -42,14 +42,14 @@ def trace(system: SystemName, as_json: Json = False, **given: Any) -> int:
     from faultpath.decisions.tables.terminal import STYLES, Parted
     from faultpath.report.terminal import interface_table, trace_table
 
-    begun = begin("trace", TraceQuestion, system, given, display())
-    trace = traced(begun)
+    asked, chosen, _, _ = begin("trace", TraceQuestion, system, given, display())
+    trace = traced(asked, chosen)
     if as_json:
         typer.echo(trace.model_dump_json(indent=2))
         return FOUND if trace.findings else 0
     console = SafeConsole()
     table = trace_table(trace)
-    console.print(interface_table(begun.system.interface), "")
+    console.print(interface_table(chosen.system.interface), "")
     console.print(Parted(table))
     for said in (*table.notes, *trace.privileged):
         console.print(said, markup=False)

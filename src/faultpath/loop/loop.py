@@ -10,7 +10,7 @@ from faultpath.core.arrays import Array
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import listed
 from faultpath.interface import Interface, Source
-from faultpath.loop.module import Batch, Graph, Inputs, Module, Outputs, Part, Port, State
+from faultpath.loop.module import Batch, Graph, Inputs, Module, Outputs, Part, State
 from faultpath.loop.reading import Reading
 
 _SLACK = 1e-6
@@ -137,7 +137,7 @@ class _Execution:
             self._now[name] = self._clocks[name].read(outputs[name], step)
 
     def _inputs(self, part: Part, step: int, truths: Mapping[str, Any], running: Array) -> Inputs:
-        delivered: dict[Port, Any] = {}
+        delivered: dict[tuple[str, str], Any] = {}
         for port in self._ports[id(part)]:
             source = self._graph.bindings[port.channel]
             reading = self._now[source] if port in part.reads else self._past.get(source)

@@ -28,7 +28,7 @@ class Port(NamedTuple):
     place: str
 
 
-class Inputs(dict[Port, Any]):
+class Inputs(dict[tuple[str, str], Any]):
     """What the taps delivered to one module at one step: an entry for each of its ports.
 
     A signal is an array `[B, ...]`, one row a scene; a query is a function of a request. A port
@@ -39,7 +39,7 @@ class Inputs(dict[Port, Any]):
         self,
         module: str,
         step: int,
-        delivered: Mapping[Port, Any],
+        delivered: Mapping[tuple[str, str], Any],
         truths: Mapping[str, Any],
         running: Array = None,
     ) -> None:

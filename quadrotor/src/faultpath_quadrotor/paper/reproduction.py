@@ -40,7 +40,6 @@ class ReproductionRun(FinishedRun):
     A notebook shows the tables, with the paper's numbers beside our own.
     """
 
-    kind = "reproduction"
     record: Reproduction
     """Tables, figures, and in `ledger` the claims of the paper with what became of each."""
 

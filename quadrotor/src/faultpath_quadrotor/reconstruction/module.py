@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
-from faultpath_quadrotor.lanes import Read, lanes_last, lanes_of, scenes_first
+from faultpath_quadrotor.lanes import lanes_last, lanes_of, scenes_first
 from faultpath_quadrotor.reconstruction import Reconstruction
 
 
@@ -39,9 +39,7 @@ class WindReconstruction(Module):
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
         """Take the step's readings in and return the wind, `[B, 3]`, m/s."""
         known: _Known = memory
-        delivered: dict[Read, Tensor] = {
-            (port.channel, port.place): lanes_last(inputs[port], known.lanes) for port in inputs
-        }
+        delivered = {read: lanes_last(value, known.lanes) for read, value in inputs.items()}
         if known.memory is None:
             inside = self._reconstruction.begin(delivered)
         else:
