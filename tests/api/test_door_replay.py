@@ -10,7 +10,7 @@ import pytest
 import faultpath
 from faultpath.api.replaying import chosen_scenes, keep_signals, replay
 from faultpath.api.runs import read_run
-from faultpath.cli.finished import replay as command
+from faultpath.cli.audits import replay as command
 from faultpath.core.errors import UserError
 from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import IN_FORCE, SIGNALS, Signal

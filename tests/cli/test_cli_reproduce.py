@@ -13,7 +13,7 @@ from faultpath_quadrotor.verbs.reproduce import show
 import faultpath
 from faultpath.api.asking import Job
 from faultpath.api.display import Display
-from faultpath.cli.finished import report
+from faultpath.cli.audits import report
 from faultpath.core.errors import UserError
 from faultpath.decisions.tables import MISSING
 from faultpath.trials.work import Here

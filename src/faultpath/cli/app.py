@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 import typer
 
-from faultpath.cli import audits, finished, log, systems
+from faultpath.cli import audits, log, systems
 from faultpath.cli.flags import with_system_flags
 from faultpath.cli.options import Verbs
 from faultpath.core.version import __version__
@@ -53,8 +53,8 @@ _PANELS = {
         Entry("log", log.command, "flight.ulg --columns px4 --mass 1.5"),
     ),
     "Finished runs": (
-        Entry("report", finished.report, "runs/one runs/two --out comparison.html"),
-        Entry("replay", finished.replay, "runs/mine --scene cart/003 --signals"),
+        Entry("report", audits.report, "runs/one runs/two --out comparison.html"),
+        Entry("replay", audits.replay, "runs/mine --scene cart/003 --signals"),
     ),
 }
 """The engine's verbs, by the heading under which the help shows them."""

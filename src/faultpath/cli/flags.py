@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from functools import wraps
 from pathlib import Path
 from types import NoneType
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args, get_origin
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 
 import typer
 from typer.models import OptionInfo
@@ -14,9 +14,6 @@ from typer.models import OptionInfo
 from faultpath.cli.options import literal, path
 from faultpath.core.errors import UserError
 from faultpath.trials.question import Flag, Request, flag
-
-if TYPE_CHECKING:
-    from faultpath.trials.options import Option
 
 _Verb = TypeVar("_Verb", bound=Callable[..., Any])
 _KEYWORD = inspect.Parameter.KEYWORD_ONLY
@@ -44,17 +41,23 @@ def takes(model: type[Request], *without: str) -> Callable[[_Verb], _Verb]:
                 if field.default is True:
                     given[name] = not given[name]
             if "options" in given:
-                given["options"] = _settings(given["options"] or [])
+                pairs, given["options"] = given["options"] or (), {}
+                for pair in pairs:
+                    key, separator, value = pair.partition("=")
+                    if not separator or not key:
+                        raise UserError(
+                            f"--set {pair!r} is not of the form key=value, for example wind=L3."
+                        )
+                    if key in given["options"]:
+                        raise UserError(f"the options name '{key}' twice: give it once.")
+                    given["options"][key] = value
             return verb(**line, **{k: v for k, v in given.items() if v is not None})
 
-        own = [
-            each
-            for each in inspect.signature(verb).parameters.values()
-            if each.kind != each.VAR_KEYWORD
-        ]
-        flags = [_parameter(model, name) for name in fields]
-        parameters = [each.replace(kind=_KEYWORD) for each in (*own, *flags)]
+        own = inspect.signature(verb).parameters.values()
+        every = [each for each in own if each.kind != each.VAR_KEYWORD]
+        every += [_parameter(model, name) for name in fields]
         # Arguments go before, then what is required; typer keeps the order within a panel.
+        parameters = [each.replace(kind=_KEYWORD) for each in every]
         vars(command)["__signature__"] = inspect.Signature(parameters)
         # Its signature is the model's from here on, which no type can say.
         return command  # pyright: ignore[reportReturnType]
@@ -62,25 +65,14 @@ def takes(model: type[Request], *without: str) -> Callable[[_Verb], _Verb]:
     return decorate
 
 
-def _settings(pairs: Sequence[str]) -> dict[str, str]:
-    found: dict[str, str] = {}
-    for pair in pairs:
-        key, separator, value = pair.partition("=")
-        if not separator or not key:
-            raise UserError(f"--set {pair!r} is not of the form key=value, for example wind=L3.")
-        if key in found:
-            raise UserError(f"the options name '{key}' twice: give it once.")
-        found[key] = value
-    return found
-
-
 def _parameter(model: type[Request], name: str) -> inspect.Parameter:
+    """Return the option of a field: its type, default, help and heading."""
     field = model.model_fields[name]
-    several = any(isinstance(note, Flag) and note.several for note in field.metadata)
+    notes = [note for note in field.metadata if isinstance(note, Flag)]
+    several = any(note.several for note in notes)
     kind: Any = field.annotation
-    optional = [each for each in get_args(kind) if each is not NoneType]
     if NoneType in get_args(kind):
-        kind = optional[0]
+        kind = next(each for each in get_args(kind) if each is not NoneType)
     if not (kind in _PLAIN or kind is Path or get_origin(kind) is Literal):
         kind = str  # lists stay text
     default: Any = field.default
@@ -92,25 +84,19 @@ def _parameter(model: type[Request], name: str) -> inspect.Parameter:
         default = ",".join(f"{each:g}" for each in field.default)
     elif default is True:
         default = False
-    hint: Any = list[str] if several else kind
+    owners = (each for each in model.__mro__ if name in vars(each).get("__annotations__", {}))
+    panels = [note.panel for note in notes if note.panel]
+    panels += [each.panel for each in owners if issubclass(each, Request)]
     said = field.description or ""
     option = typer.Option(
         flag(model, name),
         help=f"Do not {said[0].lower()}{said[1:]}" if field.default is True else said,
-        rich_help_panel=_panel(model, name),
+        rich_help_panel=panels[0] or None,
         parser=path if kind is Path else None,
     )
+    hint: Any = list[str] if several else kind
     annotation = Annotated[hint | None if default is None else hint, option]
     return inspect.Parameter(name, _KEYWORD, default=default, annotation=annotation)
-
-
-def _panel(model: type[Request], name: str) -> str | None:
-    """Return under which heading the help shows a field."""
-    for note in model.model_fields[name].metadata:
-        if isinstance(note, Flag) and note.panel:
-            return note.panel
-    owners = (each for each in model.__mro__ if name in vars(each).get("__annotations__", {}))
-    return next(each.panel or None for each in owners if issubclass(each, Request))
 
 
 def with_system_flags(
@@ -123,7 +109,8 @@ def with_system_flags(
     `UserError` for a flag that neither of the two has, and for a system that cannot be asked.
     """
     own = {_HELP}
-    for parameter in inspect.signature(verb).parameters.values():
+    signature = inspect.signature(verb)
+    for parameter in signature.parameters.values():
         for note in getattr(parameter.annotation, "__metadata__", ()):
             if isinstance(note, OptionInfo):
                 named = note.default if isinstance(note.default, str) else ""
@@ -136,14 +123,14 @@ def with_system_flags(
         return verb
     from faultpath.trials import system_options
 
-    system = arguments[0]
+    system, options = arguments[0], ()
     try:
-        found = {f"--{each.name.replace('_', '-')}": each for each in system_options(system)}
+        options = system_options(system)
     except (Exception, SystemExit):
         if not helps:
             raise
-        found = {}
-    found = {each: option for each, option in found.items() if each not in own}
+    named = {f"--{each.name.replace('_', '-')}": each for each in options}
+    found = {name: option for name, option in named.items() if name not in own}
     for unknown in sorted(asked - {*found}) if not helps else ():
         close = get_close_matches(unknown, [*own, *found], n=1)
         hint = f"did you mean {close[0]}? " if close else ""
@@ -160,32 +147,24 @@ def with_system_flags(
             pairs += [] if value is None else [f"{option.name}={value}"]
         return verb(**given, options=pairs)
 
-    added = [
-        inspect.Parameter(
-            _DEST + option.name,
-            _KEYWORD,
-            default=None,
-            annotation=Annotated[str | None, _shown(each, option, system)],
+    every = [*signature.parameters.values()]
+    for each, option in found.items():
+        choices, said = "|".join(option.choices), option.help.rstrip(".")
+        short = 0 < len(choices) <= _SHORT
+        if choices and not short:
+            listed = ", ".join(option.choices)
+            said += f": {listed}" if said else f"One of {listed}"
+        if option.default:
+            said += f"{'; d' if said else 'D'}efault {option.default}"
+        shown = typer.Option(
+            each,
+            metavar=f"<{choices}>" if short else "<str>",
+            help=f"{said}." if said else None,
+            rich_help_panel=literal(f"Options of {system}"),
         )
-        for each, option in found.items()
-    ]
-    signature = inspect.signature(verb)
-    every = [*signature.parameters.values(), *added]
+        hint = Annotated[str | None, shown]
+        every.append(
+            inspect.Parameter(_DEST + option.name, _KEYWORD, default=None, annotation=hint)
+        )
     vars(extended)["__signature__"] = signature.replace(parameters=every)
     return extended
-
-
-def _shown(name: str, option: "Option", system: str) -> OptionInfo:
-    choices = "|".join(option.choices)
-    short = 0 < len(choices) <= _SHORT
-    said = option.help.rstrip(".")
-    if choices and not short:
-        said += f": {', '.join(option.choices)}" if said else f"One of {', '.join(option.choices)}"
-    if option.default:
-        said += f"{'; d' if said else 'D'}efault {option.default}"
-    return typer.Option(
-        name,
-        metavar=f"<{choices}>" if short else "<str>",
-        help=f"{said}." if said else None,
-        rich_help_panel=literal(f"Options of {system}"),
-    )

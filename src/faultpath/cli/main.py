@@ -14,8 +14,7 @@ from types import FrameType
 from typing import Any, NoReturn
 
 from faultpath.core.errors import Notice, Stopped
-from faultpath.core.prints import show_warning
-from faultpath.core.text import one_line
+from faultpath.core.text import one_line, show_warning
 
 USER_ERROR = 2
 INTERRUPTED = 130
@@ -101,11 +100,12 @@ def _run(arguments: list[str]) -> int:
     import typer
 
     from faultpath.cli.app import build
-    from faultpath.cli.options import check_arguments
+    from faultpath.cli.options import as_written, check_arguments
     from faultpath.core.error_source import place
 
     check_arguments(arguments)
     command = typer.main.get_command(build(arguments))
+    as_written(command)
     try:
         with command.make_context("faultpath", arguments) as context:
             status = context.command.invoke(context)

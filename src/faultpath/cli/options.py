@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from typer.core import TyperCommand, TyperGroup, TyperOption
+from typer.core import TyperCommand, TyperOption
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line, steers
@@ -89,27 +89,18 @@ def literal(text: str) -> str:
     return escape(text).replace(":", "[none]:[/none]")
 
 
-def _as_written(command: Any) -> None:
-    """Let all texts of a command stand in its help as they are written."""
-    for each in (command, *getattr(command, "commands", {}).values(), *command.params):
+def as_written(command: Any) -> None:
+    """Let all texts of a command and of those below it stand in its help as they are written."""
+    for each in (command, *command.params):
         for name in ("help", "short_help", "epilog"):
             if text := getattr(each, name, None):
                 setattr(each, name, literal(text))
-
-
-class _Group(TyperGroup):
-    def format_help(self, ctx: Any, formatter: Any) -> None:
-        _as_written(self)
-        super().format_help(ctx, formatter)
+    for each in getattr(command, "commands", {}).values():
+        as_written(each)
 
 
 class Verb(TyperCommand):
     """A verb that takes every option once, but for those that take several values."""
-
-    def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Write the help; nothing in it is markup."""
-        _as_written(self)
-        super().format_help(ctx, formatter)
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse as any command does; `UserError` for an option given twice."""
@@ -124,9 +115,6 @@ class Verb(TyperCommand):
 
 class Verbs(typer.Typer):
     """A group of verbs."""
-
-    def __init__(self, **settings: Any) -> None:
-        super().__init__(cls=_Group, **settings)
 
     def command(self, name: str | None = None, **settings: Any) -> Any:
         """Register a function as a verb; `settings` are those of typer."""

@@ -1,14 +1,21 @@
 """Text from elsewhere, made fit for a terminal; sentences for names that do not exist."""
 
+import os
 import re
+import sys
 import unicodedata
 from collections.abc import Iterable
 from difflib import get_close_matches
+from typing import Any
 
 _WORD = re.compile(r"\S{240,}")
 _LONGEST = 4000
 _MOST, _FEW = 20, 8
 """Names that a sentence lists, and how many of them where there are more."""
+_NUMPY = re.compile(
+    r"(divide by zero|overflow|underflow|invalid value) encountered"
+    r"|Mean of empty slice|All-NaN|Degrees of freedom <= 0"
+)
 
 
 def steers(text: str) -> bool:
@@ -24,7 +31,9 @@ def printable(text: str) -> str:
     """
     if text.isprintable():
         return text
-    return "".join(c if c.isprintable() else _escaped(c) for c in text)
+    return "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text
+    )
 
 
 def one_line(text: str) -> str:
@@ -58,8 +67,21 @@ def extra(name: str) -> str:
     return f"in the checkout of faultpath, pip install '.[{name}]'"
 
 
-def _escaped(character: str) -> str:
-    return character.encode("unicode_escape").decode("ascii")
+def show_warning(
+    message: Warning | str, category: type[Warning], filename: str, lineno: int, *more: Any
+) -> None:
+    """Show a warning in one line, in place of `warnings.showwarning`.
+
+    What NumPy says of numbers that overflow or are none is left out: what becomes of them is said
+    where it matters.
+    """
+    del more
+    if issubclass(category, RuntimeWarning) and _NUMPY.match(str(message)):
+        return
+    near = os.path.relpath(filename)
+    place = filename if near.startswith(os.pardir) else near
+    said = one_line(f"{place}, line {lineno}: {category.__name__}: {message}")
+    sys.stderr.write(f"{said}\n")
 
 
 def _cut(text: str, kept: int) -> str:

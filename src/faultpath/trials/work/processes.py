@@ -17,7 +17,7 @@ from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from faultpath.core.errors import Notice, UserError
-from faultpath.core.prints import show_warning
+from faultpath.core.text import show_warning
 from faultpath.trials.work.executor import (
     ONE_THREAD,
     Call,
