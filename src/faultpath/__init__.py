@@ -12,10 +12,9 @@ from faultpath.core.version import __version__
 
 if TYPE_CHECKING:
     from faultpath.api.audit import audit, audits
+    from faultpath.api.before import check, plan, trace
     from faultpath.api.comparing import compare
     from faultpath.api.mapping import reversal_map
-    from faultpath.api.planned import plan
-    from faultpath.api.reviewing import check, trace
     from faultpath.api.runs import Run, open_run
     from faultpath.api.systems import load_system
     from faultpath.core.errors import Stopped, UserError
@@ -47,14 +46,14 @@ _HOMES = {
     "UserError": "faultpath.core.errors",
     "audit": "faultpath.api.audit",
     "audits": "faultpath.api.audit",
-    "check": "faultpath.api.reviewing",
+    "check": "faultpath.api.before",
     "compare": "faultpath.api.comparing",
     "generator": "faultpath.core.streams",
     "load_system": "faultpath.api.systems",
     "open_run": "faultpath.api.runs",
-    "plan": "faultpath.api.planned",
+    "plan": "faultpath.api.before",
     "reversal_map": "faultpath.api.mapping",
-    "trace": "faultpath.api.reviewing",
+    "trace": "faultpath.api.before",
 }
 
 

@@ -67,18 +67,25 @@ def choose(
 ) -> Chosen:
     """Return the system to audit, with the parts that its variants name.
 
-    Raises as `load_system`, and for what an object cannot do and an executor that there is not.
+    What `load_system` gave is built again from its name and options, unless somebody changed its
+    attributes. Raises as `load_system`, and for what an object cannot do and an executor that
+    there is not.
     """
     check_executor(executor)
     if not isinstance(system, System):
-        spec = with_parts(_spec(system, options), variants)
-        return Chosen(trials.load_system(spec), spec, workers, executor)
-    if options:
+        spec = _spec(system, options)
+    elif options:
         raise UserError(
             "options build a system, and this one is built: give its name with the options, or "
             "give them to load_system."
         )
-    spec = _loaded(system)
+    else:
+        spec, before = vars(system).get(_LOADED, (None, {}))
+        now = {name: value for name, value in vars(system).items() if name != _LOADED}
+        same = all(name in now and now[name] is value for name, value in before.items())
+        more = [getattr(type(system), name, None) for name in now if name not in before]
+        if not same or not all(isinstance(each, cached_property) for each in more):
+            spec = None
     if spec is not None:
         spec = with_parts(spec, variants)
         return Chosen(trials.load_system(spec), spec, workers, executor)
@@ -88,6 +95,7 @@ def choose(
             "an object cannot be sent to worker processes: put what builds the system into a file "
             f"and name that, as 'my_system.py:create', or leave {idle} out."
         )
+    assert isinstance(system, System)
     spec = SystemSpec.of_class(type(system))
     check_system(system, spec.name)
     notice = (
@@ -99,7 +107,7 @@ def choose(
 
 def check_executor(executor: object) -> None:
     """Raise `UserError` for what names no executor."""
-    if executor != LOCAL and executor != RAY and not str(executor).startswith(f"{RAY}:"):
+    if executor not in (LOCAL, RAY) and not str(executor).startswith(f"{RAY}:"):
         raise UserError(
             f"there is no executor {executor!r:.80}: use 'local', 'ray', or 'ray:HOST:PORT' with "
             "the address of a cluster's head."
@@ -125,16 +133,6 @@ def executor_of(system: System, workers: int | None, executor: str = LOCAL) -> E
     return RayWorkers(executor.removeprefix(RAY).removeprefix(":"), count)
 
 
-def _spec(system: object, options: Mapping[str, object]) -> SystemSpec:
-    if not isinstance(system, str | PathLike):
-        raise UserError(
-            f"a system is a name, a file or a faultpath.System, not {system!r:.80}: name one as "
-            "'quadrotor' or 'my_system.py:create'."
-        )
-    name = os.fspath(cast("str | PathLike[str]", system))
-    return SystemSpec(name=factory_name(name), options=as_text(options))
-
-
 def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
     """Return a system with the parts of the user's own that `variants` name among its options.
 
@@ -145,6 +143,7 @@ def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
     named = [name for name in variants if ":" in name or name.endswith(".py")]
     if not named or _BRING not in {option.name for option in trials.system_options(spec.name)}:
         return spec
+    found = [part for part in spec.options.get(_BRING, "").split(",") if part]
     for name in named:
         if ":" not in name:
             raise UserError(
@@ -153,16 +152,16 @@ def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
             )
         if "," in name:
             raise UserError(f"'{name}' has a comma in it: rename the file, commas part names.")
-    found = [part for part in spec.options.get(_BRING, "").split(",") if part]
-    found += [part for name in named for part in _PART.findall(name)]
+        found += _PART.findall(name)
     options = {**spec.options, _BRING: ",".join(dict.fromkeys(found))}
     return SystemSpec(name=spec.name, options=options)
 
 
-def _loaded(system: System) -> SystemSpec | None:
-    spec, before = vars(system).get(_LOADED, (None, {}))
-    now = {name: value for name, value in vars(system).items() if name != _LOADED}
-    same = all(name in now and now[name] is value for name, value in before.items())
-    more = [name for name in now if name not in before]
-    cached = (isinstance(getattr(type(system), name, None), cached_property) for name in more)
-    return spec if same and all(cached) else None
+def _spec(system: object, options: Mapping[str, object]) -> SystemSpec:
+    if not isinstance(system, str | PathLike):
+        raise UserError(
+            f"a system is a name, a file or a faultpath.System, not {system!r:.80}: name one as "
+            "'quadrotor' or 'my_system.py:create'."
+        )
+    name = os.fspath(cast("str | PathLike[str]", system))
+    return SystemSpec(name=factory_name(name), options=as_text(options))

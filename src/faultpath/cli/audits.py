@@ -30,8 +30,8 @@ def plan(
 ) -> None:
     """Rank the uncertain sources, propose the audits of a repair with their trials, and
     write them as a study file for `faultpath audit --study`."""
+    from faultpath.api.before import plan
     from faultpath.api.display import SafeConsole
-    from faultpath.api.planned import plan
     from faultpath.trials.store.atomic import check_writable
 
     check_writable(out)
@@ -106,7 +106,7 @@ def study(
 ) -> int:
     """Carry out the audits of a study file. The file says system, variants, faults, scenes and
     seeds; the same command resumes."""
-    from faultpath.api.planned import audit_study
+    from faultpath.api.before import audit_study
     from faultpath.decisions.plan.study import read_study
 
     runs = audit_study(read_study(study), progress=display(as_json), **running)

@@ -47,7 +47,8 @@ def main() -> NoReturn:
         from faultpath.core.error_source import place
 
         theirs = bool(place(error))  # a system may raise what would mean something of ours
-        if isinstance(error, BrokenPipeError) and not theirs:  # its reader has seen enough
+        # Whoever reads our output has seen enough; rich ends the program at that.
+        if BrokenPipeError in (type(error), type(error.__context__)) and not theirs:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             sys.exit(UNREAD)
         interrupted = isinstance(error, KeyboardInterrupt) and not theirs

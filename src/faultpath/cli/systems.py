@@ -37,8 +37,8 @@ def trace(system: SystemName, as_json: Json = False, **given: Any) -> int:
 
     Exits with 1 where that differs from what is declared."""
     from faultpath.api.asking import begin
+    from faultpath.api.before import traced
     from faultpath.api.display import SafeConsole
-    from faultpath.api.reviewing import traced
     from faultpath.decisions.tables.terminal import STYLES, Parted
     from faultpath.report.terminal import interface_table, trace_table
 
@@ -67,8 +67,8 @@ def check(system: SystemName, as_json: Json = False, **given: Any) -> int:
     from rich.padding import Padding
     from rich.text import Text
 
+    from faultpath.api.before import check
     from faultpath.api.display import SafeConsole
-    from faultpath.api.reviewing import check
     from faultpath.decisions.tables.terminal import STYLES
     from faultpath.decisions.wording import counted
 

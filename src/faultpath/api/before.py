@@ -1,25 +1,29 @@
-"""`faultpath.plan`: what to audit first, as a study file; and carrying such a file out."""
+"""`faultpath.check`, `trace` and `plan`: what comes before an audit; and carrying a plan out."""
 
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from faultpath.api.asking import asks, begin
 from faultpath.api.audit import audit
 from faultpath.api.display import Display
 from faultpath.api.runs import Run
-from faultpath.api.systems import choose
+from faultpath.api.systems import Chosen, choose
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.decisions.plan.plan import Plan, make_plan, sentences
 from faultpath.decisions.plan.study import StudyFile, check_arms
 from faultpath.decisions.planning import plan_audit
 from faultpath.trials import System, library_of
-from faultpath.trials.question import PlanQuestion, Question
+from faultpath.trials.question import CheckQuestion, PlanQuestion, Question, TraceQuestion
 from faultpath.trials.store import write_text
 from faultpath.trials.store.atomic import check_writable
 from faultpath.trials.work import Progress
+
+if TYPE_CHECKING:
+    from faultpath.systems.checks.check import Report
+    from faultpath.systems.checks.tracing import TraceReport
 
 
 @dataclass(frozen=True, repr=False)
@@ -122,4 +126,67 @@ def audit_study(
             **running,
         )
         for each in study.audits
+    )
+
+
+@asks(CheckQuestion)
+def check(
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
+) -> "Report":
+    """Check that a system keeps what an audit takes for granted.
+
+    Trials repeat and can be paired, modules read what is declared, a fault reaches every tap. What
+    comes back has `checks`, each with its `status`, and all `failures` in a sentence each.
+
+    Args:
+        system: As for `faultpath.audit`; an object of your own is checked in this process.
+        progress: As for `faultpath.audit`.
+        **given: ...
+
+    Raises:
+        UserError: There is no such system, variant or library, or it cannot be built.
+    """
+    from faultpath.systems.checks.check import check_system
+
+    asked, chosen, _, display = begin("check", CheckQuestion, system, given, progress)
+    if chosen.own:
+        asked = asked.model_copy(update={"workers": 0})
+    with display.progress("Checking") as show:
+
+        def note(done: int, known: int | None) -> None:
+            show(Progress(done, known, f"{done} of {known} runs" if known else f"{done} runs"))
+
+        return check_system(chosen.system, chosen.spec, asked, note)
+
+
+@asks(TraceQuestion)
+def trace(
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
+) -> "TraceReport":
+    """Run a variant for a few steps, and tell who read what, when, and from whom.
+
+    What comes back has `reads` in their order, and as `findings` where they are not as declared.
+
+    Args:
+        system: As for `faultpath.audit`.
+        progress: As for `faultpath.audit`.
+        **given: ...
+
+    Raises:
+        UserError: There is no such system, variant, library or scene, the fault reaches nobody, or
+            the run fails.
+    """
+    asked, chosen, _, _ = begin("trace", TraceQuestion, system, given, progress)
+    return traced(asked, chosen)
+
+
+def traced(asked: TraceQuestion, chosen: Chosen) -> "TraceReport":
+    """Return the trace of a system that is built; raises as `trace`."""
+    from faultpath.systems.checks.tracing import trace_system
+
+    system = chosen.system
+    fault = None if asked.fault is None else system.fault(asked.fault)
+    name = asked.variant or next(iter(system.variants))
+    return trace_system(
+        system, chosen.spec, name, asked.library, asked.scene, asked.steps, asked.seed, fault
     )
