@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from cli_runs import TOY
 
-ENGINE = {"jinja2", "numpy", "pyarrow", "scipy"}
-HEAVY = {"jinja2", "mujoco", "numpy", "pyarrow", "scipy", "torch"}
+ENGINE = {"jinja2", "numpy", "pyarrow", "scipy.special"}
+HEAVY = {"jinja2", "mujoco", "numpy", "pyarrow", "scipy.special", "torch"}
 
 AUDIT = ["--baseline", "a", "--repair", "b", "--fault", "gain:scale=2"]
 
