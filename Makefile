@@ -115,7 +115,7 @@ endef
 # A stamp is written only after everything before it has worked. $(VENV)/incomplete lies there while
 # pip writes, so an environment in which an install was cut short is built again from nothing.
 $(STAMPS)/runtime: PARTS := -e . -e ./quadrotor
-$(STAMPS)/dev: PARTS := -e '.[dev]' -e './quadrotor[mujoco]'
+$(STAMPS)/dev: PARTS := -e '.[dev]' -e './quadrotor[mujoco,ulog]'
 $(STAMPS)/runtime $(STAMPS)/dev: $(INPUTS)
 	@if [ -e $(VENV)/incomplete ] || ! $(BIN)/python -m pip --version >/dev/null 2>&1; then \
 	  $(CHECK_PYTHON); \
@@ -144,6 +144,6 @@ $(BENCH)/ready: $(INPUTS) benchmarks/requirements.txt
 	@touch $(BENCH)/incomplete
 	@echo "Installing faultpath and what it is compared with into $(BENCH); the first time takes minutes"
 	@$(BENCH)/bin/python -m pip install --no-compile --disable-pip-version-check --quiet \
-	  -c constraints.txt -r benchmarks/requirements.txt -e . -e './quadrotor[mujoco]'
+	  -c constraints.txt -r benchmarks/requirements.txt -e . -e './quadrotor[mujoco,ulog]'
 	@rm $(BENCH)/incomplete
 	@touch $@

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from faultpath_quadrotor.flightlog.flight import read_flight
+from faultpath_quadrotor.flightlog.reading import read_columns
 from faultpath_quadrotor.paper.run import read_results
 
 from faultpath.core.errors import UserError
@@ -16,8 +18,6 @@ from faultpath.core.files.plain import Misread, read_json, read_yaml, yaml_text
 from faultpath.decisions.plan.study import read_study
 from faultpath.interface import read_interface
 from faultpath.learning.model_card import FitRecord, read_card
-from faultpath.systems.flightlog.flight import read_flight
-from faultpath.systems.flightlog.reading import read_columns
 from faultpath.trials.store import RunFolder, read_outcomes
 from faultpath.trials.store.atomic import locked
 from faultpath.trials.store.folder import read_manifest, read_regular

@@ -4,12 +4,12 @@ import re
 from pathlib import Path
 
 import pytest
+from faultpath_quadrotor.flightlog.reading import ColumnMap
 from pydantic import TypeAdapter, ValidationError
 
 from faultpath.core.error_source import described
 from faultpath.core.misfits import Misfit, misfit_of
 from faultpath.faults import Fault, Scale
-from faultpath.systems.flightlog.reading import ColumnMap
 
 SRC = Path(__file__).resolve().parents[2] / "src" / "faultpath"
 MAP = {

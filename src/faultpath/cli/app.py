@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 import typer
 
-from faultpath.cli import audits, log, systems
+from faultpath.cli import audits, systems
 from faultpath.cli.flags import with_system_flags
 from faultpath.cli.options import Verbs
 from faultpath.core.version import __version__
@@ -50,7 +50,6 @@ _PANELS = {
             f"{_ASKED} --against controller,observer --up-to 0.4 --library carts",
             of_a_system=True,
         ),
-        Entry("log", log.command, "flight.ulg --columns px4 --mass 1.5"),
     ),
     "Finished runs": (
         Entry("report", audits.report, "runs/one runs/two --out comparison.html"),

@@ -116,7 +116,7 @@ def study(
 @takes(MapQuestion)
 def reversal_map(system: SystemName, as_json: Json = False, **given: Any) -> int:
     """Map the success difference over the error at one module and that at another: where repair
-    or baseline is ahead, from which correlation of the errors on, and which error turns it."""
+    or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
     from faultpath.api.display import SafeConsole
     from faultpath.api.mapping import reversal_map
 

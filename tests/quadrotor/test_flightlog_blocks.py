@@ -2,11 +2,7 @@
 
 import numpy as np
 import pytest
-from flown import MAP, flown, write
-from scipy.signal import lfilter
-
-from faultpath.report.compensation import sentences
-from faultpath.systems.flightlog.compensation import (
+from faultpath_quadrotor.flightlog.compensation import (
     LEAST,
     LEAST_S,
     Compensation,
@@ -14,8 +10,11 @@ from faultpath.systems.flightlog.compensation import (
     compensation,
     correlation_time,
 )
-from faultpath.systems.flightlog.flight import INTERVAL_S, read_flight
-from faultpath.systems.flightlog.reading import read_columns
+from faultpath_quadrotor.flightlog.flight import INTERVAL_S, read_flight
+from faultpath_quadrotor.flightlog.reading import read_columns
+from faultpath_quadrotor.flightlog.words import sentences
+from flight_logs import MAP, flown, write
+from scipy.signal import lfilter
 
 
 def drifting(rng: np.random.Generator, seconds: float, alike_s: float) -> np.ndarray:

@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from flown import MAP, flown, write, write_ulog
+from faultpath_quadrotor.flightlog.compensation import Compensation, compensation
+from faultpath_quadrotor.flightlog.flight import read_flight
+from faultpath_quadrotor.flightlog.reading import read_columns
+from faultpath_quadrotor.flightlog.words import sentences
+from flight_logs import MAP, flown, write, write_ulog
 from typer.testing import CliRunner
 
 from faultpath.cli.app import build
 from faultpath.core.errors import UserError
-from faultpath.report.compensation import sentences
-from faultpath.systems.flightlog.compensation import Compensation, compensation
-from faultpath.systems.flightlog.flight import read_flight
-from faultpath.systems.flightlog.reading import read_columns
 
 COLUMNS = flown()
 

@@ -8,7 +8,13 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from faultpath.core.errors import UserError
-from faultpath.systems.flightlog.reading import SPEED_UNITS, ColumnMap, Floats, Series, read_series
+from faultpath_quadrotor.flightlog.reading import (
+    SPEED_UNITS,
+    ColumnMap,
+    Floats,
+    Series,
+    read_series,
+)
 
 GRAVITY_MPS2 = 9.80665
 INTERVAL_S = 0.05  # paper, Section IV-A

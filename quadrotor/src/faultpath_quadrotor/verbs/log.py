@@ -8,6 +8,8 @@ import typer
 from faultpath.cli.options import Json, path
 from faultpath.core.errors import UserError
 
+EXAMPLE = "flight.ulg --columns px4 --mass 1.5"
+
 
 def command(
     log: Annotated[Path, typer.Argument(parser=path, help="A .csv, .parquet or .ulg file.")],
@@ -26,9 +28,9 @@ def command(
     as_json: Json = False,
 ) -> None:
     """Compute from a recorded flight what a calibration error leaves, isolated and shared."""
-    from faultpath.systems.flightlog.compensation import compensation
-    from faultpath.systems.flightlog.flight import read_flight
-    from faultpath.systems.flightlog.reading import HEAVIEST_KG, read_columns
+    from faultpath_quadrotor.flightlog.compensation import compensation
+    from faultpath_quadrotor.flightlog.flight import read_flight
+    from faultpath_quadrotor.flightlog.reading import HEAVIEST_KG, read_columns
 
     said = read_columns(columns)
     if mass is not None:
@@ -37,9 +39,9 @@ def command(
         said = said.model_copy(update={"mass_kg": mass})
     found = compensation(read_flight(log, said), _sizes(errors))
 
-    from faultpath.report.compensation import CAVEAT, sentences, table
     from faultpath.trials.store import write_text
     from faultpath.trials.store.atomic import make_folder
+    from faultpath_quadrotor.flightlog.words import CAVEAT, sentences, table
 
     text = found.model_dump_json(indent=2) + "\n"
     if out is not None:

@@ -5,7 +5,7 @@ from math import exp
 from faultpath.decisions.tables import MISSING, Table, line
 from faultpath.decisions.wording import counted, interval, plain
 from faultpath.statistics import Estimate
-from faultpath.systems.flightlog.compensation import Combination, Compensation
+from faultpath_quadrotor.flightlog.compensation import Combination, Compensation
 
 CAVEAT = (
     "This is about the acceleration one control interval ahead on this flight. It says where "

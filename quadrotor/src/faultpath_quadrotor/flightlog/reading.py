@@ -18,7 +18,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml
 from faultpath.core.frozen import Frozen
-from faultpath.core.text import extra, one_line, unknown
+from faultpath.core.text import one_line, unknown
 
 Floats: TypeAlias = NDArray[np.float64]
 _LONGEST_S = 1e12
@@ -91,7 +91,9 @@ def read_columns(where: str) -> ColumnMap:
     """
     try:
         if where == PX4:
-            data = resources.files("faultpath.systems.flightlog").joinpath("px4.yaml").read_bytes()
+            data = (
+                resources.files("faultpath_quadrotor.flightlog").joinpath("px4.yaml").read_bytes()
+            )
         else:
             data = contents(where)
         return read_yaml(data).fill(ColumnMap)
@@ -184,7 +186,8 @@ def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         from pyulog import ULog  # pyright: ignore[reportMissingTypeStubs]
     except ImportError:
         raise UserError(
-            f"reading .ulg files needs pyulog, not installed here: {extra('ulog')}"
+            "reading .ulg files needs pyulog, not installed here: in the checkout of faultpath, "
+            "pip install './quadrotor[ulog]'"
         ) from None
     topics = sorted({name.partition(".")[0] for name in columns.names})
     try:

@@ -13,8 +13,8 @@ from faultpath.core.frozen import Frozen
 from faultpath.statistics import Contrast, Estimate, WindowQuantiles
 from faultpath.statistics.distributions import t_quantile
 from faultpath.statistics.effects import N_RESAMPLES
-from faultpath.systems.flightlog.flight import INTERVAL_S, Flight, nominal, through_air
-from faultpath.systems.flightlog.reading import Floats
+from faultpath_quadrotor.flightlog.flight import INTERVAL_S, Flight, nominal, through_air
+from faultpath_quadrotor.flightlog.reading import Floats
 
 LEAST_S = 2.0
 """No block is shorter."""
