@@ -10,17 +10,31 @@ from base64 import b64encode
 from collections.abc import Sequence
 from functools import cache
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from faultpath.core.version import __version__
 from faultpath.decisions.tables.escapes import visible
-from faultpath.report.svg import template
+
+OURS = "faultpath.report"
 
 
-def render(page: str, styles: Sequence[str], scripts: Sequence[str], **content: object) -> str:
-    """Return the template `page` with its styles and scripts inside, and the policy on them."""
-    texts = ["".join(map(template, names)) for names in (styles, scripts)]
+def render(
+    page: str,
+    styles: Sequence[str],
+    scripts: Sequence[str],
+    package: str = OURS,
+    **content: object,
+) -> str:
+    """Return the template `page` with its styles and scripts inside, and the policy on them.
+
+    All are looked for in the folder `templates` of `package`, and then in ours.
+    """
+    environment, sources = _environment(package)
+    texts = [
+        "".join(sources.get_source(environment, name)[0] for name in names)
+        for names in (styles, scripts)
+    ]
     style, script = (
         f"sha256-{b64encode(hashlib.sha256(text.encode()).digest()).decode()}" for text in texts
     )
@@ -30,19 +44,21 @@ def render(page: str, styles: Sequence[str], scripts: Sequence[str], **content: 
         "img-src data:; base-uri 'none'; form-action 'none'"
     )
     inside = {"policy": policy, "styles": Markup(texts[0]), "scripts": Markup(texts[1])}
-    return _environment().get_template(page).render(**inside, version=__version__, **content)
+    return environment.get_template(page).render(**inside, version=__version__, **content)
 
 
 @cache
-def _environment() -> Environment:
+def _environment(package: str) -> tuple[Environment, ChoiceLoader]:
     def shown(value: object) -> object:
         return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
-    return Environment(
-        loader=PackageLoader("faultpath.report"),
+    sources = ChoiceLoader([PackageLoader(package), PackageLoader(OURS)])
+    made = Environment(
+        loader=sources,
         autoescape=True,
         finalize=shown,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    return made, sources

@@ -38,9 +38,9 @@ def shortened(text: str, width: float, size: float) -> str:
 
 
 @cache
-def template(name: str) -> str:
-    """Return the text of a file in `faultpath/report/templates`."""
-    return resources.files("faultpath.report").joinpath("templates", name).read_text("utf-8")
+def template(name: str, package: str = "faultpath.report") -> str:
+    """Return the text of a file in the folder `templates` of a package."""
+    return resources.files(package).joinpath("templates", name).read_text("utf-8")
 
 
 def number(value: float) -> str:

@@ -118,6 +118,7 @@ def reproduction_page(
         "reproduction.html.j2",
         ("tokens.css", "svg.css", "page.css", "reproduction.css"),
         (),
+        "faultpath_quadrotor.paper.report",
         found=found,
         ledger=found.ledger,
         central=central
