@@ -135,7 +135,11 @@ def standing(drawing: str) -> str:
     head = re.sub(r'( width| height| xmlns)="[^"]*"', "", head)
     head += ' xmlns="http://www.w3.org/2000/svg"'
     head += f' width="{around[2]:g}" height="{around[3]:g}">'
-    own = [line for line in template("reproduction.css", "faultpath_quadrotor.paper.report").splitlines() if line.startswith(".fig")]
+    own = [
+        line
+        for line in template("reproduction.css", "faultpath_quadrotor.paper.report").splitlines()
+        if line.startswith(".fig")
+    ]
     css = "".join((template("tokens.css"), template("svg.css"), *own))
     ground = '<rect class="paper" x="{:g}" y="{:g}" width="{:g}" height="{:g}"/>'.format(*around)
     said = f'<text class="head" x="{left:g}" y="{top - TITLE + 12:g}">{title[1]}</text>'
