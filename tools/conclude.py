@@ -20,8 +20,7 @@ from faultpath.faults import parse_fault
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import SystemSpec, load_system, system_shown
-from faultpath.trials.store import read_outcomes
-from faultpath.trials.store.folder import seal
+from faultpath.trials.store.folder import read_outcomes, seal
 from faultpath.trials.store.signals import SIGNALS, decode_signals
 from faultpath.trials.store.tables import decode_traces
 

@@ -24,8 +24,7 @@ from faultpath.report.map import shown, table_markdown, tables
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.trials import SystemSpec, library_of, load_system
 from faultpath.trials.question import MapQuestion
-from faultpath.trials.store import read_outcomes
-from faultpath.trials.store.folder import OUTCOMES, seal
+from faultpath.trials.store.folder import OUTCOMES, read_outcomes, seal
 
 TAKEN = (*MADE_FROM, "provenance.json")
 PICTURES = {"map": map_picture, "correlation": correlation_picture}

@@ -16,7 +16,7 @@ from pictures import IMAGES, standing
 from faultpath.decisions import CORRECT, SHARED, RunProvenance
 from faultpath.decisions.tables import Table
 from faultpath.decisions.tables.markdown import block
-from faultpath.trials.store import read_outcomes
+from faultpath.trials.store.folder import read_outcomes
 
 PLACE = REFERENCE / "paper"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")

@@ -7,9 +7,9 @@ import pytest
 from faultpath.decisions import DecisionRecord, FaultedTap
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.trials import Deliveries, SystemSpec, load_system
-from faultpath.trials.execution import run_study
+from faultpath.trials.execution.runner import run_study
 from faultpath.trials.question import AuditQuestion
-from faultpath.trials.store import read_outcomes
+from faultpath.trials.store.folder import read_outcomes
 
 TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
 STEPS = 100

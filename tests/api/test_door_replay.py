@@ -12,8 +12,8 @@ from faultpath.api.replaying import chosen_scenes, keep_signals, replay
 from faultpath.api.runs import read_run
 from faultpath.cli.audits import replay as command
 from faultpath.core.errors import UserError
-from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import IN_FORCE, SIGNALS, Signal
+from faultpath.trials.store.tables import TrialAddress
 
 TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
 SCENE = "cart/001"

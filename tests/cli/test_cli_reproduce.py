@@ -16,7 +16,7 @@ from faultpath.api.display import Display
 from faultpath.cli.audits import report
 from faultpath.core.errors import UserError
 from faultpath.decisions.tables import MISSING
-from faultpath.trials.work import Here
+from faultpath.trials.work.executor import Here
 
 TOLD = Display(command=("faultpath", "reproduce"))
 ASKED = Plan((table_4.PAGE,), QUICK)

@@ -10,7 +10,7 @@ from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.study import plan_map
 from faultpath.trials import SystemSpec, library_of, load_system
 from faultpath.trials.question import MapQuestion
-from faultpath.trials.store import read_outcomes
+from faultpath.trials.store.folder import read_outcomes
 
 ROOT = Path(__file__).resolve().parents[2]
 MAPS = sorted(path.parent for path in (ROOT / "docs" / "reference").glob("*/map.json"))

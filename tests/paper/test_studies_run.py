@@ -17,7 +17,7 @@ from faultpath_quadrotor.paper.run import Plan, conclude, measure_all, plan, rea
 from faultpath.api.asking import Job
 from faultpath.api.display import Display
 from faultpath.core.errors import UserError
-from faultpath.trials.work import Here, Progress
+from faultpath.trials.work.executor import Here, Progress
 
 SILENT = Display(command=("faultpath", "reproduce"))
 TINY = Profile("tiny", scenes=2, seeds=(0,))

@@ -12,10 +12,10 @@ import pytest
 from faultpath.decisions import DecisionRecord, RunProvenance, decide
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.trials import OutcomeTable, SystemSpec, load_system
-from faultpath.trials.execution import run_study
 from faultpath.trials.execution.provenance import packages, processor
+from faultpath.trials.execution.runner import run_study
 from faultpath.trials.question import AuditQuestion
-from faultpath.trials.store import read_outcomes
+from faultpath.trials.store.folder import read_outcomes
 from faultpath.trials.store.tables import encode_outcomes
 
 ROOT = Path(__file__).resolve().parents[2]

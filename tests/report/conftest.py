@@ -19,7 +19,7 @@ from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown
 from faultpath.trials.declared import FloorPlan, Pillar, Prism
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store import TrialAddress
+from faultpath.trials.store.tables import TrialAddress
 
 TOPOLOGIES = ("clutter", "corridors", "doorways", "intersections", "rooms")
 BASELINE, REPAIR = "gru", "gru-dcc"

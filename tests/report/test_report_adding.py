@@ -12,7 +12,7 @@ from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import read_pairs
 from faultpath.report.viewer_choice import choose
 from faultpath.systems.checks.recording import added
-from faultpath.trials.store import TrialAddress
+from faultpath.trials.store.tables import TrialAddress
 
 TOPIC = "error of the predicted acceleration"
 SIZES = {"predictor": (2.0, 0.0), "reconstruction": (0.0, -2.0), "shared": (2.0, -1.75)}

@@ -10,8 +10,8 @@ from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import read_pairs
 from faultpath.report.viewer import pack, viewer_data
-from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
+from faultpath.trials.store.tables import TrialAddress
 
 
 def _unpacked(source: ReportInput) -> tuple[dict[str, Any], list[Any]]:

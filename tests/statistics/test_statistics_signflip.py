@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from scipy.stats import norm
+from simulation import announces
 
 from faultpath.decisions.family import CORRECT, SHARED, decide_paths
 from faultpath.statistics import Resamples, score, signflip, success_effect, with_test
@@ -72,7 +73,7 @@ def test_many_small_gains_against_few_whole_losses_are_no_difference(gains):
     for _ in range(audits):
         arms = {path: lopsided(rng, 100, gains) for path in paths}
         for rule in announced:
-            announced[rule] += decide_paths(arms, rule=rule).announces
+            announced[rule] += announces(decide_paths(arms, rule=rule))
     assert announced["exact"] > 0.07 * audits
     assert announced[RULE] <= 0.046 * audits + 3 * np.sqrt(0.05 * 0.95 * audits)
 

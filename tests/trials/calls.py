@@ -6,7 +6,7 @@ import sys
 import time
 from pathlib import Path
 
-from faultpath.trials.work import tell
+from faultpath.trials.work.executor import tell
 
 _seen: list[int] = []
 

@@ -6,7 +6,7 @@ from toy_system import STEPS
 
 from faultpath.loop import TapCount
 from faultpath.trials import Deliveries
-from faultpath.trials.execution import run_study
+from faultpath.trials.execution.runner import run_study
 from faultpath.trials.store import parquet, tables
 
 STRUCK = (STEPS - FAULT.onset_step) * len(SCENES)

@@ -13,13 +13,13 @@ from toy_study import UNITS, study
 
 from faultpath.core.errors import Stopped
 from faultpath.trials.arm import Study
-from faultpath.trials.execution import run_study
+from faultpath.trials.execution.runner import run_study
 
 _RUN = """
 import sys
 from pathlib import Path
 from faultpath.core.errors import Stopped
-from faultpath.trials.execution import run_study
+from faultpath.trials.execution.runner import run_study
 from faultpath.trials.arm import Study
 
 study = Study.model_validate_json(Path(sys.argv[1]).read_text())

@@ -10,7 +10,8 @@ from toy_study import SCENES, study
 from toy_system import ToySystem
 
 from faultpath.core.errors import UserError
-from faultpath.trials.execution import dispatch, run_study
+from faultpath.trials.execution import dispatch
+from faultpath.trials.execution.runner import run_study
 from faultpath.trials.execution.state import FEW
 
 

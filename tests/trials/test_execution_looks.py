@@ -7,9 +7,9 @@ from toy_study import SCENES, study
 
 from faultpath.core.errors import Stopped, UserError
 from faultpath.trials.arm import Study
-from faultpath.trials.execution import RunResult, run_study
+from faultpath.trials.execution.runner import RunResult, run_study
 from faultpath.trials.table import OutcomeTable
-from faultpath.trials.work import Progress
+from faultpath.trials.work.executor import Progress
 
 ORDER = ("s07", "s02", "s09", "s00", "s05", "s01", "s08", "s03", "s06", "s04")
 

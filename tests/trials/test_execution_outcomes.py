@@ -11,7 +11,8 @@ from toy_system import ToySystem
 
 from faultpath.loop import Reading
 from faultpath.trials import Status, load_system
-from faultpath.trials.execution import WrongOutcomes, run_study
+from faultpath.trials.attempt import WrongOutcomes
+from faultpath.trials.execution.runner import run_study
 
 HERE = Path(__file__)
 

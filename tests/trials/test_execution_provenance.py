@@ -3,13 +3,15 @@
 import hashlib
 import subprocess
 import sys
+from datetime import UTC, datetime
 
 from stale_toys import Mine
 from toy_study import UNITS, study
 
-from faultpath.trials.execution import Stopwatch, run_provenance, run_study
-from faultpath.trials.execution.provenance import checkout
-from faultpath.trials.work import Here, local
+from faultpath.trials.execution.provenance import checkout, run_provenance
+from faultpath.trials.execution.runner import run_study
+from faultpath.trials.work.executor import Here
+from faultpath.trials.work.processes import local
 
 
 def _git(folder, *arguments):
@@ -37,9 +39,9 @@ def test_a_checkout_knows_its_commit_and_its_changes(tmp_path):
 
 
 def test_provenance_tells_the_run(tmp_path):
-    stopwatch = Stopwatch()
+    started = datetime.now(UTC)
     result = run_study(study(), tmp_path, workers=0)
-    told = run_provenance(tmp_path, [], result, stopwatch, ["faultpath", "audit"], Here())
+    told = run_provenance(tmp_path, [], result, started, ["faultpath", "audit"], Here())
     assert (told.blocks_computed, told.blocks_kept) == (UNITS, 0)
     assert told.outcomes_sha256 == result.outcomes_sha256
     assert told.command == ("faultpath", "audit")
@@ -55,7 +57,10 @@ def test_provenance_tells_the_users_own_repository_and_every_file_that_flew(tmp_
 
     def told(name: str):
         result = run_study(mine.study(), tmp_path / name, workers=1)
-        return run_provenance(tmp_path / name, [], result, Stopwatch(), ["faultpath"], local(1))
+        started = datetime.now(UTC)
+        return run_provenance(tmp_path / name, [], result, started, ["faultpath"], local(1))
+            tmp_path / name, [], result, datetime.now(UTC), ["faultpath"], local(1)
+        )
 
     assert (told("untracked").system_commit, told("untracked").system_dirty) == (None, None)
     _git(tmp_path / "mine", "init", "-q")

@@ -19,9 +19,8 @@ import faultpath
 from faultpath.cli.main import INTERRUPTED
 from faultpath.core.errors import UserError
 from faultpath.trials import SystemSpec
-from faultpath.trials.execution import run_study
-from faultpath.trials.work import Failed, Lost, Returned, elsewhere
-from faultpath.trials.work.executor import tell
+from faultpath.trials.execution.runner import run_study
+from faultpath.trials.work.executor import Failed, Lost, Returned, elsewhere, tell
 from faultpath.trials.work.ray_cluster import RayWorkers
 
 UNRULY = Path(__file__).with_name("test_execution_limits.py")

@@ -14,8 +14,8 @@ from toy_system import CONSUMERS, STEPS, ToySystem
 
 from faultpath.core.errors import Stopped
 from faultpath.loop import Reading
-from faultpath.trials.execution import run_study
 from faultpath.trials.execution.again import SAMPLE, Rechecks
+from faultpath.trials.execution.runner import run_study
 
 _CALLS = itertools.count()
 

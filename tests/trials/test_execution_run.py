@@ -10,11 +10,11 @@ from toy_study import FAULT, SCENES, UNITS, rows, study
 from faultpath.core.errors import UserError
 from faultpath.loop import NotDelivered, UndeclaredReader
 from faultpath.trials.arm import Arm, Row, Study
-from faultpath.trials.execution import RunResult, run_study
-from faultpath.trials.store import read_outcomes
+from faultpath.trials.execution.runner import RunResult, run_study
+from faultpath.trials.store.folder import read_outcomes
 from faultpath.trials.store.tables import decode_traces
 from faultpath.trials.table import TrialRow
-from faultpath.trials.work import Progress
+from faultpath.trials.work.executor import Progress
 
 
 @pytest.fixture(scope="session")

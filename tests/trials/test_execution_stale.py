@@ -7,7 +7,7 @@ import pytest
 from stale_toys import Mine
 
 from faultpath.core.errors import UserError
-from faultpath.trials.execution import run_study
+from faultpath.trials.execution.runner import run_study
 
 PLACES = ("file", "helper", "data")
 

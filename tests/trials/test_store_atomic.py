@@ -7,8 +7,8 @@ import sys
 import pytest
 
 from faultpath.core.errors import UserError
-from faultpath.trials.store import atomic, write_text
-from faultpath.trials.store.atomic import locked
+from faultpath.trials.store import atomic
+from faultpath.trials.store.atomic import locked, write_text
 
 
 def test_a_write_that_fails_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch):

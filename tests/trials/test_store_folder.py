@@ -12,8 +12,8 @@ from faultpath.loop import TapCount
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.code import CodeState
 from faultpath.trials.outcome import Outcome, Status
-from faultpath.trials.store import FORMAT, Manifest, RunFolder, Shard, read_outcomes
-from faultpath.trials.store.tables import encode_shard
+from faultpath.trials.store.folder import FORMAT, Manifest, RunFolder, read_outcomes
+from faultpath.trials.store.tables import Shard, encode_shard
 
 
 def _manifest(name: str = "a", seed: int = 0, scenes: tuple[str, ...] = ("s0",)) -> Manifest:

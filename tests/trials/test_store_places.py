@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from faultpath.core.errors import UserError
-from faultpath.trials.store import atomic, write_text
+from faultpath.trials.store import atomic
+from faultpath.trials.store.atomic import write_text
 
 
 def _pipe(path: Path) -> None:

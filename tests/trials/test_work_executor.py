@@ -13,16 +13,8 @@ import calls
 import pytest
 
 from faultpath.core.errors import UserError
-from faultpath.trials.work import (
-    Failed,
-    Here,
-    Lost,
-    Processes,
-    Returned,
-    WorkerLost,
-    local,
-    run_all,
-)
+from faultpath.trials.work.executor import Failed, Here, Lost, Returned, WorkerLost, run_all
+from faultpath.trials.work.processes import Processes, local
 
 BOTH = pytest.mark.parametrize("workers", [0, 2])
 
@@ -171,7 +163,8 @@ from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 import calls
 from functools import partial
-from faultpath.trials.work import local, run_all
+from faultpath.trials.work.executor import run_all
+from faultpath.trials.work.processes import local
 with local(2) as executor:
     list(run_all(executor, [partial(calls.hang, Path(sys.argv[2]) / "log")] * 2))
 """

@@ -8,7 +8,7 @@ import torch
 from torch import Tensor
 
 from faultpath.core.errors import UserError
-from faultpath.trials.work import one_thread
+from faultpath.trials.work.executor import one_thread
 from faultpath_quadrotor.choices import DeviceName
 
 CPU = torch.device("cpu")

@@ -4,6 +4,7 @@ import inspect
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,9 +13,10 @@ from faultpath.api.display import Display, Show, display
 from faultpath.api.systems import Chosen, choose
 from faultpath.decisions import RunProvenance
 from faultpath.trials import Library, Study, System, library_of
-from faultpath.trials.execution import Failure, RunResult, Stopwatch, run_provenance, run_study
+from faultpath.trials.execution.provenance import run_provenance
+from faultpath.trials.execution.runner import Failure, RunResult, run_study
 from faultpath.trials.question import Request, ask
-from faultpath.trials.work import Executor
+from faultpath.trials.work.executor import Executor
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
 _Asked = TypeVar("_Asked", bound=Request)
@@ -78,7 +80,7 @@ class Job:
     display: Display
     how: Mapping[str, Any] = field(default_factory=dict[str, Any])
     """What `run_study` takes besides, such as a time limit."""
-    stopwatch: Stopwatch = field(default_factory=Stopwatch)
+    started: datetime = field(default_factory=lambda: datetime.now(UTC))
 
     def run(
         self, study: Study, system: System, show: Show, folder: Path | None = None, **how: Any
@@ -117,7 +119,7 @@ class Job:
             folder or self.folder,
             names,
             result,
-            self.stopwatch,
+            self.started,
             self.display.command,
             self.executor,
             system.backend,

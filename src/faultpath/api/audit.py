@@ -33,14 +33,14 @@ from faultpath.report.inputs import Traces
 from faultpath.statistics import IN_FORCE, RULES
 from faultpath.trials import System, system_shown
 from faultpath.trials.code import system_code
-from faultpath.trials.execution import RunResult
+from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.question import AuditQuestion, Running
-from faultpath.trials.store import TrialAddress, write_text
-from faultpath.trials.store.atomic import write_file
+from faultpath.trials.store.atomic import write_file, write_text
 from faultpath.trials.store.folder import keyed, read_regular, seal
 from faultpath.trials.store.parquet import Unreadable
 from faultpath.trials.store.signals import SIGNALS, Signal, decode_signals, encode_signals
-from faultpath.trials.work import Progress
+from faultpath.trials.store.tables import TrialAddress
+from faultpath.trials.work.executor import Progress
 
 _LONGEST_NAME = 180
 """Of a run folder; file systems take 255 bytes."""

@@ -17,9 +17,8 @@ from faultpath.decisions.plan.study import StudyFile, check_arms
 from faultpath.decisions.planning import plan_audit
 from faultpath.trials import System, library_of
 from faultpath.trials.question import CheckQuestion, PlanQuestion, Question, TraceQuestion
-from faultpath.trials.store import write_text
-from faultpath.trials.store.atomic import check_writable
-from faultpath.trials.work import Progress
+from faultpath.trials.store.atomic import check_writable, write_text
+from faultpath.trials.work.executor import Progress
 
 if TYPE_CHECKING:
     from faultpath.systems.checks.check import Report

@@ -10,7 +10,7 @@ from faultpath.api.runs import RECORD, Run, open_run
 from faultpath.core.errors import UserError
 from faultpath.report.compared import Compared, differing, together
 from faultpath.report.comparison import headline, page, sentences
-from faultpath.trials.store import write_text
+from faultpath.trials.store.atomic import write_text
 from faultpath.trials.store.folder import read_regular
 
 

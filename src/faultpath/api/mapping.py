@@ -17,8 +17,8 @@ from faultpath.decisions.map.study import MapPlan, plan_map
 from faultpath.decisions.map.surface import next_points
 from faultpath.trials import System
 from faultpath.trials.question import MapQuestion
-from faultpath.trials.store import write_text
-from faultpath.trials.work import Progress
+from faultpath.trials.store.atomic import write_text
+from faultpath.trials.work.executor import Progress
 
 _BISECTING = 18
 """Points that are typically added to bisect the paths of the fault."""

@@ -21,10 +21,11 @@ from faultpath.trials.execution.again import difference
 from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.execution.provenance import amend
 from faultpath.trials.question import AuditQuestion
-from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
-from faultpath.trials.work import Executor, local
+from faultpath.trials.store.tables import TrialAddress
+from faultpath.trials.work.executor import Executor
+from faultpath.trials.work.processes import local
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,8 @@ from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.tables import markdown_table
 from faultpath.trials import Deliveries, OutcomeTable, Status, SystemShown
-from faultpath.trials.store import read_table
 from faultpath.trials.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, read_regular, unseal
-from faultpath.trials.store.parquet import Unreadable
+from faultpath.trials.store.parquet import Unreadable, read_table
 from faultpath.trials.store.signals import SIGNALS, decode_signals
 from faultpath.trials.store.tables import decode_outcomes, decode_traces
 

@@ -15,7 +15,8 @@ from faultpath.trials import System, SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import as_text
 from faultpath.trials.registry import factory_name
-from faultpath.trials.work import Executor, local
+from faultpath.trials.work.executor import Executor
+from faultpath.trials.work.processes import local
 
 LOCAL, RAY = "local", "ray"
 """Where trials run."""

@@ -105,18 +105,17 @@ def _said(errors: Sequence[Mapping[str, Any]], known: Sequence[str]) -> str:
         return f"is no field{hint if known else ''}; correct its spelling or drop it"
     if kind in ("value_error", "assertion_error"):
         return str(context["error"]).rstrip(".") if "error" in context else "does not fit"
-    allowed = [said for said in dict.fromkeys(map(_allowed, errors)) if said]
+    allowed: list[str] = []
+    for each in errors:
+        kind = str(each["type"])
+        said = _KINDS.get(kind.partition("_")[0], "")
+        if kind in _WITH:
+            said = _WITH[kind].format_map(each.get("ctx", {}))
+        allowed += [said] if said and said not in allowed else []
     if {_NUMBER, _WHOLE} <= set(allowed):
         allowed.remove(_WHOLE)
     must = f"and must be {' or '.join(allowed)}" if allowed else "which does not fit"
     return f"is {_shown(first['input'])}, {must}"
-
-
-def _allowed(error: Mapping[str, Any]) -> str:
-    kind = str(error["type"])
-    if kind in _WITH:
-        return _WITH[kind].format_map(error.get("ctx", {}))
-    return _KINDS.get(kind.partition("_")[0], "")
 
 
 def _fields(model: object, place: Sequence[str | int]) -> tuple[str, ...]:

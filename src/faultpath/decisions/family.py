@@ -49,11 +49,6 @@ class Family:
     """Isolated paths whose change, and paths whose effect, would be decided but for those trials;
     by the names of `alpha_shares`."""
 
-    @property
-    def announces(self) -> bool:
-        """Whether anything is detected: an effect, a change, a reversal."""
-        return any(each.sign for part in (self.effects, self.changes) for each in part.values())
-
 
 def decide_paths(
     success: Mapping[str, Arms],

@@ -34,7 +34,7 @@ from faultpath.learning.model_card import (
 from faultpath.learning.repair import Repair, kept, understood
 from faultpath.learning.windows import VALIDATION, Windows, delivered, named
 from faultpath.loop import TapCount, added
-from faultpath.trials.store import make_folder
+from faultpath.trials.store.atomic import make_folder
 
 if TYPE_CHECKING:
     from torch import LongTensor, Tensor, nn

@@ -13,8 +13,8 @@ from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes
 from faultpath.report.viewer_choice import choose
 from faultpath.trials import Outcome, Status
-from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import TOGETHER, Signal
+from faultpath.trials.store.tables import TrialAddress
 
 _SQUEEZED = 2.5
 _MOST_PATHS = 4

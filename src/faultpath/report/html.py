@@ -24,7 +24,7 @@ from faultpath.report.tables import (
 )
 from faultpath.report.taps import fork_panel, forks
 from faultpath.report.viewer import viewer_data
-from faultpath.trials.store import make_folder, write_text
+from faultpath.trials.store.atomic import make_folder, write_text
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
 

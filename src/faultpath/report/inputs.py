@@ -10,8 +10,8 @@ from faultpath.decisions.model import DecisionRecord
 from faultpath.interface import Interface
 from faultpath.trials import FloorPlan, OutcomeTable, VariantShown
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import Signal, Signals
+from faultpath.trials.store.tables import TrialAddress
 
 
 @dataclass(frozen=True)

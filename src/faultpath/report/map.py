@@ -17,7 +17,7 @@ from faultpath.decisions.tables.terminal import drawn
 from faultpath.report.frame import render
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.statistics.contrast import MIN_SCENES
-from faultpath.trials.store import make_folder, write_text
+from faultpath.trials.store.atomic import make_folder, write_text
 
 
 def tables(record: MapRecord) -> tuple[Table, ...]:

@@ -15,8 +15,8 @@ from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.viewer_choice import captions, choose
 from faultpath.trials import Outcome
-from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import IN_FORCE, Signal, Signals
+from faultpath.trials.store.tables import TrialAddress
 
 _MOST_WITH_SIGNALS = 12
 """Scenes, with a seed each, whose signals go into a page."""

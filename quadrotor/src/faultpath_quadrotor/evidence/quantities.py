@@ -11,8 +11,8 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath.core.errors import UserError
-from faultpath.trials.store import atomic, make_folder
-from faultpath.trials.store.atomic import locked
+from faultpath.trials.store import atomic
+from faultpath.trials.store.atomic import locked, make_folder
 from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.evidence.inputs import Subject
 from faultpath_quadrotor.evidence.playback import Present, at_present

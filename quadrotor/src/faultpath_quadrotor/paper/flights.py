@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
-from faultpath.trials.execution import RunResult
-from faultpath.trials.work import Progress
+from faultpath.trials.execution.runner import RunResult
+from faultpath.trials.work.executor import Progress
 from faultpath_quadrotor.paper.cells import SYSTEM, Cell, Profile, Setting
 
 FLIGHTS = "flights"

@@ -13,9 +13,9 @@ from faultpath.api.systems import LOCAL, check_executor, executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.decisions import RunProvenance
 from faultpath.decisions.tables import markdown
-from faultpath.trials.store import write_text
+from faultpath.trials.store.atomic import write_text
 from faultpath.trials.store.folder import AGAIN, DELIVERIES, unseal
-from faultpath.trials.work import Progress
+from faultpath.trials.work.executor import Progress
 from faultpath_quadrotor.evidence.table import EvidenceTable
 from faultpath_quadrotor.paper.answers import Reproduction
 from faultpath_quadrotor.paper.central import of_page

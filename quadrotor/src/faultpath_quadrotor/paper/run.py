@@ -18,13 +18,16 @@ from faultpath.trials import (
     load_system,
 )
 from faultpath.trials.code import system_code
-from faultpath.trials.execution import RunResult
-from faultpath.trials.store import (
+from faultpath.trials.execution.runner import RunResult
+from faultpath.trials.store.atomic import write_text
+from faultpath.trials.store.folder import (
+    OUTCOMES,
     RunFolder,
+    keyed,
     read_outcomes,
-    write_text,
+    read_regular,
+    unseal,
 )
-from faultpath.trials.store.folder import OUTCOMES, keyed, read_regular, unseal
 from faultpath_quadrotor.evidence.table import (
     EvidenceTable,
     Measurement,

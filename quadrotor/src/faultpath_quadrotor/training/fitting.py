@@ -21,7 +21,7 @@ from faultpath.core.files.opening import contents
 from faultpath.core.version import __version__
 from faultpath.learning.loop import Journal, Moment, Task, minibatches, run
 from faultpath.learning.model_card import parameter_count, read_card, save, weights_sha256
-from faultpath.trials.store import make_folder
+from faultpath.trials.store.atomic import make_folder
 from faultpath_quadrotor.checkpoint import ModelCard
 
 _SAME_LOSS = 1e-3

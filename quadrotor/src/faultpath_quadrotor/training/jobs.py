@@ -14,9 +14,9 @@ from pathlib import Path
 from faultpath.core.errors import Stopped, UserError
 from faultpath.learning.loop import Moment
 from faultpath.learning.model_card import read_card
-from faultpath.trials.store import make_folder
-from faultpath.trials.store.atomic import locked, sweep
-from faultpath.trials.work import Lost, Returned, local, run_each, tell
+from faultpath.trials.store.atomic import locked, make_folder, sweep
+from faultpath.trials.work.executor import Lost, Returned, run_each, tell
+from faultpath.trials.work.processes import local
 from faultpath_quadrotor import native
 from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path, ship
 from faultpath_quadrotor.training import clearance_data, trajectories

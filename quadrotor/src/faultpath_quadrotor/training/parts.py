@@ -4,7 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from faultpath.trials.work import local, run_all
+from faultpath.trials.work.executor import run_all
+from faultpath.trials.work.processes import local
 
 Progress = Callable[[float, float], None]
 """Called with what is done and what all comes to; its first call counts what was there."""

@@ -39,8 +39,7 @@ def command(
         said = said.model_copy(update={"mass_kg": mass})
     found = compensation(read_flight(log, said), _sizes(errors))
 
-    from faultpath.trials.store import write_text
-    from faultpath.trials.store.atomic import make_folder
+    from faultpath.trials.store.atomic import make_folder, write_text
     from faultpath_quadrotor.flightlog.words import CAVEAT, sentences, table
 
     text = found.model_dump_json(indent=2) + "\n"

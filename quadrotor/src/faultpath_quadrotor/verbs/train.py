@@ -78,7 +78,7 @@ def command(
         console.print(drawn(_models()))
         return 0
 
-    from faultpath.trials.store import make_folder
+    from faultpath.trials.store.atomic import make_folder
     from faultpath_quadrotor.training.catalogue import choose, stages
     from faultpath_quadrotor.training.jobs import Failure, check_pilots
 

@@ -25,7 +25,7 @@ from faultpath.trials import Arm, LoopSystem, Outcome, System
 from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
 from faultpath.trials.execution.dispatch import Built, dispatch
 from faultpath.trials.store.signals import Signal
-from faultpath.trials.work import Executor
+from faultpath.trials.work.executor import Executor
 
 MISTAKES: dict[str, tuple[type[Exception], ...]] = {
     "declared reads": (UndeclaredReader, IllegalRead),

@@ -14,7 +14,7 @@ from faultpath.systems.checks.recording import Read
 from faultpath.trials import Arm, System, SystemSpec, Variant, library_of
 from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.question import CheckQuestion
-from faultpath.trials.work import local
+from faultpath.trials.work.processes import local
 
 MOST = 4
 """So many variants are all checked unless some are named; of more the first two, or as many as the

@@ -16,7 +16,7 @@ from faultpath.trials.code import Code, CodeState, Watch, named, source_state, s
 from faultpath.trials.declared import Library
 from faultpath.trials.registry import load_system
 from faultpath.trials.system import System
-from faultpath.trials.work import Executor, Failed, Lost, WorkerLost, elsewhere, tell
+from faultpath.trials.work.executor import Executor, Failed, Lost, WorkerLost, elsewhere, tell
 
 _TICK_S = 0.5
 _FALSE_STARTS = 4

@@ -2,7 +2,6 @@
 
 import platform
 import subprocess
-import time
 from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -11,31 +10,19 @@ from pathlib import Path
 from faultpath.core.version import __version__
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store import write_text
+from faultpath.trials.store.atomic import write_text
 from faultpath.trials.store.folder import seal
-from faultpath.trials.work import Executor
+from faultpath.trials.work.executor import Executor
 
 PROVENANCE = "provenance.json"
 _PACKAGES = ("numpy", "scipy", "pydantic", "pyarrow", "array-api-compat", "torch", "mujoco")
-
-
-class Stopwatch:
-    """When an invocation started, on the calendar and on a clock that is never set."""
-
-    def __init__(self) -> None:
-        self.started = datetime.now(UTC)
-        self._from = time.monotonic()
-
-    def seconds(self) -> float:
-        """Return the seconds since the start."""
-        return time.monotonic() - self._from
 
 
 def run_provenance(
     folder: Path,
     names: Iterable[str],
     result: RunResult,
-    stopwatch: Stopwatch,
+    started: datetime,
     command: Sequence[str],
     executor: Executor,
     backend: str = "",
@@ -55,6 +42,7 @@ def run_provenance(
         for code in result.code
         for name, found in code.state.packages.items()
     }
+    finished = datetime.now(UTC)
     provenance = RunProvenance(
         faultpath_version=__version__,
         commit=commit,
@@ -67,9 +55,9 @@ def run_provenance(
         backend=backend,
         workers=executor.count,
         executor=executor.name,
-        started=stopwatch.started.isoformat(timespec="seconds"),
-        finished=datetime.now(UTC).isoformat(timespec="seconds"),
-        wall_s=round(stopwatch.seconds(), 3),
+        started=started.isoformat(timespec="seconds"),
+        finished=finished.isoformat(timespec="seconds"),
+        wall_s=round((finished - started).total_seconds(), 3),
         blocks_computed=result.blocks_computed,
         blocks_kept=result.blocks_kept,
         system_fingerprint=result.system_fingerprint,

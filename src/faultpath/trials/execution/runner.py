@@ -21,7 +21,8 @@ from faultpath.trials.store.folder import Manifest, RunFolder
 from faultpath.trials.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.system import System
 from faultpath.trials.table import Deliveries, OutcomeTable, check_rows, selected
-from faultpath.trials.work import Executor, Progress, local
+from faultpath.trials.work.executor import Executor, Progress
+from faultpath.trials.work.processes import local
 
 _log = logging.getLogger("faultpath")
 

@@ -15,7 +15,7 @@ from faultpath.trials.outcome import Outcome, failed_outcome
 from faultpath.trials.store.folder import RunFolder
 from faultpath.trials.store.tables import Shard
 from faultpath.trials.table import OutcomeTable, assemble
-from faultpath.trials.work import Progress
+from faultpath.trials.work.executor import Progress
 
 FEW = 5
 """So many failed trials without one that ran to its end stop the study."""
