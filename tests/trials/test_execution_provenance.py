@@ -59,8 +59,6 @@ def test_provenance_tells_the_users_own_repository_and_every_file_that_flew(tmp_
         result = run_study(mine.study(), tmp_path / name, workers=1)
         started = datetime.now(UTC)
         return run_provenance(tmp_path / name, [], result, started, ["faultpath"], local(1))
-            tmp_path / name, [], result, datetime.now(UTC), ["faultpath"], local(1)
-        )
 
     assert (told("untracked").system_commit, told("untracked").system_dirty) == (None, None)
     _git(tmp_path / "mine", "init", "-q")
