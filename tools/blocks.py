@@ -14,12 +14,15 @@ from flown_code import ROOT, flown_by
 from pydantic import BaseModel, ValidationError
 from rich.console import Console
 
-from faultpath.decisions import DecisionRecord, RunProvenance, wording
+from faultpath.decisions import wording
+from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.tables import Entry, Table, line
 from faultpath.decisions.tables.markdown import grid
 from faultpath.report.tables import DIFFERENCE, by_quantity
 from faultpath.report.terminal import decision
-from faultpath.statistics import IN_FORCE, unconditional
+from faultpath.statistics import unconditional
+from faultpath.statistics.estimate import IN_FORCE
+from faultpath.trials.provenance import RunProvenance
 
 REFERENCE = ROOT / "docs" / "reference"
 

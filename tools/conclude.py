@@ -13,13 +13,16 @@ from faultpath_quadrotor.paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
 
 from faultpath.api.runs import MAP, RECORD, SYSTEM, TRACES, as_text
-from faultpath.decisions import DecisionRecord, Question, RunProvenance, decide
-from faultpath.decisions import Path as FaultPath
+from faultpath.decisions.decide import decide
+from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.model import Path as FaultPath
+from faultpath.decisions.question import Question
 from faultpath.decisions.tables import Table
 from faultpath.faults import parse_fault
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import SystemSpec, load_system, system_shown
+from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import read_outcomes, seal
 from faultpath.trials.store.signals import SIGNALS, decode_signals
 from faultpath.trials.store.tables import decode_traces

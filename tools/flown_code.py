@@ -5,9 +5,9 @@ from contextlib import chdir
 from functools import cache
 from pathlib import Path
 
-from faultpath.decisions import RunProvenance
 from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.code import CodeState, system_code
+from faultpath.trials.provenance import RunProvenance
 
 ROOT = Path(__file__).resolve().parents[1]
 

@@ -14,7 +14,6 @@ from rich.console import Console
 
 from faultpath.api.runs import MAP
 from faultpath.api.runs import MAP_MADE_FROM as MADE_FROM
-from faultpath.decisions import RunProvenance
 from faultpath.decisions.map.decide import conclude as decide
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.model import MapRecord
@@ -23,6 +22,7 @@ from faultpath.decisions.tables.markdown import grid
 from faultpath.report.map import shown, table_markdown, tables
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.trials import SystemSpec, library_of, load_system
+from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import MapQuestion
 from faultpath.trials.store.folder import OUTCOMES, read_outcomes, seal
 

@@ -13,9 +13,10 @@ from faultpath_quadrotor.paper.report.terminal import ledger_markdown
 from flown_code import flown_by
 from pictures import IMAGES, standing
 
-from faultpath.decisions import CORRECT, SHARED, RunProvenance
+from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.tables import Table
 from faultpath.decisions.tables.markdown import block
+from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import read_outcomes
 
 PLACE = REFERENCE / "paper"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.decisions import DecisionRecord, FaultedTap
+from faultpath.decisions.model import DecisionRecord, FaultedTap
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.trials import Deliveries, SystemSpec, load_system
 from faultpath.trials.execution.runner import run_study

@@ -11,7 +11,7 @@ import pytest
 from cli_runs import HERE, ROOT, audit, faultpath, shards
 
 from faultpath.api.runs import open_run
-from faultpath.decisions import SHARED
+from faultpath.decisions.model import SHARED
 
 FILES = {
     "manifest.json",

@@ -3,7 +3,9 @@
 from collections.abc import Mapping, Sequence
 from math import comb
 
-from faultpath.decisions import CORRECT, SHARED, DecisionRecord, Path, Question, decide
+from faultpath.decisions.decide import decide
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Path
+from faultpath.decisions.question import Question
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
 
 BASELINE, REPAIR = "old", "new"

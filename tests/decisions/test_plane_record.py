@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from plane_toys import alike, grown, question, record, reversal
 
-from faultpath.decisions import RunProvenance
 from faultpath.decisions.map.decide import decided
 from faultpath.decisions.map.joint import Errors, lattice_weights
 from faultpath.decisions.map.lattice import SHOWN, UNITS, lattice, surface_weights
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.surface import Combined, Differences
 from faultpath.report.map import tables
+from faultpath.trials.provenance import RunProvenance
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS

@@ -18,7 +18,8 @@ from faultpath.decisions.map.lattice import (
     surface_weights,
 )
 from faultpath.decisions.map.surface import Combined, Differences, simultaneous
-from faultpath.statistics import Resamples, success_effect
+from faultpath.statistics.effects import success_effect
+from faultpath.statistics.resamples import Resamples
 
 PLACES = lattice(SHOWN)
 FINER = (*lattice(COARSE), *cut((0, 0), COARSE), *cut((8, 8), 8))

@@ -8,16 +8,10 @@ from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
-from faultpath.decisions import (
-    CORRECT,
-    SHARED,
-    DecisionRecord,
-    StopRule,
-    decide,
-    phrases,
-    wording,
-)
-from faultpath.decisions.model import Change, Effect
+from faultpath.decisions import phrases, wording
+from faultpath.decisions.decide import decide
+from faultpath.decisions.model import CORRECT, SHARED, Change, DecisionRecord, Effect
+from faultpath.decisions.question import StopRule
 from faultpath.decisions.summary import MOST_WORDS, answers, in_short
 from faultpath.trials import OutcomeTable, Status
 from faultpath.trials.question import StopWhen

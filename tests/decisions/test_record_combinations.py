@@ -7,8 +7,8 @@ from itertools import product
 import pytest
 from outcome_tables import BASELINE, REPAIR, record
 
-from faultpath.decisions import CORRECT, SHARED, DecisionRecord, StopRule
-from faultpath.decisions.model import Effect
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
+from faultpath.decisions.question import StopRule
 from faultpath.decisions.summary import MOST_WORDS, answers, headline, in_short, not_standing
 from faultpath.decisions.wording import where
 

@@ -17,7 +17,8 @@ from outcome_tables import (
 )
 
 from faultpath.core.errors import UserError
-from faultpath.decisions import CORRECT, SHARED, decide
+from faultpath.decisions.decide import decide
+from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.trials import OutcomeTable, Status
 
 

@@ -6,7 +6,7 @@ import pytest
 from outcome_tables import paths, question, record, table
 
 from faultpath.core.errors import UserError
-from faultpath.decisions import decide
+from faultpath.decisions.decide import decide
 from faultpath.decisions.planning import plan_audit
 from faultpath.trials import Metric, OutcomeTable, Status, SystemSpec, load_system
 from faultpath.trials.question import AuditQuestion, ask

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from outcome_tables import BASELINE, REPAIR, SCENES, paths, question, rows
 
-from faultpath.decisions import CORRECT, SHARED, DecisionRecord, decide
+from faultpath.decisions.decide import decide
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
 from faultpath.decisions.summary import answers, in_short
 from faultpath.trials import OutcomeTable, Status
 

@@ -23,16 +23,11 @@ from faultpath_quadrotor.paper.claims.rules import (
 from faultpath_quadrotor.paper.claims.statement import Turned
 from faultpath_quadrotor.paper.results import decisive
 
-from faultpath.statistics import (
-    Contrast,
-    Resamples,
-    change,
-    mean_effect,
-    success_effect,
-    weighted_sum,
-    with_test,
-)
+from faultpath.statistics.contrast import Contrast, change, weighted_sum
+from faultpath.statistics.decisions import with_test
+from faultpath.statistics.effects import mean_effect, success_effect
 from faultpath.statistics.estimate import PairedTest
+from faultpath.statistics.resamples import Resamples
 
 
 def more_than(limit: float) -> Rule:

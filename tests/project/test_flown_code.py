@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.decisions import RunProvenance
+from faultpath.trials.provenance import RunProvenance
 
 ROOT = Path(__file__).resolve().parents[2]
 TOY = "examples/toy.py:create"

@@ -11,7 +11,7 @@ from faultpath_quadrotor.paper.pages import PAGES
 from faultpath_quadrotor.paper.results import Results
 from faultpath_quadrotor.paper.run import read_results
 
-from faultpath.decisions import RunProvenance
+from faultpath.trials.provenance import RunProvenance
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference" / "paper"

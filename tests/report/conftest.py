@@ -13,7 +13,9 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, sync_playwright
 
-from faultpath.decisions import FaultedTap, Path, Question, decide
+from faultpath.decisions.decide import decide
+from faultpath.decisions.model import FaultedTap, Path
+from faultpath.decisions.question import Question
 from faultpath.interface import Interface, read_interface
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown

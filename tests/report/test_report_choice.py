@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from page_reader import unpack
 
-from faultpath.decisions import DecisionRecord
+from faultpath.decisions.model import DecisionRecord
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, read_pairs
 from faultpath.report.viewer import viewer_data

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
-from faultpath.decisions import Path as FaultPath
+from faultpath.decisions.model import Path as FaultPath
 from faultpath.report.compared import Compared, differing, titles, together
 from faultpath.report.comparison import effects, facts_table, headline, page, sentences
 from faultpath.report.inputs import ReportInput

@@ -3,14 +3,13 @@
 import re
 from xml.etree import ElementTree
 
-from faultpath.decisions import DecisionRecord
-from faultpath.decisions.model import PathBreakEven
+from faultpath.decisions.model import DecisionRecord, PathBreakEven
 from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import pair_grid, pair_key, read_pairs
 from faultpath.report.svg import Svg, shortened, text_width
 from faultpath.report.taps import fork_panel, forks
-from faultpath.statistics import BreakEven, Region
+from faultpath.statistics.estimate import BreakEven, Region
 
 
 def test_all_figures_are_xml(one_seed: ReportInput) -> None:

@@ -10,9 +10,9 @@ from page_reader import Page
 from reproduction_toys import NASTY, ledger, reproduction, sweep, tables
 from rich.console import Console
 
-from faultpath.decisions import RunProvenance
 from faultpath.decisions.tables import Entry, Line, Table
 from faultpath.report.inputs import ReportInput
+from faultpath.trials.provenance import RunProvenance
 
 CENTRAL = Table(
     columns=("Isolated", "Shared"),

@@ -7,7 +7,7 @@ from pathlib import Path as FilePath
 
 import pytest
 
-from faultpath.decisions import Path
+from faultpath.decisions.model import Path
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.taps import Fork, fork_panel, forks

@@ -15,9 +15,9 @@ from scipy.stats import multinomial
 
 from faultpath.core.streams import generator
 from faultpath.decisions.family import CORRECT, SHARED, Arms, Family, alpha_shares, decide_paths
-from faultpath.statistics import IN_FORCE, Resamples, detectable
-from faultpath.statistics.estimate import RULES
-from faultpath.statistics.power import detected, rule_power
+from faultpath.statistics.estimate import IN_FORCE, RULES
+from faultpath.statistics.power import detectable, detected, rule_power
+from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import quantile, reach, rejects
 
 Floats = NDArray[np.float64]

@@ -8,14 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from faultpath.core.streams import generator
-from faultpath.statistics import (
-    Resamples,
-    change,
-    decide_family,
-    success_effect,
-    with_test,
-)
 from faultpath.statistics.betting import log_capital
+from faultpath.statistics.contrast import change
+from faultpath.statistics.decisions import decide_family, with_test
+from faultpath.statistics.effects import success_effect
+from faultpath.statistics.resamples import Resamples
 
 
 def effect(first, second):

@@ -11,17 +11,10 @@ from scipy.stats import sem
 from scipy.stats import t as student
 
 from faultpath.core.streams import generator
-from faultpath.statistics import (
-    Estimate,
-    Resamples,
-    change,
-    mean_effect,
-    median_effect,
-    success_effect,
-    success_rate,
-)
-from faultpath.statistics.contrast import percentile_interval
-from faultpath.statistics.estimate import SCENES, SCENES_AND_SEEDS
+from faultpath.statistics.contrast import change, percentile_interval
+from faultpath.statistics.effects import mean_effect, median_effect, success_effect, success_rate
+from faultpath.statistics.estimate import SCENES, SCENES_AND_SEEDS, Estimate
+from faultpath.statistics.resamples import Resamples
 
 N = 20
 RESAMPLES = Resamples.draw("laws", N, n_resamples=500)

@@ -5,12 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from faultpath.statistics import (
-    Resamples,
-    break_even,
-    mixture_curve,
-    success_effect,
-)
+from faultpath.statistics.breakeven import break_even, mixture_curve
+from faultpath.statistics.effects import success_effect
+from faultpath.statistics.resamples import Resamples
 
 N = 100
 RESAMPLES = Resamples.draw("break-even", N, n_resamples=400)

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from faultpath.core.streams import generator
-from faultpath.statistics import Resamples, WindowQuantiles, change
+from faultpath.statistics.contrast import change
+from faultpath.statistics.effects import WindowQuantiles
+from faultpath.statistics.resamples import Resamples
 
 FEW = {"n_resamples": 400}
 

@@ -10,20 +10,13 @@ from hypothesis import strategies as st
 from scipy.stats import binomtest, ttest_1samp
 from statsmodels.stats.multitest import multipletests
 
-from faultpath.statistics import (
-    Contrast,
-    Resamples,
-    change,
-    decide_family,
-    fewest_scenes,
-    mean_effect,
-    success_effect,
-    success_rate,
-    turn,
-    with_test,
-)
+from faultpath.statistics.contrast import Contrast, change
+from faultpath.statistics.decisions import decide_family, turn, with_test
 from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.effects import mean_effect, success_effect, success_rate
 from faultpath.statistics.estimate import Decision, PairedTest
+from faultpath.statistics.power import fewest_scenes
+from faultpath.statistics.resamples import Resamples
 
 N = 40
 RESAMPLES = Resamples.draw("decisions", N, n_resamples=400)

@@ -6,13 +6,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import beta, binom, binomtest, norm
 
-from faultpath.statistics import Resamples, detectable, success_effect, with_test
+from faultpath.statistics.decisions import with_test
 from faultpath.statistics.distributions import (
     binomial_cdf,
     binomial_pmf,
     normal_quantile,
 )
-from faultpath.statistics.power import rule_power
+from faultpath.statistics.effects import success_effect
+from faultpath.statistics.power import detectable, rule_power
+from faultpath.statistics.resamples import Resamples
 
 
 def counted(first_only, second_only, n_pairs=100):

@@ -5,7 +5,10 @@ import pytest
 import simulation as simulated
 from simulation import Population, kept
 
-from faultpath.statistics import Resamples, break_even, success_effect, unconditional
+from faultpath.statistics import unconditional
+from faultpath.statistics.breakeven import break_even
+from faultpath.statistics.effects import success_effect
+from faultpath.statistics.resamples import Resamples
 
 ALPHA = 0.05
 

@@ -7,15 +7,12 @@ import pytest
 import yaml
 from faultpath_quadrotor.paper.quantities.summaries import spearman
 
-from faultpath.statistics import (
-    Resamples,
-    break_even,
-    change,
-    success_effect,
-    with_test,
-)
-from faultpath.statistics.contrast import percentile_interval
+from faultpath.statistics.breakeven import break_even
+from faultpath.statistics.contrast import change, percentile_interval
+from faultpath.statistics.decisions import with_test
 from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.effects import success_effect
+from faultpath.statistics.resamples import Resamples
 
 PUBLISHED = yaml.safe_load((Path(__file__).parent / "published.yaml").read_text())
 SCENES = PUBLISHED["scenes"]

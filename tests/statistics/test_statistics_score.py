@@ -9,7 +9,9 @@ from scipy.optimize import brentq
 from scipy.stats import norm
 from statsmodels.stats.proportion import proportion_confint
 
-from faultpath.statistics import Resamples, change, success_effect, success_rate
+from faultpath.statistics.contrast import change
+from faultpath.statistics.effects import success_effect, success_rate
+from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import SceneValues, interval, reach, rejects
 
 Z = float(norm.ppf(0.975))

@@ -8,9 +8,12 @@ from scipy.stats import norm
 from simulation import announces
 
 from faultpath.decisions.family import CORRECT, SHARED, decide_paths
-from faultpath.statistics import Resamples, score, signflip, success_effect, with_test
+from faultpath.statistics import score, signflip
+from faultpath.statistics.decisions import with_test
 from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.effects import success_effect
 from faultpath.statistics.power import detected
+from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import reach, rejects
 
 RULE = "unconditional"

@@ -11,8 +11,10 @@ from hypothesis.extra import numpy as hnp
 from scipy.stats import binomtest
 from statsmodels.stats.contingency_tables import mcnemar
 
-from faultpath.statistics import Resamples, success_effect, with_test
+from faultpath.statistics.decisions import with_test
 from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.effects import success_effect
+from faultpath.statistics.resamples import Resamples
 
 COUNT = st.integers(0, 60)
 PAIR = hnp.arrays(np.bool_, st.tuples(st.just(2), st.integers(1, 30), st.integers(1, 4)))

@@ -7,9 +7,12 @@ from math import comb, sqrt
 import numpy as np
 import pytest
 
-from faultpath.statistics import Resamples, success_effect, unconditional, with_test
+from faultpath.statistics import unconditional
+from faultpath.statistics.decisions import with_test
 from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.effects import success_effect
 from faultpath.statistics.power import rule_power
+from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import quantile, rejects
 
 

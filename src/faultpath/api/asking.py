@@ -11,10 +11,10 @@ from typing import Any, TypeVar
 
 from faultpath.api.display import Display, Show, display
 from faultpath.api.systems import Chosen, choose
-from faultpath.decisions import RunProvenance
 from faultpath.trials import Library, Study, System, library_of
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import Failure, RunResult, run_study
+from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import Request, ask
 from faultpath.trials.work.executor import Executor
 

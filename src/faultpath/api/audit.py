@@ -24,13 +24,13 @@ from faultpath.api.runs import (
 )
 from faultpath.api.systems import Chosen, executor_of
 from faultpath.core.errors import UserError
-from faultpath.decisions import DecisionRecord
 from faultpath.decisions.decide import after_looks
+from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.phrases import counted
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.faults import each_size
 from faultpath.report.inputs import Traces
-from faultpath.statistics import IN_FORCE, RULES
+from faultpath.statistics.estimate import IN_FORCE, RULES
 from faultpath.trials import System, system_shown
 from faultpath.trials.code import system_code
 from faultpath.trials.execution.runner import RunResult

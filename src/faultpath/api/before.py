@@ -59,12 +59,6 @@ class Planned:
         names = ", ".join(each.name for each in self.plan.study.audits)
         return f"<Plan of {names}: {self.sentences[0]}>"
 
-    def _repr_html_(self) -> str:
-        from faultpath.decisions.tables.html import html
-        from faultpath.report.plan import by_audit, by_rank
-
-        return "".join(html(table) for table in (by_rank(self.plan), by_audit(self.plan)))
-
 
 @asks(PlanQuestion)
 def plan(

@@ -8,7 +8,7 @@ from faultpath.api.runs import read_run
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
-from faultpath.decisions import DecisionRecord
+from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import plan_audit
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces

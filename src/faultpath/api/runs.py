@@ -12,12 +12,13 @@ from pydantic import BaseModel
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.plain import Misread, model_of
-from faultpath.decisions import DecisionRecord, RunProvenance
+from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import struck_taps
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.tables import markdown_table
 from faultpath.trials import Deliveries, OutcomeTable, Status, SystemShown
+from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, read_regular, unseal
 from faultpath.trials.store.parquet import Unreadable, read_table
 from faultpath.trials.store.signals import SIGNALS, decode_signals
@@ -109,10 +110,6 @@ class MapRun(FinishedRun):
 
         place = self.folder if folder is None else Path(folder)
         return write_map(self.record, self.provenance, place)
-
-    def _repr_html_(self) -> str:
-        # What a notebook calls has an underscore.
-        return self.record._repr_html_()  # pyright: ignore[reportPrivateUsage]
 
 
 def open_run(folder: str | PathLike[str]) -> "Run | MapRun | Any":

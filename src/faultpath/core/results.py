@@ -1,6 +1,4 @@
-"""How results look in a console and in a notebook: a line, and a table of their fields."""
-
-from html import escape
+"""How results look in a console and in a notebook: a line."""
 
 from pydantic import BaseModel
 
@@ -12,25 +10,19 @@ _LINE, _CELL = 160, 80
 
 
 class Shown(BaseModel):
-    """Data with many fields: a console shows the headline or some of them, a notebook a table."""
+    """Data with many fields, of which a console shows the headline or some."""
 
     def __repr__(self) -> str:
         """Return the headline where there is one, else the fields that say something."""
         said = getattr(getattr(self, "verdict", self), "headline", "")
-        said = said or ", ".join(f"{name}={text}" for name, text in self._texts() if text)
+        said = said or ", ".join(
+            f"{name}={_cut(printable(str(value)), _CELL)}"
+            for name, value in self
+            if value not in (None, (), {}, "")
+        )
         return f"<{type(self).__name__}: {_cut(said, _LINE)}>"
 
     __str__ = __repr__
-
-    def _repr_html_(self) -> str:
-        cells = (f"<td>{escape(name)}</td><td>{escape(text)}</td>" for name, text in self._texts())
-        return f"<table>{''.join(f'<tr>{each}</tr>' for each in cells)}</table>"
-
-    def _texts(self) -> list[tuple[str, str]]:
-        return [
-            (name, "" if value in (None, (), {}) else _cut(printable(str(value)), _CELL))
-            for name, value in self
-        ]
 
 
 class Result(Shown, Frozen):

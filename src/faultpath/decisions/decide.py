@@ -22,16 +22,11 @@ from faultpath.decisions.model import (
 )
 from faultpath.decisions.question import EarlierLook, Question
 from faultpath.decisions.summary import verdict
-from faultpath.statistics import (
-    Region,
-    Resamples,
-    break_even,
-    detectable,
-    mixture_curve,
-    only,
-)
+from faultpath.statistics.breakeven import break_even, mixture_curve, only
 from faultpath.statistics.distributions import sign_p_value
-from faultpath.statistics.estimate import EM
+from faultpath.statistics.estimate import EM, Region
+from faultpath.statistics.power import detectable
+from faultpath.statistics.resamples import Resamples
 from faultpath.trials.pairing import mismatch_words
 from faultpath.trials.table import OutcomeTable
 

@@ -6,14 +6,10 @@ from typing import Any
 
 from faultpath.decisions.model import CORRECT, AtThreshold, Cell, Path
 from faultpath.decisions.question import Question
-from faultpath.statistics import (
-    Estimate,
-    Resamples,
-    fewest_scenes,
-    mean_effect,
-    median_effect,
-    success_effect,
-)
+from faultpath.statistics.effects import mean_effect, median_effect, success_effect
+from faultpath.statistics.estimate import Estimate
+from faultpath.statistics.power import fewest_scenes
+from faultpath.statistics.resamples import Resamples
 from faultpath.trials.outcome import Status
 from faultpath.trials.pairing import Bools, Pairs
 from faultpath.trials.table import OutcomeTable

@@ -6,21 +6,13 @@ from typing import NamedTuple
 
 from faultpath.decisions.compared import Arms, Voids
 from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.statistics import (
-    RULES,
-    Contrast,
-    Resamples,
-    RuleName,
-    Turn,
-    betting,
-    change,
-    decide_family,
-    fewest_scenes,
-    success_effect,
-    turn,
-    with_test,
-)
-from faultpath.statistics.estimate import PairedTest
+from faultpath.statistics import betting
+from faultpath.statistics.contrast import Contrast, change
+from faultpath.statistics.decisions import Turn, decide_family, turn, with_test
+from faultpath.statistics.effects import success_effect
+from faultpath.statistics.estimate import RULES, PairedTest, RuleName
+from faultpath.statistics.power import fewest_scenes
+from faultpath.statistics.resamples import Resamples
 
 ALPHA = 0.05
 

@@ -4,7 +4,8 @@ from typing import Literal
 
 from faultpath.core.results import Result
 from faultpath.decisions.question import EarlierLook, Question
-from faultpath.statistics import BreakEven, Estimate, Sign, Turn
+from faultpath.statistics.decisions import Turn
+from faultpath.statistics.estimate import BreakEven, Estimate, Sign
 
 CORRECT = "correct"
 SHARED = "shared"

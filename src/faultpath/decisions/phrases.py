@@ -15,7 +15,7 @@ from faultpath.decisions.wording import (
     signed,
     where,
 )
-from faultpath.statistics import Region
+from faultpath.statistics.estimate import Region
 
 FEW_TRAININGS = 10
 """With fewer, an interval for newly trained models rests on how trainings are distributed."""

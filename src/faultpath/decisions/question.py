@@ -4,7 +4,7 @@ from pydantic import Field
 
 from faultpath.core.results import Result
 from faultpath.faults import Fault
-from faultpath.statistics import RULES, RuleName
+from faultpath.statistics.estimate import RULES, RuleName
 from faultpath.trials.outcome import VEHICLE, Metric, MetricName
 from faultpath.trials.question import Generalise, StopWhen
 

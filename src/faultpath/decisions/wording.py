@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from faultpath.decisions.model import CORRECT, SHARED, Effect
 from faultpath.decisions.question import Question
-from faultpath.statistics import BreakEven, Estimate
+from faultpath.statistics.estimate import BreakEven, Estimate
 
 MINUS = "−"
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

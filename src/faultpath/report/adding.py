@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.decisions import CORRECT, wording
+from faultpath.decisions import wording
+from faultpath.decisions.model import CORRECT
 from faultpath.decisions.wording import where
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, by_scene

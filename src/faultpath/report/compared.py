@@ -12,8 +12,8 @@ from faultpath.decisions import wording
 from faultpath.decisions.family import ALPHA, CORRECT, SHARED, alpha_shares
 from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.decisions.question import Question
-from faultpath.statistics import RULES, Sign
 from faultpath.statistics.decisions import holm
+from faultpath.statistics.estimate import RULES, Sign
 from faultpath.trials.provenance import RunProvenance
 
 _SIZED = re.compile(r"([^=,@]+)=([^=,@/]+)(.*)", re.DOTALL)

@@ -6,7 +6,7 @@ from markupsafe import Markup
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from faultpath.decisions import RunProvenance, wording
+from faultpath.decisions import wording
 from faultpath.decisions.map.lattice import SHARED
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.words import cut
@@ -17,6 +17,7 @@ from faultpath.decisions.tables.terminal import drawn
 from faultpath.report.frame import render
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.statistics.contrast import MIN_SCENES
+from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.atomic import make_folder, write_text
 
 

@@ -8,7 +8,7 @@ from faultpath.decisions.phrases import adjusted, only_alone
 from faultpath.decisions.summary import not_standing
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import block
-from faultpath.statistics import Estimate
+from faultpath.statistics.estimate import Estimate
 
 _ARMS = ("baseline", "repair")
 DIFFERENCE = ("difference", "interval", "won")

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from faultpath.decisions import DecisionRecord
+from faultpath.decisions.model import DecisionRecord
 from faultpath.report.pairing import Kind, Pair, by_scene
 
 At: TypeAlias = tuple[str, int]

@@ -1,7 +1,7 @@
 """A system composed of a plant of episodes and modules; all that can be seen is not declared."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from hashlib import sha256
 from typing import Any, cast
 
@@ -173,11 +173,11 @@ class ComposedSystem(LoopSystem):
             raise SystemMistake(f"system '{self.name}': {error}") from None
 
 
-@dataclass
 class _Shapes:
     """Takes the place of the taps during a first step, and notes the shapes that pass."""
 
-    shapes: dict[str, tuple[int, ...]] = field(default_factory=dict[str, tuple[int, ...]])
+    def __init__(self) -> None:
+        self.shapes: dict[str, tuple[int, ...]] = {}
 
     def set_active(self, mask: Any) -> None:
         del mask

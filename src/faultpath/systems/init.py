@@ -27,7 +27,17 @@ def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
             f"{name!r} cannot name a system and its file: take small letters, digits and '_', such "
             "as my_rover."
         )
-    if taken := _taken(name, folder):
+    found = None if iskeyword(name) else find_spec(name)
+    places = [] if found is None else [*(found.submodule_search_locations or ()), found.origin]
+    here = all(Path(place).resolve().is_relative_to(folder.resolve()) for place in places if place)
+    taken = ""
+    if iskeyword(name):
+        taken = "a word of Python"
+    elif name in sys.stdlib_module_names:
+        taken = "a module of Python's own"
+    elif places and ("site-packages" in str(places) or not here):
+        taken = "an installed package"
+    if taken:
         raise UserError(
             f"{name!r} is {taken}, which a file {name}.py would stand before: choose another name, "
             f"such as my_{name}."
@@ -45,16 +55,3 @@ def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
     for place, text in zip(places, (system, test), strict=True):
         place.write_text(text, "utf-8")
     return places
-
-
-def _taken(name: str, folder: Path) -> str:
-    """Say what Python knows by this name, other than what lies in `folder`."""
-    if iskeyword(name):
-        return "a word of Python"
-    if name in sys.stdlib_module_names:
-        return "a module of Python's own"
-    found = find_spec(name)
-    places = [] if found is None else [*(found.submodule_search_locations or ()), found.origin]
-    here = all(Path(place).resolve().is_relative_to(folder.resolve()) for place in places if place)
-    installed = "site-packages" in str(places) or not here
-    return "an installed package" if places and installed else ""

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from faultpath.core.errors import UserError
 from faultpath.core.frozen import Frozen
-from faultpath.statistics import Contrast, Estimate, WindowQuantiles
+from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.distributions import t_quantile
-from faultpath.statistics.effects import N_RESAMPLES
+from faultpath.statistics.effects import N_RESAMPLES, WindowQuantiles
+from faultpath.statistics.estimate import Estimate
 from faultpath_quadrotor.flightlog.flight import INTERVAL_S, Flight, nominal, through_air
 from faultpath_quadrotor.flightlog.reading import Floats
 

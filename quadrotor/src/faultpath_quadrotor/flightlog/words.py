@@ -4,7 +4,7 @@ from math import exp
 
 from faultpath.decisions.tables import MISSING, Table, line
 from faultpath.decisions.wording import counted, interval, plain
-from faultpath.statistics import Estimate
+from faultpath.statistics.estimate import Estimate
 from faultpath_quadrotor.flightlog.compensation import Combination, Compensation
 
 CAVEAT = (

@@ -5,7 +5,7 @@ from dataclasses import astuple, dataclass
 
 from faultpath.decisions import wording
 from faultpath.decisions.tables import MISSING, Entry
-from faultpath.statistics import Contrast
+from faultpath.statistics.contrast import Contrast
 from faultpath.trials import Status
 from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.cells import Cell, of_seed

@@ -11,8 +11,8 @@ from faultpath.api.display import Display, display
 from faultpath.api.runs import FinishedRun, read_provenance
 from faultpath.api.systems import LOCAL, check_executor, executor_of
 from faultpath.core.errors import Stopped, UserError
-from faultpath.decisions import RunProvenance
 from faultpath.decisions.tables import markdown
+from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.atomic import write_text
 from faultpath.trials.store.folder import AGAIN, DELIVERIES, unseal
 from faultpath.trials.work.executor import Progress

@@ -6,7 +6,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from faultpath.statistics import Contrast, Estimate, Resamples, success_rate
+from faultpath.statistics.contrast import Contrast
+from faultpath.statistics.effects import success_rate
+from faultpath.statistics.estimate import Estimate
+from faultpath.statistics.resamples import Resamples
 from faultpath.trials import OutcomeTable, PairingRefused, Pairs, Status, pair
 from faultpath_quadrotor.evidence.table import EvidenceTable, Measured, Measurement
 from faultpath_quadrotor.paper.cells import Cell

@@ -8,7 +8,6 @@ from pathlib import Path
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
-from faultpath.decisions import RunProvenance
 from faultpath.decisions.tables import Table
 from faultpath.trials import (
     Deliveries,
@@ -19,6 +18,7 @@ from faultpath.trials import (
 )
 from faultpath.trials.code import system_code
 from faultpath.trials.execution.runner import RunResult
+from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.atomic import write_text
 from faultpath.trials.store.folder import (
     OUTCOMES,

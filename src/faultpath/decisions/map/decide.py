@@ -19,7 +19,7 @@ from faultpath.decisions.map.lattice import (
 from faultpath.decisions.map.model import Flip, MapPoint, MapQuestion, MapRecord, MapSurface
 from faultpath.decisions.map.study import MapPlan
 from faultpath.decisions.map.surface import Combined, Differences, sign_of, simultaneous
-from faultpath.statistics import Sign
+from faultpath.statistics.estimate import Sign
 from faultpath.statistics.inputs import Floats
 from faultpath.trials import OutcomeTable
 

@@ -6,7 +6,7 @@ from faultpath.core.frozen import Frozen
 from faultpath.core.results import Result
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.wording import MINUS
-from faultpath.statistics import Sign
+from faultpath.statistics.estimate import Sign
 
 
 class MapQuestion(Frozen, allow_inf_nan=False):

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from faultpath.core.errors import UserError
-from faultpath.decisions import CORRECT
 from faultpath.decisions.compared import compared
 from faultpath.decisions.map.lattice import COARSE, Point, lattice
 from faultpath.decisions.map.model import MapQuestion
 from faultpath.decisions.map.surface import Differences
+from faultpath.decisions.model import CORRECT
 from faultpath.decisions.planning import scenes_of, two_variants
 from faultpath.faults import AnyFault, FaultText
 from faultpath.interface import module_of

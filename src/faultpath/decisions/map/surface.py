@@ -23,9 +23,9 @@ from faultpath.decisions.map.lattice import (
     rays,
     sizes,
 )
-from faultpath.statistics import Sign
 from faultpath.statistics.contrast import MIN_SCENES, ROUNDING
 from faultpath.statistics.distributions import binomial_cdf, normal_p_value
+from faultpath.statistics.estimate import Sign
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import SceneValues, interval, quantile, rejects

@@ -11,7 +11,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml, yaml_text
 from faultpath.core.frozen import Frozen
-from faultpath.decisions import CORRECT, SHARED
+from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.planning import Audit
 from faultpath.trials.question import Question
 

@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass
 
-from faultpath.statistics import BreakEven, break_even
+from faultpath.statistics.breakeven import break_even
 from faultpath.statistics.contrast import MIN_SCENES
+from faultpath.statistics.estimate import BreakEven
 from faultpath_quadrotor.paper.answers import Part
 from faultpath_quadrotor.paper.cells import Printed, published
 from faultpath_quadrotor.paper.claims.rules import (

@@ -7,8 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from faultpath.statistics import Contrast
-from faultpath.statistics.contrast import ROUNDING
+from faultpath.statistics.contrast import ROUNDING, Contrast
 from faultpath_quadrotor.paper.answers import Answer
 
 POINT_SCENES = 50

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
-from faultpath.statistics import Contrast, change, decide_family, turn, with_test
-from faultpath.statistics.contrast import ROUNDING
+from faultpath.statistics.contrast import ROUNDING, Contrast, change
+from faultpath.statistics.decisions import decide_family, turn, with_test
 from faultpath_quadrotor.paper.answers import Answer, ClaimVerdict, Part, Size
 from faultpath_quadrotor.paper.cells import Printed, PublishedClaim
 from faultpath_quadrotor.paper.claims.rules import (

@@ -1,7 +1,7 @@
 """Table V: from which fault frequency on each repair pays."""
 
 from faultpath.decisions import wording
-from faultpath.statistics import break_even
+from faultpath.statistics.breakeven import break_even
 from faultpath_quadrotor.paper.cells import Cell, published
 from faultpath_quadrotor.paper.entries import Group, Made, decided
 from faultpath_quadrotor.paper.page import INTERVALS, Page, Row, TableSpec

@@ -7,15 +7,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics import (
-    Contrast,
-    Resamples,
-    mean_effect,
-    median_effect,
-    success_effect,
-    weighted_sum,
-    with_test,
-)
+from faultpath.statistics.contrast import Contrast, weighted_sum
+from faultpath.statistics.decisions import with_test
+from faultpath.statistics.effects import mean_effect, median_effect, success_effect
+from faultpath.statistics.resamples import Resamples
 from faultpath.trials import Pairs
 from faultpath.trials.pairing import Trials
 from faultpath_quadrotor.paper.cells import Cell

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics import Contrast, success_rate
+from faultpath.statistics.contrast import Contrast
+from faultpath.statistics.effects import success_rate
 from faultpath_quadrotor.paper.cells import Cell, of_seed
 from faultpath_quadrotor.paper.pages import figure_3
 from faultpath_quadrotor.paper.quantities.differences import contrast, joint

@@ -9,7 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics import Contrast, WindowQuantiles, weighted_sum
+from faultpath.statistics.contrast import Contrast, weighted_sum
+from faultpath.statistics.effects import WindowQuantiles
 from faultpath_quadrotor.evidence.table import QUANTITIES, EvidenceTable, Measured, Measurement
 from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable, decisive
 

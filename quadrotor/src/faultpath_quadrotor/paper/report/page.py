@@ -4,11 +4,12 @@ from collections.abc import Sequence
 
 from markupsafe import Markup
 
-from faultpath.decisions import RunProvenance, wording
+from faultpath.decisions import wording
 from faultpath.decisions.tables import Table
 from faultpath.decisions.tables.html import html
 from faultpath.report.frame import render
 from faultpath.report.svg import Axis, Svg, draw_axes, text_width, tick_label
+from faultpath.trials.provenance import RunProvenance
 from faultpath_quadrotor.paper.answers import Point, Reproduction, Series, Sweep
 from faultpath_quadrotor.paper.report import words
 
