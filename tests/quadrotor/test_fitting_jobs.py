@@ -152,7 +152,7 @@ def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(
 
     def note(self) -> None:
         original(self)
-        processes.append(self._process)
+        processes.append(self.popen)
 
     def stop(now: Overview) -> None:
         if journal.exists() and now.running:

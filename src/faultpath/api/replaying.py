@@ -127,20 +127,16 @@ def run_again(
 
     Raises what makes an audit itself wrong: code that changed under way, workers that do not start.
     """
-    wanted = set(asked)
-    tasks: dict[str, Block] = {}
-    addresses: dict[tuple[str, str], list[TrialAddress]] = {}
+    wanted = before.keys() & set(asked)
+    arms: dict[str, Arm] = {}
+    addresses: dict[str, dict[str, list[TrialAddress]]] = {}
     for row in study.rows:
-        scenes: list[str] = []
         for scene in study.scenes:
             at = TrialAddress(row.variant, row.path, row.seed, scene)
-            if at in wanted and at in before:
-                addresses.setdefault((row.arm.key(), scene), []).append(at)
-                scenes.append(scene)
-        if scenes:
-            old = tasks.get(row.arm.key())
-            every = dict.fromkeys((*(old.scenes if old else ()), *scenes))
-            tasks[row.arm.key()] = Block(row.arm, tuple(every), signals=True)
+            if at in wanted:
+                arms[key := row.arm.key()] = row.arm
+                addresses.setdefault(key, {}).setdefault(scene, []).append(at)
+    tasks = [Block(arms[key], tuple(scenes), signals=True) for key, scenes in addresses.items()]
     found: dict[TrialAddress, Replayed] = {}
     done = 0
 
@@ -148,7 +144,7 @@ def run_again(
         nonlocal done
         done += 1
         for place, scene in enumerate(task.scenes):
-            for at in addresses[task.arm.key(), scene]:
+            for at in addresses[task.arm.key()][scene]:
                 differs, signals = f"failed: {run.error}", ()
                 if not run.error:
                     again = Done((run.outcomes[place],), ())
@@ -158,7 +154,7 @@ def run_again(
         note(task.arm, done, len(tasks))
 
     built = Built.of(system, study.system, study.library)
-    run_blocks(executor, built, tasks.values(), settle)
+    run_blocks(executor, built, tasks, settle)
     return [found[at] for at in before if at in found]
 
 

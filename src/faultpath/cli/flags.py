@@ -18,7 +18,6 @@ from faultpath.trials.question import Flag, Request, flag
 _Verb = TypeVar("_Verb", bound=Callable[..., Any])
 _KEYWORD = inspect.Parameter.KEYWORD_ONLY
 _PLAIN = (str, int, float, bool)
-_HELP = "--help"
 _SHORT = 24
 """Letters of choices that stand where the type would."""
 _DEST = "system_"
@@ -108,7 +107,7 @@ def with_system_flags(
     but only where the line asks for help or holds a flag that the verb itself has not got.
     `UserError` for a flag that neither of the two has, and for a system that cannot be asked.
     """
-    own = {_HELP}
+    own = {"--help"}
     signature = inspect.signature(verb)
     for parameter in signature.parameters.values():
         for note in getattr(parameter.annotation, "__metadata__", ()):
@@ -117,7 +116,7 @@ def with_system_flags(
                 own |= {named or f"--{parameter.name}", *(note.param_decls or ())}
     if "--" in arguments:
         arguments = arguments[: arguments.index("--")]
-    helps = _HELP in arguments
+    helps = "--help" in arguments
     asked = {part.partition("=")[0] for part in arguments if part.startswith("--")} - own
     if not arguments or arguments[0].startswith("-") or not (asked or helps):
         return verb

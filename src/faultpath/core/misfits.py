@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast, get_args
 
-from faultpath.core.text import printable, unknown
+from faultpath.core.text import printable, shortened, unknown
 
 if TYPE_CHECKING:
     from pydantic import BaseModel, ValidationError
@@ -137,4 +137,4 @@ def _shown(given: object) -> str:
         text = printable(repr(given))
     except Exception:  # whatever a system's own object does when it is printed
         return f"a {type(given).__name__}"
-    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"
+    return shortened(text, _SHOWN)

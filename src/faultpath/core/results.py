@@ -1,12 +1,17 @@
-"""How results look in a console and in a notebook: a line."""
+"""What models of data have in common, and how results look in a console: a line."""
 
-from pydantic import BaseModel
+from pydantic import BaseModel, ConfigDict
 
-from faultpath.core.frozen import Frozen
-from faultpath.core.text import printable
+from faultpath.core.text import printable, shortened
 
 _LINE, _CELL = 160, 80
 """Letters of a line and of a cell."""
+
+
+class Frozen(BaseModel):
+    """Data that nobody changes, and that holds nothing but its fields."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class Shown(BaseModel):
@@ -16,18 +21,14 @@ class Shown(BaseModel):
         """Return the headline where there is one, else the fields that say something."""
         said = getattr(getattr(self, "verdict", self), "headline", "")
         said = said or ", ".join(
-            f"{name}={_cut(printable(str(value)), _CELL)}"
+            f"{name}={shortened(printable(str(value)), _CELL)}"
             for name, value in self
             if value not in (None, (), {}, "")
         )
-        return f"<{type(self).__name__}: {_cut(said, _LINE)}>"
+        return f"<{type(self).__name__}: {shortened(said, _LINE)}>"
 
     __str__ = __repr__
 
 
 class Result(Shown, Frozen):
     """A part of a result: data that nobody changes."""
-
-
-def _cut(text: str, most: int) -> str:
-    return text if len(text) <= most else f"{text[: most - 1]}…"

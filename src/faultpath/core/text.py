@@ -44,6 +44,11 @@ def one_line(text: str) -> str:
     return line if len(line) <= _LONGEST else _cut(line, _LONGEST // 2)
 
 
+def shortened(text: str, most: int) -> str:
+    """Return a text of at most so many letters."""
+    return text if len(text) <= most else f"{text[: most - 1]}…"
+
+
 def listed(names: Iterable[str]) -> str:
     """Return names in one line, `none` when there are none."""
     return ", ".join(sorted(names)) or "none"

@@ -6,16 +6,13 @@ from typing import Any
 
 from faultpath.decisions.model import CORRECT, AtThreshold, Cell, Path
 from faultpath.decisions.question import Question
+from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.statistics.effects import mean_effect, median_effect, success_effect
 from faultpath.statistics.estimate import Estimate
-from faultpath.statistics.power import fewest_scenes
 from faultpath.statistics.resamples import Resamples
 from faultpath.trials.outcome import Status
 from faultpath.trials.pairing import Bools, Pairs
 from faultpath.trials.table import OutcomeTable
-
-MIN_SCENES = fewest_scenes()
-"""Fewer scenes than this cannot give a two-sided 95 % interval of a median: 2 / 2^5 > 0.05."""
 
 
 def percent(success: Bools) -> float:

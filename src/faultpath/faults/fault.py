@@ -7,7 +7,7 @@ from typing import Annotated, Literal, Self, TypeAlias
 from pydantic import Field, model_validator
 
 from faultpath.core.errors import UserError
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.core.text import listed, unknown
 from faultpath.faults.base import Draws
 from faultpath.faults.registry import AnyIntervention

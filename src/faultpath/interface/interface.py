@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 
 from faultpath.core.arrays import misfit
 from faultpath.core.errors import UserError
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.core.text import listed, unknown
 from faultpath.interface.model import Channel, Made, Name, Source
 

@@ -19,7 +19,7 @@ from pydantic import (
 )
 
 from faultpath.core.arrays import Constant
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.core.text import steers
 
 Name = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]

@@ -5,7 +5,7 @@ from math import isclose
 from pathlib import Path
 from typing import TypeAlias
 
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.core.text import listed
 from faultpath.learning.fitting import Fit
 from faultpath.learning.model_card import Data, FitRecord, read_card

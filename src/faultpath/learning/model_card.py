@@ -15,7 +15,7 @@ from pydantic import Field
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, model_of
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.core.text import extra
 from faultpath.learning.repair import Repair
 from faultpath.loop import TapCount

@@ -8,7 +8,7 @@ import numpy as np
 
 from faultpath.core.arrays import Constant
 from faultpath.core.errors import UserError
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.core.text import listed
 from faultpath.faults import ALL, AnyFault, Bias, Coupled, Erase, Fault, Noise, parse_fault
 from faultpath.interface import Interface

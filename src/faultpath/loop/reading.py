@@ -19,15 +19,6 @@ class Reading:
     """Control step at which the value was valid."""
 
 
-def _itself(answer: Any) -> Array:
-    return answer
-
-
-def _replaced(answer: Any, value: Array) -> Any:
-    del answer
-    return value
-
-
 @dataclass(frozen=True, slots=True)
 class Query:
     """The value of a reading that is a function: clearance at points, motion under commands.
@@ -39,10 +30,10 @@ class Query:
 
     answer: Callable[[Any], Any]
     """What a request gets without a fault."""
-    value: Callable[[Any], Array] = _itself
+    value: Callable[[Any], Array] = lambda answer: answer
     """The array `[B, ...]` in an answer that faults act on, as the source declares it. It is
     called only where something looks at it."""
-    changed: Callable[[Any, Array], Any] = _replaced
+    changed: Callable[[Any, Array], Any] = lambda answer, value: value
     """The answer with another such array in its place."""
 
 

@@ -9,6 +9,7 @@ import hashlib
 from base64 import b64encode
 from collections.abc import Sequence
 from functools import cache
+from typing import Any
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
@@ -53,12 +54,6 @@ def _environment(package: str) -> tuple[Environment, ChoiceLoader]:
         return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
     sources = ChoiceLoader([PackageLoader(package), PackageLoader(OURS)])
-    made = Environment(
-        loader=sources,
-        autoescape=True,
-        finalize=shown,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return made, sources
+    blocks: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
+    strict: dict[str, Any] = {"autoescape": True, "undefined": StrictUndefined}
+    return Environment(loader=sources, finalize=shown, **strict, **blocks), sources

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 
 ALPHA = 0.05
 Sign: TypeAlias = Literal[-1, 0, 1]

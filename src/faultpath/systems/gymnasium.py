@@ -125,9 +125,8 @@ class GymnasiumPlant(EpisodePlant):
     def _make(self) -> Any:
         if not isinstance(self._environment, str):
             return self._environment()
-        if self._limit is None:
-            return gymnasium.make(self._environment)
-        return gymnasium.make(self._environment, max_episode_steps=self._limit)
+        limit: dict[str, Any] = {} if self._limit is None else {"max_episode_steps": self._limit}
+        return gymnasium.make(self._environment, **limit)
 
 
 def _identity(env: Any) -> str:

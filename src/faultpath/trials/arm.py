@@ -5,7 +5,7 @@ import json
 
 from pydantic import Field
 
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.faults import AnyFault
 
 _OBJECT = " object"

@@ -15,7 +15,7 @@ from pydantic import Field
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.files.opening import opened
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import paths_of
 from faultpath.trials.declared import shown

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import StringConstraints
 
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.interface.model import Words
 from faultpath.trials.declared import shown
 

@@ -13,8 +13,8 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar, cast
 from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError
 
 from faultpath.core.errors import UserError
-from faultpath.core.frozen import Frozen
 from faultpath.core.misfits import misfit_of
+from faultpath.core.results import Frozen
 
 Generalise = Literal["scenes", "models"]
 StopWhen = Literal["decided", "all-decided"]

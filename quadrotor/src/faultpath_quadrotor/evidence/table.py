@@ -18,7 +18,7 @@ from pydantic import Field
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.parquet import INTEGER, NUMBER, TEXT, Unreadable, decode, encode
 

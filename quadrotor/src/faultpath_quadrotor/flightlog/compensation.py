@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.core.errors import UserError
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.distributions import t_quantile
 from faultpath.statistics.effects import N_RESAMPLES, WindowQuantiles

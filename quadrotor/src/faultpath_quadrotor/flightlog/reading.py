@@ -17,7 +17,7 @@ from pydantic import Field
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.core.text import one_line, unknown
 
 Floats: TypeAlias = NDArray[np.float64]

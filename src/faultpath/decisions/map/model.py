@@ -2,8 +2,7 @@
 
 from pydantic import Field
 
-from faultpath.core.frozen import Frozen
-from faultpath.core.results import Result
+from faultpath.core.results import Frozen, Result
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.wording import MINUS
 from faultpath.statistics.estimate import Sign

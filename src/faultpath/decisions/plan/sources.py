@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from faultpath.core.errors import UserError
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.faults import FaultText
 from faultpath.interface import Interface, Provenance, Source
 from faultpath.trials import System, Variant

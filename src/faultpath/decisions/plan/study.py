@@ -10,7 +10,7 @@ from pydantic import Field, StringConstraints, model_validator
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml, yaml_text
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.planning import Audit
 from faultpath.trials.question import Question

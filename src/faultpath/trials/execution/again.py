@@ -14,7 +14,7 @@ import numpy as np
 
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.loop import WrittenTo
 from faultpath.trials.attempt import Died, Done, Reply, Wrong
 from faultpath.trials.execution.schedule import Task, Unit

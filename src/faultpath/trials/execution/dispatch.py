@@ -100,9 +100,9 @@ def dispatch(
     if time_limit_s is not None and not (math.isfinite(time_limit_s) and time_limit_s > 0):
         raise UserError(f"the time limit is {time_limit_s:g} s: give a number of seconds above 0")
     limit_s = time_limit_s or built.system.time_limit_s or LONGEST_S
-    call = (
-        partial(built.work, work) if executor.in_process else partial(_elsewhere, built.job, work)
-    )
+    call = partial(built.work, work)
+    if not executor.in_process:
+        call = partial(_elsewhere, built.job, work)
     running: dict[int, _Running[T]] = {}
     again: list[tuple[T, bool]] = []
     """Tasks whose worker was lost: one loss is nobody's fault, and a second one is the task's."""

@@ -16,7 +16,7 @@ from typing import Any
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of, read_json
-from faultpath.core.frozen import Frozen
+from faultpath.core.results import Frozen
 from faultpath.trials.arm import Study
 from faultpath.trials.code import CodeState, named
 from faultpath.trials.store import atomic

@@ -1,8 +1,9 @@
 """Named signals of single trials as Parquet: one row for each component of a signal."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import groupby
+from operator import itemgetter
 from typing import TypeAlias
 
 import numpy as np
@@ -12,7 +13,6 @@ from faultpath.trials.store.parquet import (
     INTEGER,
     NUMBERS,
     TEXT,
-    Row,
     Unreadable,
     decode,
     encode,
@@ -57,42 +57,37 @@ Signals: TypeAlias = Mapping[TrialAddress, tuple[Signal, ...]]
 
 def encode_signals(signals: Signals) -> bytes:
     """Return the signals as a Parquet file."""
-    return encode(_SCHEMA, _rows(signals))
+    rows = [
+        {
+            **address._asdict(),
+            "signal": each.name,
+            "topic": each.topic,
+            "unit": each.unit,
+            "component": component,
+            "part": each.parts[component] if each.parts else "",
+            "values": np.ascontiguousarray(values, np.float32),
+        }
+        for address, named in signals.items()
+        for each in named
+        for component, values in enumerate(each.values.T)
+    ]
+    return encode(_SCHEMA, rows)
 
 
 def decode_signals(data: bytes) -> dict[TrialAddress, tuple[Signal, ...]]:
     """Return the signals of a Parquet file; `Unreadable` when it holds none."""
     rows, _ = decode(data, _SCHEMA)
     found: dict[TrialAddress, list[Signal]] = {}
-    for key, group in groupby(rows, key=_key):
+    same = itemgetter("variant", "path", "seed", "scene", "signal", "topic", "unit")
+    for key, group in groupby(rows, key=same):
         parts = tuple(group)
         columns = [part["values"] for part in parts]
         if len({len(column) for column in columns}) != 1:
             raise Unreadable("the components of a signal differ in length")
-        address, name, topic, unit = key
+        *address, name, topic, unit = key
         if any(np.isinf(column).any() for column in columns):
             raise Unreadable(f"the signal '{name}' is infinite")
         named = tuple(str(part["part"]) for part in parts if part["part"])
         signal = Signal(name, topic, unit, np.stack(columns, axis=1), named)
-        found.setdefault(address, []).append(signal)
+        found.setdefault(TrialAddress(*address), []).append(signal)
     return {address: tuple(signals) for address, signals in found.items()}
-
-
-def _key(row: Row) -> tuple[TrialAddress, str, str, str]:
-    address = TrialAddress(row["variant"], row["path"], row["seed"], row["scene"])
-    return address, row["signal"], row["topic"], row["unit"]
-
-
-def _rows(signals: Signals) -> Iterable[Row]:
-    for address, named in signals.items():
-        for each in named:
-            for component, values in enumerate(each.values.T):
-                yield {
-                    **address._asdict(),
-                    "signal": each.name,
-                    "topic": each.topic,
-                    "unit": each.unit,
-                    "component": component,
-                    "part": each.parts[component] if each.parts else "",
-                    "values": np.ascontiguousarray(values, np.float32),
-                }
