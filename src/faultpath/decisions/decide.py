@@ -211,12 +211,12 @@ def _effect(
         extreme = "ceiling"
     failed, least = None, None
     if path in family.fills:
-        fills, voids = family.fills[path], found.voids[path]
+        (against, favour), voids = family.fills[path], found.voids[path]
         failed = FailedTrials(
             repair=voids.failed[0],
             baseline=voids.failed[1],
-            against_pp=fills.against.value,
-            favour_pp=fills.favour.value,
+            against_pp=against.value,
+            favour_pp=favour.value,
             uneven=voids.uneven,
             unsettled=f"effect/{path}" in family.unsettled,
         )

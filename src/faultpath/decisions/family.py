@@ -2,7 +2,6 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 from faultpath.decisions.compared import Arms, Voids
 from faultpath.decisions.model import CORRECT, SHARED
@@ -17,13 +16,6 @@ from faultpath.statistics.resamples import Resamples
 ALPHA = 0.05
 
 
-class Fills(NamedTuple):
-    """The effect of one path with what failed trials leave open filled in."""
-
-    against: Contrast
-    favour: Contrast
-
-
 @dataclass(frozen=True)
 class Family:
     """Every contrast of an audit with its decision."""
@@ -35,8 +27,9 @@ class Family:
     turns: Mapping[str, Turn]
     hypotheses: int
     scenes_needed: int
-    fills: Mapping[str, Fills]
-    """By path, where trials failed: what their outcomes could make of the effect."""
+    fills: Mapping[str, tuple[Contrast, Contrast]]
+    """By path, where trials failed: the effect with what they leave open against the repair, and
+    for it."""
     unsettled: Collection[str]
     """Isolated paths whose change, and paths whose effect, would be decided but for those trials;
     by the names of `alpha_shares`."""
@@ -82,11 +75,11 @@ def decide_paths(
     parts = alpha_shares(tested, led(primary, success))
     weights = {name: parts[name] for name in family} if RULES[rule].weighted else None
     made = decide_family(family, alpha, shares, weights)
-    fills, unsettled = dict[str, Fills](), list[str]()
+    fills, unsettled = dict[str, tuple[Contrast, Contrast]](), list[str]()
     if voids:
         low = shown({path: each.against for path, each in voids.items()})
         high = shown({path: each.favour for path, each in voids.items()})
-        fills = {path: Fills(low[path], high[path]) for path in voids}
+        fills = {path: (low[path], high[path]) for path in voids}
         # What is open is taken each time as it is nearest to showing nothing, or the contrary.
         ends = {_effect(path): (low[path], high[path]) for path in tested}
         ends |= {

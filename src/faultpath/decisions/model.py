@@ -249,7 +249,7 @@ class DecisionRecord(Result):
         return self.stopped is not None and effect.path in self.stopped.small
 
     @property
-    def flown(self) -> str:
+    def scenes_run(self) -> str:
         """The number of scenes, and of how many where an audit could have taken more."""
         most = str(self.question.n_scenes)
         if self.stopped is None or self.stopped.scenes == self.question.n_scenes:

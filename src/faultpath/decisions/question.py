@@ -17,7 +17,7 @@ class StopRule(Result):
     margin_pp: float | None = None
     """A difference that is shown to be smaller than this counts as decided too."""
     order: tuple[str, ...]
-    """The scenes in the order in which they are flown, drawn before the first trial."""
+    """The scenes in the order in which they are run, drawn before the first trial."""
     order_seed: int
     """Of the draw, with the hash of the library."""
     look: int

@@ -17,7 +17,7 @@ from faultpath.statistics.estimate import RULES, Sign
 from faultpath.trials.provenance import RunProvenance
 
 _SIZED = re.compile(r"([^=,@]+)=([^=,@/]+)(.*)", re.DOTALL)
-_MAY_DIFFER = ("Fault", "Scenes flown", "Scenes compared")
+_MAY_DIFFER = ("Fault", "Scenes run", "Scenes compared")
 _DIGITS = 8
 
 
@@ -92,12 +92,12 @@ def _asked(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
             "System": run.asked.system,
             "Library": run.asked.library,
             "State of the library": run.asked.library_hash[:_DIGITS],
-            "Scenes flown": run.record.flown,
+            "Scenes run": run.record.scenes_run,
             "Scenes compared": str(run.record.scenes),
             "Seeds": ", ".join(map(str, run.asked.seeds)),
             "Primary path": run.asked.primary,
             "Intervals and tests hold for": run.record.estimand,
-            "Stopping": wording.sentence(run.record.stopping or "all scenes were flown"),
+            "Stopping": wording.sentence(run.record.stopping or "all scenes were run"),
             **{f"Option {key}": value for key, value in sorted(run.asked.options.items())},
         }
         for run in runs

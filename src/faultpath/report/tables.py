@@ -118,7 +118,7 @@ def whole_table(record: DecisionRecord) -> Table:
     asked = record.question
     title = (
         f"{asked.repair} against {asked.baseline} on {asked.system}, fault {asked.fault}: "
-        f"{record.flown} scenes of {asked.library}, {wording.seeds(asked.seeds)}"
+        f"{record.scenes_run} scenes of {asked.library}, {wording.seeds(asked.seeds)}"
     )
     corrected = f"Holm's correction is for {record.hypotheses} contrasts."
     if record.stopped is not None:
