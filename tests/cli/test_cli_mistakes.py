@@ -94,7 +94,7 @@ QUADROTOR_MISTAKES = {
         {"fault": "wind:scale=2@reconstruction"},
         ["does not read it", "predictor.wind_map"],
     ),
-    "reaches nobody": (
+    "reaches no consumer": (
         {"repair": "true-wind", "fault": "mass:scale=1.1@reconstruction"},
         ["neither 'zero-wind' nor 'true-wind'"],
     ),

@@ -131,5 +131,5 @@ def test_consumers_of_one_channel_share_the_draw_and_others_are_left_alone():
 
 
 def test_a_fault_that_strikes_nobody_is_refused():
-    with pytest.raises(UserError, match="reaches nobody"):
+    with pytest.raises(UserError, match="reaches no consumer"):
         corrupted([dcc(["predictor.trim"])])

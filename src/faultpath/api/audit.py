@@ -71,8 +71,6 @@ def audit(
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
     asked, chosen, library, display = begin("audit", AuditQuestion, system, given, progress)
-    if len(each_size(asked.fault)) > 1:
-        raise UserError(f"fault '{asked.fault}' has several sizes: use faultpath.audits.")
     laid = plan_audit(chosen.system, chosen.spec, asked, library)
     named = [laid.study.name, asked.fault, Path(asked.library).stem]
     if asked.metric:

@@ -166,8 +166,8 @@ def trace(
         **given: ...
 
     Raises:
-        UserError: There is no such system, variant, library or scene, the fault reaches nobody, or
-            the run fails.
+        UserError: There is no such system, variant, library or scene, the fault reaches no
+            consumer, or the run fails.
     """
     asked, chosen, _, _ = begin("trace", TraceQuestion, system, given, progress)
     return traced(asked, chosen)

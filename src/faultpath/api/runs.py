@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from faultpath.core.errors import UserError
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.decisions.model import DecisionRecord
-from faultpath.decisions.planning import struck_taps
+from faultpath.decisions.planning import faulted_taps
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.tables import markdown_table
@@ -238,7 +238,7 @@ def _doubt(
             if not taps.issuperset((tap.channel, tap.consumer) for tap in named):
                 return "the record names taps that the interface has not got"
             try:
-                received = struck_taps(deliveries.at(variant, path.name))
+                received = faulted_taps(deliveries.at(variant, path.name))
             except KeyError:
                 return "the record has arms without receipts"
             if received != named:

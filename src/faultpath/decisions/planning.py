@@ -47,8 +47,8 @@ class Audit:
         paths = [
             path.model_copy(
                 update={
-                    "struck": struck_taps(deliveries.at(asked.repair, path.name)),
-                    "baseline_struck": struck_taps(deliveries.at(asked.baseline, path.name)),
+                    "struck": faulted_taps(deliveries.at(asked.repair, path.name)),
+                    "baseline_struck": faulted_taps(deliveries.at(asked.baseline, path.name)),
                 }
             )
             for path in self.paths
@@ -60,7 +60,7 @@ class Audit:
         return stops(self.question, self.paths, table)
 
 
-def struck_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
+def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
     """Return the taps at which receipts show a fault in force."""
     return tuple(
         FaultedTap(

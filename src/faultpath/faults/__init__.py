@@ -2,9 +2,16 @@
 
 from faultpath.faults.base import Draws, Intervention, Moment
 from faultpath.faults.drawn import Bias, Drift, Dropout, Noise, Shuffle, UniformScale
-from faultpath.faults.fault import ALL, AnyFault, Coupled, Fault
+from faultpath.faults.fault import (
+    ALL,
+    INTERVENTIONS,
+    AnyFault,
+    AnyIntervention,
+    Coupled,
+    Fault,
+    Sequence,
+)
 from faultpath.faults.parse import FaultPreset, FaultText, each_size, parse_fault
-from faultpath.faults.registry import INTERVENTIONS, AnyIntervention, Sequence
 from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Scale
 
 __all__ = [

@@ -1,17 +1,87 @@
-"""A fault: a channel, the consumers that get it, what is done to them, and when."""
+"""A fault: a channel, the consumers that get it, which of all interventions, and when."""
 
 from collections.abc import Collection
+from dataclasses import replace
 from math import inf
-from typing import Annotated, Literal, Self, TypeAlias
+from typing import Annotated, Literal, Self, TypeAlias, get_args
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, model_validator
 
+from faultpath.core.arrays import Array
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.text import listed, unknown
-from faultpath.faults.base import Draws
-from faultpath.faults.registry import AnyIntervention
-from faultpath.interface import Interface, module_of, modules
+from faultpath.faults.base import Draws, Intervention, Memory, Moment
+from faultpath.faults.drawn import Bias, Drift, Dropout, Noise, Shuffle, UniformScale
+from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Scale
+from faultpath.interface import Channel, Interface, module_of, modules
+
+
+class Sequence(Intervention):
+    """Apply interventions in turn: each acts on what the one before delivers.
+
+    Each part begins at the onset, so a delay after a scale still delivers what came unscaled
+    before it, just as two faults with one window do. Parts draw independently of each other.
+    Interventions that follow each other in time are several faults, each with its window.
+    """
+
+    kind: Literal["sequence"] = "sequence"
+    parts: "tuple[AnyIntervention, ...]" = Field(min_length=1)
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return the last part's value; the memory holds one entry a part."""
+        value, carried = reading, ()
+        for index, part in enumerate(self.parts):
+            here = replace(at, draws=at.draws.beside(f"/{index}"))
+            past = part.begin(value, here) if memory is None else memory[index]
+            changed, past = part.apply(value, past, here)
+            value = changed if at.elapsed >= 0 else value
+            carried = (*carried, past)
+        return value, carried
+
+    def is_random(self) -> bool:
+        """Return whether any part draws errors."""
+        return any(part.is_random() for part in self.parts)
+
+    def words(self) -> str:
+        """Return the parts' words in turn."""
+        return ", then ".join(part.words() for part in self.parts)
+
+    def resolved(self, channel: Channel) -> Self:
+        """Resolve every part."""
+        parts = tuple(part.resolved(channel) for part in self.parts)
+        return self.model_copy(update={"parts": parts})
+
+    def misfit(self, shape: tuple[int, ...]) -> str | None:
+        """Return what the first part that does not fit says."""
+        return next(filter(None, (part.misfit(shape) for part in self.parts)), None)
+
+
+Listed: TypeAlias = (
+    Scale
+    | UniformScale
+    | Offset
+    | Quantise
+    | Erase
+    | Noise
+    | Drift
+    | Bias
+    | Delay
+    | Hold
+    | Freeze
+    | Dropout
+    | Shuffle
+    | Sequence
+)
+AnyIntervention: TypeAlias = Annotated[Listed, Discriminator("kind")]
+"""Any intervention; its `kind` says in JSON which."""
+
+Sequence.model_rebuild()
+
+INTERVENTIONS: dict[str, type[Intervention]] = {
+    intervention.model_fields["kind"].default: intervention for intervention in get_args(Listed)
+}
+"""By kind."""
 
 ALL = "*"
 """Every consumer of the channel: the fault is shared."""
@@ -128,7 +198,7 @@ class Coupled(Frozen):
     def resolved(
         self, interface: Interface, present: Collection[str] | None = None
     ) -> tuple[Fault, ...]:
-        """Return the faults as `Fault.resolved` does, without those that reach nobody."""
+        """Return the faults as `Fault.resolved` does, without those that reach no consumer."""
         shared = (f.model_copy(update={"cause": f.cause or self.name}) for f in self.faults)
         return _resolved(tuple(shared), interface, present)
 

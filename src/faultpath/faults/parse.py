@@ -21,8 +21,7 @@ from pydantic import ValidationError
 from faultpath.core.errors import UserError
 from faultpath.core.misfits import misfit_of
 from faultpath.core.text import listed, unknown
-from faultpath.faults.fault import Coupled, Fault
-from faultpath.faults.registry import INTERVENTIONS
+from faultpath.faults.fault import INTERVENTIONS, Coupled, Fault
 from faultpath.interface import Interface, groups
 
 FaultPreset: TypeAlias = Callable[[float], Coupled]
@@ -160,7 +159,7 @@ def parse_fault(
     parts = FaultText.read(text)
     try:
         if len(parts.sizes) > 1:
-            raise UserError("it has several sizes: audit each with faultpath.audits")
+            raise UserError("it has several sizes: use faultpath.audits")
         update, options = _timing(parts.options, dt_s)
         if parts.consumers:
             update["consumers"] = parts.consumers

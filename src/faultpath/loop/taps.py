@@ -53,7 +53,7 @@ class Taps:
         observer: Sees what is delivered.
 
     Raises:
-        UserError: A name is unknown, a fault does not fit, or it reaches nobody in this variant.
+        UserError: A name is unknown, a fault does not fit, or it reaches no consumer here.
     """
 
     def __init__(
@@ -109,8 +109,8 @@ class Taps:
             if not reached:
                 names = {consumer for fault in everywhere for consumer in fault.consumers}
                 raise UserError(
-                    f"fault '{declared.describe()}' reaches nobody in this variant, which has no "
-                    f"{listed(names)}; leave the fault out or name other consumers"
+                    f"fault '{declared.describe()}' reaches no consumer in this variant, "
+                    f"which has no {listed(names)}; leave the fault out or name other consumers"
                 )
 
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:

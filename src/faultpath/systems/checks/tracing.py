@@ -46,7 +46,7 @@ def trace_system(
     """Run a variant for a few steps and tell what was read.
 
     Raises `UserError` for a variant, library or scene that there is not, a fault that
-    reaches nobody there, and a run that fails.
+    reaches no consumer there, and a run that fails.
     """
     if variant not in system.variants:
         raise UserError(f"{system.name}: {unknown('variant', variant, system.variants)}")
@@ -57,7 +57,9 @@ def trace_system(
     consumers = system.variants[variant].consumers
     faults = () if fault is None else fault.resolved(system.interface, consumers)
     if fault is not None and not faults:
-        raise UserError(f"the fault ({fault.describe()}) reaches nobody in variant '{variant}'.")
+        raise UserError(
+            f"the fault ({fault.describe()}) reaches no consumer in variant '{variant}'."
+        )
     arm = Arm(variant=variant, faults=faults, seed=seed)
     run = run_block(system, Block(arm, (chosen,), steps=steps))
     if run.error and not run.reads:
