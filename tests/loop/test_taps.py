@@ -104,8 +104,8 @@ def test_steps_do_not_run_backwards() -> None:
         ({"faults": [SCALE.aimed_at("pilot")]}, "channel 'mass': unknown consumer 'pilot'"),
         (
             {"faults": [SCALE], "consumers": {"predictor.dynamics"}},
-            "fault 'mass scaled by 2 at observer' reaches no consumer in this variant, which has no "
-            "observer.model; leave the fault out or name other consumers",
+            "fault 'mass scaled by 2 at observer' reaches no consumer in this variant, "
+            "which has no observer.model; leave the fault out or name other consumers",
         ),
     ],
 )
