@@ -16,7 +16,7 @@ from faultpath.trials.store.tables import TrialAddress
 
 @dataclass(frozen=True)
 class Traces:
-    """Flown positions at control steps; trials may be missing."""
+    """Positions at control steps; trials may be missing."""
 
     positions: Mapping[TrialAddress, NDArray[np.float32]]
     """`[T, 3]` each, metres, world frame."""

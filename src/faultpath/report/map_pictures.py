@@ -120,9 +120,9 @@ def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
     svg.line((112, 80), (134, 80), "range")
     svg.text(140, 84, f"estimate {_EQUAL}")
     svg.circle((11, 100), 2.6, "dot")
-    svg.text(28, 104, "flown, decided")
+    svg.text(28, 104, "run, decided")
     svg.circle((134, 100), 2.6, "dot open")
-    svg.text(146, 104, "flown, not decided")
+    svg.text(146, 104, "run, not decided")
 
 
 def correlation_picture(record: MapRecord) -> Svg:

@@ -28,7 +28,7 @@ class Reader:
     module: str
     taps: frozenset[Tap]
     """At which its variant reads it; empty where it does not."""
-    struck: frozenset[Tap]
+    faulted: frozenset[Tap]
     """Of these, where receipts show the fault in force."""
     changed: bool
     """Whether the fault changed a reading at one of them."""
@@ -42,11 +42,11 @@ class Reader:
             what = _named(min(names))
         if not self.taps:
             return "does not read it"
-        if not self.struck:
+        if not self.faulted:
             return f"correct {what}"
         if not self.changed:
             return "gets it unchanged"
-        return f"wrong {what}" if self.struck == self.taps else "partly wrong"
+        return f"wrong {what}" if self.faulted == self.taps else "partly wrong"
 
 
 @dataclass(frozen=True)
@@ -64,8 +64,10 @@ class Fork:
 def forks(source: ReportInput) -> tuple[Fork, ...]:
     """Return every path of the fault, isolated ones first; none where no tap is known."""
     record, asked = source.record, source.record.question
-    struck = (tap.channel for path in record.paths for tap in (*path.struck, *path.baseline_struck))
-    names = tuple(dict.fromkeys([fault.channel for fault in asked.faults] or struck))
+    faulted = (
+        tap.channel for path in record.paths for tap in (*path.struck, *path.baseline_struck)
+    )
+    names = tuple(dict.fromkeys([fault.channel for fault in asked.faults] or faulted))
     reads = [
         frozenset(
             (name, consumer)
@@ -91,7 +93,7 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
             untouched -= hit
             readers: list[Reader] = []
             for module in modules:
-                # Receipts come before the wiring: a tap that was struck was read.
+                # Receipts come before the wiring: a faulted tap was read.
                 here = frozenset(tap for tap in hit | read if module_of(tap[1]) == module)
                 changed = any(t.altered_steps for t in taps if module_of(t.consumer) == module)
                 readers.append(Reader(module, here, here & hit, changed))
@@ -119,7 +121,7 @@ def fork_panel(fork: Fork) -> str:
         svg.text(x, 49, name, f"bold {role}", room=_ARM)
         svg.rect(x, 57, _ARM, 36, f"source{wrong}", 4)
         svg.text(x + 8, 72, names, room=_ARM - 16)
-        svg.text(x + 8, 87, state, f"small {'struck' if wrong else 'soft'}")
+        svg.text(x + 8, 87, state, f"small {'faulted' if wrong else 'soft'}")
         for i, reader in enumerate(readers):
             _branch(svg, x, _MODULES + _PITCH * (i + 0.5), reader, fork.everywhere)
     return svg.render()
@@ -132,7 +134,7 @@ def _branch(svg: Svg, x: float, y: float, reader: Reader, everywhere: bool) -> N
         svg.path(f"M{x + _TRUNK} {above}V{y}H{box}", "wire other")
         svg.rect(box, y - 19, _ARM - _BOX, 38, "absent", 4)
     else:
-        trunk, hit = "wire hit" if everywhere else "wire", " hit" if reader.struck else ""
+        trunk, hit = "wire hit" if everywhere else "wire", " hit" if reader.faulted else ""
         svg.line((x + _TRUNK, above), (x + _TRUNK, y), trunk)
         svg.line((x + _TRUNK, y), (x + _TAP, y), trunk)
         svg.line((x + _TAP, y), (box, y), f"wire{hit}")
@@ -142,8 +144,8 @@ def _branch(svg: Svg, x: float, y: float, reader: Reader, everywhere: bool) -> N
             svg.path(f"M{x + _TAP + 2} {y - 4}l-4 4.5h4l-4 4.5", "bolt")
     cls = "bold" if reader.taps else "bold soft"
     svg.text(box + 6, y - 3, _named(reader.module), cls, room=room)
-    cls = "small struck" if reader.struck else "small soft"
-    taps = sorted(reader.struck or reader.taps)
+    cls = "small faulted" if reader.faulted else "small soft"
+    taps = sorted(reader.faulted or reader.taps)
     tip = f"{reader.state}: {', '.join(f'{channel} at {at}' for channel, at in taps)}"
     svg.text(box + 6, y + 12, reader.state, cls, tip=tip, room=room)
 

@@ -79,18 +79,18 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
             place = len(series)
             held = np.clip(np.nan_to_num(track[:, :2]), -_FARTHEST_M, _FARTHEST_M)
             series.extend(np.rint(100.0 * held).astype(np.int32).T)
-        struck: list[list[int]] = []
+        faulted: list[list[int]] = []
         if IN_FORCE in named:
             on = named[IN_FORCE].values[:, 0] > 0
             edges = np.flatnonzero(np.diff(on, prepend=False, append=False))
-            struck = edges.reshape(-1, 2).tolist()
+            faulted = edges.reshape(-1, 2).tolist()
         return {
             "status": trial.status.value,
             "ended": wording.ended(asked, trial.status),
             "time_s": trial.time_s,
             "track": place,
             "lines": _levels(named, plots, series),
-            "struck": struck,
+            "faulted": faulted,
         }
 
     # First marked is a path on which the first scene shows what was decided.

@@ -11,7 +11,7 @@ FileName = Annotated[str, StringConstraints(pattern=r"^[a-z_]+\.[a-z]+$")]
 Sha256 = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 
 
-class FlownAgain(Shown):
+class Recheck(Shown):
     """Scenes of a finished unit that ran a second time, and what that showed."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -71,7 +71,7 @@ class RunProvenance(Shown):
     """SHA-256 of each data file that the system names."""
     library_hash: str
     outcomes_sha256: str
-    flown_again: tuple[FlownAgain, ...] = ()
+    flown_again: tuple[Recheck, ...] = ()
     """What ran a second time, to see whether results repeat."""
     files: dict[FileName, Sha256] = Field(default_factory=dict[str, str])
     """The files beside this one that a report is made from, so that a change of one is seen."""

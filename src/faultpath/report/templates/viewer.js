@@ -93,7 +93,7 @@ if (document.getElementById("viewer-data")) {
       const x = (i) => left + (Math.min(i, state.last) / state.last) * (right - left);
       const y = (v) => under - ((v - low) / (high - low)) * (under - 8);
       const level = (v, cls) => draw(svg, "line", { x1: left, x2: right, y1: y(v), y2: y(v), class: cls });
-      for (const [from, to] of trials(pair).flatMap(({ struck }) => struck)) {
+      for (const [from, to] of trials(pair).flatMap(({ faulted }) => faulted)) {
         draw(svg, "rect", { x: x(from), y: 8, width: Math.max(1, x(to) - x(from)), height: under - 8, class: "v-window" });
       }
       const digits = Math.min(6, Math.max(0, Math.ceil(1.3 - Math.log10(high - low))));

@@ -63,7 +63,7 @@ class RecordedBlock:
     """Of each scene."""
     error: str = ""
     """What stopped it, or kept a scene from its end."""
-    blames: str = ""
+    fails: str = ""
     """The check that reports the error."""
 
     def readings(self, dt_s: float) -> dict[tuple[str, int, str, str], bytes]:
@@ -93,9 +93,9 @@ def run_blocks(
         if isinstance(reply, Wrong):
             if isinstance(reply.error, UserError):
                 raise reply.error
-            reply = RecordedBlock(error=described(reply.error), blames=TRIALS)
+            reply = RecordedBlock(error=described(reply.error), fails=TRIALS)
         elif isinstance(reply, Died):
-            reply = RecordedBlock(error=reply.how, blames=TRIALS)
+            reply = RecordedBlock(error=reply.how, fails=TRIALS)
         settle(block, reply)
 
     dispatch(executor, built, run_block, lambda _: next(waiting, None), settled)
@@ -105,7 +105,7 @@ def run_block(system: System, block: Block) -> RecordedBlock:
     """Run in blocks of the system's size; an error ends it."""
     outcomes, counts, reads = list[Outcome](), list[TapCount](), list[Read]()
     found_signals = list[tuple[Signal, ...]]()
-    error = blames = ""
+    error = fails = ""
     for first in range(0, len(block.scenes), system.block_size):
         scenes = block.scenes[first : first + system.block_size]
         recording = Recording(() if block.signals else scenes, block.steps)
@@ -119,16 +119,16 @@ def run_block(system: System, block: Block) -> RecordedBlock:
             if block.signals:
                 found_signals += signals(system, recording, found)
             elif lost := next((o for o in found.outcomes if o.failed), None):
-                error, blames = f"{lost.error} in scene {lost.scene!r}", TRIALS
+                error, fails = f"{lost.error} in scene {lost.scene!r}", TRIALS
         elif isinstance(found, Raised):
             kind, _, text = found.error.partition(": ")
-            error, blames = found.error, TRIALS
+            error, fails = found.error, TRIALS
             if kind == NotFinite.__name__:
-                error, blames = text, "shape and unit"
+                error, fails = text, "shape and unit"
         elif isinstance(found, Wrong):
             error = str(found.error)
-            blamed = (name for name, kinds in MISTAKES.items() if isinstance(found.error, kinds))
-            blames = next(blamed, TRIALS)
+            failing = (name for name, kinds in MISTAKES.items() if isinstance(found.error, kinds))
+            fails = next(failing, TRIALS)
         if error:
             break
     return RecordedBlock(
@@ -137,7 +137,7 @@ def run_block(system: System, block: Block) -> RecordedBlock:
         tuple(reads),
         tuple(found_signals),
         error,
-        blames,
+        fails,
     )
 
 

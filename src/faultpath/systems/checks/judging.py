@@ -106,7 +106,7 @@ def judged(seen: Seen) -> tuple[Check, ...]:
         stopped = {
             run.error: variant
             for (variant, why, _), run in reversed(seen.runs.items())
-            if run.blames == check.name and why != "tap"
+            if run.fails == check.name and why != "tap"
         }
         remedy = "; let every trial end in an outcome, see it with `faultpath audit --workers 0`"
         errors = tuple(
@@ -211,7 +211,7 @@ def _delivery(name: str, seen: Seen) -> Check:
         then = first.readings(dt_s)
         now = {key: value for key, value in run.readings(dt_s).items() if key in then}
         ends = tuple(replace(each, struck_steps=0, altered_steps=0) for each in run.outcomes)
-        if run.blames == name:
+        if run.fails == name:
             failures.append(f"{said} is not reached: {run.error}.")
         elif not here:
             failures.append(

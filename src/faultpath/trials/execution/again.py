@@ -19,7 +19,7 @@ from faultpath.loop import WrittenTo
 from faultpath.trials.attempt import Died, Done, Reply, Wrong
 from faultpath.trials.execution.schedule import Task, Unit
 from faultpath.trials.outcome import Outcome
-from faultpath.trials.provenance import FlownAgain
+from faultpath.trials.provenance import Recheck
 from faultpath.trials.store.folder import RunFolder
 
 SAMPLE = 4
@@ -66,7 +66,7 @@ class _Kept(Frozen):
     """What `rechecks.json` holds."""
 
     format: Literal[4] = 4
-    flown: tuple[FlownAgain, ...] = ()
+    flown: tuple[Recheck, ...] = ()
 
 
 class Rechecks:
@@ -124,7 +124,7 @@ class Rechecks:
             wrote, other = str(reply.error), ()
         elif isinstance(reply, Done):
             other = tuple(_gaps(first, reply))
-        self._kept[task.unit.key, task.recheck, task.scenes] = FlownAgain(
+        self._kept[task.unit.key, task.recheck, task.scenes] = Recheck(
             why=task.recheck,
             unit=task.unit.key,
             variant=arm.variant,
@@ -139,7 +139,7 @@ class Rechecks:
         kept = _Kept(flown=tuple(each for _, each in sorted(self._kept.items())))
         self._folder.save_rechecks(f"{kept.model_dump_json(indent=1)}\n")
 
-    def flown(self) -> tuple[FlownAgain, ...]:
+    def flown(self) -> tuple[Recheck, ...]:
         """Return what ran again of the units of this run."""
         keys = {unit.key for unit in self._units}
         return tuple(shown for _, shown in sorted(self._kept.items()) if shown.unit in keys)

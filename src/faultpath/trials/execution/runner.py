@@ -15,7 +15,7 @@ from faultpath.trials.execution.again import Rechecks
 from faultpath.trials.execution.dispatch import Built, dispatch
 from faultpath.trials.execution.schedule import Schedule, Task, plan
 from faultpath.trials.execution.state import RunState, Stop
-from faultpath.trials.provenance import FlownAgain
+from faultpath.trials.provenance import Recheck
 from faultpath.trials.registry import load_system
 from faultpath.trials.store.folder import Manifest, RunFolder
 from faultpath.trials.store.tables import Trace, TrialAddress, traces_of
@@ -56,7 +56,7 @@ class RunResult:
     code: tuple[Code, ...]
     """What ran, of each run that this is made of."""
     library_hash: str
-    flown_again: tuple[FlownAgain, ...] = ()
+    flown_again: tuple[Recheck, ...] = ()
     """What ran a second time, to see whether results repeat."""
 
     @property
