@@ -6,7 +6,7 @@ import pytest
 
 from faultpath.report.svg import template
 
-TEXT = ("ink", "soft", "repair", "baseline", "struck", "link")
+TEXT = ("ink", "soft", "repair", "baseline", "faulted", "link")
 GROUNDS = ("paper", "wash")
 
 
@@ -32,8 +32,8 @@ def _contrast(a: str, b: str) -> float:
 def test_text_has_contrast(scheme: str) -> None:
     colours = _schemes()[scheme]
     pairs = [(text, ground) for text in TEXT for ground in GROUNDS]
-    pairs += [("paper", "ink"), ("paper", "struck"), ("paper", "good"), ("ink", "faint")]
-    pairs += [("ink", "struck-wash"), ("struck", "struck-wash")]
+    pairs += [("paper", "ink"), ("paper", "faulted"), ("paper", "good"), ("ink", "faint")]
+    pairs += [("ink", "faulted-wash"), ("faulted", "faulted-wash")]
     weak = {p: _contrast(colours[p[0]], colours[p[1]]) for p in pairs}
     assert {p: round(c, 2) for p, c in weak.items() if c < 4.5} == {}
 

@@ -87,6 +87,6 @@ def test_signals_are_plotted_beside_what_they_are_compared_with(one_seed: Report
     ]
     shown = next(s for s in data["scenes"] if s["scene"] == scene)
     trial = next(p for p in shown["pairs"] if p["path"] == "shared")["repair"]
-    assert trial["struck"] == [[1, 3], [4, 5]]
+    assert trial["faulted"] == [[1, 3], [4, 5]]
     (_, _, place, low, level) = next(line for line in trial["lines"] if line[:2] == [1, 1])
     assert np.allclose(low + level * series[place], 1 + steps[:, 0] / 2, atol=1e-3)
