@@ -9,6 +9,7 @@ import math
 import torch
 from faultpath_quadrotor.planners import CostWeights, SamplerSettings
 from faultpath_quadrotor.predictors import anchored
+from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.kinematic import RATE_LAG_S
 from faultpath_quadrotor.predictors.network import LATENT, Affine, LatentNetwork
 from faultpath_quadrotor.vehicle import (
@@ -111,8 +112,8 @@ def initial() -> Tensor:
     """Return the first scene's state, `[50]`."""
     given = planning.inputs()
     state = given.state
-    assert given.code is not None
-    parts = (state.position, state.velocity, state.rotation.flatten(0, 1), state.rate, given.code)
+    code = given["history_code", "latent"]
+    parts = (state.position, state.velocity, state.rotation.flatten(0, 1), state.rate, code)
     return torch.cat([part.reshape(-1) for part in parts])
 
 
@@ -129,7 +130,7 @@ def positions(step: RowsModel) -> list[float]:
 
 def actions() -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """Return centre, spread and bounds of the planner's commands, `[4]` each."""
-    hover = float(planning.inputs().trim.hover_thrust(GRAVITY_MPS2))
+    hover = float(hover_thrust(planning.inputs().delivered, "trim"))
     sampler = SamplerSettings()
     centre = torch.tensor([hover, 0.0, 0.0, 0.0])
     sigma = torch.tensor([sampler.thrust_sigma * hover, *sampler.rate_sigma_radps])

@@ -13,3 +13,9 @@ def __getattr__(name: str) -> object:
     import faultpath.trials.public as public
 
     return getattr(public, name)
+
+
+def __dir__() -> list[str]:
+    import faultpath.trials.public as public
+
+    return public.__all__
