@@ -88,7 +88,7 @@ def dispatch(
     work: Callable[[System, T], Any],
     take: Callable[[int], T | None],
     settle: Callable[[T, Any], None],
-    time_limit_s: float | None = None,
+    limit_s: float | None = None,
     report: Callable[[], None] = lambda: None,
 ) -> None:
     """Run what `take` returns for a worker, until it returns nothing and all is settled.
@@ -97,9 +97,9 @@ def dispatch(
     `Wrong` for an error that it raised, or `Died` where a worker was lost over the task twice or
     stopped at the time limit: as asked, as the system says, or an hour.
     """
-    if time_limit_s is not None and not (math.isfinite(time_limit_s) and time_limit_s > 0):
-        raise UserError(f"the time limit is {time_limit_s:g} s: give a number of seconds above 0")
-    limit_s = time_limit_s or built.system.time_limit_s or LONGEST_S
+    if limit_s is not None and not (math.isfinite(limit_s) and limit_s > 0):
+        raise UserError(f"the time limit is {limit_s:g} s: give a number of seconds above 0")
+    limit_s = limit_s or built.system.time_limit_s or LONGEST_S
     call = partial(built.work, work)
     if not executor.in_process:
         call = partial(_elsewhere, built.job, work)
