@@ -33,8 +33,6 @@ class Replayed:
     """One trial, run again."""
 
     address: TrialAddress
-    outcome: Outcome
-    """Of the run."""
     differs: str
     """How the second trial differs; empty where it is the same to the bit."""
     signals: tuple[Signal, ...] = field(default=(), repr=False)
@@ -150,7 +148,7 @@ def run_again(
                     again = Done((run.outcomes[place],), ())
                     differs = difference([before[at]], again)
                     signals = () if differs else run.signals[place]
-                found[at] = Replayed(at, before[at], differs, signals)
+                found[at] = Replayed(at, differs, signals)
         note(task.arm, done, len(tasks))
 
     built = Built.of(system, study.system, study.library)

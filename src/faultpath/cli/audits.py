@@ -41,13 +41,13 @@ def plan(
     written = found.write(out)
 
     from faultpath.decisions.tables.terminal import drawn
-    from faultpath.report.plan import by_audit, by_rank
+    from faultpath.report.plan import tables
 
     if as_json:
         typer.echo(found.plan.model_dump_json(indent=2))
         return
     console = SafeConsole()
-    for table in (by_rank(found.plan), by_audit(found.plan)):
+    for table in tables(found.plan):
         console.print(drawn(table))
         for note in table.notes:
             console.print(note, markup=False)

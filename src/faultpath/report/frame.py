@@ -17,14 +17,12 @@ from markupsafe import Markup
 from faultpath.core.version import __version__
 from faultpath.decisions.tables.escapes import visible
 
-OURS = "faultpath.report"
-
 
 def render(
     page: str,
     styles: Sequence[str],
     scripts: Sequence[str],
-    package: str = OURS,
+    package: str = "faultpath.report",
     **content: object,
 ) -> str:
     """Return the template `page` with its styles and scripts inside, and the policy on them.
@@ -53,7 +51,7 @@ def _environment(package: str) -> tuple[Environment, ChoiceLoader]:
     def shown(value: object) -> object:
         return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
-    sources = ChoiceLoader([PackageLoader(package), PackageLoader(OURS)])
+    sources = ChoiceLoader([PackageLoader(package), PackageLoader("faultpath.report")])
     blocks: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
     strict: dict[str, Any] = {"autoescape": True, "undefined": StrictUndefined}
     return Environment(loader=sources, finalize=shown, **strict, **blocks), sources

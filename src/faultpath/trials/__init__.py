@@ -6,7 +6,7 @@ The names of `faultpath.trials.public` load when one is first used: a question n
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from faultpath.trials.public import *  # noqa: F403
+    from faultpath.trials.public import *  # noqa: F403 - for type checkers; `__all__` lists them
 
 
 def __getattr__(name: str) -> object:
