@@ -14,7 +14,7 @@ def _paths(audit: Audit) -> list[str]:
     return [path.name for path in audit.paths]
 
 
-def _struck(audit: Audit, variant: str, path: str) -> set[tuple[str, str]]:
+def _faulted(audit: Audit, variant: str, path: str) -> set[tuple[str, str]]:
     (row,) = (r for r in audit.study.rows if (r.variant, r.path) == (variant, path))
     return {(fault.channel, c) for fault in row.arm.faults for c in fault.consumers}
 
@@ -30,8 +30,8 @@ def test_two_modules_make_four_paths_and_each_strikes_what_it_names():
         ("planner", planner, planner),
         ("shared", observer | planner, planner),
     ):
-        assert _struck(audit, "observed", path) == repair
-        assert _struck(audit, "plain", path) == baseline
+        assert _faulted(audit, "observed", path) == repair
+        assert _faulted(audit, "plain", path) == baseline
         (said,) = (p for p in audit.paths if p.name == path)
         assert set(said.consumers) == {consumer for _, consumer in repair}
         assert set(said.baseline_consumers) == {consumer for _, consumer in baseline}
@@ -53,15 +53,15 @@ def test_every_cell_has_a_row_and_arms_that_are_the_same_run_once():
 def test_a_fault_of_one_module_is_not_shared():
     audit = planned("deaf", "plain", "mass:scale=2")
     assert _paths(audit) == ["correct", "planner"]
-    assert _struck(audit, "plain", "planner") == {
+    assert _faulted(audit, "plain", "planner") == {
         ("mass", "planner.cost"),
         ("mass", "planner.limit"),
     }
-    assert _struck(audit, "deaf", "planner") == set()
+    assert _faulted(audit, "deaf", "planner") == set()
 
 
 @pytest.mark.parametrize(
-    ("text", "paths", "struck"),
+    ("text", "paths", "faulted"),
     [
         ("mass:scale=2@observer", ["correct", "observer"], {"observer.model"}),
         ("mass:scale=2@planner.limit", ["correct", "planner"], {"planner.limit"}),
@@ -72,22 +72,22 @@ def test_a_fault_of_one_module_is_not_shared():
         ),
     ],
 )
-def test_named_consumers_restrict_every_path(text, paths, struck):
+def test_named_consumers_restrict_every_path(text, paths, faulted):
     audit = planned("plain", "observed", text)
     assert _paths(audit) == paths
-    assert {consumer for _, consumer in _struck(audit, "observed", paths[-1])} == struck
+    assert {consumer for _, consumer in _faulted(audit, "observed", paths[-1])} == faulted
 
 
 def test_a_coupled_fault_strikes_its_channels_together():
     audit = planned("observed", "logged", "both=0.5")
-    assert _struck(audit, "logged", "logger") == {("mass", "logger.file"), ("heat", "logger.file")}
-    assert _struck(audit, "observed", "logger") == set()
+    assert _faulted(audit, "logged", "logger") == {("mass", "logger.file"), ("heat", "logger.file")}
+    assert _faulted(audit, "observed", "logger") == set()
     assert _paths(audit) == ["correct", "logger", "observer", "planner", "shared"]
 
 
-def test_a_variant_is_struck_where_it_reads_and_nowhere_else():
+def test_a_variant_is_faulted_where_it_reads_and_nowhere_else():
     audit = planned("limited", "plain", "mass:scale=2")
-    assert _struck(audit, "limited", "planner") == {("mass", "planner.limit")}
+    assert _faulted(audit, "limited", "planner") == {("mass", "planner.limit")}
 
 
 def test_the_question_says_what_was_asked():

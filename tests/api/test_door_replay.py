@@ -51,12 +51,12 @@ def test_a_replay_is_the_run_and_hears_what_the_fault_did(found) -> None:
     heard = _signals(found, "calibrated", "shared")
     gain = heard["gain_estimate"].values
     assert gain.shape == (100, 1)
-    struck = np.zeros((100, 1))
-    struck[20:50] = 1
-    assert np.array_equal(heard[IN_FORCE].values, struck)
+    faulted = np.zeros((100, 1))
+    faulted[20:50] = 1
+    assert np.array_equal(heard[IN_FORCE].values, faulted)
     for tap in ("controller.inverse", "observer.model"):
-        assert np.allclose(heard[f"gain at {tap}"].values, gain * (1 - 0.4 * struck))
-        assert np.allclose(heard[f"gain error at {tap}"].values, -0.4 * gain * struck)
+        assert np.allclose(heard[f"gain at {tap}"].values, gain * (1 - 0.4 * faulted))
+        assert np.allclose(heard[f"gain error at {tap}"].values, -0.4 * gain * faulted)
     assert heard["observed_slope"].topic == "slope"
     assert np.isfinite(heard["observed_slope"].values).all()
     assert "gain at observer.model" not in _signals(found, "blind", "shared")

@@ -35,8 +35,8 @@ def test_a_check_of_a_name_and_of_an_object_is_that_of_the_command():
 
 def test_a_trace_tells_whom_a_fault_reaches():
     found = trace(TOY, variant="calibrated", library="carts", steps=2, fault="gain:scale=0.6")
-    struck = {read.consumer for read in found.reads if read.altered_by}
-    assert struck == {"controller.inverse", "observer.model"}
+    faulted = {read.consumer for read in found.reads if read.altered_by}
+    assert faulted == {"controller.inverse", "observer.model"}
     assert {read.step for read in found.reads} == {0, 1}
     assert trace(faultpath.load_system(TOY), library="carts").variant == "calibrated"
 

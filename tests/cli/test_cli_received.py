@@ -113,7 +113,7 @@ def _cell(name: str, value: object) -> Callable[[pa.Table], pa.Table]:
         (_cell("time_s", -1.0), "time_s is -1.0"),
         (_cell("time_s", None), "time_s is None"),
         (_cell("terminal_distance_m", float("nan")), "terminal_distance_m is nan"),
-        (_cell("struck_steps", -1), "steps is below 0"),
+        (_cell("faulted_steps", -1), "steps is below 0"),
         (_cell("status", "won"), "won"),
         (_cell("initial_hash", ""), "initial_hash is empty"),
         (lambda table: table.drop_columns(["terminal_distance_m"]), "no such column"),
@@ -191,7 +191,7 @@ FORGED = {
         "taps",
         _record(
             lambda c: c["paths"][1].update(
-                struck=[{"channel": "x", "consumer": "y.z", "struck_steps": 1, "altered_steps": 1}]
+                faulted=[{"channel": "x", "consumer": "y.z", "faulted_steps": 1, "altered_steps": 1}]
             )
         ),
     ),

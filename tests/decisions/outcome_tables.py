@@ -79,7 +79,7 @@ def rows(
                 initial_hash=f"i{i}",
                 disturbance_hash=f"d{i}",
                 planner_noise_hash=f"n{i}-{seed}",
-                struck_steps=3 if path != CORRECT else 0,
+                faulted_steps=3 if path != CORRECT else 0,
                 altered_steps=2
                 if path != CORRECT
                 and variant == REPAIR

@@ -47,12 +47,12 @@ def test_the_paths_of_an_audit_are_points_of_the_map() -> None:
 
 def test_errors_of_unequal_size_strike_each_its_own_module() -> None:
     rows = plan().study([(8, -16)]).rows
-    struck = {
+    faulted = {
         (row.variant, fault.consumers, fault.intervention.factor)  # type: ignore[union-attr] - a scale
         for row in rows
         for fault in row.arm.faults
     }
-    assert struck == {
+    assert faulted == {
         ("calibrated", ("controller.inverse",), 1.1),
         ("calibrated", ("observer.model",), 0.8),
         ("blind", ("controller.inverse",), 1.1),

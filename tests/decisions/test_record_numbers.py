@@ -50,7 +50,7 @@ def test_cells_count_every_trial():
         assert cell.success + cell.crash == cell.trials == 100
         assert cell.timeout == cell.failed == 0
         assert cell.success_percent == cell.success
-        assert cell.struck_trials == (0 if cell.path == CORRECT else 100)
+        assert cell.faulted_trials == (0 if cell.path == CORRECT else 100)
         altered = cell.path != CORRECT and cell.variant == REPAIR
         assert cell.altered_trials == (100 if altered else 0)
     assert cells[REPAIR, CORRECT].median_time_s == pytest.approx(5 + 0.01 * 29.5)

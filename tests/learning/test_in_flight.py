@@ -133,9 +133,9 @@ def test_a_learned_module_flies_in_a_variant_and_faults_reach_it() -> None:
     ports = [Port("place", "past"), Port("gain", "model")]
     made = system(Learned("brake", Slope(), "push", ports, steps=3))
     clean = fly(made, "variant_0")
-    struck = fly(made, "variant_0", Fault(channel="gain", intervention=Scale(factor=0.5)))
+    faulted = fly(made, "variant_0", Fault(channel="gain", intervention=Scale(factor=0.5)))
     assert [outcome.time_s for outcome in clean] == pytest.approx([0.5, 0.5])
-    assert clean != struck
+    assert clean != faulted
 
 
 @pytest.mark.parametrize(

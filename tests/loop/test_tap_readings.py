@@ -74,7 +74,7 @@ def test_a_second_delivery_is_the_first_one_with_a_null_fault_and_without(
         (torch.tensor([1j, 1.0]), "the reading is of torch.complex64"),
     ],
 )
-def test_the_first_reading_is_as_declared_struck_or_not(
+def test_the_first_reading_is_as_declared_faulted_or_not(
     faults: tuple[Fault, ...], value: Any, sentence: str
 ) -> None:
     with pytest.raises(MalformedReading, match=re.escape(sentence)):

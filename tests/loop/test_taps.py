@@ -25,7 +25,7 @@ def test_without_a_fault_the_consumer_gets_the_very_tensor() -> None:
     assert taps.deliver("mass", "predictor.dynamics", mass(0, value), 0) is value
 
 
-def test_only_the_struck_consumer_gets_another_value() -> None:
+def test_only_the_faulted_consumer_gets_another_value() -> None:
     taps = make([SCALE])
     assert taps.deliver("mass", "observer.model", mass(0), 0).tolist() == [2.0, 6.0]
     assert taps.deliver("mass", "predictor.dynamics", mass(0), 0).tolist() == [1.0, 3.0]

@@ -70,13 +70,13 @@ def test_cells_are_run_once_for_all_pages(run: Path) -> None:
     assert len(flown.outcomes.rows) == 4
 
 
-def test_the_faulty_cell_is_struck_and_pairs_with_the_nominal_one(run: Path) -> None:
+def test_the_faulty_cell_is_faulted_and_pairs_with_the_nominal_one(run: Path) -> None:
     results, _ = read_results(run)
-    struck = {
-        cell: {row.outcome.struck_steps > 0 for row in results.outcomes.arm("wm-a", cell.path, 0)}
+    faulted = {
+        cell: {row.outcome.faulted_steps > 0 for row in results.outcomes.arm("wm-a", cell.path, 0)}
         for cell in (NOMINAL, FAULTY)
     }
-    assert struck == {NOMINAL: {False}, FAULTY: {True}}
+    assert faulted == {NOMINAL: {False}, FAULTY: {True}}
 
 
 def test_a_run_without_measurements_says_which_is_missing(run: Path) -> None:

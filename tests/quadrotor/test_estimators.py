@@ -37,8 +37,8 @@ def test_faults_reach_the_sensors_of_an_estimator_and_variants_may_differ_in_it(
     assert "estimator.filter" not in system.variants["dob"].consumers
     biased = fault("gyroscope:offset=0.2/0/0", system)
     plain, _ = fly(system, f"{FILTER}/dob", HELD_OUT[:1])
-    struck, _ = fly(system, f"{FILTER}/dob", HELD_OUT[:1], [biased])
-    assert bits(struck[0]) != bits(plain[0])
+    faulted, _ = fly(system, f"{FILTER}/dob", HELD_OUT[:1], [biased])
+    assert bits(faulted[0]) != bits(plain[0])
 
 
 def test_raw_sensors_that_nobody_reads_change_nothing():

@@ -17,9 +17,9 @@ def test_a_recorded_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
     fault = parse_fault(
         "calibration=+0.1", system.interface, system.fault_presets, system.control_dt_s
     )
-    struck = fault.resolved(system.interface, system.variants["dob"].consumers)
+    faulted = fault.resolved(system.interface, system.variants["dob"].consumers)
     told: list[dict[str, np.ndarray]] = []
-    for faults in ((), struck):
+    for faults in ((), faulted):
         arm = Arm(variant="dob", faults=faults)
         run = run_block(system, Block(arm, SCENE, signals=True))
         assert run.error == ""

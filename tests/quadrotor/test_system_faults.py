@@ -50,8 +50,8 @@ def test_an_identity_on_every_channel_is_no_fault_to_the_bit(kind, plain):
     present = system.variants["dob"].consumers
     channels = [c.name for c in system.interface.channels if present & set(c.consumers)]
     faults = [fault(f"{channel}:{IDENTITIES[kind]}", system) for channel in channels]
-    (struck,), taps = fly(system, faults=faults)
-    assert bits(struck) == bits(plain)
+    (faulted,), taps = fly(system, faults=faults)
+    assert bits(faulted) == bits(plain)
     receipts = taps.receipts()
     assert _altered(receipts) == set()
     assert all(tap.steps_faulted.all() for tap in receipts.taps)
@@ -71,7 +71,7 @@ def test_calibration_strikes_mass_and_thrust_scale_everywhere_and_nothing_else(e
 def test_a_fault_at_the_observer_leaves_the_inputs_of_the_predictor_clean(plain):
     system = quadrotor(wind="L2")
     faults = [fault("calibration=0.2@reconstruction", system)]
-    (struck,), taps = fly(system, faults=faults)
+    (faulted,), taps = fly(system, faults=faults)
     receipts = taps.receipts()
     observer = {key for key in ALTERED_BY_CALIBRATION if key[1].startswith("reconstruction.")}
     assert _altered(receipts) == observer
@@ -81,8 +81,8 @@ def test_a_fault_at_the_observer_leaves_the_inputs_of_the_predictor_clean(plain)
         for reading, value in taps.log["mass", consumer]:
             assert np.array_equal(value, reading)
     # The observer starts at zero wind whatever its calibration says: the fault needs a step.
-    assert np.array_equal(trace(struck)[1], trace(plain)[1])
-    assert not np.array_equal(trace(struck)[3:], trace(plain)[3:])
+    assert np.array_equal(trace(faulted)[1], trace(plain)[1])
+    assert not np.array_equal(trace(faulted)[3:], trace(plain)[3:])
 
 
 TEXTS = (
@@ -110,12 +110,12 @@ TEXTS = (
 def test_a_fault_of_any_channel_flies_and_tells(text, plain):
     system = quadrotor(wind="L2")
     declared = fault(text, system)
-    (struck,), taps = fly(system, faults=[declared])
-    assert np.isfinite(trace(struck)).all()
+    (faulted,), taps = fly(system, faults=[declared])
+    assert np.isfinite(trace(faulted)).all()
     assert np.isfinite(
-        [struck.metrics["terminal_distance_m"], struck.metrics["min_clearance_m"]]
+        [faulted.metrics["terminal_distance_m"], faulted.metrics["min_clearance_m"]]
     ).all()
-    assert bits(struck)[-1] != bits(plain)[-1]
+    assert bits(faulted)[-1] != bits(plain)[-1]
     named = {
         (each.channel, consumer)
         for each in declared.resolved(system.interface)
@@ -123,4 +123,4 @@ def test_a_fault_of_any_channel_flies_and_tells(text, plain):
     }
     assert set() < _altered(taps.receipts()) <= named
     for hashes in ("initial_hash", "disturbance_hash", "planner_noise_hash"):
-        assert getattr(struck, hashes) == getattr(plain, hashes)
+        assert getattr(faulted, hashes) == getattr(plain, hashes)

@@ -75,13 +75,13 @@ def test_what_flies_reads_every_port_and_commands_late(options, variant):
 def test_a_fault_between_predictor_and_planner_changes_the_command(text, tap):
     system = quadrotor()
     _, plain = fly(system)
-    _, struck = fly(system, faults=[fault(text, system)])
-    commands = [taps.delivered("action", "vehicle.actuators")[0] for taps in (plain, struck)]
+    _, faulted = fly(system, faults=[fault(text, system)])
+    commands = [taps.delivered("action", "vehicle.actuators")[0] for taps in (plain, faulted)]
     assert not np.array_equal(*commands)
-    receipt = struck.receipts().at(*tap)
+    receipt = faulted.receipts().at(*tap)
     assert receipt.steps_altered.tolist() == [STEPS]
     assert receipt.asks == (STEPS if tap[0] == "rollout" else 0)
     altered = {
-        (each.channel, each.consumer) for each in struck.receipts().taps if each.steps_altered.any()
+        (each.channel, each.consumer) for each in faulted.receipts().taps if each.steps_altered.any()
     }
     assert altered == {tap}

@@ -1,7 +1,7 @@
 """A synthetic audit that looks like a real one: the paper's reversal, made from a seeded law.
 
 The repair is a reconstruction trained with uncertainty: ahead when only the reconstruction is
-struck, behind when the fault is shared. Names a user may give carry markup, to see it escaped.
+faulted, behind when the fault is shared. Names a user may give carry markup, to see it escaped.
 """
 
 import os
@@ -154,10 +154,10 @@ def _variant(name: str) -> VariantShown:
     )
 
 
-def _struck(*consumers: str) -> tuple[FaultedTap, ...]:
+def _faulted(*consumers: str) -> tuple[FaultedTap, ...]:
     """Return the taps of a fault on the calibration at these consumers, as receipts name them."""
     return tuple(
-        FaultedTap(channel=channel.name, consumer=consumer, struck_steps=9, altered_steps=9)
+        FaultedTap(channel=channel.name, consumer=consumer, faulted_steps=9, altered_steps=9)
         for channel in interface().channels
         if channel.name in ("mass", "thrust_scale")
         for consumer in channel.consumers
@@ -177,14 +177,14 @@ def _paths() -> tuple[Path, ...]:
 
 
 def _path(name: str, title: str, consumers: tuple[str, ...]) -> Path:
-    struck = _struck(*consumers)
+    faulted = _faulted(*consumers)
     return Path(
         name=name,
         title=title,
         consumers=consumers,
         baseline_consumers=consumers,
-        struck=struck,
-        baseline_struck=struck,
+        faulted=faulted,
+        baseline_faulted=faulted,
     )
 
 
@@ -212,7 +212,7 @@ def _rows(
 
 
 def _outcome(
-    index: int, seed: int, solved: bool, failed: bool, struck: bool, rng: np.random.Generator
+    index: int, seed: int, solved: bool, failed: bool, faulted: bool, rng: np.random.Generator
 ) -> Outcome:
     hashes = {
         name: f"{name[:3]}-{index}-{seed}"
@@ -234,8 +234,8 @@ def _outcome(
             "terminal_distance_m": float(np.linalg.norm(trace[-1] - goal)),
             "min_clearance_m": 0.0 if status is Status.CRASH else float(rng.uniform(0.05, 0.6)),
         },
-        struck_steps=len(trace) if struck else 0,
-        altered_steps=len(trace) if struck else 0,
+        faulted_steps=len(trace) if faulted else 0,
+        altered_steps=len(trace) if faulted else 0,
         trace=trace,
         **hashes,
     )

@@ -1,4 +1,4 @@
-"""The first screen tells what was struck and decided, and nothing else."""
+"""The first screen tells what was faulted and decided, and nothing else."""
 
 import re
 from collections.abc import Callable
@@ -74,24 +74,24 @@ def test_a_module_that_does_not_read_the_fault_is_grey_and_says_why(one_seed: Re
     kept = tuple(name for name in repair.consumers if name != "reconstruction.head")
     blind = replace(one_seed, variants=(baseline, repair.model_copy(update={"consumers": kept})))
 
-    def unstruck(path: Path) -> Path:
+    def untouched(path: Path) -> Path:
         update = {
             "consumers": tuple(c for c in path.consumers if c in kept),
-            "struck": tuple(tap for tap in path.struck if tap.consumer in kept),
+            "faulted": tuple(tap for tap in path.faulted if tap.consumer in kept),
         }
         return path.model_copy(update=update)
 
-    blind = with_paths(blind, unstruck)
+    blind = with_paths(blind, untouched)
     (_, alone, shared) = forks(blind)
     assert states(alone)[1] == ["predictor: correct readings", "reconstruction: does not read it"]
     assert shared.everywhere
     assert 'class="absent"' in fork_panel(alone)
 
 
-def test_receipts_decide_what_is_drawn_as_struck(one_seed: ReportInput) -> None:
+def test_receipts_decide_what_is_drawn_as_faulted(one_seed: ReportInput) -> None:
     def silent(path: Path) -> Path:
-        taps = tuple(tap.model_copy(update={"altered_steps": 0}) for tap in path.struck)
-        return path.model_copy(update={"struck": taps[:3], "baseline_struck": ()})
+        taps = tuple(tap.model_copy(update={"altered_steps": 0}) for tap in path.faulted)
+        return path.model_copy(update={"faulted": taps[:3], "baseline_faulted": ()})
 
     shared = forks(with_paths(one_seed, silent))[-1]
     assert not shared.everywhere
@@ -99,7 +99,7 @@ def test_receipts_decide_what_is_drawn_as_struck(one_seed: ReportInput) -> None:
         ["predictor: correct readings", "reconstruction: correct readings"],
         ["predictor: gets it unchanged", "reconstruction: correct readings"],
     ]
-    some = with_paths(one_seed, lambda p: p.model_copy(update={"struck": p.struck[:3]}))
+    some = with_paths(one_seed, lambda p: p.model_copy(update={"faulted": p.faulted[:3]}))
     assert states(forks(some)[-1])[1][0] == "predictor: partly wrong"
 
 

@@ -9,15 +9,15 @@ from faultpath.trials import Deliveries
 from faultpath.trials.execution.runner import run_study
 from faultpath.trials.store import parquet, tables
 
-STRUCK = (STEPS - FAULT.onset_step) * len(SCENES)
+FAULTED = (STEPS - FAULT.onset_step) * len(SCENES)
 EACH = STEPS * len(SCENES)
 
 
 @pytest.mark.parametrize("workers", [0, 2])
 def test_every_row_brings_what_its_taps_did(tmp_path, workers):
     result = run_study(study(), tmp_path, workers=workers)
-    planner = TapCount("mass", "planner.thrust", EACH, STRUCK, STRUCK)
-    whole = TapCount("mass", "observer.balance", EACH, STRUCK, STRUCK)
+    planner = TapCount("mass", "planner.thrust", EACH, FAULTED, FAULTED)
+    whole = TapCount("mass", "observer.balance", EACH, FAULTED, FAULTED)
     clean = TapCount("mass", "observer.balance", EACH, 0, 0)
     by_address = {(r.variant, r.path, r.seed): r.taps for r in result.deliveries.rows}
     assert by_address["observed", "planner", 1] == (planner, clean)
@@ -25,7 +25,7 @@ def test_every_row_brings_what_its_taps_did(tmp_path, workers):
     assert by_address["plain", "shared", 0] == (planner,)
     assert by_address["plain", "correct", 0] == (TapCount("mass", "planner.thrust", EACH, 0, 0),)
     both = result.deliveries.at("observed", "shared")
-    assert both[0] == TapCount("mass", "planner.thrust", 2 * EACH, 2 * STRUCK, 2 * STRUCK)
+    assert both[0] == TapCount("mass", "planner.thrust", 2 * EACH, 2 * FAULTED, 2 * FAULTED)
     with pytest.raises(KeyError):
         result.deliveries.at("observed", "elsewhere")
 

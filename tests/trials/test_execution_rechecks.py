@@ -136,7 +136,7 @@ def test_what_does_not_repeat_is_seen_whatever_the_reason(tmp_path, kind, block)
 def test_a_run_killed_between_second_runs_ends_with_the_same_tables(tmp_path, kind, monkeypatch):
     asked = _study(kind, rows=slice(None), block="10")
     whole = run_study(asked, tmp_path / "whole", workers=0)
-    assert len(whole.flown_again) == 2
+    assert len(whole.rechecks) == 2
     for flights in range(2):
         folder = tmp_path / str(flights)
         with monkeypatch.context() as patched:
@@ -144,7 +144,7 @@ def test_a_run_killed_between_second_runs_ends_with_the_same_tables(tmp_path, ki
             with pytest.raises(Stopped):
                 run_study(asked, folder, workers=0)
         result = run_study(asked, folder, workers=0)
-        assert result.flown_again == whole.flown_again
+        assert result.rechecks == whole.rechecks
         for name in ("outcomes.parquet", "deliveries.json", "rechecks.json"):
             assert (folder / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
 
@@ -162,9 +162,9 @@ def _stopping(after: int):
 
 def test_a_few_scenes_of_a_later_arm_are_flown_at_other_places_than_before(tmp_path):
     result = run_study(_study("", rows=slice(None), block="10"), tmp_path, workers=0)
-    assert [each.why for each in result.flown_again].count("sample") == 1
-    few = next(each for each in result.flown_again if each.why == "sample")
-    (one,) = (each for each in result.flown_again if each is not few)
+    assert [each.why for each in result.rechecks].count("sample") == 1
+    few = next(each for each in result.rechecks if each.why == "sample")
+    (one,) = (each for each in result.rechecks if each is not few)
     assert (one.why, len(one.scenes), one.unit != few.unit) == ("guarded", 1, True)
     assert (len(few.scenes), few.unit_scenes, few.differs) == (SAMPLE, 10, "")
     assert all(SCENES.index(scene) > i for i, scene in enumerate(few.scenes))

@@ -48,8 +48,8 @@ def test_the_fault_changes_what_it_should(whole):
     assert distances("plain", "shared") == distances("plain", "planner")
     assert distances("plain", "shared") != distances("plain", "correct")
     assert distances("observed", "shared") != distances("observed", "planner")
-    struck = {r.outcome.struck_steps for r in table.arm("observed", "shared", 0)}
-    assert struck == {9}  # 12 steps, from step 3 on
+    faulted = {r.outcome.faulted_steps for r in table.arm("observed", "shared", 0)}
+    assert faulted == {9}  # 12 steps, from step 3 on
     assert {r.outcome.altered_steps for r in table.arm("observed", "correct", 0)} == {0}
 
 

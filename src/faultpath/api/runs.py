@@ -233,7 +233,7 @@ def _doubt(
         return "the record has effects on paths that it does not name"
     taps = {(c.name, consumer) for c in shown.interface.channels for consumer in c.consumers}
     for path in record.paths:
-        faulted = {asked.repair: path.struck, asked.baseline: path.baseline_struck}
+        faulted = {asked.repair: path.faulted, asked.baseline: path.baseline_faulted}
         for variant, named in faulted.items():
             if not taps.issuperset((tap.channel, tap.consumer) for tap in named):
                 return "the record names taps that the interface has not got"

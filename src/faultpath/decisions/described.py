@@ -41,7 +41,7 @@ def cells_of(question: Question, paths: Sequence[Path], table: OutcomeTable) -> 
                     failed=count[Status.FAILED],
                     success_percent=100 * count[Status.SUCCESS] / ran if ran else 0.0,
                     median_time_s=median(times) if times else None,
-                    struck_trials=sum(end.struck_steps > 0 for end in ends),
+                    faulted_trials=sum(end.faulted_steps > 0 for end in ends),
                     altered_trials=sum(end.altered_steps > 0 for end in ends),
                 )
             )

@@ -18,7 +18,7 @@ class FaultedTap(Result):
 
     channel: str
     consumer: str
-    struck_steps: int
+    faulted_steps: int
     """Control steps with a fault in force while the scene ran."""
     altered_steps: int
     """Those in which what the consumer got differed from the reading."""
@@ -35,9 +35,9 @@ class Path(Result):
     baseline_consumers: tuple[str, ...]
     """Taps faulted in the baseline. Where the baseline has no such consumer the fault cannot reach
     it, and its trials under correct inputs stand in."""
-    struck: tuple[FaultedTap, ...] = ()
+    faulted: tuple[FaultedTap, ...] = ()
     """What was faulted in the repaired system: from receipts, where `consumers` is the plan."""
-    baseline_struck: tuple[FaultedTap, ...] = ()
+    baseline_faulted: tuple[FaultedTap, ...] = ()
     """What was faulted in the baseline."""
 
 
@@ -54,7 +54,7 @@ class Cell(Result):
     success_percent: float
     median_time_s: float | None
     """Over successful trials; `None` without one."""
-    struck_trials: int
+    faulted_trials: int
     altered_trials: int
 
 

@@ -47,8 +47,8 @@ class Audit:
         paths = [
             path.model_copy(
                 update={
-                    "struck": faulted_taps(deliveries.at(asked.repair, path.name)),
-                    "baseline_struck": faulted_taps(deliveries.at(asked.baseline, path.name)),
+                    "faulted": faulted_taps(deliveries.at(asked.repair, path.name)),
+                    "baseline_faulted": faulted_taps(deliveries.at(asked.baseline, path.name)),
                 }
             )
             for path in self.paths
@@ -66,11 +66,11 @@ def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
         FaultedTap(
             channel=tap.channel,
             consumer=tap.consumer,
-            struck_steps=tap.struck_steps,
+            faulted_steps=tap.faulted_steps,
             altered_steps=tap.altered_steps,
         )
         for tap in counts
-        if tap.struck_steps
+        if tap.faulted_steps
     )
 
 

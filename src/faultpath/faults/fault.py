@@ -105,15 +105,11 @@ class Fault(Frozen):
     """Steps in force; `None`: until the end."""
     recovery_steps: int = Field(default=0, ge=0)
     """Steps of linear return to the clean reading after `duration_steps`."""
-    intermittence: None = None
-    """A key of stored faults; always `null`."""
     cause: str | None = None
     """Faults of one cause draw the same random numbers; `None`: the channel and the kind."""
     loading: float = Field(default=1.0, ge=-1, le=1)
     """Share of the cause in the random numbers: two faults of one cause with the loadings a and b
     have errors of correlation a * b."""
-    own_cause: None = None
-    """A key of stored faults; always `null`."""
 
     @model_validator(mode="after")
     def _possible(self) -> Self:

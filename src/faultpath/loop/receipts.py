@@ -85,7 +85,7 @@ class TapCount:
     consumer: str
     deliveries: int
     """Control steps at which the consumer got the channel, once a scene of the block."""
-    struck_steps: int
+    faulted_steps: int
     """Those with a fault in force while the scene ran."""
     altered_steps: int
     """Those in which what was delivered differed from the reading."""
@@ -98,7 +98,7 @@ def added(counts: Iterable[TapCount]) -> tuple[TapCount, ...]:
         before = sums.get((each.channel, each.consumer), (0, 0, 0))
         sums[each.channel, each.consumer] = (
             before[0] + each.deliveries,
-            before[1] + each.struck_steps,
+            before[1] + each.faulted_steps,
             before[2] + each.altered_steps,
         )
     return tuple(TapCount(*tap, *numbers) for tap, numbers in sums.items())

@@ -65,7 +65,7 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
     """Return every path of the fault, isolated ones first; none where no tap is known."""
     record, asked = source.record, source.record.question
     faulted = (
-        tap.channel for path in record.paths for tap in (*path.struck, *path.baseline_struck)
+        tap.channel for path in record.paths for tap in (*path.faulted, *path.baseline_faulted)
     )
     names = tuple(dict.fromkeys([fault.channel for fault in asked.faults] or faulted))
     reads = [
@@ -86,8 +86,8 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
         arms: list[tuple[str, str, tuple[Reader, ...]]] = []
         untouched = every
         for role, name, taps, read in (
-            ("baseline", asked.baseline, path.baseline_struck, reads[0]),
-            ("repair", asked.repair, path.struck, reads[1]),
+            ("baseline", asked.baseline, path.baseline_faulted, reads[0]),
+            ("repair", asked.repair, path.faulted, reads[1]),
         ):
             hit = frozenset((tap.channel, tap.consumer) for tap in taps)
             untouched -= hit

@@ -96,7 +96,7 @@ def attempt(
         receipts = taps.receipts()
         counts = zip(receipts.steps_faulted, receipts.steps_altered, strict=True)
         noted = tuple(
-            replace(outcome, struck_steps=int(faulted), altered_steps=int(altered))
+            replace(outcome, faulted_steps=int(faulted), altered_steps=int(altered))
             for outcome, (faulted, altered) in zip(outcomes, counts, strict=True)
         )
         return Done(noted, receipts.counts())

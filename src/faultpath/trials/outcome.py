@@ -75,7 +75,7 @@ class Outcome:
     planner_noise_hash: str
     metrics: Mapping[str, float | None] = field(default_factory=dict[str, float | None])
     """What else there is to measure, by name, as the system's `metrics` declare it."""
-    struck_steps: int = 0
+    faulted_steps: int = 0
     """Control steps at which a fault was in force at some tap that delivered."""
     altered_steps: int = 0
     """Control steps at which what a consumer got differed from the reading."""
@@ -137,7 +137,7 @@ def checked(outcome: Outcome, metrics: Collection[str] = ()) -> Outcome:
             outcome,
             time_s=time_s,
             metrics={k: _number(k, v) for k, v in outcome.metrics.items() if v is not None},
-            struck_steps=0,
+            faulted_steps=0,
             altered_steps=0,
             error=None if outcome.error is None else _text(outcome.error),
             trace=None if outcome.trace is None else _path(outcome.trace),

@@ -71,7 +71,7 @@ class RunProvenance(Shown):
     """SHA-256 of each data file that the system names."""
     library_hash: str
     outcomes_sha256: str
-    flown_again: tuple[Recheck, ...] = ()
+    rechecks: tuple[Recheck, ...] = ()
     """What ran a second time, to see whether results repeat."""
     files: dict[FileName, Sha256] = Field(default_factory=dict[str, str])
     """The files beside this one that a report is made from, so that a change of one is seen."""

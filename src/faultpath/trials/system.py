@@ -111,7 +111,7 @@ class System(ABC):
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> Sequence[Outcome]:
         """Run one trial in each scene, in order; every reading goes through `taps`.
 
-        The taps are new, and for these scenes. Who runs the block fills `struck_steps` and
+        The taps are new, and for these scenes. Who runs the block fills `faulted_steps` and
         `altered_steps` in from their receipts.
         """
 

@@ -171,7 +171,7 @@ def save(
         system_fingerprint=flown.fingerprint,
         code=tuple(code for result in flown.results for code in result.code),
         library_hash=results.library_hash,
-        flown_again=tuple(again for result in flown.results for again in result.flown_again),
+        rechecks=tuple(again for result in flown.results for again in result.rechecks),
     )
 
 

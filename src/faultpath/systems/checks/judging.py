@@ -210,7 +210,7 @@ def _delivery(name: str, seen: Seen) -> Check:
         first = seen.of(variant, "first")
         then = first.readings(dt_s)
         now = {key: value for key, value in run.readings(dt_s).items() if key in then}
-        ends = tuple(replace(each, struck_steps=0, altered_steps=0) for each in run.outcomes)
+        ends = tuple(replace(each, faulted_steps=0, altered_steps=0) for each in run.outcomes)
         if run.fails == name:
             failures.append(f"{said} is not reached: {run.error}.")
         elif not here:

@@ -67,7 +67,7 @@ def run_provenance(
         data={name: found for code in result.code for name, found in code.state.data.items()},
         library_hash=result.library_hash,
         outcomes_sha256=result.outcomes_sha256,
-        flown_again=result.flown_again,
+        rechecks=result.rechecks,
     )
     return amend(folder, provenance, names)
 

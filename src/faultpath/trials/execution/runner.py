@@ -56,7 +56,7 @@ class RunResult:
     code: tuple[Code, ...]
     """What ran, of each run that this is made of."""
     library_hash: str
-    flown_again: tuple[Recheck, ...] = ()
+    rechecks: tuple[Recheck, ...] = ()
     """What ran a second time, to see whether results repeat."""
 
     @property
@@ -176,7 +176,7 @@ def run_study(
         system_fingerprint=code.state.digest,
         code=(code,),
         library_hash=library.content_hash,
-        flown_again=again.flown(),
+        rechecks=again.flown(),
     )
 
 

@@ -28,7 +28,7 @@ Trace = NDArray[np.float32]
 _ADDRESS = {"variant": TEXT, "path": TEXT, "seed": INTEGER, "scene": TEXT}
 _PLACE = {"scene_index": INTEGER, "topology": TEXT}
 _END = {"status": TEXT, "time_s": NUMBER}
-_COUNTS = {"struck_steps": INTEGER, "altered_steps": INTEGER}
+_COUNTS = {"faulted_steps": INTEGER, "altered_steps": INTEGER}
 _HASHES = dict.fromkeys(("initial_hash", "disturbance_hash", "planner_noise_hash"), TEXT)
 _RESULT = {**_COUNTS, **_HASHES, "error": TEXT}
 _TRACE = dict.fromkeys(("x_m", "y_m", "z_m"), NUMBERS)
@@ -157,7 +157,7 @@ def _outcome(row: Mapping[str, Any], trace: Trace | None) -> Outcome:
         raise Unreadable(str(error)) from error
     outcome = Outcome(**fields, trace=trace, metrics=metrics)
     wrong: str | None = None
-    if min(outcome.struck_steps, outcome.altered_steps) < 0:
+    if min(outcome.faulted_steps, outcome.altered_steps) < 0:
         wrong = "a count of steps is below 0"
     elif not outcome.failed:
         found = checked(outcome, metrics)

@@ -108,9 +108,9 @@ class Pays:
 def crossing(results: Results, repair: str) -> Crossing:
     """Return the break-even frequency of a repair of Table V."""
     correct_repair, correct, faulty_repair, faulty = table_5.REPAIRS[repair]
-    nominal, struck = together(results, (correct_repair, correct), (faulty_repair, faulty))
-    even = break_even(nominal, struck)
-    start, end = nominal.value, struck.value
+    nominal, faulted = together(results, (correct_repair, correct), (faulty_repair, faulty))
+    even = break_even(nominal, faulted)
+    start, end = nominal.value, faulted.value
     value = 100 * even.p_star if even.p_star is not None and start <= 0 < end else None
     if min(start, end) >= 0 < max(start, end):
         value = 0.0

@@ -1,4 +1,4 @@
-"""The record says which taps were struck in flight, from receipts and not from the plan."""
+"""The record says which taps were faulted in flight, from receipts and not from the plan."""
 
 from pathlib import Path
 
@@ -26,15 +26,15 @@ def asked(text: str) -> Audit:
     )
 
 
-def struck(record: DecisionRecord) -> dict[str, tuple[tuple[FaultedTap, ...], ...]]:
-    return {path.name: (path.struck, path.baseline_struck) for path in record.paths}
+def faulted(record: DecisionRecord) -> dict[str, tuple[tuple[FaultedTap, ...], ...]]:
+    return {path.name: (path.faulted, path.baseline_faulted) for path in record.paths}
 
 
-def tap(consumer: str, struck_steps: int, altered_steps: int) -> FaultedTap:
+def tap(consumer: str, faulted_steps: int, altered_steps: int) -> FaultedTap:
     return FaultedTap(
         channel="gain",
         consumer=consumer,
-        struck_steps=struck_steps,
+        faulted_steps=faulted_steps,
         altered_steps=altered_steps,
     )
 
@@ -47,12 +47,12 @@ def tap(consumer: str, struck_steps: int, altered_steps: int) -> FaultedTap:
         ("gain:scale=1", STEPS, 0),
     ],
 )
-def test_a_path_holds_the_taps_struck_in_either_variant(tmp_path, text, in_force, altered):
+def test_a_path_holds_the_taps_faulted_in_either_variant(tmp_path, text, in_force, altered):
     audit = asked(text)
     result = run_study(audit.study, tmp_path, workers=0)
     controller = tap("controller.inverse", 4 * in_force, 4 * altered)
     observer = tap("observer.model", 4 * in_force, 4 * altered)
-    assert struck(audit.conclude(result.outcomes, result.deliveries)) == {
+    assert faulted(audit.conclude(result.outcomes, result.deliveries)) == {
         "correct": ((), ()),
         "controller": ((controller,), (controller,)),
         "observer": ((), (observer,)),
@@ -60,11 +60,11 @@ def test_a_path_holds_the_taps_struck_in_either_variant(tmp_path, text, in_force
     }
 
 
-def test_a_fault_after_the_end_struck_nothing(tmp_path):
+def test_a_fault_after_the_end_faulted_nothing(tmp_path):
     audit = asked("gain:scale=0.6,onset=100")
     result = run_study(audit.study, tmp_path, workers=0)
     record = audit.conclude(result.outcomes, result.deliveries)
-    assert set(struck(record).values()) == {((), ())}
+    assert set(faulted(record).values()) == {((), ())}
 
 
 def test_a_stored_run_is_concluded_without_flying(tmp_path):
