@@ -18,7 +18,7 @@ from faultpath_quadrotor.paper.pages import (
 from faultpath_quadrotor.paper.results import Results
 from toy_runs import CELLS, MEASUREMENTS, Ends, trials
 
-from faultpath.trials import OutcomeTable, Status
+from faultpath.trials import OutcomeTable, Status, TrialRow
 
 SCENES = 100
 WINDOWS = 2
@@ -83,6 +83,10 @@ SUCCESS: dict[tuple[str, str], float] = {
     )
     for cell, percent in zip(cells, percents, strict=True)
 }
+FIRST_WON = {table_6.negative("gru+dcc", "shared"): 11}
+"""The paper's 3:11 discordant scenes of one difference, which is not detected."""
+FARTHER = table_4.cell("gru+dcc", "reconstruction-only")
+"""Whose lost scenes end farther away, so that the distance hides what success shows."""
 CRASHES = {
     table_1.WM_A: 21,
     table_1.TRUE_PARAMETER: 16,
@@ -95,8 +99,8 @@ MEDIANS: dict[Measurement, float] = {
         (map(table_1.common_error, table_1.PREDICTORS), (0.328, 0.082, 0.063, 0.026)),
         (map(table_2.error_under, table_2.ERRORS), (0.747, 0.082, 0.560)),
         (map(in_text.windy_error, in_text.WINDY_SUBJECTS), (0.3, 0.4, 0.5)),
-        ([in_text.response("wm-a", p) for p in in_text.PROBES], (0.62, 0.02)),
-        ([in_text.response("wm-a+dcc", p) for p in in_text.PROBES], (0.09, 0.15)),
+        ([in_text.response("wm-a", p) for p in in_text.PROBES], (0.62, 0.02, 0.03)),
+        ([in_text.response("wm-a+dcc", p) for p in in_text.PROBES], (0.09, 0.15, 0.16)),
         *(
             ([measure(method, path, seed) for path in paths], medians)
             for measure, method, paths, medians in (
@@ -121,9 +125,10 @@ MEDIANS: dict[Measurement, float] = {
 
 
 def as_published(cell: Cell, seed: int, scene: int) -> Status:
-    """Let a cell win its first scenes, time out in the next and crash in its last."""
+    """Let a cell win its first scenes, or some later ones, time out in the next and crash last."""
     percent = SUCCESS.get((cell.variant, cell.path), 70)
-    if scene < percent:
+    first = FIRST_WON.get(cell, 0)
+    if first <= scene < first + percent:
         return Status.SUCCESS
     crashes = CRASHES.get(cell, 100)
     return Status.CRASH if scene >= 100 - crashes else Status.TIMEOUT
@@ -137,15 +142,17 @@ def mirrored(cell: Cell, seed: int, scene: int) -> Status:
 
 def outcomes(ends: Ends, scenes: int = SCENES, slower_s: float = 1.4) -> OutcomeTable:
     """Return every trial of the paper; those of DKI are slower."""
-    rows = trials(CELLS, ends, range(scenes)).rows
-    return OutcomeTable(
-        tuple(
-            replace(row, outcome=replace(row.outcome, time_s=row.outcome.time_s + slower_s))
-            if row.variant == "dki"
-            else row
-            for row in rows
-        )
-    )
+
+    def changed(row: TrialRow) -> TrialRow:
+        made = row.outcome
+        if row.variant == "dki":
+            made = replace(made, time_s=made.time_s + slower_s)
+        lost = made.metrics["terminal_distance_m"] > 1
+        if (row.variant, row.path) == (FARTHER.variant, FARTHER.path) and lost:
+            made = replace(made, metrics={**made.metrics, "terminal_distance_m": 2.5})
+        return replace(row, outcome=made)
+
+    return OutcomeTable(tuple(map(changed, trials(CELLS, ends, range(scenes)).rows)))
 
 
 def windows(power: float = 1.0) -> EvidenceTable:

@@ -44,7 +44,7 @@ def test_every_published_claim_has_statements_and_nothing_else_has() -> None:
 
 def test_an_empty_run_leaves_every_claim_undecided() -> None:
     claims = evaluate(EMPTY)
-    assert len(claims) == 39
+    assert len(claims) == 45
     assert {claim.verdict for claim in claims} == {"undecided"}
     assert all(part.reason.startswith("not run: ") for c in claims for part in c.parts)
 
@@ -72,12 +72,10 @@ def test_turning_all_outcomes_round_refutes_what_was_detected(
         (old, new)
         for id, statements in STATEMENTS.items()
         for statement, old, new in zip(statements, answers[id].parts, mirror[id].parts, strict=True)
-        # C04 is of crashes and C30 of sizes, which do not turn round; in C12 both sides do.
-        if isinstance(statement, Statement)
-        and statement.rule in (ABOVE, BELOW)
-        and id not in ("C04", "C12", "C30")
+        # C04 is of crashes, which do not turn round.
+        if isinstance(statement, Statement) and statement.rule in (ABOVE, BELOW) and id != "C04"
     ]
-    assert len(detected) > 25
+    assert len(detected) > 20
     for old, new in detected:
         assert old.answer == "confirmed"
         assert new.answer == "refuted"

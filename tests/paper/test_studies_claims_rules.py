@@ -1,8 +1,9 @@
 """Each rule of the claims: when it confirms, when it refutes, and when it leaves open."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from faultpath_quadrotor.paper.claims.paying import Crossing
 from faultpath_quadrotor.paper.claims.rules import (
     ABOVE,
     BELOW,
@@ -87,7 +88,7 @@ def test_a_difference_is_detected_when_interval_and_test_agree(
     [
         (NO_LOSS, found(OPEN, 0.3), "confirmed"),
         (NO_LOSS, found(DOWN, 0.01), "refuted"),
-        (NO_LOSS, found((-15.0, 1.0), 0.04), "refuted"),
+        (NO_LOSS, found((-15.0, 1.0), 0.04), "confirmed"),
         (NO_LOSS, found(UP, 0.01), "confirmed"),
         (NO_GAIN, found(UP, 0.01), "refuted"),
         (NO_DIFFERENCE, found(UP, 0.01), "refuted"),
@@ -104,6 +105,16 @@ def test_not_detecting_counts_only_where_something_would_have_been_seen(
     rule: Rule, difference: Contrast, answer: str
 ) -> None:
     assert rule.judge(difference).answer == answer
+
+
+def test_of_several_seeds_the_interval_detects_and_the_test_may_fail_to() -> None:
+    """As the paper has it: the sign test decides of an absence alone."""
+    several = replace(found(UP, 0.3), n_seeds=3)
+    vars(several)["least"] = 8.0
+    assert ABOVE.judge(several).answer == "confirmed"
+    assert BELOW.judge(several).answer == "refuted"
+    assert NO_GAIN.judge(several).answer == "confirmed"
+    assert bounded(Bound(10, 1), seen=True).judge(several).answer == "confirmed"
 
 
 @pytest.mark.parametrize(
@@ -168,7 +179,7 @@ def test_few_scenes_decide_nothing_by_a_point_estimate(rule: Rule, n_scenes: int
 TOUCHING = [(0.0, 15.0), (-15.0, 0.0), (0.0, 0.0), OPEN]
 
 
-@pytest.mark.parametrize("rule", [ABOVE, BELOW, more_than(0), less_than(0), at_least(0)])
+@pytest.mark.parametrize("rule", [ABOVE, BELOW])
 @pytest.mark.parametrize("interval", TOUCHING)
 @pytest.mark.parametrize("n_scenes", [10, 100])
 def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(
@@ -235,43 +246,6 @@ def test_a_reversal_is_refuted_by_a_detected_sign_that_it_forbids(
     before: Contrast, after: Contrast, answer: str
 ) -> None:
     assert Turned(decisive(change(before, after)), before, after).judge().answer == answer
-
-
-def crossing(
-    value: float | None, *, ahead: bool = False, behind: bool = False, never: bool = False
-) -> Crossing:
-    return Crossing(
-        value=value,
-        interval=None if value is None else (max(0.0, value - 10), value + 10),
-        n_scenes=100,
-        ahead=ahead,
-        behind=behind,
-        never=never,
-    )
-
-
-@pytest.mark.parametrize(
-    ("bound", "at", "answer"),
-    [
-        (Bound(15, -1, strict=True), crossing(5, ahead=True), "confirmed"),
-        (Bound(15, -1, strict=True), crossing(20, ahead=True), "undecided"),
-        (Bound(15, -1, strict=True), crossing(40, ahead=True), "refuted"),
-        (Bound(15, -1, strict=True), crossing(0, ahead=True), "confirmed"),
-        (Bound(30, 1, strict=True), crossing(0, ahead=True), "refuted"),
-        (Bound(30, 1, strict=True), crossing(None, behind=True, never=True), "refuted"),
-        (Bound(30, 1, strict=True), crossing(None, never=True), "undecided"),
-        (Bound(15, -1, strict=True), crossing(None), "undecided"),
-        (None, crossing(None, never=True), "confirmed"),
-        (None, crossing(None, never=True, behind=True), "confirmed"),
-        (None, crossing(40), "undecided"),
-        (None, crossing(40, ahead=True), "refuted"),
-    ],
-)
-def test_a_break_even_frequency_is_judged_by_what_is_decided(
-    bound: Bound | None, at: Crossing, answer: str
-) -> None:
-    judged = at.pays_within(bound) if bound else at.pays_never()
-    assert judged.answer == answer
 
 
 def mean(values: list[float]) -> Contrast:

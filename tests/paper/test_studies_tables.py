@@ -3,7 +3,7 @@
 from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.answers import Sweep
 from faultpath_quadrotor.paper.cells import Cell
-from faultpath_quadrotor.paper.pages import PAGES, figure_3, table_6
+from faultpath_quadrotor.paper.pages import PAGES, figure_3, table_4, table_6
 from toy_runs import (
     EMPTY,
     MEASUREMENTS,
@@ -83,12 +83,39 @@ def test_table_4_shows_the_reversal_and_its_changes() -> None:
     assert texts(line(table, "Shared minus reconstruction-only (m)"))[2] == "+1.20"
 
 
+def test_the_observer_flies_once_and_is_compared_with_each_trained_seed() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        wins = 10 + seed if cell.variant == "gru" else 10
+        return Status.SUCCESS if scene < wins else Status.CRASH
+
+    results = run(ends)
+    table = tables(page("table-4"), results)["table-4"]
+    assert texts(line(table, "DOB"))[0] == "50"  # of one run: no decimals
+    heading = "DOB minus GRU, success (pp)"
+    assert texts(line(table, "Wins:losses", below=heading))[0] == "0:0/0:1/0:2"
+    assert texts(line(table, "Difference", below=heading))[0] == "−5.0"
+    dob = table_4.cell("dob", "correct")
+    assert (dob.fixed, dob.seeds, results.pairs(dob, dob).seeds) == (True, (0,), (0,))
+
+
+def test_both_intervals_stand_in_a_table_and_the_papers_comes_first() -> None:
+    table = tables(page("table-2"), run(won(calibrated)))["table-2"]
+    heading = "WM-A+DCC minus WM-A (pp)"
+    ends, score = (
+        texts(line(table, label, below=heading))[1] for label in ("95 % interval", "Score interval")
+    )
+    assert ends == "[0.0, 15.0]"  # of one scene in twenty; the score's holds what none showed
+    assert score.startswith("[−")
+
+
 def test_table_5_gives_the_break_even_frequency_or_says_that_there_is_none() -> None:
     table = tables(page("table-5"), run(won(_reconstructed)))["table-5"]
     alone = texts(line(table, "GRU: reconstruction only"))
     assert alone[:2] == ["−30.0", "+30.0"]
     assert alone[2].startswith("50 [")
     assert texts(line(table, "GRU: shared with predictor"))[2] == "no crossing"
+    low, high = (int(end) for end in alone[2].partition("[")[2].strip("]").split(", "))
+    assert 0 < low < 50 < high < 100
     assert papers(line(table, "GRU: reconstruction only"))[2] == "59 [33, 80]"
 
 

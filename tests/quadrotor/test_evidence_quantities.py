@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 from faultpath_quadrotor.evidence import quantities
-from faultpath_quadrotor.evidence.inputs import Subject
+from faultpath_quadrotor.evidence.inputs import Subject, with_shuffled_history
 from faultpath_quadrotor.evidence.quantities import check, measured
 from faultpath_quadrotor.evidence.recording import STRIDE, Recorded
 from faultpath_quadrotor.evidence.table import Measurement, Recording
@@ -56,6 +56,34 @@ def test_an_identity_fault_gives_exactly_no_response_and_changes_no_error(record
         assert not ask(recorded, "position-response", subject, fault).any()
     plain = ask(recorded, "acceleration-error", "gru")
     assert np.array_equal(plain, ask(recorded, "acceleration-error", "gru", "calibration=0"))
+
+
+def test_shuffling_a_history_moves_its_steps_alone_and_each_window_s_by_its_own_draw(recorded):
+    windows = recorded.windows
+    shuffled = with_shuffled_history(windows, 0)
+    assert torch.equal(shuffled.position[:, HISTORY:], windows.position[:, HISTORY:])
+    assert torch.equal(shuffled.command[:, HISTORY:], windows.command[:, HISTORY:])
+    orders: set[tuple[int, ...]] = set()
+    for w in range(5):
+        steps = windows.velocity[:, :HISTORY, w].T.tolist()
+        order = tuple(steps.index(step) for step in shuffled.velocity[:, :HISTORY, w].T.tolist())
+        assert sorted(order) == list(range(HISTORY))
+        for name in ("rotation", "command"):
+            one, two = (getattr(each, name)[..., :HISTORY, w] for each in (windows, shuffled))
+            assert torch.equal(two, one[..., list(order)])
+        orders.add(order)
+    assert len(orders) == 5
+    again = with_shuffled_history(windows.take(torch.tensor([3])), 0)
+    assert torch.equal(again.rate[..., 0], shuffled.rate[..., 3])
+    other = with_shuffled_history(windows, 1)
+    assert not torch.equal(other.rate, shuffled.rate)
+
+
+def test_shuffled_histories_move_what_is_predicted_from_a_history_alone(recorded):
+    moved = ask(recorded, "shuffle-response", "wm-a")
+    assert np.median(moved) > 0
+    # A constant code hides the history, and then its order too.
+    assert not ask(recorded, "shuffle-response", "wm-a", "history_code:scale=0").any()
 
 
 def test_the_wind_input_is_the_variant_s(recorded):
@@ -124,6 +152,7 @@ def test_true_wind_and_correct_calibration_leave_no_acceleration_error(recorded)
     [
         ("position-error", "wm-a-wind/gru", SHARED),
         ("position-response", "wm-a+dcc", "mass:noise=0.1,relative"),
+        ("shuffle-response", "wm-a+dcc", SHARED),
         ("acceleration-error", "dob", AT_PREDICTOR),
     ],
 )
@@ -147,6 +176,7 @@ def test_a_window_s_number_does_not_depend_on_those_beside_it(recorded, quantity
         ("position-error", "wm-a", "mass:scale=2,onset=3", "acts in time"),
         ("position-error", "wm-a", AT_RECONSTRUCTION, "reaches no consumer"),
         ("position-response", "dki", "history_code:shuffle", "reaches no consumer"),
+        ("shuffle-response", "dki", SHARED, "reads no history"),
         ("acceleration-error", "wm-u", SHARED, "no analytic dynamics"),
         ("wind-term-error", "wm-a-nowind", SHARED, "no analytic dynamics"),
     ],

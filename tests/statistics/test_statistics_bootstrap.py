@@ -12,6 +12,7 @@ from scipy.stats import t as student
 
 from faultpath.core.streams import generator
 from faultpath.statistics.contrast import change, percentile_interval
+from faultpath.statistics.decisions import with_test
 from faultpath.statistics.effects import mean_effect, median_effect, success_effect, success_rate
 from faultpath.statistics.estimate import SCENES, SCENES_AND_SEEDS, Estimate
 from faultpath.statistics.resamples import Resamples
@@ -162,6 +163,21 @@ def test_a_resampled_mean_of_zero_is_exactly_zero():
     draws = success_effect(first, second, RESAMPLES).draws
     assert (draws == 0).sum() > 20
     assert np.abs(draws[draws != 0]).min() > 1
+
+
+def test_resampled_it_has_the_percentile_interval_and_else_stays():
+    first, second = np.arange(N) < 12, np.arange(N) < 5
+    found = with_test(success_effect(first, second, RESAMPLES), "exact")
+    as_draws = found.resampled()
+    assert as_draws.interval == percentile_interval(found.draws) != found.interval
+    assert (as_draws.value, as_draws.test, as_draws.counts) == (
+        found.value,
+        found.test,
+        found.counts,
+    )
+    assert as_draws.estimate().method == "percentile bootstrap of scenes, 500 resamples"
+    metres = mean_effect(first, second, RESAMPLES, "m")
+    assert metres.resampled() is metres
 
 
 def test_per_seed_values_and_counts():

@@ -137,3 +137,20 @@ def test_sides_of_different_extent_are_refused():
         pair(_table(), ONE, Side("baseline", "correct"))
     with pytest.raises(PairingRefused, match="repair under correct"):
         pair(_table(), Side("repair", "correct"), TWO)
+
+
+def test_what_was_run_once_is_paired_with_every_seed_of_the_other_side():
+    """Its planner drew with its own seed, so that noise counts only where seeds agree."""
+    once = Side("baseline", "shared", once=3)
+    rows = tuple(row for row in _table().rows if (row.variant, row.seed) != ("baseline", 5))
+    for first, second in ((ONE, once), (once, ONE)):
+        pairs = pair(OutcomeTable(rows), first, second, SEEDS)
+        assert (pairs.seeds, pairs.void) == (SEEDS, 0)
+        its = pairs.first if first == once else pairs.second
+        np.testing.assert_array_equal(its.success, [[0, 0], [1, 1], [0, 0]])
+        assert its.time_s.tolist() == [[5.0, 5.0]] * 3
+    assert pair(_altering("repair", "a", 3, planner_noise_hash="x"), ONE, once).void == 1
+    assert pair(_altering("repair", "a", 5, planner_noise_hash="x"), ONE, once).void == 0
+    assert pair(_altering("repair", "a", 5, initial_hash="x"), ONE, once).void == 1
+    with pytest.raises(PairingRefused, match="with seed 4"):
+        pair(_table(), ONE, Side("baseline", "shared", once=4), SEEDS)

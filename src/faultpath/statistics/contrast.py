@@ -110,6 +110,15 @@ class Contrast:
         """The 95 % interval."""
         return self.ends(0.95)
 
+    def resampled(self) -> "Contrast":
+        """Return it with the percentile interval of its draws in the place of the score's.
+
+        It is for comparing with what was reported so. Of few discordant scenes it is too narrow.
+        """
+        if self.scenes is None:
+            return self
+        return replace(self, scenes=None, method="percentile bootstrap of scenes")
+
     def estimate(self, level: float = 0.95) -> Estimate:
         """Return the value with its interval at ``level``, to be stored."""
         low, high = self.ends(level) or (None, None)

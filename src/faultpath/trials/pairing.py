@@ -31,9 +31,15 @@ class Side:
 
     variant: str
     path: str
+    once: int | None = None
+    """Of what no seed trains anew, the seed of its only run, which is paired with every seed."""
 
     def __str__(self) -> str:
         return f"{self.variant} under {self.path}"
+
+    def at(self, seed: int) -> int:
+        """Return the seed of the trials that stand for `seed`."""
+        return seed if self.once is None else self.once
 
 
 @dataclass(frozen=True)
@@ -137,6 +143,7 @@ def pair(
 
     `seeds` are those of the first side when left out. `other_noise` says that the sides are
     planners that draw differently, by number of candidates for one: their noise is not compared.
+    Nor is it where one side was run once, with another seed.
     Two trials that differ in their initial state, their disturbance or the planner's noise are no
     pair: it is void and among the `mismatches`. `PairingRefused` when the sides do not hold the
     same seeds and scenes.
@@ -148,9 +155,11 @@ def pair(
     every: list[str] = []
     for seed, (side, arms) in product(seeds, ((first, ones), (second, twos))):
         try:
-            arm = table.arm(side.variant, side.path, seed)
+            arm = table.arm(side.variant, side.path, side.at(seed))
         except KeyError:
-            raise PairingRefused(f"the table has no trial of {side} with seed {seed}") from None
+            raise PairingRefused(
+                f"the table has no trial of {side} with seed {side.at(seed)}"
+            ) from None
         arms.append(arm)
         scenes = [row.outcome.scene for row in arm]
         every = every or scenes
@@ -162,9 +171,10 @@ def pair(
             )
     ended = _trials(ones), _trials(twos)
     void = ended[0].failed | ended[1].failed
-    hashes = [name for name in _HASHES if name != "planner_noise_hash" or not other_noise]
     mismatches: list[Mismatch] = []
     for at, (seed, one, two) in enumerate(zip(seeds, ones, twos, strict=True)):
+        drawn_alike = not other_noise and first.at(seed) == second.at(seed)
+        hashes = [name for name in _HASHES if name != "planner_noise_hash" or drawn_alike]
         for scene, (a, b) in enumerate(zip(one, two, strict=True)):
             if found := unlike(a.outcome, b.outcome, hashes):
                 mismatches.append(Mismatch(first, second, a.outcome.scene, seed, found))

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
+import numpy as np
+import torch
 from torch import Tensor
 
 from faultpath.core.errors import UserError
+from faultpath.core.streams import generators
 from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, Hold
 from faultpath.loop import Reading, Taps
 from faultpath.trials import Variant
@@ -16,11 +19,30 @@ from faultpath_quadrotor.evidence.playback import CODE, HELD, Present, at_presen
 from faultpath_quadrotor.predictors import Predictor
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.system import Quadrotor
-from faultpath_quadrotor.training.windows import Windows
+from faultpath_quadrotor.training.windows import HISTORY, Windows
 
 _BY_WINDOW = HELD | {"wind"}
 _BY_RECORDING = frozenset({CODE[0]})
 _IN_TIME = (Delay, Drift, Dropout, Freeze, Hold)
+
+
+_STEPS = ("position", "velocity", "rotation", "rate", "command", "wind_mps", "motor_thrust_n")
+"""What windows hold of every step, `[..., T, W]`."""
+
+
+def with_shuffled_history(windows: Windows, seed: int) -> Windows:
+    """Return windows whose 12 steps of history, states with their commands, have changed places.
+
+    The order is drawn for each window by itself; its present and what lies ahead stay.
+    """
+    streams = generators("history steps", windows.ids, seed)
+    orders = torch.from_numpy(np.stack([stream.permutation(HISTORY) for stream in streams], 1))
+
+    def shuffled(values: Tensor) -> Tensor:
+        past, rest = values[..., :HISTORY, :], values[..., HISTORY:, :]
+        return torch.cat((past.gather(-2, orders.expand(past.shape)), rest), -2)
+
+    return replace(windows, **{name: shuffled(getattr(windows, name)) for name in _STEPS})
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from faultpath.core.errors import UserError
 from faultpath.trials.store import atomic
 from faultpath.trials.store.atomic import locked, make_folder
 from faultpath_quadrotor.device import arithmetic
-from faultpath_quadrotor.evidence.inputs import Subject
+from faultpath_quadrotor.evidence.inputs import Subject, with_shuffled_history
 from faultpath_quadrotor.evidence.playback import Present, at_present
 from faultpath_quadrotor.evidence.recording import Block, Recorded, blocks, quadrotor, recorded
 from faultpath_quadrotor.evidence.table import (
@@ -45,6 +45,11 @@ def check(measurement: Measurement) -> None:
     """Raise `UserError` where the measurement does not fit the system, before anything flies."""
     subject = _subject(measurement)
     subject.check(measurement.faults)
+    if measurement.quantity == "shuffle-response" and "history" not in subject.predictor.reads:
+        raise UserError(
+            f"the predictor of {measurement.subject!r} reads no history that could be shuffled: "
+            "measure a learned one"
+        )
     analytic = measurement.quantity in ("acceleration-error", "wind-term-error")
     if analytic and not {"dynamics", "wind_map"} <= subject.predictor.reads:
         raise UserError(
@@ -94,6 +99,14 @@ def _position_response(subject: Subject, asked: Measurement, windows: Windows) -
     return (there - here).norm(dim=0)
 
 
+def _shuffle_response(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
+    here, there = (
+        _present(subject, asked, each).positions()[..., -1]
+        for each in (windows, with_shuffled_history(windows, asked.seed))
+    )
+    return (there - here).norm(dim=0)
+
+
 def _acceleration_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
     present = _present(subject, asked, windows)
     told = {channel: present[channel, "predictor.dynamics"] for channel in windows.calibration}
@@ -113,6 +126,7 @@ def _wind_term_error(subject: Subject, asked: Measurement, windows: Windows) -> 
 _QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]] = {
     "position-error": _position_error,
     "position-response": _position_response,
+    "shuffle-response": _shuffle_response,
     "acceleration-error": _acceleration_error,
     "wind-term-error": _wind_term_error,
 }

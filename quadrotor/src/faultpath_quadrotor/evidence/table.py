@@ -23,13 +23,18 @@ from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.parquet import INTEGER, NUMBER, TEXT, Unreadable, decode, encode
 
 Quantity: TypeAlias = Literal[
-    "position-error", "position-response", "acceleration-error", "wind-term-error"
+    "position-error",
+    "position-response",
+    "shuffle-response",
+    "acceleration-error",
+    "wind-term-error",
 ]
 
 QUANTITIES: Mapping[Quantity, str] = MappingProxyType(
     {
         "position-error": "m",
         "position-response": "m",
+        "shuffle-response": "m",
         "acceleration-error": "m/s^2",
         "wind-term-error": "m/s^2",
     }

@@ -28,6 +28,9 @@ class Part(_Frozen):
     answer: Answer
     estimate: float | None = None
     interval: tuple[float, float] | None = None
+    """The paper's: a percentile bootstrap of scenes."""
+    score: tuple[float, float] | None = None
+    """Our score interval, where there is one; no answer depends on it."""
     unit: str = ""
     p_value: float | None = None
     test: str = ""

@@ -51,6 +51,8 @@ class Cell:
     seeds: tuple[int, ...] = (0,)
     quick: bool = True
     """Whether the quick profile flies it."""
+    fixed: bool = False
+    """Whether no seed trains it anew: it flies once, and is paired with each trained seed."""
 
     @property
     def path(self) -> str:
@@ -60,7 +62,7 @@ class Cell:
     @property
     def side(self) -> Side:
         """Side of a contrast."""
-        return Side(self.variant, self.path)
+        return Side(self.variant, self.path, self.seeds[0] if self.fixed else None)
 
     def __str__(self) -> str:
         return f"{self.variant} ({self.path})"
@@ -82,14 +84,15 @@ class Profile:
 
     def cells(self, cells: Iterable[Cell]) -> tuple[Cell, ...]:
         """Return what this profile flies of `cells`: each variant and path once, all its seeds."""
-        wanted: dict[Side, Cell] = {}
+        wanted: dict[tuple[str, str], Cell] = {}
         for cell in cells:
             seeds = [seed for seed in cell.seeds if seed in self.seeds]
             if not seeds or (self.name == QUICK.name and not cell.quick):
                 continue
-            known = wanted.get(cell.side)
+            address = cell.variant, cell.path
+            known = wanted.get(address)
             every = {*seeds, *(known.seeds if known else ())}
-            wanted[cell.side] = Cell(cell.setting, cell.variant, cell.faults, tuple(sorted(every)))
+            wanted[address] = Cell(cell.setting, cell.variant, cell.faults, tuple(sorted(every)))
         return tuple(wanted.values())
 
 

@@ -58,7 +58,11 @@ def central(lines: Iterable[Line]) -> Table:
         columns=COLUMNS,
         lines=(*every, line("The paper", *printed, "claimed")),
         words=COLUMNS[-1:],
-        notes=(_when(every), "Each was decided by itself; no test compares them."),
+        notes=(
+            _when(every),
+            "Each was decided by itself; no test compares them. Intervals of the paper and of its "
+            "reproduction are percentile bootstraps of scenes, those of audits score intervals.",
+        ),
     )
 
 

@@ -1,6 +1,6 @@
 """Entries of tables as data: what each is made of, how, and the paper's figure beside it."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import astuple, dataclass
 
 from faultpath.decisions import wording
@@ -11,7 +11,7 @@ from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.cells import Cell, of_seed
 from faultpath_quadrotor.paper.quantities.differences import contrast
 from faultpath_quadrotor.paper.quantities.windows import mean_of_medians
-from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable
+from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable, detection
 
 Made = Sequence[Entry | str]
 Figure = float | str
@@ -110,19 +110,24 @@ def centimetres(measurement: Measurement, paper: Figure = "") -> Group:
 def of_quantity(
     quantity: Quantity, cells: Iterable[Cell], published: tuple[str, str], digits: int
 ) -> Group:
-    """A difference that claims may be decided by, and its interval.
+    """A difference that claims may be decided by, its interval, and beside it the score's.
 
-    Bold is a detected difference in success: all others are secondary.
+    Bold is a detected difference in success.
     """
 
     def make(results: Results) -> Made:
         found = quantity(results)
-        ends = found.interval and bracket(found.interval, digits)
-        bold = found.unit == "pp" and bool(found.detected)
-        value = wording.signed(found.value, digits)
-        return Entry(text=value, detected=bold), ends or MISSING
+        as_paper = found.resampled()
+        bold = found.unit == "pp" and bool(detection(as_paper))
+        entry = Entry(text=wording.signed(found.value, digits), detected=bold)
+        return entry, *_intervals((as_paper, found), digits)
 
-    return Group(make, published, tuple(cells))
+    return Group(make, (*published, ""), tuple(cells))
+
+
+def _intervals(contrasts: Iterable[Contrast], digits: int = 1) -> Iterator[str]:
+    for each in contrasts:
+        yield bracket(each.interval, digits) if each.interval else MISSING
 
 
 @dataclass(frozen=True)
@@ -131,6 +136,7 @@ class PublishedContrast:
 
     difference: str = ""
     interval: str = ""
+    score: str = ""
     wins_losses: str = ""
     p_value: str = ""
     detectable: str = ""
@@ -143,13 +149,13 @@ def published_contrasts(
 ) -> tuple[PublishedContrast, ...]:
     """Return contrasts that the paper prints in a row: pp, ends of intervals, `2:15` by seed."""
     return tuple(
-        PublishedContrast(wording.signed(pp), bracket(ends), "/".join(counts))
+        PublishedContrast(wording.signed(pp), bracket(ends), wins_losses="/".join(counts))
         for pp, ends, counts in zip(differences, intervals, wins_losses, strict=True)
     )
 
 
 def difference(first: Cell, second: Cell, published: PublishedContrast) -> Group:
-    """Difference, interval, wins:losses, p-value and least detectable difference of two cells."""
+    """Difference, its two intervals, wins:losses, p-value and least detectable difference."""
     return Group(
         lambda results: _entries(contrast(results, first, second)),
         astuple(published),
@@ -161,7 +167,7 @@ def _entries(found: Contrast) -> Made:
     assert found.test is not None
     return (
         decided(found),
-        wording.interval(found.estimate()) or MISSING,
+        *_intervals((found.resampled(), found)),
         str(found.counts),
         wording.p_value(found.test.p_value),
         "none" if found.least is None else wording.plain(found.least),
@@ -170,4 +176,5 @@ def _entries(found: Contrast) -> Made:
 
 def decided(found: Contrast) -> Entry:
     """Return a difference, bold where it is detected."""
-    return Entry(text=wording.signed(found.value), detected=bool(found.detected))
+    bold = bool(detection(found.resampled()))
+    return Entry(text=wording.signed(found.value), detected=bold)

@@ -8,7 +8,7 @@ import numpy as np
 
 from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.effects import success_rate
-from faultpath.statistics.estimate import Estimate
+from faultpath.statistics.estimate import Estimate, Sign
 from faultpath.statistics.resamples import Resamples
 from faultpath.trials import OutcomeTable, PairingRefused, Pairs, Status, pair
 from faultpath_quadrotor.evidence.table import EvidenceTable, Measured, Measurement
@@ -39,6 +39,18 @@ class Results:
             raise NotRun(cell)
         return tuple(run)
 
+    def common_seeds(self, *cells: Cell) -> tuple[int, ...]:
+        """Return the seeds that several cells pair over; fixed ones pair with any.
+
+        `NotRun` when there are none.
+        """
+        run = {cell: self.seeds(cell) for cell in cells}
+        trained = [seeds for cell, seeds in run.items() if not cell.fixed] or list(run.values())
+        common = tuple(seed for seed in trained[0] if all(seed in other for other in trained))
+        if not common:
+            raise NotRun(f"a seed that {cells[0]} and all it is compared with share")
+        return common
+
     def has(self, cell: Cell) -> bool:
         """Return whether any trial of a cell was run."""
         return bool(self.outcomes.seeds(cell.variant, cell.path))
@@ -51,14 +63,12 @@ class Results:
         scenes: Sequence[int] | None = None,
         other_noise: bool = False,
     ) -> Pairs:
-        """Pair two cells over the seeds that both were run with; `scenes` keeps some indices.
+        """Pair two cells over their common seeds; `scenes` keeps some indices.
 
         `other_noise` pairs planners that differ in how they draw: their noise cannot agree. Raises
         `PairingRefused` where two trials met different conditions: these systems are our own.
         """
-        seeds = [seed for seed in self.seeds(first) if seed in self.seeds(second)]
-        if not seeds:
-            raise NotRun(f"a seed that {first} and {second} share")
+        seeds = self.common_seeds(first, second)
         pairs = pair(self.outcomes, first.side, second.side, seeds, other_noise=other_noise)
         if pairs.mismatches:
             raise PairingRefused(str(pairs.mismatches[0]))
@@ -112,6 +122,16 @@ def _drawn(library_hash: str, n_scenes: int) -> Resamples:
 
 Quantity = Callable[[Results], Contrast]
 """Works a number out of a run, for tables and claims; raises `NotRun` or `Undecidable`."""
+
+
+def detection(contrast: Contrast) -> Sign:
+    """Return the side of 0 on which the paper detects a difference, or 0.
+
+    The whole interval lies there, of one seed's success with exact McNemar on its side.
+    """
+    if contrast.n_seeds == 1:
+        return contrast.detected
+    return contrast.side if contrast.enough else 0
 
 
 def decisive(contrast: Contrast, notable: float | None = None) -> Contrast:

@@ -1,8 +1,7 @@
-"""C30, C31, C34, C35: how a biased reconstruction makes up for a wrong model (paper, Table VI)."""
+"""C30, C31, C34, C35, C40: how a biased reconstruction makes up for a wrong model (Table VI)."""
 
 from faultpath_quadrotor.paper.cells import Printed, published
 from faultpath_quadrotor.paper.claims.rules import (
-    BELOW,
     NO_LOSS,
     Rule,
     at_least,
@@ -17,6 +16,7 @@ from faultpath_quadrotor.paper.quantities.windows import (
     Subject,
     difference_of_changes,
     difference_of_quantiles,
+    median,
     ratio,
 )
 
@@ -53,7 +53,7 @@ def _repair_moves_less(what: str, other: str, first: str, second: str, *, size: 
     return Statement(
         f"{what} in acceleration error, GRU+DCC minus {other.upper()},",
         difference_of_changes(repair, rival, size=size),
-        BELOW,
+        by_point(-1),
         Printed(own - others),
     )
 
@@ -121,6 +121,23 @@ CLAIMS: dict[str, Statements] = {
                 table_6.by_seed(table_6.position_error, GRU, ISOLATED),
             ),
             NO_LOSS,
+        ),
+    ),
+    "C40": (
+        *(
+            Statement(
+                f"acceleration error of {method.upper()}, correct,",
+                median(_acceleration(method, NOMINAL)),
+                within(*limits),
+                Printed(_printed(method, NOMINAL)),
+            )
+            for method, limits in ((DOB, (0.4, 0.7)), (GRU, (0.8, 1.4)))
+        ),
+        Statement(
+            "acceleration error of GRU over that of DOB, correct,",
+            ratio(_acceleration(GRU, NOMINAL), _acceleration(DOB, NOMINAL)),
+            at_least(1.5),
+            Printed(_printed(GRU, NOMINAL) / _printed(DOB, NOMINAL)),
         ),
     ),
 }

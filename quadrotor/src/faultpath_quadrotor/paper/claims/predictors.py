@@ -3,7 +3,14 @@
 from itertools import combinations
 
 from faultpath_quadrotor.paper.cells import Cell, Printed, of_seed, published
-from faultpath_quadrotor.paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_LOSS, at_least
+from faultpath_quadrotor.paper.claims.rules import (
+    ABOVE,
+    BELOW,
+    NO_DIFFERENCE,
+    NO_LOSS,
+    at_least,
+    by_point,
+)
 from faultpath_quadrotor.paper.claims.statement import Statement, Statements
 from faultpath_quadrotor.paper.pages import table_1
 from faultpath_quadrotor.paper.quantities.differences import crashes, success, time, timeouts
@@ -59,7 +66,7 @@ CLAIMS: dict[str, Statements] = {
             Statement(
                 f"median common error of {NAMES[worse]} minus that of {NAMES[better]}",
                 difference_of_quantiles(_error(worse), _error(better)),
-                ABOVE,
+                by_point(1),
                 _paper(worse, better, "error_common_cm", 0.01),
             )
             for worse, better in WORSE_THAN

@@ -1,6 +1,7 @@
 """When a statement is confirmed, when it is refuted, and when the run leaves it open.
 
-`docs/design/claims.md` gives the reasons. No rule knows the figure that the paper reports.
+`docs/design/claims.md` gives the reasons. A rule is asked about contrasts with the interval of the
+paper, the percentile bootstrap of scenes, and does not know the figure that the paper reports.
 """
 
 from collections.abc import Callable
@@ -9,6 +10,7 @@ from typing import NamedTuple
 
 from faultpath.statistics.contrast import ROUNDING, Contrast
 from faultpath_quadrotor.paper.answers import Answer
+from faultpath_quadrotor.paper.results import detection
 
 POINT_SCENES = 50
 """From so many scenes on an estimate decides where the paper's own does: half of the paper's
@@ -59,31 +61,32 @@ def telling(interval: Ends | None, n_scenes: int) -> Ends | None:
 
 
 def detected(sign: int) -> Rule:
-    """The difference lies on one side of 0: interval and test agree; refuted on the other one."""
+    """The difference is detected on one side of 0; refuted on the other one."""
 
     def judge(found: Contrast) -> Judged:
-        if found.detected:
-            return CONFIRMED if found.detected == sign else REFUTED
+        side = detection(found)
+        if side:
+            return CONFIRMED if side == sign else REFUTED
         if found.interval is None:
             return FEW_SCENES
         if found.side:
             return Judged("undecided", "the interval excludes 0, the test does not reject")
         return OPEN
 
-    return Rule(f"{{}} is {_SIDES[sign]} 0", judge)
+    return Rule(f"{{}} is detected {_SIDES[sign]} 0", judge)
 
 
 def not_detected(sign: int | None = None) -> Rule:
     """No difference is detected, on one side of 0 or on either.
 
-    Refuted by a rejection there; its absence confirms where it would have been seen.
+    Refuted where interval and test find one there; else confirmed where it would have been seen.
     """
 
     def judge(found: Contrast) -> Judged:
         if found.interval is None:
             return FEW_SCENES
-        if found.rejected:
-            return REFUTED if sign in (None, found.rejected) else CONFIRMED
+        if found.detected:
+            return REFUTED if sign in (None, found.detected) else CONFIRMED
         if found.least is None:
             return Judged("undecided", "no difference, however large, is sure to be detected")
         if found.notable is not None and found.least > found.notable:
@@ -120,8 +123,7 @@ class Bound:
     def judge(self, value: float, interval: Ends | None, n_scenes: int) -> Judged:
         """Refute when the whole interval misses; confirm when it meets, or the estimate may do so.
 
-        The estimate may in a run that is large enough, unless the limit is 0: on which side of 0 a
-        difference lies only an interval that leaves 0 out can say.
+        The estimate may in a run that is large enough.
         """
         interval = telling(interval, n_scenes)
         if interval is None:
@@ -131,11 +133,8 @@ class Bound:
             return REFUTED
         if not self.meets(value):
             return OPEN
-        if self.ahead(near) <= 0:
-            if self.limit == 0:
-                return Judged("undecided", "met by the estimate, but the interval reaches 0")
-            if not points_decide(n_scenes):
-                return FEW_FOR_POINTS
+        if self.ahead(near) <= 0 and not points_decide(n_scenes):
+            return FEW_FOR_POINTS
         return CONFIRMED
 
 
@@ -144,7 +143,7 @@ def bounded(bound: Bound, *, seen: bool = False) -> Rule:
 
     def judge(found: Contrast) -> Judged:
         met = bound.judge(found.value, found.interval, found.n_scenes)
-        if met == CONFIRMED and seen and found.detected != bound.sign:
+        if met == CONFIRMED and seen and detection(found) != bound.sign:
             return Judged("undecided", "met, but not detected")
         return met
 

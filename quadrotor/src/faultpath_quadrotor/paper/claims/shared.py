@@ -1,7 +1,17 @@
-"""C23 to C29 and C32: errors at the reconstruction alone, and shared (paper, Tables IV and VI)."""
+"""C23 to C29, C32, C41, C42, C44: errors at the reconstruction, and shared (Tables IV and VI)."""
+
+from collections.abc import Mapping
+from typing import Any
 
 from faultpath_quadrotor.paper.cells import Cell, Printed, published
-from faultpath_quadrotor.paper.claims.rules import ABOVE, BELOW, NO_LOSS, Rule, by_point
+from faultpath_quadrotor.paper.claims.rules import (
+    ABOVE,
+    BELOW,
+    NO_DIFFERENCE,
+    NO_LOSS,
+    Rule,
+    by_point,
+)
 from faultpath_quadrotor.paper.claims.statement import (
     ALL_SEEDS,
     Statement,
@@ -9,9 +19,20 @@ from faultpath_quadrotor.paper.claims.statement import (
     TurnsDown,
     seeds_that_turn,
 )
-from faultpath_quadrotor.paper.pages.table_4 import cell, change, paper_contrast, paper_rate
+from faultpath_quadrotor.paper.pages.table_4 import (
+    PATHS,
+    cell,
+    change,
+    paper_contrast,
+    paper_rate,
+)
 from faultpath_quadrotor.paper.pages.table_6 import negative, paper_negative
-from faultpath_quadrotor.paper.quantities.differences import success, terminal_distance
+from faultpath_quadrotor.paper.quantities.differences import (
+    combined,
+    succeeded,
+    success,
+    terminal_distance,
+)
 
 CORRECT, ISOLATED, SHARED = "correct", "reconstruction-only", "shared"
 GRU, DCC, DOB = "gru", "gru+dcc", "dob"
@@ -39,9 +60,33 @@ def _repair(path: str) -> tuple[Cell, Cell]:
     return cell(DCC, path), cell(GRU, path)
 
 
-_FARTHER = published(
-    "table_4_shared_calibration", "terminal_distance_GRU+DCC_minus_GRU_m", "shared_minus_isolated"
-)
+def _negative(path: str, rule: Rule) -> Statement:
+    return Statement(
+        f"success of GRU+DCC minus GRU at the negative offset, {path},",
+        success(negative(DCC, path), negative(GRU, path)),
+        rule,
+        Printed(paper_negative(DCC, path) - paper_negative(GRU, path)),
+    )
+
+
+_TABLE = published("table_4_shared_calibration")
+_FARTHER = _TABLE["terminal_distance_GRU+DCC_minus_GRU_m"]
+
+
+def _printed(figure: Mapping[str, Any]) -> Printed:
+    low, high = figure["ci95"]
+    return Printed(figure["mean"], (low, high))
+
+
+def _farther(path: str, rule: Rule) -> Statement:
+    at = list(PATHS).index(path)
+    return Statement(
+        f"terminal goal distance of GRU+DCC minus GRU, {path},",
+        combined((1, _repair(path)), effect=terminal_distance),
+        rule,
+        _printed({key: _FARTHER[key][at] for key in ("mean", "ci95")}),
+    )
+
 
 CLAIMS: dict[str, Statements] = {
     "C23": (_between_paths(GRU, ISOLATED, CORRECT, BELOW),),
@@ -74,7 +119,7 @@ CLAIMS: dict[str, Statements] = {
             "terminal goal distance of GRU+DCC minus GRU, shared minus reconstruction-only,",
             change(DCC, GRU, terminal_distance),
             ABOVE,
-            Printed(_FARTHER["mean"], tuple(_FARTHER["ci95"])),
+            _printed(_FARTHER["shared_minus_isolated"]),
         ),
     ),
     "C28": (
@@ -86,13 +131,30 @@ CLAIMS: dict[str, Statements] = {
         _between_methods(DOB, DCC, ISOLATED, BELOW),
         _between_methods(DOB, DCC, SHARED, ABOVE),
     ),
-    "C32": tuple(
+    "C32": (
+        _negative(ISOLATED, by_point(1)),
+        _negative(SHARED, by_point(-1)),
+        *(_negative(path, NO_DIFFERENCE) for path in (ISOLATED, SHARED)),
+    ),
+    "C41": (
         Statement(
-            f"success of GRU+DCC minus GRU at the negative offset, {path},",
-            success(negative(DCC, path), negative(GRU, path)),
-            rule,
-            Printed(paper_negative(DCC, path) - paper_negative(GRU, path)),
-        )
-        for path, rule in ((ISOLATED, by_point(1, strict=False)), (SHARED, by_point(-1)))
+            "success of DOB minus GRU, shared minus reconstruction-only,",
+            change(DOB, GRU, succeeded),
+            NO_DIFFERENCE,
+            _printed(_TABLE["DOB_GRU_interaction_pp"]),
+        ),
+    ),
+    "C42": (
+        Statement(
+            "success of GRU at the negative offset, shared minus correct,",
+            success(negative(GRU, SHARED), negative(GRU, CORRECT)),
+            by_point(-1),
+            Printed(paper_negative(GRU, SHARED) - paper_negative(GRU, CORRECT)),
+        ),
+    ),
+    "C44": (
+        _farther(CORRECT, ABOVE),
+        _farther(SHARED, ABOVE),
+        _farther(ISOLATED, NO_DIFFERENCE),
     ),
 }

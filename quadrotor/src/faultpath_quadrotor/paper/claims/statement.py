@@ -6,7 +6,6 @@ from math import hypot
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from faultpath.statistics.contrast import ROUNDING, Contrast, change
-from faultpath.statistics.decisions import decide_family, turn, with_test
 from faultpath_quadrotor.paper.answers import Answer, ClaimVerdict, Part, Size
 from faultpath_quadrotor.paper.cells import Printed, PublishedClaim
 from faultpath_quadrotor.paper.claims.rules import (
@@ -19,7 +18,14 @@ from faultpath_quadrotor.paper.claims.rules import (
     points_decide,
 )
 from faultpath_quadrotor.paper.quantities.differences import Pair, together
-from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable, decisive
+from faultpath_quadrotor.paper.results import (
+    NotRun,
+    Quantity,
+    Results,
+    Undecidable,
+    decisive,
+    detection,
+)
 
 NO_EFFECT = {"pp": 0.0, "s": 0.0, "m": 0.0, "m/s^2": 0.0, "times": 1.0}
 """By unit, its value. What has another unit, as a share of scenes has, has no sign."""
@@ -107,7 +113,8 @@ class Statement:
         """Answer it from a run."""
         found = self.quantity(results)
         no_effect = NO_EFFECT.get(found.unit) if self.rule.sided else None
-        return shown(self.words, self.rule.judge(found), found, self.paper, no_effect)
+        judged = self.rule.judge(found.resampled())
+        return shown(self.words, judged, found, self.paper, no_effect)
 
 
 def shown(
@@ -122,11 +129,14 @@ def shown(
 
     `no_effect` as in `size`; `counts` where the quantity has none of its own.
     """
+    score = None if found.scenes is None else found.interval
+    found = found.resampled()
     return Part(
         words=words,
         answer=judged.answer,
         estimate=found.value,
         interval=found.interval,
+        score=score,
         unit=found.unit,
         p_value=None if found.test is None else found.test.p_value,
         test="" if found.test is None else found.test.name,
@@ -198,22 +208,19 @@ class Turned(NamedTuple):
     after: Contrast
 
     def judge(self) -> Judged:
-        """Answer that the effect turns from above 0 to below 0.
+        """Answer that the effect turns from above 0 to below 0: both are detected, each by itself.
 
-        Refuted when the change, or either effect, is detected on the other side. The family that
-        is decided together are both effects and their change.
+        That is an intersection-union test, whose level is that of each effect's. Refuted when the
+        change, or either effect, is detected on the other side.
         """
-        moved, before, after = self
-        if moved.interval is None:
+        moved, before, after = (detection(each.resampled()) for each in self)
+        if self.change.interval is None:
             return FEW_SCENES
-        if moved.detected > 0 or before.detected < 0 or after.detected > 0:
+        if moved > 0 or before < 0 or after > 0:
             return REFUTED
-        one, two, both = decide_family(
-            {"before": before, "after": after, "change": with_test(moved, "exact")}
-        ).values()
-        if turn(one, two, both) == "reversal":
+        if before and after:
             return CONFIRMED
-        why = "the change is detected, but not both effects" if moved.detected else ""
+        why = "the change is detected, but not both effects" if moved else ""
         return Judged("undecided", why)
 
 

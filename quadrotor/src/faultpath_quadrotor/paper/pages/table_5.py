@@ -2,53 +2,67 @@
 
 from faultpath.decisions import wording
 from faultpath.statistics.breakeven import break_even
-from faultpath_quadrotor.paper.cells import Cell, published
+from faultpath_quadrotor.paper.cells import published
 from faultpath_quadrotor.paper.entries import Group, Made, decided
 from faultpath_quadrotor.paper.page import INTERVALS, Page, Row, TableSpec
 from faultpath_quadrotor.paper.pages import table_2, table_4
-from faultpath_quadrotor.paper.quantities.differences import together
+from faultpath_quadrotor.paper.quantities.crossing import Crossing, Repair, crossing
 from faultpath_quadrotor.paper.results import Results
 
-REPAIRS: dict[str, tuple[Cell, ...]] = {
+REPAIRS: dict[str, Repair] = {
     **{
-        table_2.NAMES[baseline]: tuple(
-            table_2.cell(model, error) for error in (0.0, 0.1) for model in (repair, baseline)
+        table_2.NAMES[baseline]: (
+            table_2.cell(repair, 0.0),
+            table_2.cell(baseline, 0.0),
+            table_2.cell(repair, 0.1),
+            table_2.cell(baseline, 0.1),
         )
         for repair, baseline in table_2.PAIRS
     },
     **{
-        f"GRU/{path}": tuple(
-            table_4.cell(method, at) for at in ("correct", path) for method in ("gru+dcc", "gru")
+        f"GRU/{path}": (
+            table_4.cell("gru+dcc", "correct"),
+            table_4.cell("gru", "correct"),
+            table_4.cell("gru+dcc", path),
+            table_4.cell("gru", path),
         )
         for path in ("reconstruction-only", "shared")
     },
 }
-"""Repair and baseline under correct inputs, then both under the fault; keys as published."""
+"""Keys as published."""
 
 TITLE = "From which fault frequency on each repair pays"
 NO_CROSSING = "no crossing"
+ABOVE_NONE = "above none"
 
 
 def _row(label: str, key: str) -> Row:
     paper = published("table_5_decision_record", key)
-    repair, baseline, faulty_repair, faulty_baseline = cells = REPAIRS[key]
+    cells = REPAIRS[key]
 
     def make(results: Results) -> Made:
-        correct, faulty = together(results, (repair, baseline), (faulty_repair, faulty_baseline))
-        found = break_even(correct, faulty)
-        crossing = wording.break_even(found).replace(" %", "")
-        return (
-            decided(correct),
-            decided(faulty),
-            NO_CROSSING if found.kind == "empty" else crossing,
+        found = crossing(results, cells)
+        inverted = break_even(found.correct, found.faulty)
+        undecided = " and ".join(
+            f"[{wording.last(low)}, {wording.first(high)}]" for low, high in inverted.pieces
         )
+        effects = decided(found.correct), decided(found.faulty)
+        return *effects, _crossing(found), undecided or "none"
 
-    crossing, p_star = NO_CROSSING, paper["p_star_percent"]
+    printed, p_star = NO_CROSSING, paper["p_star_percent"]
     if p_star is not None:
         low, high = paper["ci95"]
-        crossing = f"{p_star} [{low}, {high}]"
-    texts = (wording.signed(paper["delta_0_pp"]), wording.signed(paper["delta_f_pp"]), crossing)
-    return Row(label, (Group(make, texts, cells),))
+        printed = f"{p_star} [{low}, {high}]"
+    effects = wording.signed(paper["delta_0_pp"]), wording.signed(paper["delta_f_pp"])
+    return Row(label, (Group(make, (*effects, printed, ""), cells),))
+
+
+def _crossing(found: Crossing) -> str:
+    if found.value is None:
+        return NO_CROSSING if found.behind_throughout else ABOVE_NONE
+    low, high = found.interval or (None, None)
+    ends = "" if low is None or high is None else f" [{low:.0f}, {high:.0f}]"
+    return f"{found.value:.0f}{ends}"
 
 
 PAGE = Page(
@@ -58,7 +72,7 @@ PAGE = Page(
         TableSpec(
             name="table-5",
             title=f"{TITLE} (paper, Table V)",
-            columns=("Δ0 (pp)", "Δf (pp)", "p* (%) [95 % interval]"),
+            columns=("Δ0 (pp)", "Δf (pp)", "p* (%) [95 % interval]", "Undecided by score (%)"),
             rows=(
                 _row("WM-A", "WM-A"),
                 _row("WM-U", "WM-U"),
@@ -68,9 +82,11 @@ PAGE = Page(
             notes=(
                 "{flown}",
                 "Success of the repair minus that of its baseline, under correct inputs (Δ0) and "
-                "under e = +0.1 (Δf). p* = −Δ0/(Δf − Δ0) is the fault frequency at which the "
-                "estimates break even; no crossing: at none. In brackets: frequencies at which it "
-                "is not decided who is ahead.",
+                "under e = +0.1 (Δf). p* = −Δ0/(Δf − Δ0) is the fault frequency above which the "
+                "repair is ahead; 0 where it is nowhere behind; no crossing: behind throughout; "
+                "above none: ahead at low frequencies alone. In brackets: joint percentile "
+                "bootstrap, in which a resample without p* counts as 100. Undecided by score: "
+                "frequencies at which the score test does not tell who is ahead.",
                 "Predictors without wind, GRU at wind L3.",
                 INTERVALS,
             ),

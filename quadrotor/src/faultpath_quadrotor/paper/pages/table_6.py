@@ -157,6 +157,7 @@ PAGE = Page(
                     (
                         "",
                         "GRU+DCC minus GRU, 95 % interval (pp)",
+                        "Score interval (pp)",
                         "GRU+DCC only:GRU only",
                         "Exact McNemar p",
                         "Least detectable difference (pp)",

@@ -1,6 +1,6 @@
 """Quantities of paired trials: differences between cells, and differences of differences."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeAlias
 
@@ -9,7 +9,12 @@ from numpy.typing import NDArray
 
 from faultpath.statistics.contrast import Contrast, weighted_sum
 from faultpath.statistics.decisions import with_test
-from faultpath.statistics.effects import mean_effect, median_effect, success_effect
+from faultpath.statistics.effects import (
+    mean_effect,
+    median_effect,
+    success_effect,
+    success_rate,
+)
 from faultpath.statistics.resamples import Resamples
 from faultpath.trials import Pairs
 from faultpath.trials.pairing import Trials
@@ -65,6 +70,16 @@ def success(first: Cell, second: Cell, *, other_noise: bool = False) -> Quantity
     return _counted(first, second, succeeded, other_noise=other_noise)
 
 
+def rate(cell: Cell) -> Quantity:
+    """Return the success of a cell in percent."""
+
+    def found(results: Results) -> Contrast:
+        pairs = results.pairs(cell, cell)
+        return decisive(success_rate(pairs.first.success, results.resamples(pairs)))
+
+    return found
+
+
 def crashes(first: Cell, second: Cell) -> Quantity:
     """Return the difference in crashes."""
     return _counted(first, second, ended(lambda trials: trials.crash))
@@ -102,7 +117,8 @@ def combined(*terms: tuple[float, Pair], effect: Effect = succeeded) -> Quantity
 
     def found(results: Results) -> Contrast:
         contrasts = together(results, *(pair for _, pair in terms), effect=effect)
-        return decisive(weighted_sum([weight for weight, _ in terms], contrasts))
+        summed = weighted_sum([weight for weight, _ in terms], contrasts)
+        return decisive(summed, TELLING_PP if summed.unit == "pp" else None)
 
     return found
 
@@ -118,14 +134,12 @@ def together(results: Results, *pairs: Pair, effect: Effect = succeeded) -> tupl
 
 def joint(results: Results, *pairs: Pair) -> tuple[Pairs, ...]:
     """Return pairs over the seeds and the scenes that all of them have; `NotRun` without any."""
-    seeds = _common([results.seeds(cell) for pair in pairs for cell in pair])
-    if not seeds:
-        raise NotRun(f"a seed that {pairs[0][0]} and all it is compared with share")
-    cut = [(replace(first, seeds=seeds), replace(second, seeds=seeds)) for first, second in pairs]
-    kept = _common([results.pairs(*pair).scene_indices for pair in cut])
+    seeds = results.common_seeds(*(cell for pair in pairs for cell in pair))
+    cut = [(_cut(first, seeds), _cut(second, seeds)) for first, second in pairs]
+    first, *others = (results.pairs(*pair).scene_indices for pair in cut)
+    kept = [scene for scene in first if all(scene in other for other in others)]
     return tuple(results.pairs(*pair, scenes=kept) for pair in cut)
 
 
-def _common(several: Sequence[tuple[int, ...]]) -> tuple[int, ...]:
-    first, *others = several
-    return tuple(each for each in first if all(each in other for other in others))
+def _cut(cell: Cell, seeds: tuple[int, ...]) -> Cell:
+    return cell if cell.fixed else replace(cell, seeds=seeds)

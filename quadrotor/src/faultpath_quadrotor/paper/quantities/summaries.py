@@ -114,24 +114,12 @@ class _Sweep:
         return decisive(Contrast(value, unit, self.n_scenes, draws=draws, against_zero=False))
 
 
-def worst_difference(first: str, second: str) -> Quantity:
-    """Return the least success of one model over the sweep, minus that of another."""
-
-    def found(results: Results) -> Contrast:
-        sweep = _sweep(results, first, second)
-        one, two = (rates.min(axis=1) for rates in sweep.rates)
-        return sweep.found(one - two, "pp")
-
-    return found
-
-
-def above_worst(model: str, error: float) -> Quantity:
-    """Return the success of a model at an error, minus its least over the sweep."""
+def worst(model: str) -> Quantity:
+    """Return the least success of a model over the sweep, in percent."""
 
     def found(results: Results) -> Contrast:
         sweep = _sweep(results, model)
-        (rates,) = sweep.rates
-        return sweep.found(rates[:, sweep.errors.index(error)] - rates.min(axis=1), "pp")
+        return sweep.found(sweep.rates[0].min(axis=1), "percent")
 
     return found
 

@@ -21,6 +21,16 @@ TELLING_SHARE = 0.2
 """A share of a median whose change a run must be able to detect for its absence to say anything."""
 
 
+def median(subject: Subject) -> Quantity:
+    """Return the median of a subject."""
+
+    def found(results: Results) -> Contrast:
+        (one,) = quantiles(results, 0.5, subject)
+        return decisive(replace(one, against_zero=False))
+
+    return found
+
+
 def difference_of_quantiles(first: Subject, second: Subject, q: float = 0.5) -> Quantity:
     """Return a quantile of `first` minus that of `second`."""
 

@@ -66,6 +66,8 @@ def evidence(part: Part) -> tuple[str, ...]:
     phrases = (
         f"{p_value} ({part.test})" if p_value and part.test else p_value or part.test,
         detectable and f"least detectable {detectable}",
+        part.score
+        and f"score interval {interval(part.model_copy(update={'interval': part.score}))}",
         part.counts and f"only one succeeds in {part.counts}",
         papers(part) and f"the paper {papers(part)}: {part.size}",
         part.reason,
