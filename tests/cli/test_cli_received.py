@@ -191,7 +191,9 @@ FORGED = {
         "taps",
         _record(
             lambda c: c["paths"][1].update(
-                faulted=[{"channel": "x", "consumer": "y.z", "faulted_steps": 1, "altered_steps": 1}]
+                faulted=[
+                    {"channel": "x", "consumer": "y.z", "faulted_steps": 1, "altered_steps": 1}
+                ]
             )
         ),
     ),

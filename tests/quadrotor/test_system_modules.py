@@ -82,6 +82,8 @@ def test_a_fault_between_predictor_and_planner_changes_the_command(text, tap):
     assert receipt.steps_altered.tolist() == [STEPS]
     assert receipt.asks == (STEPS if tap[0] == "rollout" else 0)
     altered = {
-        (each.channel, each.consumer) for each in faulted.receipts().taps if each.steps_altered.any()
+        (each.channel, each.consumer)
+        for each in faulted.receipts().taps
+        if each.steps_altered.any()
     }
     assert altered == {tap}
