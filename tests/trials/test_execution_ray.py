@@ -214,7 +214,7 @@ def hands(head):
     ("does", "limit", "says"),
     [
         ("die", {}, "the worker on node .* of the Ray cluster was lost"),
-        ("hang", {"time_limit_s": 4.0}, "it was stopped at the time limit of 4 s"),
+        ("hang", {"time_limit_s": 8.0}, "it was stopped at the time limit of 8 s"),
     ],
 )
 def test_a_unit_that_is_its_workers_end_or_takes_too_much_loses_itself_alone(
