@@ -123,13 +123,15 @@ def _opened(browser: "Browser", run: str, scheme: Literal["light", "dark"]) -> "
 
 
 def standing(drawing: str) -> str:
-    """Return a drawing of a page as a file of its own: its title above it, colours inside."""
+    """Return a drawing of a page as a file of its own: colours inside, and its title above it where
+    it shows none itself."""
     found = re.search(r'viewBox="([^"]*)"', drawing)
     title = re.search(r"<title[^>]*>([^<]*)</title>", drawing)
     if found is None or title is None:
         raise Wrong("a drawing without a title or a size")
     left, top, width, height = map(float, found[1].split())
-    around = left - MARGIN, top - MARGIN - TITLE, width + 2 * MARGIN, height + 2 * MARGIN + TITLE
+    room = 0 if 'class="head"' in drawing else TITLE
+    around = left - MARGIN, top - MARGIN - room, width + 2 * MARGIN, height + 2 * MARGIN + room
     head, _, rest = drawing.partition(">")
     head = re.sub(r'viewBox="[^"]*"', f'viewBox="{" ".join(f"{n:g}" for n in around)}"', head)
     head = re.sub(r'( width| height| xmlns)="[^"]*"', "", head)
@@ -142,8 +144,8 @@ def standing(drawing: str) -> str:
     ]
     css = "".join((template("tokens.css"), template("svg.css"), *own))
     ground = '<rect class="paper" x="{:g}" y="{:g}" width="{:g}" height="{:g}"/>'.format(*around)
-    said = f'<text class="head" x="{left:g}" y="{top - TITLE + 12:g}">{title[1]}</text>'
-    return f"{head}<style>{css}</style>{ground}{said}{rest}\n"
+    above = f'<text class="head" x="{left:g}" y="{top - room + 12:g}">{title[1]}</text>'
+    return f"{head}<style>{css}</style>{ground}{above if room else ''}{rest}\n"
 
 
 def twice(size: tuple[float, float], light: str, dark: str) -> str:
