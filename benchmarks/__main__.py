@@ -23,11 +23,7 @@ from benchmarks.results import ROOT, Machine, Record, Results, record, save
 from benchmarks.rows import ROWS, SIDES, Row
 from faultpath.trials.execution.provenance import checkout, processor
 
-ONE_THREAD = {
-    "OMP_NUM_THREADS": "1",
-    "MKL_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-}
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 PACKAGES = ["numpy", "scipy", "torch", "mujoco", "pytorch-mppi", "rotorpy"]
 
 

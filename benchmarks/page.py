@@ -72,8 +72,5 @@ def _target(target: Target | None) -> str:
     return f"{target.sense} {number(target.value)}{of}"
 
 
-KIND: Mapping[str, Callable[[], str]] = {
-    "machine": machine,
-    "rows": lambda: rows(load().records),
-}
+KIND: Mapping[str, Callable[[], str]] = {"machine": machine, "rows": lambda: rows(load().records)}
 """The blocks of the page."""

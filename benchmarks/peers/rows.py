@@ -12,11 +12,7 @@ from faultpath_quadrotor.predictors import anchored
 from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.kinematic import RATE_LAG_S
 from faultpath_quadrotor.predictors.network import LATENT, Affine, LatentNetwork
-from faultpath_quadrotor.vehicle import (
-    CONTROL_DT_S,
-    GRAVITY_MPS2,
-    RATE_LIMIT_RADPS,
-)
+from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, RATE_LIMIT_RADPS
 from torch import Tensor, nn
 
 from benchmarks import planning

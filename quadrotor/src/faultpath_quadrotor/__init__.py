@@ -4,11 +4,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from faultpath_quadrotor.paper.reproduction import (
-        ReproductionRun,
-        read_reproduction,
-        reproduce,
-    )
+    from faultpath_quadrotor.paper.reproduction import ReproductionRun, read_reproduction, reproduce
 
 __all__ = ["ReproductionRun", "read_reproduction", "reproduce"]
 

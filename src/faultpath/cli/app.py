@@ -79,10 +79,7 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
     Raises as `with_system_flags`.
     """
     app = Verbs(
-        name="faultpath",
-        no_args_is_help=True,
-        add_completion=False,
-        pretty_exceptions_enable=False,
+        name="faultpath", no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False
     )
     app.callback()(everywhere)
     verb, *rest = arguments or ("",)

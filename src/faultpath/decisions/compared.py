@@ -61,11 +61,7 @@ class Compared:
 
 
 def compared(
-    repair: str,
-    baseline: str,
-    paths: Iterable[str],
-    table: OutcomeTable,
-    distinct: bool = True,
+    repair: str, baseline: str, paths: Iterable[str], table: OutcomeTable, distinct: bool = True
 ) -> Compared:
     """Return the trials of two variants that are compared; `UserError` when no scene is left.
 

@@ -34,10 +34,7 @@ FLOOR_PERCENT, CEILING_PERCENT = 10.0, 90.0
 
 
 def decide(
-    question: Question,
-    paths: Sequence[Path],
-    table: OutcomeTable,
-    findings: Sequence[str] = (),
+    question: Question, paths: Sequence[Path], table: OutcomeTable, findings: Sequence[str] = ()
 ) -> DecisionRecord:
     """Return the decision record of an audit.
 
@@ -192,12 +189,7 @@ def _stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped
 
 
 def _effect(
-    asked: Question,
-    path: str,
-    found: Compared,
-    family: Family,
-    resamples: Resamples,
-    acted: bool,
+    asked: Question, path: str, found: Compared, family: Family, resamples: Resamples, acted: bool
 ) -> Effect:
     repair, baseline = found.arms[path]
     effect, pairs = family.effects[path], found.pairs[path]

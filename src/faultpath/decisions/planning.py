@@ -104,10 +104,7 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
     # Where the fault cannot reach a variant, that is the arm under correct inputs: it runs once.
     rows = [
         Row(
-            variant=variant,
-            path=path,
-            seed=seed,
-            arm=Arm(variant=variant, faults=parts, seed=seed),
+            variant=variant, path=path, seed=seed, arm=Arm(variant=variant, faults=parts, seed=seed)
         )
         for path, of in faults.items()
         for variant, parts in of.items()

@@ -4,15 +4,7 @@ from collections.abc import Sequence
 
 from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord, Effect
-from faultpath.report.svg import (
-    Axis,
-    Svg,
-    covering,
-    draw_axes,
-    shortened,
-    text_width,
-    tick_label,
-)
+from faultpath.report.svg import Axis, Svg, covering, draw_axes, shortened, text_width, tick_label
 
 _PITCH, _TOP = 48.0, 44.0
 _ROOM = 26.0

@@ -14,14 +14,7 @@ from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.frame import render
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Kind, pair_grid, pair_key, read_pairs
-from faultpath.report.tables import (
-    SHOWN,
-    by_path,
-    by_threshold,
-    ended,
-    markdown_table,
-    secondary,
-)
+from faultpath.report.tables import SHOWN, by_path, by_threshold, ended, markdown_table, secondary
 from faultpath.report.taps import fork_panel, forks
 from faultpath.report.viewer import viewer_data
 from faultpath.trials.store.atomic import make_folder, write_text
@@ -89,10 +82,7 @@ def write_report(source: ReportInput, folder: Path) -> list[Path]:
     Each file appears whole or not at all. Raises `UserError` where the folder cannot be written.
     """
     make_folder(folder)
-    made = {
-        "report.html": report_page(source),
-        "table.md": markdown_table(source.record),
-    }
+    made = {"report.html": report_page(source), "table.md": markdown_table(source.record)}
     for name, text in made.items():
         write_text(folder / name, text, folder)
     return [folder / name for name in made]

@@ -220,8 +220,7 @@ class AuditQuestion(Running):
         "2026-11-23, or the exact one for scenes that were seen under it.",
     )
     signals: bool = Field(
-        default=True,
-        description="Run the report's first scenes once more to plot their signals.",
+        default=True, description="Run the report's first scenes once more to plot their signals."
     )
 
 
@@ -259,19 +258,13 @@ class PlanQuestion(Question):
     panel: ClassVar[str] = "What is planned"
 
     fault: Annotated[
-        tuple[str, ...],
-        BeforeValidator(_several),
-        Flag(several=True, panel=Question.panel),
+        tuple[str, ...], BeforeValidator(_several), Flag(several=True, panel=Question.panel)
     ] = Field(
         default=(),
         description="Expected error of a source that declares none, or another one: "
         "`gain:scale=1.1`; repeat the option for more.",
     )
-    module: Annotated[
-        tuple[str, ...],
-        BeforeValidator(_several),
-        Flag(several=True),
-    ] = Field(
+    module: Annotated[tuple[str, ...], BeforeValidator(_several), Flag(several=True)] = Field(
         default=(), description="Module that the repair changes, where its reads do not show it."
     )
 

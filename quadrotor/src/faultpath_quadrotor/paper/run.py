@@ -9,13 +9,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.decisions.tables import Table
-from faultpath.trials import (
-    Deliveries,
-    OutcomeTable,
-    System,
-    SystemSpec,
-    load_system,
-)
+from faultpath.trials import Deliveries, OutcomeTable, System, SystemSpec, load_system
 from faultpath.trials.code import system_code
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.provenance import RunProvenance

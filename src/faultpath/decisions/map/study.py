@@ -15,16 +15,7 @@ from faultpath.decisions.model import CORRECT
 from faultpath.decisions.planning import scenes_of, two_variants
 from faultpath.faults import AnyFault, FaultText
 from faultpath.interface import module_of
-from faultpath.trials import (
-    Arm,
-    Library,
-    OutcomeTable,
-    Row,
-    Study,
-    System,
-    SystemSpec,
-    Variant,
-)
+from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, SystemSpec, Variant
 from faultpath.trials import question as asking
 from faultpath.trials.pairing import mismatch_words
 

@@ -102,9 +102,7 @@ def makers(interface: Interface, variants: Sequence[Variant]) -> dict[str, tuple
 
 
 def recursion(
-    found: Sequence[Candidate],
-    made_by: Mapping[str, Sequence[str]],
-    start: Sequence[str],
+    found: Sequence[Candidate], made_by: Mapping[str, Sequence[str]], start: Sequence[str]
 ) -> dict[str, str]:
     """Return the candidates that modules in `start` lead to, by name, each with why.
 

@@ -42,10 +42,7 @@ class Report(Result):
 
 
 def check_system(
-    system: System,
-    spec: SystemSpec,
-    asked: CheckQuestion,
-    note: Callable[[int, int | None], None],
+    system: System, spec: SystemSpec, asked: CheckQuestion, note: Callable[[int, int | None], None]
 ) -> Report:
     """Check a system: what it promises, what it reads, and that faults reach it.
 

@@ -156,10 +156,7 @@ class Recording(Observer):
             "lost": self._scenes[lost[0]] if lost.size else read.lost,
             "asks": read.asks + asks,
         }
-        for name, before, rows in (
-            ("given", read.given, values),
-            ("got", read.got, to_numpy(got)),
-        ):
+        for name, before, rows in (("given", read.given, values), ("got", read.got, to_numpy(got))):
             changed[name] = {
                 scene: blake2b(before.get(scene, b"") + row.tobytes(), digest_size=8).digest()
                 for scene, row in zip(self._scenes, rows, strict=False)

@@ -76,10 +76,7 @@ class Rechecks:
     """
 
     def __init__(
-        self,
-        units: Sequence[Unit],
-        outcomes: Mapping[tuple[str, str], Outcome],
-        folder: RunFolder,
+        self, units: Sequence[Unit], outcomes: Mapping[tuple[str, str], Outcome], folder: RunFolder
     ) -> None:
         self._units, self._outcomes, self._folder = units, outcomes, folder
         kept = _Kept()

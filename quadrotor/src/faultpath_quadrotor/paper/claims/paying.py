@@ -74,5 +74,5 @@ CLAIMS: dict[str, Statements] = {
             greater_effect(table_5.REPAIRS["GRU/shared"]),
             by_point(-1),
         ),
-    ),
+    )
 }

@@ -19,13 +19,7 @@ from faultpath_quadrotor.paper.claims.statement import (
     TurnsDown,
     seeds_that_turn,
 )
-from faultpath_quadrotor.paper.pages.table_4 import (
-    PATHS,
-    cell,
-    change,
-    paper_contrast,
-    paper_rate,
-)
+from faultpath_quadrotor.paper.pages.table_4 import PATHS, cell, change, paper_contrast, paper_rate
 from faultpath_quadrotor.paper.pages.table_6 import negative, paper_negative
 from faultpath_quadrotor.paper.quantities.differences import (
     combined,
@@ -127,10 +121,7 @@ CLAIMS: dict[str, Statements] = {
         _between_paths(DOB, SHARED, ISOLATED, ABOVE),
         _between_methods(DOB, GRU, SHARED, NO_LOSS),
     ),
-    "C29": (
-        _between_methods(DOB, DCC, ISOLATED, BELOW),
-        _between_methods(DOB, DCC, SHARED, ABOVE),
-    ),
+    "C29": (_between_methods(DOB, DCC, ISOLATED, BELOW), _between_methods(DOB, DCC, SHARED, ABOVE)),
     "C32": (
         _negative(ISOLATED, by_point(1)),
         _negative(SHARED, by_point(-1)),
@@ -152,9 +143,5 @@ CLAIMS: dict[str, Statements] = {
             Printed(paper_negative(GRU, SHARED) - paper_negative(GRU, CORRECT)),
         ),
     ),
-    "C44": (
-        _farther(CORRECT, ABOVE),
-        _farther(SHARED, ABOVE),
-        _farther(ISOLATED, NO_DIFFERENCE),
-    ),
+    "C44": (_farther(CORRECT, ABOVE), _farther(SHARED, ABOVE), _farther(ISOLATED, NO_DIFFERENCE)),
 }

@@ -38,10 +38,7 @@ CLAIMS: dict[str, Statements] = {
             by_point(-1),
         )
         for (low, first), (high, second) in (
-            (
-                ("ground-truth wind", f"wm-a-wind/{TRUE}"),
-                ("the wind-withheld model", WITHHELD),
-            ),
+            (("ground-truth wind", f"wm-a-wind/{TRUE}"), ("the wind-withheld model", WITHHELD)),
             (("the wind-withheld model", WITHHELD), ("zero wind", ZERO_OF_EVERY_SEED)),
         )
     ),

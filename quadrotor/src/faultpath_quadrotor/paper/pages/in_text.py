@@ -82,9 +82,7 @@ def response(subject: str, probe: str) -> Measurement:
 
 
 COMMON_WINDY = Recording(
-    library="held-out",
-    variant="true-parameter/true-wind",
-    options=table_4.WINDY.options,
+    library="held-out", variant="true-parameter/true-wind", options=table_4.WINDY.options
 )
 """Common trajectories in wind."""
 
@@ -94,11 +92,7 @@ def windy_error(subject: str) -> Measurement:
     return Measurement(recording=COMMON_WINDY, quantity="position-error", subject=subject)
 
 
-WINDY_SUBJECTS = (
-    "wm-a-wind/true-wind",
-    table_3.WITHHELD,
-    "wm-a-wind/zero-wind",
-)
+WINDY_SUBJECTS = ("wm-a-wind/true-wind", table_3.WITHHELD, "wm-a-wind/zero-wind")
 
 NINE = tuple((method, path) for method in table_4.METHODS for path in table_4.PATHS)
 """Methods and interfaces of Table IV."""

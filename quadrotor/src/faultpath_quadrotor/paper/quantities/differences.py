@@ -9,12 +9,7 @@ from numpy.typing import NDArray
 
 from faultpath.statistics.contrast import Contrast, weighted_sum
 from faultpath.statistics.decisions import with_test
-from faultpath.statistics.effects import (
-    mean_effect,
-    median_effect,
-    success_effect,
-    success_rate,
-)
+from faultpath.statistics.effects import mean_effect, median_effect, success_effect, success_rate
 from faultpath.statistics.resamples import Resamples
 from faultpath.trials import Pairs
 from faultpath.trials.pairing import Trials
