@@ -56,10 +56,18 @@ def test_a_drawing_of_a_page_stands_alone_under_its_title(
     page = (ROOT / "docs" / "reference" / "toy" / "report.html").read_text("utf-8")
     drawing = re.search(r"<svg.*?</svg>", page, re.DOTALL)
     assert drawing is not None
+
+    def heads(text: str) -> list[str | None]:
+        root = ElementTree.fromstring(text)
+        return [each.text for each in root.iter(f"{SVG}text") if each.get("class") == "head"]
+
+    own = heads(drawing[0])
+    assert len(own) == 1
     text = tools["pictures"].standing(drawing[0])
-    root = ElementTree.fromstring(text)
-    heads = [each.text for each in root.iter(f"{SVG}text") if each.get("class") == "head"]
-    assert heads[0] == root.findtext(f"{SVG}title")
+    assert heads(text) == own  # another one above it would say the same again
+    without = drawing[0].replace('class="head"', 'class="bold"')
+    title = ElementTree.fromstring(without).findtext(f"{SVG}title")
+    assert heads(tools["pictures"].standing(without)) == [title]
     assert DARK in text
     both = tools["pictures"].twice((20.0, 10.0), "data:light", "data:dark")
     assert [each.get("href") for each in ElementTree.fromstring(both).iter(f"{SVG}image")] == [
