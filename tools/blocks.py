@@ -131,7 +131,7 @@ def _rule(run: Run) -> str:
 
 def headline(run: Run) -> str:
     """Return the record's headline as a quotation."""
-    return f"> **{run.record.verdict.headline}**"
+    return f"> **{run.record.headline}**"
 
 
 def contrast(run: Run) -> str:
@@ -236,7 +236,7 @@ def duration(run: Run) -> str:
 
 def picture(run: Run, part: str) -> str:
     """Return the picture of a part of the run's report."""
-    about = run.record.verdict.headline
+    about = run.record.headline
     return f"![{PARTS[part][0]} of {run.name}: {about}]({{images}}/{run.name}-{part}.svg)"
 
 

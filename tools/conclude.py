@@ -33,7 +33,7 @@ def conclude_all(tell: Callable[[str], None]) -> None:
     for folder in sorted(path.parent for path in REFERENCE.glob("*/record.json")):
         before = json.loads((folder / "record.json").read_bytes())
         record = audit(folder)
-        tell(f"{folder.name}: {before['verdict']['headline']}\n    now: {record.verdict.headline}")
+        tell(f"{folder.name}: {before['headline']}\n    now: {record.headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
         tell(f"{folder.name}: {map_blocks.conclude(folder).headline}")
     for line in paper(RUN, PLACE):

@@ -50,12 +50,12 @@ def _outcomes(run: faultpath.Run) -> list[tuple]:
 
 
 def test_a_run_holds_what_was_decided_and_from_what(run):
-    assert "blind" in run.record.verdict.headline
+    assert "blind" in run.record.headline
     assert run.record.question.n_scenes == 12
     assert run.failed == 0
     assert isinstance(run.table(), pa.Table)
     assert run.table().num_rows == 12 * 2 * 4
-    assert run.record.verdict.headline in repr(run)
+    assert run.record.headline in repr(run)
     (called,) = run.provenance.command
     assert called.startswith(f"faultpath.audit(system={TOY!r}, ")
     assert "baseline='calibrated'" in called
@@ -88,7 +88,7 @@ def test_a_folder_opens_again(run):
 
 def test_a_notebook_shows_verdict_and_table(run):
     shown = run._repr_markdown_()
-    assert run.record.verdict.headline.partition(" ")[0] in shown
+    assert run.record.headline.partition(" ")[0] in shown
     assert "Won:lost" in shown
 
 
@@ -232,8 +232,8 @@ def test_a_sequential_audit_stops_and_says_so(early):
     flown = set(early.table()["scene"].to_pylist())
     assert flown == set(record.question.stop.order[: record.stopped.scenes])
     assert record.effects[-1].sign == -1  # under the shared fault, for the baseline
-    assert "ahead" in record.verdict.headline
-    assert f"{record.stopped.scenes} scenes of at most 60" in " ".join(record.verdict.sentences)
+    assert "ahead" in record.headline
+    assert f"{record.stopped.scenes} scenes of at most 60" in " ".join(record.sentences)
 
 
 def test_a_sequential_audit_resumes_to_the_same_record(early, tmp_path):
@@ -249,7 +249,7 @@ def test_a_sequential_audit_without_an_end_takes_all(tmp_path):
     asked = {**SEQUENTIAL, "scenes": 6, "stop_when": "all-decided", "margin_pp": 15}
     record = faultpath.audit(TOY, folder=tmp_path / "run", workers=0, **asked).record
     assert (record.stopped.scenes, record.stopped.reached) == (6, False)
-    assert record.verdict.headline.startswith("Too few scenes to decide")
+    assert record.headline.startswith("Too few scenes to decide")
 
 
 @pytest.mark.parametrize(

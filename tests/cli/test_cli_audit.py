@@ -92,7 +92,7 @@ def test_the_toy_shows_the_reversal(toy_run):
     assert effects["observer"].success.value > 0
     assert effects[SHARED].detected
     assert effects[SHARED].success.value < 0
-    assert "observer" in record.verdict.headline
+    assert "observer" in record.headline
 
 
 def test_reports_are_made_again_from_what_is_stored(run, monkeypatch):

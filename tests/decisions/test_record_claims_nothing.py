@@ -130,9 +130,9 @@ def run(
 
 
 def sentences(made: DecisionRecord) -> Iterator[str]:
-    yield made.verdict.headline
-    yield from made.verdict.sentences
-    yield from made.verdict.would_change
+    yield made.headline
+    yield from made.sentences
+    yield from made.would_change
     yield from answers(made).values()
 
 
@@ -190,7 +190,7 @@ def check(made: DecisionRecord) -> None:
         leading = {effects.get(e.path) for e in made.effects if e.leads}
         assert (sign in leading) <= claimed(whole, who) <= (sign in effects.values()), whole
         headed = {e.path for e in made.effects if effects.get(e.path) == sign and not e.extreme}
-        assert not claimed(made.verdict.headline, who) or headed
+        assert not claimed(made.headline, who) or headed
     for change in made.changes:
         opposite = effects[change.isolated] * effects[change.shared] < 0
         said = phrases.change(made, change)
@@ -232,14 +232,14 @@ def check(made: DecisionRecord) -> None:
         assert (shown == "any") == (not item.words or part), (shown, item.words)
         assert item.result.level >= 0.95 - 1e-12
     if made.question.primary not in {e.path for e in made.effects}:
-        assert "no pair of trials is left" in made.verdict.headline
+        assert "no pair of trials is left" in made.headline
     elif made.scenes < made.scenes_needed:
-        assert made.verdict.headline.startswith("Too few scenes to decide")
-        assert str(made.scenes_needed) in made.verdict.headline
+        assert made.headline.startswith("Too few scenes to decide")
+        assert str(made.scenes_needed) in made.headline
 
 
 def reads_well(made: DecisionRecord) -> None:
-    assert len(made.verdict.headline.split()) <= MOST_WORDS
+    assert len(made.headline.split()) <= MOST_WORDS
     for sentence in sentences(made):
         assert sentence[0].isupper() or sentence.startswith((REPAIR, BASELINE))
         assert sentence.endswith(".")
@@ -266,7 +266,7 @@ def says_how_it_stopped(made: DecisionRecord) -> None:
     held, asked = made.stopped, made.question
     assert held
     assert asked.stop
-    told = next(s for s in made.verdict.sentences if s.startswith("This audit was sequential"))
+    told = next(s for s in made.sentences if s.startswith("This audit was sequential"))
     most = asked.n_scenes
     signs = may_be_said(made)[0]
     settled = {path for path, sign in signs.items() if sign} | set(held.small)
@@ -286,7 +286,7 @@ def says_how_it_stopped(made: DecisionRecord) -> None:
         assert effect.minimum_detectable_pp is None
         for other in (effect.time_s, *effect.metrics.values()):
             assert other is None or (other.low, other.high) == (None, None)
-    if "differ by less than" in made.verdict.headline:
+    if "differ by less than" in made.headline:
         assert asked.primary in held.small
     whole = made.model_dump_json()
     for fixed in ("Holm", "80 % power", "McNemar", "sign test", "Tango", "bootstrap", "score"):

@@ -53,8 +53,7 @@ def made(states: dict[str, State], primary: str, turned: str = "") -> DecisionRe
     partial = FOUR.model_copy(update=update | {"break_even": ()})
     if small:
         partial = DecisionRecord.model_validate(partial.model_dump() | {"stopped": held})
-    verdict = partial.verdict.model_copy(update={"headline": headline(partial)})
-    return partial.model_copy(update={"verdict": verdict})
+    return partial.model_copy(update={"headline": headline(partial)})
 
 
 def turn(states: dict[str, State], isolated: str, turned: str) -> str:
@@ -114,7 +113,7 @@ def places(clause: str, paths: list[str]) -> Iterator[str]:
 def test_every_headline_is_short_and_true() -> None:
     seen = 0
     for it in combinations():
-        said, seen = it.verdict.headline, seen + 1
+        said, seen = it.headline, seen + 1
         assert len(said.split()) <= MOST_WORDS, said
         assert said.endswith("."), said
         assert "trained" not in said
@@ -170,4 +169,4 @@ def test_an_interval_that_leaves_out_0_undetected_has_its_p_and_the_reason() -> 
     assert f"{it.hypotheses} contrasts" in said
     clear = record({CORRECT: (50, 3, 3), "a": (40, 30, 2), SHARED: (50, 5, 5)})
     assert not list(not_standing(clear))
-    assert "decides nothing" not in " ".join(clear.verdict.sentences)
+    assert "decides nothing" not in " ".join(clear.sentences)

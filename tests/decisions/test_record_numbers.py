@@ -160,7 +160,7 @@ def test_a_path_without_any_pair_costs_the_others_nothing_and_is_named():
     assert (correct.path, correct.scenes, correct.void_pairs) == (CORRECT, 100, 0)
     assert not made.break_even
     said = "With only the observer faulted, no pair of trials is left to compare"
-    assert made.verdict.headline.startswith(said)
+    assert made.headline.startswith(said)
     assert made.findings[0].startswith(said)
     assert {(c.path, c.failed) for c in made.cells if c.variant == REPAIR} == {
         (CORRECT, 0),
@@ -192,8 +192,8 @@ def test_seeds_that_change_nothing_are_counted_once():
     for many, one in zip(thrice.effects, once.effects, strict=True):
         assert many.model_dump(exclude=SECONDARY) == (one.model_dump(exclude=SECONDARY))
         assert many.wins == one.wins
-    assert "All 3 seeds gave the same outcome in every trial" in " ".join(thrice.verdict.sentences)
-    assert "seeds" not in " ".join(once.verdict.sentences)
+    assert "All 3 seeds gave the same outcome in every trial" in " ".join(thrice.sentences)
+    assert "seeds" not in " ".join(once.sentences)
 
 
 @pytest.mark.parametrize("counts", [(50, 0, 0), (0, 0, 0), (100, 0, 0)])

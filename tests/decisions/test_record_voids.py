@@ -50,7 +50,7 @@ def test_an_arm_whose_bad_trials_fail_is_not_announced(case):
     """Before, most of the first and a fifth of the second were `new is ahead`."""
     stream = np.random.default_rng(11)
     made = [audit(case(stream)) for _ in range(20)]
-    assert sum("new is ahead" in each.verdict.headline for each in made) == 0
+    assert sum("new is ahead" in each.headline for each in made) == 0
     assert sum(each.effects[0].sign != 0 for each in made) <= 2
     assert sum(each.effects[0].p_value < 0.05 for each in made) >= 3
     for each in made:
@@ -74,12 +74,12 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     assert effect.p_value < 0.05
     said = in_short(open_, effect)
     assert "failed" in said
-    assert "failed" in open_.verdict.headline
-    assert "no difference" not in " ".join((open_.verdict.headline, said)).lower()
+    assert "failed" in open_.headline
+    assert "no difference" not in " ".join((open_.headline, said)).lower()
     assert "depends on trials that failed" in answers(open_)["Not decided"]
     safe = audit((lost, [*[NO] * 20, *rest[15:], YES]))
     assert safe.effects[0].sign == 1
-    assert "new is ahead" in safe.verdict.headline
+    assert "new is ahead" in safe.headline
 
 
 def test_a_failure_on_one_path_is_open_on_the_others_too():
@@ -105,4 +105,4 @@ def test_no_reversal_rests_on_a_path_where_one_arm_fails_more_often():
     assert shared.sign == -1
     assert (shared.uneven, shared.leads) == (True, False)
     assert made.changes[0].turn != "reversal"
-    assert "Do not choose" not in made.verdict.headline
+    assert "Do not choose" not in made.headline

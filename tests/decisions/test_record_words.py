@@ -23,11 +23,11 @@ def test_a_reversal_is_the_headline_and_names_who_is_ahead_where(isolated, share
     one, other = (REPAIR, BASELINE) if isolated == GAIN else (BASELINE, REPAIR)
     assert change.turn == "reversal"
     said = phrases.change(made, change)
-    assert said in made.verdict.sentences
+    assert said in made.sentences
     assert f"with only the observer faulted, {one} succeeds" in said
     assert f"under the shared fault, {other} does" in said
-    assert made.verdict.headline.startswith("Do not choose by the isolated fault")
-    assert f"{one} is ahead with only the observer faulted, {other}" in made.verdict.headline
+    assert made.headline.startswith("Do not choose by the isolated fault")
+    assert f"{one} is ahead with only the observer faulted, {other}" in made.headline
 
 
 def test_a_change_without_two_effects_is_an_interaction_and_no_advice():
@@ -35,7 +35,7 @@ def test_a_change_without_two_effects_is_an_interaction_and_no_advice():
     (change,) = made.changes
     assert change.turn == "interaction"
     assert phrases.change(made, change).startswith("Interaction detected")
-    assert "Do not" not in made.verdict.headline
+    assert "Do not" not in made.headline
 
 
 def test_a_fault_without_a_shared_path_has_no_change():
@@ -56,7 +56,7 @@ def test_a_fault_without_a_shared_path_has_no_change():
     ],
 )
 def test_the_headline_of_each_case(cells, said):
-    assert said in three(*cells).verdict.headline
+    assert said in three(*cells).headline
 
 
 def test_a_primary_contrast_of_ones_own_leads():
@@ -68,14 +68,14 @@ def test_a_primary_contrast_of_ones_own_leads():
         for row in rows(variant, path, statuses)
     ]
     asked = question().model_copy(update={"primary": CORRECT})
-    headline = decide(asked, paths(*cells), OutcomeTable(tuple(out))).verdict.headline
+    headline = decide(asked, paths(*cells), OutcomeTable(tuple(out))).headline
     assert headline.startswith("old is ahead under correct inputs")
     assert "sharing reverses the ranking" in headline
 
 
 def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
     made = three(LEVEL, GAIN, GAIN)
-    words = " ".join(made.verdict.sentences)
+    words = " ".join(made.sentences)
     (effect,) = (e for e in made.effects if e.path == CORRECT)
     least = re.search(
         r"correct inputs \(a true one of (\d+) pp would be found in 8 of 10 audits\)", words
@@ -87,7 +87,7 @@ def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
 def test_three_scenes_decide_nothing_however_clear_they_look():
     made = record({CORRECT: (0, 0, 3), "observer": (0, 3, 0), SHARED: (0, 0, 3)}, n=3)
     assert made.scenes_needed == 8
-    assert made.verdict.headline.startswith("Too few scenes to decide: 3 compared")
+    assert made.headline.startswith("Too few scenes to decide: 3 compared")
 
 
 @pytest.mark.parametrize(
@@ -118,26 +118,26 @@ def test_a_fault_that_never_acted_was_not_tested():
         return decide(question(), paths(CORRECT, "observer", SHARED), OutcomeTable(tuple(out)))
 
     never = made({"observer": 0, SHARED: 0})
-    assert never.verdict.headline == "The fault never acted: nothing was tested."
+    assert never.headline == "The fault never acted: nothing was tested."
     assert in_short(never, never.effects[-1]) == "the fault never acted: not tested"
     assert never.break_even == ()
     partly = made({"observer": 0})
-    assert partly.verdict.headline.startswith("new is ahead of old under the shared fault")
+    assert partly.headline.startswith("new is ahead of old under the shared fault")
     rarely = made({"observer": 30})
     assert (
         "With only the observer faulted, the fault changed something in only 30 of 100 trials of "
-        "new." in rarely.verdict.sentences
+        "new." in rarely.sentences
     )
 
 
 def test_results_of_trained_models_are_said_to_be_theirs():
     cells = {CORRECT: [LEVEL] * 1, "observer": [GAIN], SHARED: [LOSS]}
     plain, trained = (seeded(cells, trained=flag) for flag in (False, True))
-    assert "model" not in " ".join((plain.verdict.headline, *plain.verdict.sentences))
+    assert "model" not in " ".join((plain.headline, *plain.sentences))
     assert "model" not in plain.effects[0].success.estimand
-    assert trained.verdict.headline == plain.verdict.headline
+    assert trained.headline == plain.headline
     assert trained.estimand == "new scenes like these, for these trained models"
-    assert "models trained anew may differ" in " ".join(trained.verdict.sentences)
+    assert "models trained anew may differ" in " ".join(trained.sentences)
 
 
 def test_newly_trained_models_need_no_qualification_but_a_caution_with_few():
@@ -145,10 +145,10 @@ def test_newly_trained_models_need_no_qualification_but_a_caution_with_few():
     cells = {CORRECT: by_seed, "observer": by_seed}
     made = seeded(cells, trained=True, generalise="models")
     assert made.estimand.endswith("models newly trained with other seeds")
-    assert "these trained models" not in made.verdict.headline
-    assert "Caution: 3 trainings say little about new ones" in " ".join(made.verdict.sentences)
+    assert "these trained models" not in made.headline
+    assert "Caution: 3 trainings say little about new ones" in " ".join(made.sentences)
     assert all("t test" in effect.test for effect in made.effects)
     by_number = {n: [(40 - i, 30 + i, 2) for i in range(n)] for n in (9, 10)}
     for number, drawn in by_number.items():
         several = seeded(dict.fromkeys(cells, drawn), trained=True, generalise="models")
-        assert ("Caution" in " ".join(several.verdict.sentences)) == (number < 10)
+        assert ("Caution" in " ".join(several.sentences)) == (number < 10)

@@ -8,7 +8,7 @@ import torch
 from repair_toys import INTERFACE, SHORT, Net, windows
 
 from faultpath.core.errors import UserError
-from faultpath.faults import Fault, Scale
+from faultpath.faults import Fault, Scale, resolve
 from faultpath.learning import Learned, errors, fit, uncertainty_training, withheld, withholding
 from faultpath.loop import Batch, Inputs, Module, Port, Reading, Taps
 from faultpath.systems import ComposedSystem, FunctionPlant, Parts
@@ -50,7 +50,7 @@ def fly(made: ComposedSystem, variant: str, *faults: Fault, scenes=("seed/1", "s
     declared = made.variants[variant]
     taps = Taps(
         made.interface,
-        faults,
+        resolve(faults, made.interface, declared.consumers),
         scenes=scenes,
         dt_s=0.1,
         bindings=declared.bindings,

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from faultpath.faults import resolve
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Graph, Loop, Module, Plant, Port, Progress, Query, Taps, graph
 from faultpath.loop import interface_of as derived
@@ -101,7 +102,7 @@ def execute(modules, faults=(), place="", trace=None, guard=False):
     """Return the instants and the taps of one execution."""
     interface, parts = wired(modules, place)
     asked = {"scenes": SCENES, "dt_s": DT_S, "privileged": ("field",), "guard": guard}
-    taps = Taps(interface, faults, **asked, observer=trace)
+    taps = Taps(interface, resolve(faults, interface), **asked, observer=trace)
     with contextlib.suppress(Enough):
         return list(Loop(interface, parts).execute(Batch(SCENES, 0, DT_S), taps)), taps
     return [], taps

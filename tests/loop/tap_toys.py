@@ -23,6 +23,7 @@ from faultpath.faults import (
     Scale,
     Shuffle,
     UniformScale,
+    resolve,
 )
 from faultpath.faults import Sequence as InTurn
 from faultpath.interface import Channel, Interface, Provenance, Source
@@ -82,7 +83,8 @@ def series(scene: str, channel: str, steps: int) -> np.ndarray[Any, Any]:
 
 
 def make(faults: Iterable[Fault | Coupled] = (), scenes: Sequence[str] = "ab", **more: Any) -> Taps:
-    return Taps(INTERFACE, faults, scenes=tuple(scenes), dt_s=DT_S, **more)
+    found = resolve(faults, INTERFACE, more.get("consumers"))
+    return Taps(INTERFACE, found, scenes=tuple(scenes), dt_s=DT_S, **more)
 
 
 def play(

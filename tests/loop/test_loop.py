@@ -5,7 +5,7 @@ import pytest
 from loop_toys import DT_S, FACTS, SCENES, Guess, Line, Planner, execute, interface_of, wired
 
 from faultpath.core.errors import SystemMistake
-from faultpath.faults import Fault, Scale, parse_fault
+from faultpath.faults import Fault, Scale, parse_fault, resolve
 from faultpath.interface import transitive_consumers
 from faultpath.loop import (
     Batch,
@@ -242,7 +242,7 @@ def test_a_filter_reconstructs_position_and_velocity():
         "pilot.feedback",
     )
     scaled = Fault(channel="position", intervention=Scale(factor=2.0))
-    taps = Taps(interface, [scaled], scenes=SCENES, dt_s=DT_S)
+    taps = Taps(interface, resolve([scaled], interface), scenes=SCENES, dt_s=DT_S)
     list(Loop(interface, graph(interface, Line(), parts[:2])).execute(_batch(), taps))
     assert pilot.speeds[0] == [0.0, 0.0]
     assert np.allclose(pilot.speeds[1:], 2.0 / DT_S)  # a metre a step, seen as two

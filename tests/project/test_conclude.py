@@ -23,10 +23,10 @@ def test_a_run_decided_anew_is_still_enough_for_report(
     toy = Path(shutil.copytree(REFERENCE / "toy", tmp_path / "toy"))
     traces = (toy / "traces.parquet").read_bytes()
     record = json.loads((toy / "record.json").read_bytes())
-    record["verdict"]["headline"] = "Something of before."
+    record["headline"] = "Something of before."
     (toy / "record.json").write_text(json.dumps(record))
     now = conclude.audit(toy)
-    assert now.verdict.headline != "Something of before."
+    assert now.headline != "Something of before."
     before = {path.name: path.read_bytes() for path in toy.iterdir()}
     open_run(toy).report()
     assert {path.name: path.read_bytes() for path in toy.iterdir()} == before

@@ -11,7 +11,7 @@ from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.vehicle import VehicleParameters
 
 from faultpath.core.arrays import Array
-from faultpath.faults import AnyFault, parse_fault
+from faultpath.faults import AnyFault, parse_fault, resolve
 from faultpath.loop import Observer, Query, Reading, Tap, Taps
 from faultpath.trials import Outcome, SystemSpec, load_system
 
@@ -79,7 +79,7 @@ def wire(
     parts = system.variants[variant]
     return LoggingTaps(
         system.interface,
-        faults,
+        resolve(faults, system.interface, parts.consumers),
         scenes=tuple(scenes),
         dt_s=system.control_dt_s,
         seed=seed,

@@ -19,6 +19,7 @@ from simulated_gpu import GPU, SimulatedGPU, simulated_gpu
 
 from faultpath.core import arrays
 from faultpath.core.errors import UserError
+from faultpath.faults import resolve
 from faultpath.loop import Batch, Observer, Query, Reading, Tap, Taps
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
@@ -77,7 +78,7 @@ def _wired(
     parts = built.variants[variant]
     return Taps(
         built.interface,
-        [fault(text, built) for text in texts],
+        resolve([fault(text, built) for text in texts], built.interface, parts.consumers),
         scenes=tuple(scenes),
         dt_s=built.control_dt_s,
         seed=0,

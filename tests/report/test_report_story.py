@@ -55,7 +55,7 @@ def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> N
         assert open_.count(rates) >= 1
         assert open_.count(f"{effect.success.value:+.1f} pp".replace("-", "−")) <= 2
     assert "gru succeeds more often" in open_
-    assert "%" not in one_seed.record.verdict.headline
+    assert "%" not in one_seed.record.headline
 
 
 def test_an_interval_that_leaves_out_0_undetected_shows_its_p(one_seed: ReportInput) -> None:

@@ -101,7 +101,7 @@ def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportIn
     with console.capture() as captured:
         console.print(decision(record, details=True))
     whole = " ".join(captured.get().split())
-    assert all(" ".join(said.split()) in whole for said in record.verdict.sentences)
+    assert all(" ".join(said.split()) in whole for said in record.sentences)
     assert "What would change this" in whole
 
 

@@ -4,6 +4,7 @@ import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Dict, Discrete
 
+from faultpath.faults import resolve
 from faultpath.loop import Module, Port, Taps
 from faultpath.systems import ComposedSystem, Parts
 from faultpath.systems.gymnasium import GymnasiumPlant
@@ -85,7 +86,7 @@ def fly(built, scenes=SCENES, variant="only", faults=(), seed=0):
     wired = built.variants[variant]
     taps = Taps(
         built.interface,
-        faults,
+        resolve(faults, built.interface, wired.consumers),
         scenes=tuple(scenes),
         dt_s=built.control_dt_s,
         bindings=wired.bindings,

@@ -72,7 +72,7 @@ class Run(FinishedRun):
     @property
     def headline(self) -> str:
         """The verdict in one sentence."""
-        return self.record.verdict.headline
+        return self.record.headline
 
     @property
     def failed(self) -> int:

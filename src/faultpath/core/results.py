@@ -19,7 +19,7 @@ class Shown(BaseModel):
 
     def __repr__(self) -> str:
         """Return the headline where there is one, else the fields that say something."""
-        said = getattr(getattr(self, "verdict", self), "headline", "")
+        said = getattr(self, "headline", "")
         said = said or ", ".join(
             f"{name}={shortened(printable(str(value)), _CELL)}"
             for name, value in self

@@ -4,9 +4,8 @@ from collections.abc import Iterable, Sequence
 
 from faultpath.core.errors import UserError
 from faultpath.decisions import phrases, wording
-from faultpath.decisions.compared import Compared, compared
 from faultpath.decisions.described import cells_of, percent, secondary, untested_paths
-from faultpath.decisions.family import Family, alpha_shares, decide_paths, led
+from faultpath.decisions.family import Compared, Family, alpha_shares, compared, decide_paths, led
 from faultpath.decisions.model import (
     CORRECT,
     SHARED,
@@ -18,10 +17,9 @@ from faultpath.decisions.model import (
     Path,
     PathBreakEven,
     Stopped,
-    Verdict,
 )
 from faultpath.decisions.question import EarlierLook, Question
-from faultpath.decisions.summary import verdict
+from faultpath.decisions.summary import in_words
 from faultpath.statistics.breakeven import break_even, mixture_curve, only
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import EM, Region
@@ -68,7 +66,6 @@ def decide(
         scenes_needed=family.scenes_needed,
         hypotheses=family.hypotheses,
         estimand=phrases.estimand(asked),
-        verdict=Verdict(headline="", sentences=(), would_change=()),
         stopped=_stopped(asked, family, table),
     )
     noted = (
@@ -77,9 +74,7 @@ def decide(
         *mismatch_words(found.mismatches),
         *findings,  # of a record that is decided anew, with some of the above among them
     )
-    return record.model_copy(
-        update={"verdict": verdict(record), "findings": tuple(dict.fromkeys(noted))}
-    )
+    return record.model_copy(update={**in_words(record), "findings": tuple(dict.fromkeys(noted))})
 
 
 def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> bool:

@@ -201,19 +201,10 @@ class Stopped(Result):
     """Paths on which the difference was shown to be smaller than the margin."""
 
 
-class Verdict(Result):
-    """The answer in words."""
-
-    headline: str
-    sentences: tuple[str, ...]
-    would_change: tuple[str, ...]
-    """What would change the verdict."""
-
-
 class DecisionRecord(Result):
     """Everything that tables, pictures and the report show; written as `record.json`."""
 
-    format: Literal[2] = 2
+    format: Literal[3] = 3
     question: Question
     paths: tuple[Path, ...]
     cells: tuple[Cell, ...]
@@ -227,7 +218,11 @@ class DecisionRecord(Result):
     hypotheses: int
     """Contrasts that share the error rate of 5 %: all that the audit may announce."""
     estimand: str  # what intervals and tests speak of
-    verdict: Verdict
+    headline: str = ""
+    sentences: tuple[str, ...] = ()
+    """The answer in words."""
+    would_change: tuple[str, ...] = ()
+    """What would change it."""
     findings: tuple[str, ...] = ()
     """What a reader has to know of the run, a sentence each."""
     stopped: Stopped | None = None

@@ -5,9 +5,10 @@ Whoever reads nothing else reads these, so what qualifies a decision is said her
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 from faultpath.decisions import phrases
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect, Verdict
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
 from faultpath.decisions.phrases import adjusted, margin, only_alone
 from faultpath.decisions.wording import capital, counted, series, where
 
@@ -154,12 +155,15 @@ def not_standing(record: DecisionRecord) -> Iterator[str]:
         )
 
 
-def verdict(record: DecisionRecord) -> Verdict:
-    """Return all that a record says of its decisions."""
+def in_words(record: DecisionRecord) -> dict[str, Any]:
+    """Return the fields in which a record says what it decides."""
     changes = (phrases.change(record, each) for each in record.changes)
     said = [*changes, *(one for several in _answers(record).values() for one in several)]
-    would_change = tuple(phrases.would_change(record))
-    return Verdict(headline=headline(record), sentences=tuple(said), would_change=would_change)
+    return {
+        "headline": headline(record),
+        "sentences": tuple(said),
+        "would_change": tuple(phrases.would_change(record)),
+    }
 
 
 def answers(record: DecisionRecord) -> dict[str, str]:

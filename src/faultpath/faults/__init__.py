@@ -10,6 +10,7 @@ from faultpath.faults.fault import (
     Coupled,
     Fault,
     Sequence,
+    resolve,
 )
 from faultpath.faults.parse import FaultPreset, FaultText, each_size, parse_fault
 from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Scale
@@ -42,4 +43,5 @@ __all__ = [
     "UniformScale",
     "each_size",
     "parse_fault",
+    "resolve",
 ]

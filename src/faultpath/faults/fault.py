@@ -1,6 +1,6 @@
 """A fault: a channel, the consumers that get it, which of all interventions, and when."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from math import inf
 from typing import Annotated, Literal, Self, TypeAlias, get_args
@@ -204,7 +204,28 @@ class Coupled(Frozen):
 
 
 AnyFault: TypeAlias = Annotated[Fault | Coupled, Field(discriminator="kind")]
-"""A fault as arms carry it; its `kind` says in JSON which."""
+"""A fault as it is declared; its `kind` says in JSON which."""
+
+
+def resolve(
+    faults: Iterable[AnyFault], interface: Interface, present: Collection[str] | None = None
+) -> tuple[Fault, ...]:
+    """Return faults as `Taps` takes them: `Fault.resolved` of each, in turn.
+
+    Raises `UserError` for a fault that cannot act on `interface`, or reaches no consumer that is
+    `present`.
+    """
+    found: list[Fault] = []
+    for each in faults:
+        parts = each.resolved(interface, present)
+        if not parts:
+            names = {c for part in each.resolved(interface) for c in part.consumers}
+            raise UserError(
+                f"fault '{each.describe()}' reaches no consumer in this variant, "
+                f"which has no {listed(names)}; leave the fault out or name other consumers"
+            )
+        found += parts
+    return tuple(found)
 
 
 def _resolved(

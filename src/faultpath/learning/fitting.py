@@ -19,7 +19,7 @@ from typing_extensions import override
 from faultpath.core.errors import UserError
 from faultpath.core.streams import key
 from faultpath.core.version import __version__
-from faultpath.faults import AnyFault
+from faultpath.faults import AnyFault, resolve
 from faultpath.learning.loop import Task, minibatches, run
 from faultpath.learning.model_card import (
     Architecture,
@@ -185,7 +185,8 @@ def evaluate(
     What it was fitted without stays withheld. Raises `UserError` as `fit`.
     """
     repairs = fitted.record.repairs
-    found = understood((*faults, *kept(repairs)), data.interface, data.dt_s)
+    asked = understood((*faults, *kept(repairs)), data.interface, data.dt_s)
+    found = resolve(asked, data.interface, data.consumers)
     task = _WindowTask(
         fitted.module, data, loss, repairs, fitted.record.seed, Schedule(), validation=0.0
     )

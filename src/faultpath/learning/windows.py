@@ -11,7 +11,7 @@ import numpy as np
 from faultpath.core.arrays import Array, HostArray, namespace
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
-from faultpath.faults import AnyFault
+from faultpath.faults import Fault
 from faultpath.interface import Interface, Provenance, module_of
 from faultpath.learning.model_card import Data
 from faultpath.learning.repair import Repair
@@ -187,7 +187,7 @@ class Windows:
 
 def delivered(
     windows: Windows,
-    faults: Iterable[AnyFault],
+    faults: Iterable[Fault],
     readings: Mapping[str, Array],
     index: Sequence[int] | HostArray,
     seed: int,
@@ -222,7 +222,7 @@ def delivered(
 
 def window_taps(
     interface: Interface,
-    faults: Iterable[AnyFault],
+    faults: Iterable[Fault],
     ids: tuple[str, ...],
     dt_s: float,
     seed: int,

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from faultpath.core.arrays import Array, differs, namespace, place, read_only, to_numpy
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
-from faultpath.faults import Coupled, Draws, Fault
+from faultpath.faults import Draws, Fault
 from faultpath.interface import Interface, modules
 from faultpath.loop.reading import (
     IllegalRead,
@@ -41,7 +41,8 @@ class Taps:
 
     Args:
         interface: What the system declares.
-        faults: Faults in the order in which they act where they meet at a tap.
+        faults: As `faultpath.faults.resolve` returns them, in the order in which they act where
+            they meet at a tap.
         scenes: Scene ids, one a row of every reading.
         dt_s: Length of a control step, s.
         seed: Seed of the faults' random numbers.
@@ -53,13 +54,13 @@ class Taps:
         observer: Sees what is delivered.
 
     Raises:
-        UserError: A name is unknown, a fault does not fit, or it reaches no consumer here.
+        UserError: A name is unknown, or a fault names a consumer that is not here.
     """
 
     def __init__(
         self,
         interface: Interface,
-        faults: Iterable[Fault | Coupled] = (),
+        faults: Iterable[Fault] = (),
         *,
         scenes: tuple[str, ...],
         dt_s: float,
@@ -86,32 +87,27 @@ class Taps:
         """The source that feeds each channel here."""
         self._add(faults, dt_s, seed)
 
-    def _add(self, faults: Iterable[Fault | Coupled], dt_s: float, seed: int) -> None:
+    def _add(self, faults: Iterable[Fault], dt_s: float, seed: int) -> None:
         shared: dict[Draws, Draws] = {}
         apart: dict[Draws | None, Fault] = {}
-        for declared in faults:
-            everywhere, reached = declared.resolved(self._interface), False
-            for fault in everywhere:
-                made = fault.draws(self._scenes, seed)
-                if abs(fault.loading) < 1:
-                    if made.own in apart:
-                        raise UserError(
-                            f"faults '{apart[made.own].describe()}' and '{fault.describe()}' have "
-                            "a loading and draw the same numbers nevertheless: give them different "
-                            "causes"
-                        )
-                    apart[made.own] = fault
-                drawn = shared.setdefault(made, made)
-                for consumer in fault.consumers:
-                    if tap := self._taps.get((fault.channel, consumer)):
-                        tap.add(Corruption(fault, drawn, dt_s))
-                        reached = True
-            if not reached:
-                names = {consumer for fault in everywhere for consumer in fault.consumers}
-                raise UserError(
-                    f"fault '{declared.describe()}' reaches no consumer in this variant, "
-                    f"which has no {listed(names)}; leave the fault out or name other consumers"
-                )
+        for fault in faults:
+            made = fault.draws(self._scenes, seed)
+            if abs(fault.loading) < 1:
+                if made.own in apart:
+                    raise UserError(
+                        f"faults '{apart[made.own].describe()}' and '{fault.describe()}' have "
+                        "a loading and draw the same numbers nevertheless: give them different "
+                        "causes"
+                    )
+                apart[made.own] = fault
+            drawn = shared.setdefault(made, made)
+            for consumer in fault.consumers:
+                if (fault.channel, consumer) not in self._taps:
+                    raise UserError(
+                        f"fault '{fault.describe()}' has no tap at '{consumer}': spell out its "
+                        "consumers with faultpath.faults.resolve"
+                    )
+                self._taps[fault.channel, consumer].add(Corruption(fault, drawn, dt_s))
 
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
         """Return what `consumer` gets of `channel` at control step `step`.

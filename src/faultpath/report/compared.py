@@ -50,7 +50,7 @@ class Compared:
     @property
     def headline(self) -> str:
         """Its own headline, qualified where not all that it decided stands over all sizes."""
-        own, family = self.record.verdict.headline, self.family or {}
+        own, family = self.record.headline, self.family or {}
         fallen = any(e.sign and not family.get(e.path, (e.sign, 0))[0] for e in self.record.effects)
         return f"By itself, and not over all sizes: {own}" if fallen else own
 

@@ -136,7 +136,7 @@ def whole_table(record: DecisionRecord) -> Table:
         f"Primary contrast: {asked.primary}. {ruled}{corrected} Intervals and tests speak of "
         f"{record.estimand}.",
         *not_standing(record),
-        record.verdict.headline,
+        record.headline,
     )
     table = by_quantity(record, ALL, title, notes)
     more = secondary(record)

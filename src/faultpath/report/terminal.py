@@ -26,7 +26,7 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     names = [name for name in _EFFECTS if void or name != "void"]
     success = by_quantity(record, ("baseline", "repair"))
     effects = by_path(record, names, f"{asked.repair} minus {asked.baseline}")
-    parts: list[RenderableType] = [Text(record.verdict.headline, style="bold")]
+    parts: list[RenderableType] = [Text(record.headline, style="bold")]
     if record.stopping:
         parts += [Text(f"A sequential audit: {record.stopping}.")]
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
@@ -41,8 +41,8 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
             parts += [Text(""), Text(f"Rule: {record.question.ruled}.")]
         if any(effect.mcnemar_p_value is not None for effect in record.effects):
             parts += [Text(""), Parted(by_path(record, ("p", "mcnemar", "holm")))]
-        parts += [Text(""), *map(Text, record.verdict.sentences)]
-        parts += _list("What would change this", record.verdict.would_change, "bold")
+        parts += [Text(""), *map(Text, record.sentences)]
+        parts += _list("What would change this", record.would_change, "bold")
     return Group(*parts)
 
 

@@ -6,7 +6,7 @@ import json
 from pydantic import Field
 
 from faultpath.core.results import Frozen
-from faultpath.faults import AnyFault
+from faultpath.faults import Fault
 
 _OBJECT = " object"
 
@@ -32,7 +32,8 @@ class Arm(Frozen):
     """One variant of the system under one set of faults, with one seed."""
 
     variant: str
-    faults: tuple[AnyFault, ...] = ()
+    faults: tuple[Fault, ...] = ()
+    """As `faultpath.faults.resolve` returns them."""
     seed: int = 0
 
     def key(self) -> str:

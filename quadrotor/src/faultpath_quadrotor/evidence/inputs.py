@@ -12,7 +12,7 @@ from torch import Tensor
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generators
-from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, Hold
+from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, Hold, resolve
 from faultpath.loop import Reading, Taps
 from faultpath.trials import Variant
 from faultpath_quadrotor.evidence.playback import CODE, HELD, Present, at_present
@@ -125,9 +125,10 @@ class Subject:
 
     def _taps(self, scene: str, faults: Sequence[AnyFault], *codes: int) -> Taps:
         source = self.system.interface.channel(CODE[0]).sources[0]
+        interface = self.system.interface.shaped({source: codes} if codes else {})
         return Taps(
-            self.system.interface.shaped({source: codes} if codes else {}),
-            faults,
+            interface,
+            resolve(faults, interface, self.variant.consumers),
             scenes=(scene,),
             dt_s=self.system.control_dt_s,
             seed=self.seed,

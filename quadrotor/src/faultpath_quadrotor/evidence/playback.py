@@ -12,7 +12,7 @@ import torch
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath.faults import AnyFault
+from faultpath.faults import AnyFault, resolve
 from faultpath.loop import (
     Batch,
     Inputs,
@@ -203,14 +203,15 @@ def at_present(
     nobodys = KinematicIntegrator(wind=True, drag_kgps=(0.0, 0.0, 0.0))
     models = modelled(predictor or nobodys, reconstruction, CPU)
     parts = graph(interface, Playback(wide), [*models, Executed(wide)], bindings)
+    present = consumers(parts.parts)
     taps = Taps(
         interface,
-        faults,
+        resolve(faults, interface, present),
         scenes=wide.ids,
         dt_s=CONTROL_DT_S,
         seed=seed,
         bindings=bindings,
-        consumers=consumers(parts.parts),
+        consumers=present,
         privileged=PRIVILEGED,
     )
     before = WindowTaps(taps, lambda codes: exchange(codes[: len(windows)])[lanes])

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Mapping
 
 from torch import Tensor
 
-from faultpath.faults import AnyFault, Coupled, Fault, UniformScale
+from faultpath.faults import AnyFault, Coupled, Fault, UniformScale, resolve
 from faultpath.learning.windows import window_taps
 from faultpath.loop import Reading
 from faultpath_quadrotor.interface import quadrotor_interface
@@ -59,7 +59,8 @@ def corrupted(
         NotDelivered: A fault missed a consumer that it names.
     """
     interface = quadrotor_interface()
-    taps = window_taps(interface, faults, windows, CONTROL_DT_S, seed, epoch, consumers)
+    found = resolve(faults, interface, consumers)
+    taps = window_taps(interface, found, windows, CONTROL_DT_S, seed, epoch, consumers)
     delivered = {
         (channel, consumer): taps.deliver(
             channel, consumer, Reading(value, taps.bindings[channel], 0), 0

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from faultpath.core.arrays import is_array, to_numpy
 from faultpath.core.error_source import described
 from faultpath.core.errors import Notice
-from faultpath.faults import AnyFault
+from faultpath.faults import Fault
 from faultpath.loop import Batch, Inputs, Loop, Plant, Progress, Reading, Taps
 from faultpath.trials import Arm, LoopSystem
 from faultpath.trials.attempt import taps_of
@@ -32,7 +32,7 @@ Key: TypeAlias = tuple[str, str]
 def command_responses(
     system: LoopSystem,
     variant: str,
-    faults: Mapping[Key, Sequence[AnyFault]],
+    faults: Mapping[Key, Sequence[Fault]],
     scenes: Sequence[str],
     seed: int,
 ) -> dict[Key, float]:
@@ -65,7 +65,7 @@ class _First(Plant):
         self,
         system: LoopSystem,
         variant: str,
-        faults: Mapping[Key, Sequence[AnyFault]],
+        faults: Mapping[Key, Sequence[Fault]],
         scenes: tuple[str, ...],
         seed: int,
         loop: Loop,
@@ -171,7 +171,7 @@ class _Taps:
     """Taps that record the first run's readings of the past, or deliver these in place of their
     own."""
 
-    def __init__(self, first: _First, faults: Sequence[AnyFault], records: bool) -> None:
+    def __init__(self, first: _First, faults: Sequence[Fault], records: bool) -> None:
         arm = Arm(variant=first.variant, faults=tuple(faults), seed=first.seed)
         self._taps: Taps = taps_of(first.system, arm, first.scenes)
         self._first, self._records = first, records

@@ -87,7 +87,7 @@ def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...
     asked = audit.question
     reached: dict[str, dict[str, tuple[str, ...]]] = {}
     for row in audit.study.rows:
-        consumers = {c: None for f in row.arm.faults if f.kind != "coupled" for c in f.consumers}
+        consumers = {c: None for f in row.arm.faults for c in f.consumers}
         reached.setdefault(row.path, {})[row.variant] = tuple(consumers)
     of_path: dict[str, Role] = {CORRECT: "correct", SHARED: "shared"}
     of_path |= dict.fromkeys(repaired, "repaired")

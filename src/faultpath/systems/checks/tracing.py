@@ -5,7 +5,7 @@ from typing import Literal
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
 from faultpath.core.text import unknown
-from faultpath.faults import AnyFault
+from faultpath.faults import AnyFault, resolve
 from faultpath.systems.checks.blocks import Block, run_block
 from faultpath.systems.checks.recording import Read
 from faultpath.trials import Arm, LoopSystem, System, SystemSpec, library_of
@@ -55,11 +55,7 @@ def trace_system(
     if chosen not in known:
         raise UserError(f"library '{library}': {unknown('scene', chosen, known)}")
     consumers = system.variants[variant].consumers
-    faults = () if fault is None else fault.resolved(system.interface, consumers)
-    if fault is not None and not faults:
-        raise UserError(
-            f"the fault ({fault.describe()}) reaches no consumer in variant '{variant}'."
-        )
+    faults = resolve(() if fault is None else (fault,), system.interface, consumers)
     arm = Arm(variant=variant, faults=faults, seed=seed)
     run = run_block(system, Block(arm, (chosen,), steps=steps))
     if run.error and not run.reads:
