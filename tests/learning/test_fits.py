@@ -8,7 +8,7 @@ import torch
 from repair_toys import SEEN, SHORT, Net, Spy, windows
 
 from faultpath.core.errors import UserError
-from faultpath.faults import Drift, Fault
+from faultpath.faults import Drift, Fault, resolve
 from faultpath.learning import (
     Schedule,
     Windows,
@@ -70,6 +70,7 @@ def test_training_sees_what_the_taps_deliver_and_targets_pass_none() -> None:
 
     drift = Fault(channel="velocity", intervention=Drift(rate_per_s=2.0, walk_per_sqrt_s=1.0))
     fitted = fit(Spy, data, loss, repair=uncertainty_training(drift), schedule=SHORT, validation=0)
+    faults = resolve((drift,), data.interface, data.consumers)
     fitted_on = [target.tolist() for target in targets]
     minibatches = iter(zip(SEEN, fitted_on, strict=True))
     for epoch in range(SHORT.epochs):
@@ -77,7 +78,7 @@ def test_training_sees_what_the_taps_deliver_and_targets_pass_none() -> None:
             inputs, target = next(minibatches)
             rows = [data.targets.tolist().index(value) for value in target]
             readings = {name: value[rows] for name, value in data.readings.items()}
-            expected, _ = delivered(data, (drift,), readings, rows, 0, epoch)
+            expected, _ = delivered(data, faults, readings, rows, 0, epoch)
             for port, value in expected.items():
                 assert np.array_equal(inputs[port].numpy(), value)
     assert next(minibatches, None) is None

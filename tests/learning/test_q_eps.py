@@ -7,10 +7,7 @@ import pytest
 from repair_toys import DT_S, INTERFACE, windows
 
 from faultpath.core.errors import UserError
-from faultpath.faults import (
-    Coupled,
-    Fault,
-)
+from faultpath.faults import Coupled, Fault, resolve
 from faultpath.learning import errors, uncertainty_training, withholding
 from faultpath.learning.windows import delivered
 from faultpath.loop import Port
@@ -21,7 +18,7 @@ GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")
 def relative_errors(q_eps: Coupled | Fault, n: int = 4000, steps: int = 3, seed: int = 0):
     """What the observer's ports get of readings of one: error by port, `[N, T]`."""
     data = windows(n, steps, readings={"gain": np.ones(n), "velocity": np.ones((n, steps))})
-    got, _ = delivered(data, (q_eps,), data.readings, range(n), seed, epoch=0)
+    got, _ = delivered(data, resolve((q_eps,), data.interface, data.consumers), data.readings, range(n), seed, epoch=0)
     return {port: value - 1 for port, value in got.items()}
 
 
@@ -68,7 +65,8 @@ def test_places_of_one_channel_get_the_same_error_and_one_place_may_err_alone() 
 
 
 def test_draws_belong_to_window_seed_and_epoch_and_not_to_the_minibatch() -> None:
-    data, faults = windows(30), (errors({"gain": 0.1}, "step"),)
+    data = windows(30)
+    faults = resolve((errors({"gain": 0.1}, "step"),), data.interface, data.consumers)
 
     def of(index, seed=0, epoch=0):
         rows = {name: value[index] for name, value in data.readings.items()}

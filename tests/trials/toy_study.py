@@ -11,7 +11,7 @@ FAULT = Fault(channel="mass", intervention=Scale(factor=0.6), onset_step=3)
 PATHS = {
     "correct": (),
     "planner": (FAULT.aimed_at("planner.thrust"),),
-    "shared": (FAULT,),
+    "shared": (FAULT.aimed_at("planner.thrust", "observer.balance"),),
 }
 UNITS = 2 * len(PATHS) * 2 * 3 - 2 * 3
 """Variants, paths, seeds and blocks; `plain` has one arm for two of the paths (see `rows`)."""
