@@ -10,12 +10,11 @@ from faultpath_quadrotor.evidence.inputs import Subject, with_shuffled_history
 from faultpath_quadrotor.evidence.quantities import check, measured
 from faultpath_quadrotor.evidence.recording import STRIDE, Recorded
 from faultpath_quadrotor.evidence.table import Measurement, Recording
-from faultpath_quadrotor.platform import PLATFORM, Platform
+from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
 from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath_quadrotor.training.windows import HISTORY, cut, places
-from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 from faultpath.core.errors import UserError
 
@@ -111,11 +110,9 @@ def test_an_unfiltered_observer_recombines_under_shared_error(recorded, monkeypa
     def unfiltered(asked):
         subject = Subject.load(quantities.quadrotor(RECORDING), asked.subject, 0)
         return replace(
-            subject, reconstruction=DisturbanceObserver(low_pass=1.0, drag_kgps=NOMINAL_DRAG_KGPS)
+            subject, reconstruction=DisturbanceObserver(PLATFORM.drag_kgps, low_pass=1.0)
         )
 
-    # Drag that is the same along all axes, so that the wind does not turn with it.
-    monkeypatch.setattr(quantities, "PLATFORM", Platform(drag_kgps=NOMINAL_DRAG_KGPS))
     monkeypatch.setattr(quantities, "_subject", unfiltered)
     nominal, shared, isolated = (
         ask(recorded, "acceleration-error", "dob", *faults)

@@ -16,10 +16,9 @@ def network(calibrated=True):
     built = WindNetwork(calibrated)
     built.initialise(draw)
     built.measure(
-        states=torch.randn(18, 13, 64, generator=draw) * 2 + 1,
+        states=torch.randn(18, 12, 64, generator=draw) * 2 + 1,
         commands=torch.randn(4, 12, 64, generator=draw) + 9.81,
         calibration=torch.rand(2, 64, generator=draw) + 0.5,
-        wind=4 * torch.randn(3, 64, generator=draw),
     )
     return built
 
@@ -81,6 +80,14 @@ def test_a_lane_does_not_depend_on_the_lanes_beside_it(steps):
         assert torch.equal(part, whole[:, lanes])
 
 
+def test_a_vehicle_that_goes_on_as_before_its_flight_keeps_its_estimate():
+    """The intervals before the flight are those of the hover that was executed then."""
+    module = RecurrentReconstruction(network())
+    estimates = winds(module, flight(1) * 5)
+    assert all(torch.equal(estimate, estimates[0]) for estimate in estimates)
+    assert not torch.equal(winds(module, flight(2))[-1], estimates[0])
+
+
 def test_nothing_of_the_future_enters():
     readings, last = flight(16), flight(16, seed=1)[-1]
     module = RecurrentReconstruction(network())
@@ -99,4 +106,4 @@ def test_gated_cell_is_the_gru_of_torch():
     reference.bias_ih_l0.data, reference.bias_hh_l0.data = given.bias[:, 0], kept.bias[:, 0]
     intervals = torch.randn(22, 12, 32, generator=torch.Generator().manual_seed(3))
     expected = reference(intervals.permute(1, 2, 0))[0][-1].T
-    torch.testing.assert_close(built.encode(intervals), expected)
+    torch.testing.assert_close(built.encoder.last(intervals.movedim(1, 0)), expected)

@@ -5,9 +5,10 @@ import pytest
 import torch
 from faultpath_quadrotor.choices import STATE_NOISE_STD
 from faultpath_quadrotor.models import predictor, reconstruction
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.predictors.history import STEPS as HISTORY
 from faultpath_quadrotor.variants import setups
-from flights import fault, fly, quadrotor
+from flights import HELD_OUT, fault, fly, quadrotor
 
 STEPS = 5
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
@@ -67,6 +68,15 @@ def test_a_noisy_state_is_late_and_the_same_for_everyone():
         position - np.stack([r for r, _ in taps.log["position", "predictor.initial_state"]])[1:-1]
     )
     assert abs(np.corrcoef(error.ravel(), late.ravel())[0, 1]) < 0.9
+
+
+def test_before_the_flight_the_history_is_the_hover_that_was_executed():
+    """Whatever calibration is believed: the command of the past is not the one it would give."""
+    system = quadrotor(**LEARNED)
+    _, taps = fly(system, "gru", faults=[fault("calibration=0.1", system)])
+    hover = Vehicle.stack([system.scene(HELD_OUT[0]).vehicle]).hover_command().T
+    for consumer in ("predictor.history", "reconstruction.history"):
+        assert np.array_equal(taps.delivered("action", consumer)[0], hover.numpy())
 
 
 @torch.inference_mode()

@@ -12,16 +12,16 @@ def draws(seed: int = 0) -> np.random.Generator:
 
 @pytest.mark.parametrize("level", LEVELS)
 def test_a_scene_s_wind_depends_on_level_and_scene_alone(level):
-    alone = Winds().series(level, "scene-7", 2.0)
-    for other in ("scene-6", "scene-8"):
+    alone = Winds().series(level, 7, 2.0)
+    for other in (6, 8):
         assert np.array_equal(Winds().series(level, other, 2.0), alone) == (level == "L0")
     assert alone.shape == (1000, 3)
     assert alone.dtype == np.float64
-    assert np.array_equal(Winds().series(level, "scene-7", 2.0), alone)
+    assert np.array_equal(Winds().series(level, 7, 2.0), alone)
 
 
 def test_a_longer_series_begins_with_the_shorter_one():
-    assert np.array_equal(Winds().series("L2", "a", 3.0)[:500], Winds().series("L2", "a", 1.0))
+    assert np.array_equal(Winds().series("L2", 3, 3.0)[:500], Winds().series("L2", 3, 1.0))
 
 
 def test_pool_winds_belong_to_seed_and_episode():
@@ -33,7 +33,7 @@ def test_pool_winds_belong_to_seed_and_episode():
 
 @pytest.mark.parametrize("rate_hz", [20, 500])
 def test_turbulence_has_its_standard_deviation_from_the_first_sample(rate_hz):
-    runs = np.stack([wind.dryden(draws(i), 60, rate_hz, 8.0) for i in range(2500)])
+    runs = np.stack([wind.dryden(draws(i), 60, rate_hz, 8.0, 4.0) for i in range(2500)])
     # 2,500 independent runs: the standard error of a deviation is 1.4 %.
     for sample in (0, 1, 30, 59):
         assert runs[:, sample].std(0) == pytest.approx([1, 1, 1], rel=0.05)
@@ -42,9 +42,9 @@ def test_turbulence_has_its_standard_deviation_from_the_first_sample(rate_hz):
 
 def test_turbulence_has_dryden_s_correlations():
     rate, airspeed = 100, 8.0
-    runs = np.stack([wind.dryden(draws(i), 101, rate, airspeed) for i in range(3000)])
+    runs = np.stack([wind.dryden(draws(i), 101, rate, airspeed, 4.0) for i in range(3000)])
     for lag in (5, 25, 50, 100):
-        distance = airspeed * lag / rate / wind.LENGTH_SCALE_M
+        distance = airspeed * lag / rate / 4.0
         along = np.exp(-distance)
         across = (1 - distance / 2) * np.exp(-distance)
         seen = (runs[:, 0] * runs[:, lag]).mean(0)

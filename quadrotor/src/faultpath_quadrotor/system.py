@@ -29,6 +29,7 @@ from faultpath_quadrotor.perception.module import Perception
 from faultpath_quadrotor.planners.module import Planning
 from faultpath_quadrotor.plant import TorchPlant
 from faultpath_quadrotor.plant.module import VehiclePlant
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.scenes.field import DistanceField
@@ -150,7 +151,7 @@ class Quadrotor(LoopSystem):
         predictor = setup.load_predictor(seed, place)
         reconstruction = setup.load_reconstruction(seed, place)
         found = modelled(predictor, reconstruction, place, setup.load_estimator(seed, place))
-        found.append(Planning(setup.load_planner(seed, self.options), place))
+        found.append(Planning(setup.load_planner(seed, self.options), place, self._held))
         if self.options.clearance is not ClearanceName.TRUE:
             found.append(
                 Perception(
@@ -166,6 +167,10 @@ class Quadrotor(LoopSystem):
         self, loop: Loop, scenes: Sequence[str], taps: Deliverer, seed: int
     ) -> list[Outcome]:
         return super().execute(loop, scenes, taps, seed)
+
+    def _held(self, scenes: Sequence[str]) -> torch.Tensor:
+        """Return the command that holds each scene's vehicle, `[B, 4]`."""
+        return Vehicle.stack([s.vehicle for s in self._records(scenes)]).hover_command().T
 
     def _records(self, scenes: Sequence[str]) -> tuple[Scene, ...]:
         return tuple(self.scene(scene) for scene in scenes)

@@ -71,9 +71,9 @@ class Task(ABC):
     order_key: str
     """Stream of the minibatch order; a baseline and its repair share it."""
 
-    @abstractmethod
     def begin_epoch(self, epoch: int) -> None:
         """Prepare an epoch, counted from 0: for example, draw the errors of all samples."""
+        del epoch
 
     @abstractmethod
     def loss(self, net: nn.Module, index: LongTensor) -> Tensor:

@@ -8,14 +8,13 @@ from pathlib import Path
 
 import torch
 from torch import Tensor
-from typing_extensions import override
 
 from faultpath.core.errors import UserError
 from faultpath.trials.store import atomic
 from faultpath.trials.store.atomic import locked, make_folder
 from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.evidence.inputs import Subject, with_shuffled_history
-from faultpath_quadrotor.evidence.playback import Present, at_present
+from faultpath_quadrotor.evidence.playback import Present
 from faultpath_quadrotor.evidence.recording import Block, Recorded, blocks, quadrotor, recorded
 from faultpath_quadrotor.evidence.table import (
     EvidenceTable,
@@ -28,11 +27,7 @@ from faultpath_quadrotor.evidence.table import (
 )
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors.kinematic import LinearDrag
-from faultpath_quadrotor.reconstruction import (
-    Delivered,
-    DisturbanceObserver,
-    ObserverMemory,
-)
+from faultpath_quadrotor.reconstruction import DisturbanceObserver
 from faultpath_quadrotor.training.parts import Part, make_missing
 from faultpath_quadrotor.training.provenance import code_of
 from faultpath_quadrotor.training.windows import HISTORY, Windows
@@ -132,27 +127,20 @@ _QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]
 }
 
 
-class _NominalAcceleration(DisturbanceObserver):
-    """Gives, in the place of the wind, the acceleration a_0 that the observer explains itself.
-
-    Paper, Section "Calibration-Dependent Compensation". What the observer takes out of an
-    acceleration is thus put back here.
-    """
-
-    @override
-    def update(self, memory: ObserverMemory, delivered: Delivered) -> ObserverMemory:
-        explained = self.nominal(memory, delivered)
-        return replace(super().update(memory, delivered), wind_mps=explained)
-
-
 def _nominal(windows: Windows, drag_kgps: Drag) -> Tensor:
-    """Return a_0 over the interval that ends at the present, `[3, W]`, m/s^2.
+    """Return a_0 at the present, as the observer explains it, `[3, W]`, m/s^2.
 
-    An observer told the calibration of these windows follows the whole history, for the thrust
-    that the motors hold; the start of its belief has decayed by a factor of a million.
+    Paper, Section "Calibration-Dependent Compensation": what the observer takes out of an
+    acceleration is put back here.
     """
-    bindings = {"wind": "reconstructed_wind"}
-    return at_present(windows, None, _NominalAcceleration(drag_kgps=drag_kgps), bindings).wind()
+    delivered = {
+        ("velocity", "velocity_difference"): windows.velocity[:, HISTORY],
+        ("attitude", "nominal_model"): windows.rotation[:, :, HISTORY],
+        ("action", "nominal_model"): windows.command[:, HISTORY - 1],
+        ("mass", "nominal_model"): windows.mass_kg,
+        ("thrust_scale", "nominal_model"): windows.thrust_scale,
+    }
+    return DisturbanceObserver(drag_kgps).nominal(delivered)
 
 
 def _wind_term_difference(present: Present, windows: Windows, drag_kgps: Drag) -> Tensor:

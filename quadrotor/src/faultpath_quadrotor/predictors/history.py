@@ -8,8 +8,7 @@ from torch import Tensor
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs
 from faultpath_quadrotor.lanes import lanes_of, scenes_first
 from faultpath_quadrotor.predictors import Predictor
-from faultpath_quadrotor.predictors.base import hover_thrust
-from faultpath_quadrotor.predictors.places import Take, delivered, history, ports, taking
+from faultpath_quadrotor.predictors.places import Take, history, ports, taking
 
 STEPS = 12  # paper, Section IV-A
 
@@ -30,9 +29,8 @@ class _Past:
 class HistoryEncoder(Module):
     """Encodes the last 12 intervals of every lane, once a step.
 
-    Before the first interval the vehicle is taken to have hovered where it is first seen, under the
-    thrust that holds it by the supplied calibration. The supplied mass normalises the whole record
-    anew at each step.
+    Before the flight the vehicle hovered where it is first seen, under the command that was
+    executed then. The supplied mass normalises the whole record anew at each step.
     """
 
     name, writes = "predictor", ("history_encoding",)
@@ -40,7 +38,7 @@ class HistoryEncoder(Module):
     def __init__(self, predictor: Predictor, device: torch.device) -> None:
         self._predictor = predictor
         self._device = device
-        places = {"history", "trim", "features"} & (predictor.reads | {"trim"})
+        places = {"history", "features"} & predictor.reads
         wanted = ports(places)
         self.reads_past = frozenset(port for port in wanted if port.channel == "action")
         self.reads = wanted - self.reads_past
@@ -74,9 +72,7 @@ def _recall(past: _Past, take: Take) -> _Past:
     motion = {name: take(name, "history") for name in MOTION}
     command = take("action", "history")
     if past.latest is None:
-        hover = torch.zeros_like(command)
-        hover[0] = hover_thrust(delivered({"trim"}, take), "trim")
-        intervals = ((motion, hover),) * STEPS
+        intervals = ((motion, command),) * STEPS
     else:
         intervals = (*past.intervals[1:], (past.latest, command))
     return _Past(past.lanes, past.count, intervals, motion)

@@ -21,7 +21,7 @@ class Reconstruction(ABC):
     same channel at two places is two reads, for a fault may reach one of them alone.
 
     The channel `action` holds the command executed over the interval that has just ended, N and
-    rad/s. At `begin` no interval has ended, and its value means nothing.
+    rad/s; at `begin` the one under which the vehicle hovered before its flight.
     """
 
     reads: frozenset[Read]

@@ -37,21 +37,19 @@ def corrupted(
     consumers: Collection[str],
     windows: tuple[str, ...],
     seed: int,
-    epoch: int,
     readings: Mapping[str, Tensor],
 ) -> DeliveredInputs:
     """Return what each consumer gets of each window's readings, by (channel, consumer), `[W]`.
 
-    Windows are the scenes of the taps and an epoch is one control step: every window has one draw
-    an epoch, held throughout it, keyed by its id, the model's seed and the epoch. The draws come
-    from streams of the faults' own, so initial weights and the order of minibatches are untouched.
+    Windows are the scenes of the taps: each has one draw for the whole fit, held throughout it,
+    keyed by its id and the model's seed (paper, Section IV-B). The draws come from streams of the
+    faults' own, so initial weights and the order of minibatches are untouched.
 
     Args:
         faults: What is done to the readings; none: every consumer gets the readings themselves.
         consumers: Consumers that the model under training has.
         windows: Ids, one a row of every reading.
         seed: Seed of the model.
-        epoch: Counted from 0.
         readings: Values by channel, `[W]`.
 
     Raises:
@@ -60,7 +58,7 @@ def corrupted(
     """
     interface = quadrotor_interface()
     found = resolve(faults, interface, consumers)
-    taps = window_taps(interface, found, windows, CONTROL_DT_S, seed, epoch, consumers)
+    taps = window_taps(interface, found, windows, CONTROL_DT_S, seed, 0, consumers)
     delivered = {
         (channel, consumer): taps.deliver(
             channel, consumer, Reading(value, taps.bindings[channel], 0), 0

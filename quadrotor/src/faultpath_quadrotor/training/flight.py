@@ -47,13 +47,15 @@ def fly(
     pool: str,
     episodes: Sequence[int],
     seed: int,
-    settings: FlightSettings = PLATFORM.collection,
+    settings: FlightSettings | None = None,
 ) -> Flights:
     """Fly some episodes of a pool together; each comes out the same in any company, bit for bit.
 
     The draws of an episode are keyed by pool, episode and seed, and lanes are padded to whole
     vectors. All fly in free air for as long, diverged or not; nothing passes a tap.
     """
+    if settings is None:
+        settings = PLATFORM.wind_collection if pool == "wind" else PLATFORM.collection
     starts = [_draw(pool, episode, seed, settings) for episode in episodes]
     lanes = padded_lanes(len(starts))
     vehicle = Vehicle.stack([start.vehicle for start in starts]).take(lanes)

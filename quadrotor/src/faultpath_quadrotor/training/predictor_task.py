@@ -30,7 +30,6 @@ from faultpath_quadrotor.training.provenance import rows_sha256
 from faultpath_quadrotor.training.windows import (
     HISTORY,
     HORIZON,
-    DeliveredInputs,
     Windows,
     correct,
     predict,
@@ -39,8 +38,6 @@ from faultpath_quadrotor.training.windows import (
 
 DCC = "+dcc"
 BATCH_SIZE = 256  # paper, Section IV-A
-CLIP_NORM = 1.0
-"""Largest gradient norm: a rollout of 20 steps of a young network can explode (derived)."""
 PARTS = ("position", "velocity", "rotation", "rate")
 
 
@@ -83,9 +80,7 @@ class PredictorTask(ModelTask):
         if self.order_key not in RECIPES:
             raise UserError(f"there is no predictor '{name}' to fit: choose from {known()}.")
         self._recipe = RECIPES[self.order_key]
-        self.schedule = Schedule(
-            epochs=self._recipe.epochs, batch_size=BATCH_SIZE, clip_norm=CLIP_NORM
-        )
+        self.schedule = Schedule(epochs=self._recipe.epochs, batch_size=BATCH_SIZE)
         self._data = data
         self._half_range = half_range
         self.platform = PLATFORM.weights_hash(name)
@@ -96,9 +91,11 @@ class PredictorTask(ModelTask):
         training, self._validation = _equal_mix(pools)
         self._train, self.count = training, len(training)
         self._scales = scales(training)
-        self._consumers = self._blank().consumers()
-        self._faults = [dcc(self._consumers, self._half_range)] if self.is_dcc else []
-        self._delivered: DeliveredInputs = {}
+        consumers = self._blank().consumers()
+        faults = [dcc(consumers, self._half_range)] if self.is_dcc else []
+        self._delivered = corrupted(
+            faults, consumers, training.ids, self.seed, training.calibration
+        )
 
     @property
     def is_dcc(self) -> bool:
@@ -112,17 +109,6 @@ class PredictorTask(ModelTask):
         network.initialise(torch.Generator().manual_seed(int(stream.integers(2**62))))
         _measure(network, self._train)
         return network
-
-    def begin_epoch(self, epoch: int) -> None:
-        """Draw what each window's consumers get of the calibration in this epoch."""
-        self._delivered = corrupted(
-            self._faults,
-            self._consumers,
-            self._train.ids,
-            self.seed,
-            epoch,
-            self._train.calibration,
-        )
 
     @override
     def loss(self, net: nn.Module, index: LongTensor) -> Tensor:

@@ -18,16 +18,14 @@ from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.learning.model_card import Schedule
 from faultpath_quadrotor.platform import PLATFORM
-from faultpath_quadrotor.reconstruction.network import INTERVALS, WindNetwork
+from faultpath_quadrotor.reconstruction.network import WindNetwork
 from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
 from faultpath_quadrotor.training.fitting import ModelTask
 from faultpath_quadrotor.training.provenance import rows_sha256
-from faultpath_quadrotor.training.windows import HISTORY, Windows, windows_of
+from faultpath_quadrotor.training.windows import HISTORY, Windows, every_history, windows_of
 
 HEAD = "reconstruction.head"
-SHORT_HISTORIES = 0.14
-"""Share of training windows with 1 to 11 intervals only: 11 of the roughly 80 control steps of a
-flight have no more (derived, docs/design/reconstruction.md)."""
+TRAJECTORY_POOL = "trajectory"
 
 
 @dataclass(frozen=True)
@@ -53,7 +51,7 @@ MODELS: Mapping[str, Model] = MappingProxyType(
         ),
         "gru-trajectory": Model(
             "Wind from twelve completed intervals alone, learned in closed loop.",
-            pool="trajectory",
+            pool=TRAJECTORY_POOL,
             calibrated=False,
         ),
     }
@@ -69,23 +67,19 @@ class _Samples:
     intervals: Tensor  # [22, 12, N]
     latest: Tensor  # [18, N]
     calibration: Tensor  # m and T as they are, [2, N]
-    target: Tensor  # standardised wind, [3, N]
-    ids: tuple[str, ...]
+    wind_mps: Tensor  # [3, N]
 
     @classmethod
     def of(cls, windows: Windows, network: WindNetwork) -> _Samples:
         intervals, latest = network.inputs(*_history(windows))
-        return cls(
-            intervals, latest, _calibration(windows), network.target(_wind(windows)), windows.ids
-        )
+        return cls(intervals, latest, _calibration(windows), windows.wind_mps[:, HISTORY])
 
 
 class ReconstructionTask(ModelTask):
-    """One reconstruction: mean squared error of the standardised wind vector (paper, appendix).
+    """One reconstruction: mean squared error of the wind vector (paper, appendix).
 
     A window's history is its commands 0..11 with the states 1..12 that they led to; the target is
-    the wind at state 12. A share of the windows keeps fewer intervals, drawn anew each epoch from
-    a stream of its own, because a flight begins with few.
+    the wind at state 12.
     """
 
     def __init__(self, name: str, seed: int, data_folder: Path) -> None:
@@ -104,16 +98,16 @@ class ReconstructionTask(ModelTask):
 
     @override
     def load(self) -> None:
-        self.use(*windows_of(self._data / f"{self._model.pool}.parquet").split())
+        windows = every_history if self._model.pool == TRAJECTORY_POOL else windows_of
+        self.use(*windows(self._data / f"{self._model.pool}.parquet").split())
 
     def use(self, training: Windows, validation: Windows) -> None:
-        """Take windows from memory, and the scales of inputs and target from the training ones."""
-        history = _history(training)
-        self._scaled.measure(*history, _calibration(training), _wind(training))
+        """Take windows from memory, and the scales of inputs from the training ones."""
+        self._scaled.measure(*_history(training), _calibration(training))
         self._training = _Samples.of(training, self._scaled)
         self.count = len(training.ids)
         self._validation = _Samples.of(validation, self._scaled)
-        self._known = self._delivered = torch.empty(0)
+        self._supplied = self._calibration(training.ids) if self._model.calibrated else None
 
     @override
     def module(self) -> nn.Module:
@@ -122,42 +116,22 @@ class ReconstructionTask(ModelTask):
         network.initialise(torch.Generator().manual_seed(int(stream.integers(2**63))))
         return network
 
-    def begin_epoch(self, epoch: int) -> None:
-        """Draw the lengths of the histories and what the head gets of the calibration."""
-        stream = generator("short histories", self.order_key, self.seed, epoch)
-        short = stream.random(self.count) < SHORT_HISTORIES
-        lengths = stream.integers(1, INTERVALS, size=self.count)
-        self._known = torch.from_numpy(lengths).masked_fill(torch.from_numpy(~short), INTERVALS)
-        if self._model.calibrated:
-            half_range = self._model.half_range
-            faults = () if half_range is None else (dcc([HEAD], half_range),)
-            mass, scale = self._training.calibration
-            readings = {"mass": mass, "thrust_scale": scale}
-            delivered = corrupted(faults, [HEAD], self._training.ids, self.seed, epoch, readings)
-            got = torch.stack([delivered["mass", HEAD], delivered["thrust_scale", HEAD]])
-            self._delivered = self._scaled.calibration(got)
-
     @override
     def loss(self, net: nn.Module, index: LongTensor) -> Tensor:
         samples = self._training
         estimate = net(
             samples.intervals.index_select(2, index),
             samples.latest.index_select(1, index),
-            self._delivered.index_select(1, index) if self._model.calibrated else None,
-            self._known[index],
+            None if self._supplied is None else self._supplied.index_select(1, index),
         )
-        return functional.mse_loss(estimate, samples.target.index_select(1, index))
+        return functional.mse_loss(estimate, samples.wind_mps.index_select(1, index))
 
     @override
     def validate(self, net: nn.Module) -> Mapping[str, float]:
-        """Return the root mean square length of the wind's error, m/s.
-
-        Histories are full and the calibration is correct.
-        """
+        """Return the root mean square length of the wind's error, m/s, under the calibration."""
         scales, samples = self._scaled, self._validation
         known = scales.calibration(samples.calibration) if scales.calibrated else None
-        estimate = net(samples.intervals, samples.latest, known) * scales.wind_std
-        error = estimate - samples.target * scales.wind_std
+        error = net(samples.intervals, samples.latest, known) - samples.wind_mps
         return {"wind_rmse_mps": float(error.square().sum(0).mean().sqrt())}
 
     @override
@@ -167,18 +141,23 @@ class ReconstructionTask(ModelTask):
             "data_sha256": rows_sha256(self._data, [self._model.pool]),
             "calibration_inputs": self._model.calibrated,
             "calibration_noise_half_range": self._model.half_range,
-            "short_histories": SHORT_HISTORIES,
         }
+
+    def _calibration(self, windows: tuple[str, ...]) -> Tensor:
+        """Return what the head gets of the calibration, standardised, `[2, N]`."""
+        half_range = self._model.half_range
+        faults = () if half_range is None else (dcc([HEAD], half_range),)
+        mass, scale = self._training.calibration
+        readings = {"mass": mass, "thrust_scale": scale}
+        delivered = corrupted(faults, [HEAD], windows, self.seed, readings)
+        got = torch.stack([delivered["mass", HEAD], delivered["thrust_scale", HEAD]])
+        return self._scaled.calibration(got)
 
 
 def _history(windows: Windows) -> tuple[Tensor, Tensor]:
     parts = (windows.position, windows.velocity, windows.rotation.flatten(0, 1), windows.rate)
-    return torch.cat(parts)[:, : HISTORY + 1], windows.command[:, :HISTORY]
+    return torch.cat(parts)[:, 1 : HISTORY + 1], windows.command[:, :HISTORY]
 
 
 def _calibration(windows: Windows) -> Tensor:
     return torch.stack((windows.mass_kg, windows.thrust_scale))
-
-
-def _wind(windows: Windows) -> Tensor:
-    return windows.wind_mps[:, HISTORY]

@@ -22,8 +22,9 @@ HISTORY = 12  # paper, Section IV-A
 HORIZON = 20  # paper, Section IV-A
 COMMANDS = HISTORY + HORIZON
 STRIDE = 29
-"""Least spacing of the windows of an episode: four in one of 6 s. The paper's counts, 25,684 from
-7,150 episodes and 53,344 from 14,891, are 3.6 an episode of up to 6 s."""
+"""Least spacing of the windows of an episode: four in one of 6 s."""
+COUNTS = {"nominal": 25_684, "wind": 53_344}
+"""Windows of the pools in all, before the split (paper, Section IV-A and appendix)."""
 
 
 @dataclass(frozen=True)
@@ -124,37 +125,47 @@ class Windows:
 
 
 def windows_of(pool_path: Path) -> Windows:
-    """Return all windows of a pool; `UserError` when there is no finished pool to read."""
-    return cut(read_pool(pool_path))
+    """Return a pool's windows; `UserError` when there is no finished pool to read.
+
+    A pool of the paper's has the paper's number, spread evenly over those that it could have.
+    """
+    windows = cut(read_pool(pool_path))
+    count, every = COUNTS.get(pool_path.stem, len(windows)), len(windows)
+    return windows if count >= every else windows.take(torch.arange(count) * every // count)
 
 
-def starts(steps: int, stride: int = STRIDE) -> list[int]:
+def every_history(pool_path: Path) -> Windows:
+    """Return every window of 12 intervals of a pool, without a future; raises as `windows_of`."""
+    return cut(read_pool(pool_path), 1, HISTORY)
+
+
+def starts(steps: int, stride: int = STRIDE, length: int = COMMANDS) -> list[int]:
     """Return the first step of each window in an episode of `steps` control steps.
 
     They are spread evenly, at least `stride` apart, from the episode's start to its end.
     """
-    room = steps - COMMANDS
+    room = steps - length
     if room < 0:
         return []
     gaps = room // stride
     return [room * i // gaps for i in range(gaps + 1)] if gaps else [room // 2]
 
 
-def places(pool: FlightData, stride: int = STRIDE) -> np.ndarray:
+def places(pool: FlightData, stride: int = STRIDE, length: int = COMMANDS) -> np.ndarray:
     """Return where the windows of a pool stand, [W, 3]: episode, number in it, first step."""
     found = [
         (episode, i, first)
         for episode, steps in enumerate(pool.steps.tolist())
-        for i, first in enumerate(starts(steps, stride))
+        for i, first in enumerate(starts(steps, stride, length))
     ]
     return np.array(found, dtype=np.int64).reshape(-1, 3)
 
 
-def cut(pool: FlightData, stride: int = STRIDE) -> Windows:
-    """Return the windows of a pool in memory."""
-    table = places(pool, stride)
+def cut(pool: FlightData, stride: int = STRIDE, length: int = COMMANDS) -> Windows:
+    """Return the windows of so many commands of a pool in memory."""
+    table = places(pool, stride, length)
     episode, first = table[:, 0].copy(), table[:, 2]
-    rows = np.arange(COMMANDS + 1)[:, None] + pool.first_row[episode] + first
+    rows = np.arange(length + 1)[:, None] + pool.first_row[episode] + first
 
     def signal(name: str) -> Tensor:
         channels = [COMPONENTS.index(component) for component in SIGNALS[name]]
