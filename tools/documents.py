@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import blocks
+import fact_blocks
 import map_blocks
 import paper_blocks
 from blocks import REFERENCE, ROOT, Wrong, copied, load
@@ -54,6 +55,7 @@ MARKER = re.compile(r"^<!-- (?:begin|end):\S+ -->$", flags=re.MULTILINE)
 PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     map_blocks.pictures,
     paper_blocks.pictures,
+    fact_blocks.pages,
 )
 """What makes whole files, by their path."""
 

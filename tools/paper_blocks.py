@@ -4,18 +4,20 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 
+import fact_blocks
 from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed
 from faultpath_quadrotor.paper.answers import RUN, Reproduction
 from faultpath_quadrotor.paper.cells import SYSTEM, Setting
 from faultpath_quadrotor.paper.central import ELSEWHERE, central, of_run, state
 from faultpath_quadrotor.paper.report.page import sweep_plot
-from faultpath_quadrotor.paper.report.terminal import ledger_markdown
+from faultpath_quadrotor.paper.report.short import apart, by_kind, by_subject
 from flown_code import flown_by
 from pictures import IMAGES, standing
 
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.tables import Table
-from faultpath.decisions.tables.markdown import block
+from faultpath.decisions.tables.escapes import markdown
+from faultpath.decisions.tables.markdown import block, grid
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import read_outcomes
 
@@ -73,15 +75,17 @@ def _counts() -> str:
 
 
 def _ledger() -> str:
-    found = load()[0]
-    return ledger_markdown(found.ledger, found.profile)
+    return grid(by_kind(load()[0].ledger))
 
 
-def _table(name: str) -> str:
-    tables = {table.name: table for table in load()[0].tables}
-    if name not in tables:
-        raise Wrong(f"the paper has no table '{name}': use {', '.join(tables)}")
-    return block(tables[name])
+def _sizes() -> str:
+    return grid(by_subject(load()[0].ledger))
+
+
+def _apart() -> str:
+    return "\n".join(
+        f"- **{verdict}.** {markdown(decisive)}." for verdict, decisive in apart(load()[0].ledger)
+    )
 
 
 def _picture(part: str) -> str:
@@ -129,7 +133,9 @@ def _run_again() -> str:
 KIND: dict[str, Callable[..., str]] = {
     "counts": _counts,
     "ledger": _ledger,
-    "table": _table,
+    "sizes": _sizes,
+    "apart": _apart,
+    "facts": fact_blocks.in_short,
     "origin": _origin,
     "picture": _picture,
 }

@@ -3,7 +3,8 @@
 from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.answers import Sweep
 from faultpath_quadrotor.paper.cells import Cell
-from faultpath_quadrotor.paper.pages import PAGES, figure_3, table_4, table_6
+from faultpath_quadrotor.paper.pages import PAGES, figure_3, table_3, table_4, table_6
+from faultpath_quadrotor.training import trajectories
 from toy_runs import (
     EMPTY,
     MEASUREMENTS,
@@ -36,6 +37,34 @@ def test_table_1_counts_how_trials_end_and_when() -> None:
     # Of 19 trials: the one that failed says nothing.
     assert texts(line(table, "DKI"))[2:5] == ["63", "11", "26"]
     assert texts(line(table, "True-parameter", below="With ground-truth clearance"))[2] == "60"
+
+
+def test_what_the_paper_prints_below_table_1_is_of_common_successes() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        return (
+            Status.SUCCESS
+            if scene < 12 + seed and (cell.variant, scene) != ("dki", 3)
+            else (Status.CRASH)
+        )
+
+    table = tables(page("table-1"), run(ends))["table-1b"]
+    assert texts(line(table, "DKI"))[::2] == ["0.00", "11"]
+    assert texts(line(table, "True-parameter"))[::2] == ["0.00", "12"]
+    assert papers(line(table, "DKI")) == ["+1.40", "", "65", ""]
+    assert texts(line(table, "WM-U")) == ["", "", "", "60 to 70"]
+    assert papers(line(table, "WM-A"))[-1] == "68 to 71"
+
+
+def test_scenes_whose_wind_was_not_met_are_counted_apart() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        return Status.SUCCESS if scene < 75 + seed else Status.CRASH
+
+    results = run(ends, page("table-3").cells, scenes=range(60, 80))
+    table = tables(page("table-3"), results)["table-3b"]
+    assert texts(line(table, "Wind-conditioned, trajectory GRU")) == ["5/6/7", "5/6/7"]
+    assert texts(line(table, "Wind-conditioned, zero")) == ["5", "5"]
+    assert papers(line(table, "Wind-conditioned, ground truth")) == ["30", "19"]
+    assert table_3.UNMET.start == trajectories.SCENES
 
 
 def test_table_2_has_means_over_seeds_and_detected_differences() -> None:

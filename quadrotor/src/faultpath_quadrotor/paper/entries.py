@@ -125,9 +125,13 @@ def of_quantity(
     return Group(make, (*published, ""), tuple(cells))
 
 
+def interval_of(found: Contrast, digits: int = 1) -> str:
+    """Return an interval as the paper's are written; a dash without one."""
+    return bracket(found.interval, digits) if found.interval else MISSING
+
+
 def _intervals(contrasts: Iterable[Contrast], digits: int = 1) -> Iterator[str]:
-    for each in contrasts:
-        yield bracket(each.interval, digits) if each.interval else MISSING
+    return (interval_of(each, digits) for each in contrasts)
 
 
 @dataclass(frozen=True)

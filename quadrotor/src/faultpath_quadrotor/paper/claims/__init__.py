@@ -16,10 +16,18 @@ from faultpath_quadrotor.paper.claims import (
 from faultpath_quadrotor.paper.claims.statement import Statements, verdict
 from faultpath_quadrotor.paper.results import Results
 
+SUBJECTS: Mapping[str, Mapping[str, Statements]] = {
+    "Predictors (Table I)": predictors.CLAIMS,
+    "Calibration errors (Table II, Figure 3)": calibration.CLAIMS,
+    "Wind (Table III)": wind.CLAIMS,
+    "Shared errors (Tables IV, VI (b))": shared.CLAIMS,
+    "Compensation (Table VI (a))": compensation.CLAIMS,
+    "Decision record (Table V)": paying.CLAIMS,
+    "Histories, planning, perception (text)": others.CLAIMS,
+}
+"""The claims by what they are about, and where the paper has it."""
 STATEMENTS: Mapping[str, Statements] = {
-    claim: statements
-    for subject in (predictors, calibration, wind, shared, compensation, paying, others)
-    for claim, statements in subject.CLAIMS.items()
+    claim: statements for claims in SUBJECTS.values() for claim, statements in claims.items()
 }
 """What each claim consists of, by its id."""
 

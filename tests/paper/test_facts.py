@@ -1,0 +1,32 @@
+"""The facts that the paper states are all accounted for, and lie where the list says."""
+
+from itertools import groupby
+from pathlib import Path
+
+import pytest
+from faultpath_quadrotor.paper.facts import SECTIONS, Fact, counted, facts, groups
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE, ENGINE = ROOT / "quadrotor" / "src" / "faultpath_quadrotor", ROOT / "src"
+
+
+def test_every_fact_is_there_once_and_few_are_otherwise() -> None:
+    assert sorted(fact.number for fact in facts()) == list(range(1, 115))
+    assert sum(fact.state == "otherwise" for fact in facts()) <= 5
+    sections = [group.section for group in groups()]
+    assert [key for key, _ in groupby(sections)] == list(SECTIONS)
+    assert [entry.text for entry in counted().lines[-1].entries] == [
+        str(sum(fact.state == state for fact in facts())) for state in counted().columns
+    ]
+
+
+@pytest.mark.parametrize("fact", facts(), ids=lambda fact: str(fact.number))
+def test_a_fact_says_what_is_done_and_where(fact: Fact) -> None:
+    assert bool(fact.ours) == (fact.state != "as written")
+    assert fact.at
+    for place in fact.at:
+        file, _, name = place.partition(" ")
+        path = (ENGINE if file.startswith("faultpath/") else PACKAGE) / file
+        assert path.is_file(), place
+        assert name, place
+        assert name in path.read_text("utf-8"), place
