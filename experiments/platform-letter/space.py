@@ -26,6 +26,7 @@ SPACE: dict[str, dict[str, Any]] = {
     "unseen_m": {"low": 0.2, "high": 0.6, "step": 0.05},
     "drag_across_kgps": {"low": 0.3, "high": 0.9, "step": 0.1},
     "drag_along_kgps": {"low": 0.6, "high": 1.6, "step": 0.2},
+    "drag_spread": {"low": 0.3, "high": 0.95, "step": 0.05},
     "own_drag": {"low": 0.0, "high": 1.0, "step": 0.25},
     "wind_mps2": {"low": 0.0, "high": 3.0, "step": 0.1},
     "turbulence_mps2": {"low": 0.2, "high": 2.4, "step": 0.1},
@@ -36,6 +37,7 @@ SPACE: dict[str, dict[str, Any]] = {
     "pool_mps": {"low": 4.0, "high": 24.0, "step": 1.0},
     "strength": {"low": 0.0, "high": 1.0, "step": 0.25},
     "wind_strength": {"low": 0.0, "high": 1.0, "step": 0.25},
+    "wind_reach": {"low": 1.0, "high": 2.5, "step": 0.25},
 }
 """`wind_mps2` and `turbulence_mps2` are the accelerations that the mean wind and the standard
 deviation of the turbulence of L3 cause across the nominal vehicle; `moderate` is L2 over L3, `gust`
@@ -55,6 +57,7 @@ FORMER: dict[str, Any] = {
     "unseen_m": 0.3,
     "drag_across_kgps": 0.5,
     "drag_along_kgps": 1.2,
+    "drag_spread": 2 / 3,
     "own_drag": 0.0,
     "wind_mps2": 1.6,
     "turbulence_mps2": 0.32,
@@ -65,6 +68,7 @@ FORMER: dict[str, Any] = {
     "pool_mps": 6.0,
     "strength": 1.0,
     "wind_strength": 1.0,
+    "wind_reach": 1.0,
 }
 """The platform before."""
 
@@ -87,7 +91,7 @@ def platform_of(point: dict[str, Any]) -> Platform:
     means = tuple(round(mean * share, 3) for share in (0.0, light, point["moderate"], 1.0))
     gust = point["gust"]
     weighed = ("thrust_effort", "rate_effort", "goal", "risk", "margin_m")
-    sigma = point["rate_sigma"]
+    sigma, spread = point["rate_sigma"], point["drag_spread"]
     return Platform(
         planner=PlannerSettings(
             sampler=SamplerSettings(rate_sigma_radps=(sigma, sigma, 0.4)),
@@ -107,16 +111,16 @@ def platform_of(point: dict[str, Any]) -> Platform:
         drag_kgps=(across, across, along),
         own_drag=point["own_drag"],
         ranges=VehicleRanges(
-            drag_kgps=tuple((c * (1 / 3), c * (5 / 3)) for c in (across, across, along))
+            drag_kgps=tuple((c * (1 - spread), c * (1 + spread)) for c in (across, across, along))
         ),
         perception=PerceptionSettings(unseen_m=point["unseen_m"]),
         collection=collection_of(point["strength"]),
-        wind_collection=collection_of(point["wind_strength"]),
+        wind_collection=collection_of(point["wind_strength"], point["wind_reach"]),
     )
 
 
-def collection_of(strength: float) -> FlightSettings:
-    """Return how hard the collection flies: at 1 as before, at 0 gently."""
+def collection_of(strength: float, reach: float = 1.0) -> FlightSettings:
+    """Return how hard the collection flies, at 1 as before, at 0 gently, and how far and fast."""
     first = FlightSettings()
     found: dict[str, Any] = {}
     for name, low in _GENTLE.items():
@@ -128,10 +132,15 @@ def collection_of(strength: float) -> FlightSettings:
             else _between(low, high, strength)
         )
     controller = {name: found.pop(name) for name in ("speed_mps", "tilt_limit_deg")}
+    if reach != 1:
+        low, high = controller["speed_mps"]
+        controller["speed_mps"] = (low, high * reach)
+        controller["arena_m"] = tuple((a * reach, b * reach) for a, b in first.controller.arena_m)
     return first.model_copy(
         update={
             "controller": ControllerSettings(**controller),
             "perturbation": PerturbationSettings(**found),
+            "start_speed_mps": first.start_speed_mps * reach,
         }
     )
 

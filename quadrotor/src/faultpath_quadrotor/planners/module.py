@@ -1,7 +1,7 @@
 """The planner as a module of the loop: it asks where candidates lead, and decides."""
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 
@@ -36,9 +36,13 @@ class Planning(Module):
     name, writes = "planner", ("commanded_action",)
     reads = frozenset({ROLLOUT, HOVER, GOAL, CLEARANCE})
 
-    def __init__(self, planner: Planner, device: torch.device) -> None:
+    def __init__(
+        self, planner: Planner, device: torch.device, held: Callable[[Sequence[str]], Tensor]
+    ) -> None:
+        """`held` gives the command `[B, 4]` under which the scenes' vehicles hover."""
         self._planner = planner
         self._device = device
+        self._held = held
         self._chunks = lru_cache(maxsize=2)(partial(chunks, device=device))
 
     def begin(self, batch: Batch) -> Memory:
@@ -46,9 +50,8 @@ class Planning(Module):
         return _Plans(batch, lanes_of(batch, self._device))
 
     def before(self, batch: Batch) -> Outputs:
-        """Nothing has been commanded yet, and the value means nothing."""
-        none = torch.zeros(len(batch.scenes), 4, dtype=torch.float64, device=self._device)
-        return {"commanded_action": none}
+        """Return the command that was executed before the flight: the vehicles hovered."""
+        return {"commanded_action": self._held(batch.scenes).to(self._device)}
 
     def noise_hashes(self, batch: Batch) -> tuple[str, ...]:
         """Return, for each scene, a hash of the noise that its first replan drew."""

@@ -16,19 +16,13 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
 from faultpath.core.streams import generator
-from faultpath_quadrotor.vehicle import PLANT_RATE_HZ
+from faultpath_quadrotor.vehicle import PLANT_RATE_HZ, Range
 
 Array = NDArray[np.float64]
 
-LENGTH_SCALE_M = 4.0
-"""MIL-F-8785C's scales near the ground exceed any room; capped at 3-5 m for 9 x 6 x 3 m."""
 CRUISE_MPS = 2.5
 """Typical speed of the vehicle, for the reference airspeed."""
-TURBULENCE_OVER_MEAN = 0.2
-"""MIL-F-8785C low-altitude intensity along the flow, sigma_u / u20 at about 10 ft."""
 GUST_DURATION_S = (0.8, 2.0)
-GUST_OVER_MEAN = (0.4, 0.6)
-GUST_ONSET_S = (0.5, 4.0)
 
 
 @dataclass(frozen=True)
@@ -36,9 +30,7 @@ class WindLevel:
     """How strong the wind of a level is and how far it may leave the horizontal."""
 
     mean_mps: float
-    turbulence_mps: float
-    """Standard deviation along each axis."""
-    elevation_deg: float
+    elevation_deg: float = 20.0
     """The sustained flow's elevation is uniform in solid angle within plus and minus this."""
 
     @property
@@ -47,36 +39,41 @@ class WindLevel:
         return math.hypot(self.mean_mps, CRUISE_MPS)
 
 
-def _level(mean_mps: float, elevation_deg: float = 20.0) -> WindLevel:
-    return WindLevel(mean_mps, TURBULENCE_OVER_MEAN * mean_mps, elevation_deg)
-
-
 class Winds(BaseModel):
-    """How strong the winds are; turbulence and gust are shares of the mean."""
+    """How strong and how unsteady the winds are; turbulence and gust are shares of the mean."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    means_mps: tuple[float, float, float, float] = (0.0, 0.831, 1.766, 3.2)
+    means_mps: tuple[float, float, float, float] = (0.0, 0.782, 1.653, 2.667)
     """Of L0 to L3: matched to the paper's success without a wind input."""
-    pool_mean_mps: tuple[float, float] = (0.0, 6.0)
+    pool_mean_mps: tuple[float, float] = (0.0, 15.0)
     """Sustained speeds of the training pool: beyond L3, as a shared fault asks the reconstruction
     for apparent winds that add to the true one."""
+    turbulence: float = 0.219
+    """Standard deviation along each axis. MIL-F-8785C's low-altitude intensity along the flow,
+    sigma_u / u20 at about 10 ft."""
+    length_m: float = 4.0
+    """Length scale. MIL-F-8785C's near the ground exceed any room; 3-5 m for 9 x 6 x 3 m."""
+    gust: Range = (0.4, 0.6)
+    """Peak of the gust."""
+    gust_onset_s: Range = (0.5, 4.0)
 
     @property
     def levels(self) -> Mapping[str, WindLevel]:
         """The evaluation's levels by name."""
-        return {f"L{i}": _level(mean) for i, mean in enumerate(self.means_mps)}
+        return {f"L{i}": WindLevel(mean) for i, mean in enumerate(self.means_mps)}
 
     def series(
-        self, level: str, scene_id: str, duration_s: float, rate_hz: float = PLANT_RATE_HZ
+        self, level: str, index: int, duration_s: float, rate_hz: float = PLANT_RATE_HZ
     ) -> Array:
         """Return an evaluation scene's wind, world frame, m/s, [T, 3] with T = duration x rate.
 
-        Keyed by level and scene alone (paper, Section IV-B). A longer series at the same rate
-        begins with the shorter one; `KeyError` for an unknown level.
+        Keyed by level and scene index alone, so that a wind recurs in every library at its index
+        (paper, Section IV-B). A longer series at the same rate begins with the shorter one;
+        `KeyError` for an unknown level.
         """
-        stream = generator(f"wind/{level}", scene_id, 0)
-        return sample(stream, self.levels[level], duration_s, rate_hz)
+        stream = generator(f"wind/{level}", str(index), 0)
+        return self.sample(stream, self.levels[level], duration_s, rate_hz)
 
     def pool_series(
         self,
@@ -91,25 +88,26 @@ class Winds(BaseModel):
         sphere: the reconstruction must be able to answer with vertical winds of about 6 m/s.
         """
         stream = generator("wind/collection", str(episode), collection_seed)
-        level = _level(stream.uniform(*self.pool_mean_mps), 90.0)
-        return sample(stream, level, duration_s, rate_hz)
+        level = WindLevel(stream.uniform(*self.pool_mean_mps), 90.0)
+        return self.sample(stream, level, duration_s, rate_hz)
 
-
-def sample(
-    stream: np.random.Generator, level: WindLevel, duration_s: float, rate_hz: float
-) -> Array:
-    """Return one wind of `level` from `stream`, world frame, m/s, [T, 3]."""
-    steps = round(duration_s * rate_hz)
-    axes = _flow_axes(stream, level.elevation_deg)
-    gust = one_minus_cosine(
-        np.arange(steps) / rate_hz,
-        onset_s=stream.uniform(*GUST_ONSET_S),
-        duration_s=stream.uniform(*GUST_DURATION_S),
-        peak=stream.uniform(*GUST_OVER_MEAN) * level.mean_mps,
-    )
-    along = level.turbulence_mps * dryden(stream, steps, rate_hz, level.reference_airspeed_mps)
-    along[:, 0] += level.mean_mps + gust
-    return along @ axes
+    def sample(
+        self, stream: np.random.Generator, level: WindLevel, duration_s: float, rate_hz: float
+    ) -> Array:
+        """Return one wind of `level` from `stream`, world frame, m/s, [T, 3]."""
+        steps = round(duration_s * rate_hz)
+        axes = _flow_axes(stream, level.elevation_deg)
+        gust = one_minus_cosine(
+            np.arange(steps) / rate_hz,
+            onset_s=stream.uniform(*self.gust_onset_s),
+            duration_s=stream.uniform(*GUST_DURATION_S),
+            peak=stream.uniform(*self.gust) * level.mean_mps,
+        )
+        airspeed = level.reference_airspeed_mps
+        turbulence = dryden(stream, steps, rate_hz, airspeed, self.length_m)
+        along = self.turbulence * level.mean_mps * turbulence
+        along[:, 0] += level.mean_mps + gust
+        return along @ axes
 
 
 def one_minus_cosine(time_s: Array, onset_s: float, duration_s: float, peak: float) -> Array:
@@ -123,7 +121,7 @@ def dryden(
     steps: int,
     rate_hz: float,
     airspeed_mps: float,
-    length_m: float = LENGTH_SCALE_M,
+    length_m: float,
 ) -> Array:
     """Return turbulence of unit standard deviation along and twice across the flow, [steps, 3].
 

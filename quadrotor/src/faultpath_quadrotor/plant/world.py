@@ -96,7 +96,7 @@ def _arrival(now: Progress) -> Progress:
 
 def _wind_series(scenes: Sequence[Scene], winds: Winds, level: str) -> Tensor:
     duration = TIME_LIMIT_S + CONTROL_DT_S
-    series = [winds.series(level, scene.id, duration, PLANT_RATE_HZ) for scene in scenes]
+    series = [winds.series(level, scene.index, duration, PLANT_RATE_HZ) for scene in scenes]
     return torch.from_numpy(np.stack(series, axis=-1))
 
 
