@@ -5,9 +5,9 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
-from faultpath.quadrotor.scenes.field import Lattice, exact_on_lattice
-from faultpath.quadrotor.scenes.scene import Point, Scene
-from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
+from faultpath_quadrotor.scenes.field import Lattice, exact_on_lattice
+from faultpath_quadrotor.scenes.scene import Point, Scene
+from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra

@@ -3,14 +3,14 @@
 from math import atan2, dist
 from typing import Any
 
-from faultpath.quadrotor.scenes.scene import Box, Cylinder, Point, Scene, Topology
-from faultpath.quadrotor.scenes.soundness import clearance_m
-from faultpath.quadrotor.vehicle import draw
+from faultpath_quadrotor.scenes.scene import Box, Cylinder, Point, Scene, Topology
+from faultpath_quadrotor.scenes.soundness import clearance_m
+from faultpath_quadrotor.vehicle import draw
 from feasibility import END_CLEARANCE_M, FreeLattice
 from layout import Layout
 from topologies import LAYOUTS
 
-from faultpath import streams
+from faultpath.core import streams
 
 START_TO_GOAL_M = (6.0, 8.0)
 LONGEST_WAY_M = 16.0

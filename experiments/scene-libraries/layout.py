@@ -6,8 +6,8 @@ from itertools import pairwise
 from math import pi
 
 import numpy as np
-from faultpath.quadrotor.scenes.prisms import Plan, Prism, prism
-from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Point
+from faultpath_quadrotor.scenes.prisms import Plan, Prism, prism
+from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Point
 
 WALL_M = 0.16  # thicker than the lattice spacing of the distance field
 MIN_GAP_M = 0.7  # between loose obstacles and to anything else [BARN, aerial_gym scale]

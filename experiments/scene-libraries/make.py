@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from faultpath.quadrotor.scenes.library import FROZEN, Library, as_text, load_library
+from faultpath_quadrotor.scenes.library import FROZEN, Library, as_text, load_library
 from generate import generate_scene
 
 FROZEN_SEEDS = {"training": 101, "selection": 202, "held-out": 303}

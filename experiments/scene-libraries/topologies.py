@@ -9,7 +9,7 @@ Numbers: doorways 0.9-1.2 m, corridors 1.5-2.2 m, clutter gaps from 0.7 m.
 from collections.abc import Callable
 
 import numpy as np
-from faultpath.quadrotor.scenes.scene import Topology
+from faultpath_quadrotor.scenes.scene import Topology
 from layout import WALL_M, Door, Layout
 
 _Range = tuple[float, float]
