@@ -1,4 +1,4 @@
-"""Libraries of scenes: the three frozen ones of the package, and a user's own files.
+"""Libraries of scenes: the frozen ones of the package, and a user's own files.
 
 A library file is JSON, one scene per line, with a content hash of each scene and of all.
 `experiments/scene-libraries` makes them from a seed.
@@ -22,8 +22,8 @@ from faultpath_quadrotor.scenes.soundness import misnamed, unsound
 
 FORMAT = "faultpath-scenes/1"
 
-FROZEN = ("training", "selection", "held-out")
-"""The libraries of the package, 100 scenes each [paper, setup]."""
+FROZEN = ("training", "selection", "held-out", "confirmation")
+"""The libraries of the package, 100 scenes each [paper, setup]; `confirmation` has 300."""
 
 
 @dataclass(frozen=True)
