@@ -18,7 +18,14 @@ GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")
 def relative_errors(q_eps: Coupled | Fault, n: int = 4000, steps: int = 3, seed: int = 0):
     """What the observer's ports get of readings of one: error by port, `[N, T]`."""
     data = windows(n, steps, readings={"gain": np.ones(n), "velocity": np.ones((n, steps))})
-    got, _ = delivered(data, resolve((q_eps,), data.interface, data.consumers), data.readings, range(n), seed, epoch=0)
+    got, _ = delivered(
+        data,
+        resolve((q_eps,), data.interface, data.consumers),
+        data.readings,
+        range(n),
+        seed,
+        epoch=0,
+    )
     return {port: value - 1 for port, value in got.items()}
 
 
