@@ -55,6 +55,7 @@ MARKER = re.compile(r"^<!-- (?:begin|end):\S+ -->$", flags=re.MULTILINE)
 PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     map_blocks.pictures,
     paper_blocks.pictures,
+    paper_blocks.elsewhere,
     fact_blocks.pages,
 )
 """What makes whole files, by their path."""

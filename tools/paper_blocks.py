@@ -4,18 +4,28 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 
+import blocks
 import fact_blocks
 from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed
 from faultpath_quadrotor.paper.answers import RUN, Reproduction
 from faultpath_quadrotor.paper.cells import SYSTEM, Setting
-from faultpath_quadrotor.paper.central import ELSEWHERE, central, of_run, state
+from faultpath_quadrotor.paper.central import (
+    COLUMNS,
+    DECIDED,
+    ELSEWHERE,
+    OPEN,
+    central,
+    of_run,
+    state,
+)
 from faultpath_quadrotor.paper.report.page import sweep_plot
 from faultpath_quadrotor.paper.report.short import apart, by_kind, by_subject
 from flown_code import flown_by
 from pictures import IMAGES, standing
 
+from faultpath.decisions import wording
 from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.decisions.tables import Table
+from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.tables.escapes import markdown
 from faultpath.decisions.tables.markdown import block, grid
 from faultpath.trials.provenance import RunProvenance
@@ -26,8 +36,12 @@ FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.p
 """What of a run is shipped with the package: the claims are evaluated from it."""
 PAGES = ("reproduction.html", "tables.md", "ledger.md")
 """What of a run stands in `docs/reference/paper`."""
-AGAIN = "quadrotor-L3-seeds"
+AGAIN = "quadrotor-L3"
 """The reference run that asks what Table IV asks, of the same scenes."""
+BESIDES = {
+    "quadrotor-L3-confirmation": "At the paper's error, {scenes} scenes of {library}, {seeds}"
+}
+"""Reference runs that ask the central question, with the words of their lines."""
 _FAULT, _MODULE = "calibration=+0.1", "reconstruction"
 
 
@@ -59,9 +73,33 @@ def central_claim() -> str:
     found, asked = load()[0], load()[0].ledger
     seeds = ", ".join(map(str, asked.seeds))
     own = of_run(found, f"At the paper's error, {asked.scenes} held-out scenes, seeds {seeds}")
-    besides = Table.model_validate_json(ELSEWHERE.read_bytes()).lines
-    table = central([*([own] if own else []), *besides])
+    table = central([*([own] if own else []), *_besides().lines])
     return f"{block(table)}\n{state(asked, run='the shipped run')}"
+
+
+def elsewhere() -> Mapping[Path, str]:
+    """Return the file that says what reference runs decided of the central claim."""
+    return {ELSEWHERE: _besides().model_dump_json(indent=1, exclude_defaults=True) + "\n"}
+
+
+def _besides() -> Table:
+    lines: list[Line] = []
+    for name, words in BESIDES.items():
+        run = blocks.load(name)
+        if run is None:
+            continue
+        record, asked = run.record, run.record.question
+        place = words.format(
+            scenes=record.scenes, library=asked.library, seeds=wording.seeds(asked.seeds)
+        )
+        effects = {each.path: each for each in record.effects}
+        shown = (
+            Entry(text=wording.with_interval(each.success), detected=each.detected)
+            for each in (effects[_MODULE], effects[SHARED])
+        )
+        turned = any(e.isolated == _MODULE and e.turn == "reversal" for e in record.changes)
+        lines.append(line(place, *shown, DECIDED if turned else OPEN))
+    return Table(name="elsewhere", title="", columns=COLUMNS, lines=tuple(lines))
 
 
 def _counts() -> str:
