@@ -32,10 +32,7 @@ def faulted(record: DecisionRecord) -> dict[str, tuple[tuple[FaultedTap, ...], .
 
 def tap(consumer: str, faulted_steps: int, altered_steps: int) -> FaultedTap:
     return FaultedTap(
-        channel="gain",
-        consumer=consumer,
-        faulted_steps=faulted_steps,
-        altered_steps=altered_steps,
+        channel="gain", consumer=consumer, faulted_steps=faulted_steps, altered_steps=altered_steps
     )
 
 

@@ -93,12 +93,7 @@ def test_a_notebook_shows_verdict_and_table(run):
 
 
 def test_name_file_path_and_object_fly_the_same(run, toy):
-    ways = {
-        "file": str(FILE),
-        "path": FILE,
-        "loaded": faultpath.load_system(FILE),
-        "object": toy,
-    }
+    ways = {"file": str(FILE), "path": FILE, "loaded": faultpath.load_system(FILE), "object": toy}
     for name, system in ways.items():
         other = faultpath.audit(
             system, folder=name, workers=0 if name != "object" else None, **ASKED

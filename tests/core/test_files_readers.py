@@ -119,10 +119,7 @@ def test_what_is_no_file_is_refused_in_one_sentence(
 
 def test_the_lock_of_a_folder_is_a_file(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / ".lock")
-    with (
-        pytest.raises(UserError, match=r"\.lock is a pipe"),
-        locked(tmp_path, lambda said: None),
-    ):
+    with pytest.raises(UserError, match=r"\.lock is a pipe"), locked(tmp_path, lambda said: None):
         raise AssertionError("it is locked")
 
 

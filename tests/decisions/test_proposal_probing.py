@@ -27,10 +27,7 @@ def responses(variant: str, **texts: str) -> dict[str, float]:
 def flight(variant: str) -> tuple[np.ndarray, np.ndarray]:
     """Return commands and gains under correct inputs, `[T, B]` and `[B]`."""
     taps = Taps(
-        SYSTEM.interface,
-        scenes=SCENES,
-        dt_s=0.1,
-        consumers=SYSTEM.variants[variant].consumers,
+        SYSTEM.interface, scenes=SCENES, dt_s=0.1, consumers=SYSTEM.variants[variant].consumers
     )
     loop = SYSTEM.loop(variant, 0)
     commands, gain = [], None

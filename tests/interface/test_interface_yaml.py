@@ -62,11 +62,7 @@ def test_control_characters_are_refused_and_line_breaks_come_back(character: str
             "line 5: sources[0].provenance: is 'guessed', and must be 'measured', 'estimated'",
         ),
         ("unit: kg", "unti: kg", "line 4: sources[0].unti: is no field; did you mean 'unit'?"),
-        (
-            "consumers:",
-            "cnosumers:",
-            "line 9: channels[0].cnosumers: is no field; did you",
-        ),
+        ("consumers:", "cnosumers:", "line 9: channels[0].cnosumers: is no field; did you"),
         (
             "- planner.hover",
             "- planner.hover\n  gapp: none",
@@ -83,11 +79,7 @@ def test_control_characters_are_refused_and_line_breaks_come_back(character: str
             "line 11: channel 'mass': consumer 'predictor.dynamics' is declared twice; drop one",
         ),
         ("name: toy\n", "name: toy\nreconstructs: {gru: mass_estimate}\n", "line 2: reconstructs:"),
-        (
-            "- planner.hover",
-            "- planner",
-            "line 11: channels[0].consumers[1]: is 'planner'",
-        ),
+        ("- planner.hover", "- planner", "line 11: channels[0].consumers[1]: is 'planner'"),
     ],
 )
 def test_a_mistake_is_told_with_its_line(old: str, new: str, sentence: str, tmp_path: Path) -> None:

@@ -10,12 +10,7 @@ import torch
 from tap_toys import make
 
 from faultpath.faults import Fault, Scale
-from faultpath.loop import (
-    FaultedElsewhere,
-    NotDelivered,
-    Reading,
-    Taps,
-)
+from faultpath.loop import FaultedElsewhere, NotDelivered, Reading, Taps
 from faultpath.loop.receipts import check_delivered
 
 LIBRARIES = pytest.mark.parametrize("to", [np.asarray, torch.asarray], ids=["numpy", "torch"])

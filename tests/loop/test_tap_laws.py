@@ -18,10 +18,7 @@ EACH = pytest.mark.parametrize(
 )
 WINDOWS = pytest.mark.parametrize(
     "window",
-    [
-        {},
-        {"onset_step": 4, "duration_steps": 5, "recovery_steps": 3},
-    ],
+    [{}, {"onset_step": 4, "duration_steps": 5, "recovery_steps": 3}],
     ids=["always", "window"],
 )
 
@@ -87,13 +84,7 @@ def test_nothing_waits_for_a_device(intervention: Intervention, window: dict[str
         assert value.shape == (4, 3)
 
 
-@given(
-    st.floats(-3, 3),
-    st.floats(-3, 3),
-    st.integers(0, 5),
-    st.integers(1, 6),
-    st.integers(0, 4),
-)
+@given(st.floats(-3, 3), st.floats(-3, 3), st.integers(0, 5), st.integers(1, 6), st.integers(0, 4))
 @settings(max_examples=25, deadline=None)
 def test_scales_in_turn_multiply(a: float, b: float, onset: int, last: int, back: int) -> None:
     window = {"onset_step": onset, "duration_steps": last, "recovery_steps": back}

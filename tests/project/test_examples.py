@@ -6,9 +6,7 @@ from subprocess import CompletedProcess
 
 import pytest
 
-QUICK = {
-    "own_model.py": ("--episodes", "40", "--epochs", "1"),
-}
+QUICK = {"own_model.py": ("--episodes", "40", "--epochs", "1")}
 """Arguments of examples that would take their time without."""
 ROOT = Path(__file__).resolve().parents[2]
 ELSEWHERE = {"learned_pendulum.py": "tests/learning/test_learned_pendulum.py"}

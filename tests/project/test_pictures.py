@@ -50,9 +50,7 @@ def test_labels_fit_and_colours_follow_the_reader() -> None:
             assert at + (1 - share) * long <= left + width + 1, f"{name}: {words}"
 
 
-def test_a_drawing_of_a_page_stands_alone_under_its_title(
-    tools: Mapping[str, ModuleType],
-) -> None:
+def test_a_drawing_of_a_page_stands_alone_under_its_title(tools: Mapping[str, ModuleType]) -> None:
     page = (ROOT / "docs" / "reference" / "toy" / "report.html").read_text("utf-8")
     drawing = re.search(r"<svg.*?</svg>", page, re.DOTALL)
     assert drawing is not None

@@ -2,12 +2,7 @@
 
 import torch
 from faultpath_quadrotor.options import QuadrotorOptions
-from faultpath_quadrotor.planners import (
-    MPPI,
-    AutoregressiveSampler,
-    CostWeights,
-    NavigationCost,
-)
+from faultpath_quadrotor.planners import MPPI, AutoregressiveSampler, CostWeights, NavigationCost
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors import KinematicIntegrator
 from faultpath_quadrotor.reconstruction import Reconstruction

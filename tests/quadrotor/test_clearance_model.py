@@ -8,12 +8,7 @@ from faultpath_quadrotor import native
 from faultpath_quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH
 from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
-from faultpath_quadrotor.perception.seen import (
-    DepthClearance,
-    PerceptionSettings,
-    in_view,
-    near,
-)
+from faultpath_quadrotor.perception.seen import DepthClearance, PerceptionSettings, in_view, near
 
 POINTS = 96
 

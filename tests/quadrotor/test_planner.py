@@ -3,10 +3,7 @@
 import pytest
 import torch
 from faultpath_quadrotor.options import QuadrotorOptions
-from faultpath_quadrotor.planners import (
-    AutoregressiveSampler,
-    SamplerSettings,
-)
+from faultpath_quadrotor.planners import AutoregressiveSampler, SamplerSettings
 from faultpath_quadrotor.predictors import PredictorInputs
 from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.state import State

@@ -7,12 +7,7 @@ from faultpath_quadrotor import so3
 from faultpath_quadrotor.plant import PlantState, TorchPlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.state import State, padded_lanes
-from faultpath_quadrotor.vehicle import (
-    COLLECTIVE_MAX_N,
-    GRAVITY_MPS2,
-    VehicleParameters,
-    draw,
-)
+from faultpath_quadrotor.vehicle import COLLECTIVE_MAX_N, GRAVITY_MPS2, VehicleParameters, draw
 from torch import Tensor
 
 F64 = torch.float64

@@ -13,10 +13,7 @@ from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import (
-    STEPS_PER_CONTROL,
-    draw,
-)
+from faultpath_quadrotor.vehicle import STEPS_PER_CONTROL, draw
 from flights import STEPS, quadrotor
 from flights import bits as outcome_bits
 from flights import fly as fly_trials

@@ -7,12 +7,7 @@ import sys
 from itertools import pairwise
 
 import pytest
-from faultpath_quadrotor.scenes.library import (
-    FROZEN,
-    Library,
-    frozen_file,
-    load_library,
-)
+from faultpath_quadrotor.scenes.library import FROZEN, Library, frozen_file, load_library
 from faultpath_quadrotor.scenes.prisms import floor_plan, prism
 
 from faultpath.core.errors import UserError

@@ -8,13 +8,7 @@ from typing import Any
 import pytest
 import torch
 from faultpath_quadrotor.scenes.geometry import Geometry
-from faultpath_quadrotor.scenes.library import (
-    FROZEN,
-    Library,
-    as_text,
-    frozen_file,
-    load_library,
-)
+from faultpath_quadrotor.scenes.library import FROZEN, Library, as_text, frozen_file, load_library
 from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
 from faultpath_quadrotor.scenes.soundness import MOST_OBSTACLES, clearance_m, unsound
 

@@ -43,10 +43,7 @@ def _images(folder: Path) -> None:
     ids=["episodes", "images", "closed loop"],
 )
 def test_whatever_runs_while_data_are_made_counts(
-    make: Callable[[Path], None],
-    roots: list[str],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    make: Callable[[Path], None], roots: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(flight, "EPISODE_STEPS", 10)
     monkeypatch.setattr(flight, "EPISODE_S", 0.5)

@@ -5,11 +5,7 @@ from dataclasses import fields
 import pytest
 import torch
 from faultpath_quadrotor.training.collection import collect
-from faultpath_quadrotor.training.windows import (
-    Windows,
-    starts,
-    windows_of,
-)
+from faultpath_quadrotor.training.windows import Windows, starts, windows_of
 from faultpath_quadrotor.vehicle import CONTROL_DT_S
 
 torch.set_num_threads(1)

@@ -141,11 +141,7 @@ def test_other_paths_are_blank_and_not_left_out(
         for cell in second.record.cells
         if cell.path == second.record.effects[1].path
     )
-    changed = {
-        "paths": paths,
-        "effects": effects_there,
-        "cells": (*second.record.cells, *cells),
-    }
+    changed = {"paths": paths, "effects": effects_there, "cells": (*second.record.cells, *cells)}
     second = replace(second, record=second.record.model_copy(update=changed))
     runs = (first, second)
     assert list(titles(runs)) == ["correct", "predictor", "reconstruction", "planner", "shared"]

@@ -7,11 +7,7 @@ from hypothesis import strategies as st
 from scipy.stats import beta, binom, binomtest, norm
 
 from faultpath.statistics.decisions import with_test
-from faultpath.statistics.distributions import (
-    binomial_cdf,
-    binomial_pmf,
-    normal_quantile,
-)
+from faultpath.statistics.distributions import binomial_cdf, binomial_pmf, normal_quantile
 from faultpath.statistics.effects import success_effect
 from faultpath.statistics.power import detectable, rule_power
 from faultpath.statistics.resamples import Resamples

@@ -155,10 +155,7 @@ class Whole(Steer):
         (lambda: plant(dt_s=None, environment="CartPole-v1"), "does not say dt_s: give it"),
         (lambda: plant(steps=None), "does not say steps: give it"),
         (lambda: system(plant(), units={"place": ""}, modules=[Choose()]), "'eye' has no unit"),
-        (
-            lambda: fly(system(plant(), [Whole()])),
-            r"shape \[1\], and.* of shape \[2\]",
-        ),
+        (lambda: fly(system(plant(), [Whole()])), r"shape \[1\], and.* of shape \[2\]"),
         (
             lambda: fly(system(plant(Keyed, observes={"place": ("at", 0)}))),
             "takes whole numbers.*float64: give integers",

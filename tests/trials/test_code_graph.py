@@ -65,13 +65,7 @@ def test_folders_without_an_init_file_are_packages_too(files):
     )
     assert {
         path.name for path in read_code([Root("zz_main", root / "zz_start.py")]).sources.values()
-    } == {
-        "zz_start.py",
-        "__init__.py",
-        "one.py",
-        "two.py",
-        "three.py",
-    }
+    } == {"zz_start.py", "__init__.py", "one.py", "two.py", "three.py"}
 
 
 def test_imports_in_a_circle_end(files):

@@ -188,10 +188,7 @@ def words(folder):
     ("option", "says"),
     [
         ("PATH", r"is another one on node \S+ of the Ray cluster than here \(what fingerprint"),
-        (
-            "PLACE",
-            r"on node \S+ of the Ray cluster: .*PLACE is not set.*every node needs the same",
-        ),
+        ("PLACE", r"on node \S+ of the Ray cluster: .*PLACE is not set.*every node needs the same"),
     ],
 )
 def test_a_node_with_another_system_is_named(head, tmp_path, monkeypatch, option, says):

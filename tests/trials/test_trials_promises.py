@@ -45,14 +45,7 @@ PROMISED = (
 @pytest.mark.parametrize("attribute", PROMISED)
 @pytest.mark.parametrize(
     "value",
-    [
-        Mute(),
-        property(failing),
-        b"\xff",
-        float("nan"),
-        {Mute(): Mute()},
-        [],
-    ],
+    [Mute(), property(failing), b"\xff", float("nan"), {Mute(): Mute()}, []],
     ids=["mute", "fails", "bytes", "nan", "mute mapping", "list"],
 )
 def test_what_is_declared_wrongly_is_named(toy: type, attribute: str, value: object) -> None:
