@@ -9,7 +9,7 @@ from faultpath.trials.attempt import Done, attempt
 from faultpath.trials.execution.again import difference
 from faultpath.trials.store.signals import TOGETHER
 
-SCENE = ("selection/002",)
+SCENE = ("selection/003",)
 
 
 def test_a_recorded_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
@@ -49,4 +49,4 @@ def test_a_recorded_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
     predicted = correct["position predicted 1 s before"][20:]
     flown = correct["vehicle.position"]
     missed = np.linalg.norm(predicted - flown[20:], axis=1).mean()
-    assert missed < 0.3 * np.linalg.norm(flown[20:] - flown[:-20], axis=1).mean()
+    assert missed < 0.5 * np.linalg.norm(flown[20:] - flown[:-20], axis=1).mean()
