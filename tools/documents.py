@@ -23,6 +23,7 @@ from typing import Any
 import blocks
 import fact_blocks
 import map_blocks
+import model_blocks
 import paper_blocks
 from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images, name_of
@@ -40,6 +41,7 @@ KINDS: Mapping[str, Any] = {
     **blocks.KINDS,
     "map": map_blocks.KIND,
     "central": paper_blocks.central_claim,
+    "models": model_blocks.table,
     "paper": paper_blocks.KIND,
     "performance": performance.KIND,
 }
