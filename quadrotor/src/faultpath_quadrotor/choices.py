@@ -36,6 +36,13 @@ class ClearanceName(StrEnum):
     TRUE = "true"
 
 
+class Fixes(StrEnum):
+    """Where position fixes come from; see `estimators.sensors`."""
+
+    OPTICAL = "optical"
+    SATELLITE = "satellite"
+
+
 class SamplerName(StrEnum):
     """Samplers of candidates; see `planners.sampler`."""
 
@@ -64,6 +71,10 @@ PREDICTORS = (
 """The names in `models.PREDICTORS`, which knows how to load each."""
 
 
+FILTERS = ("eskf", "eskf-no-bias", "eskf-cautious")
+"""The names in `estimators.FILTERS`, which knows how each is tuned."""
+
+
 class QuadrotorChoices(BaseModel):
     """One configuration of the quadrotor, as far as a user chooses it."""
 
@@ -88,13 +99,14 @@ class QuadrotorChoices(BaseModel):
     estimator: Annotated[
         str,
         "What turns sensors into the state, or your own as file.py:factory.",
-        Offered("exact", factories=True),
+        Offered("exact", *FILTERS, factories=True),
     ] = "exact"
     sensor_noise: Annotated[
         float,
         Field(ge=0),
-        "Noise and bias of the raw sensors for estimators; 1 is usual.",
+        "How large the errors of the raw sensors are; 1 is usual, and the default of our filters.",
     ] = 0.0
+    fixes: Annotated[Fixes, "Where a filter's position fixes come from."] = Fixes.OPTICAL
     planner: Annotated[
         str,
         "What plans, or your own as file.py:factory.",

@@ -7,6 +7,7 @@ import torch
 from faultpath.core.errors import UserError
 from faultpath.trials.options import call
 from faultpath_quadrotor.choices import (
+    FILTERS,
     ClearanceName,
     DeviceName,
     Environment,
@@ -30,7 +31,7 @@ class QuadrotorOptions(QuadrotorChoices):
 
     @classmethod
     def of(cls, choices: QuadrotorChoices) -> Self:
-        """Return the options behind some choices.
+        """Return the options behind some choices. A filter that ships reads sensors that err.
 
         Trials in free space have ground-truth clearance, those among obstacles the depth model,
         unless `clearance` says otherwise (paper, Section IV-A).
@@ -45,6 +46,8 @@ class QuadrotorOptions(QuadrotorChoices):
             )
         if choices.environment is Environment.FREE_SPACE:
             given.setdefault("clearance", ClearanceName.TRUE)
+        if choices.estimator in FILTERS:
+            given.setdefault("sensor_noise", 1.0)
         if choices.plant != "torch" and choices.device is not DeviceName.CPU:
             raise UserError(
                 f"plant '{choices.plant}' flies on the CPU only: leave --device out, or --plant."
@@ -56,6 +59,11 @@ class QuadrotorOptions(QuadrotorChoices):
     def parse(cls, **options: str) -> Self:
         """Read options as the command line gives them; `UserError` names what there is."""
         return call(cls.of, options, "the quadrotor")
+
+    @property
+    def filtered(self) -> bool:
+        """Whether a filter that ships estimates the state; all of them are variants then."""
+        return self.estimator in FILTERS
 
     @property
     def free_space(self) -> bool:

@@ -94,6 +94,18 @@ def from_yaw(yaw: Tensor) -> Tensor:
     return torch.stack((c, -s, zero, s, c, zero, zero, zero, one)).view(3, 3, *yaw.shape)
 
 
+def heading(rotation: Tensor) -> Tensor:
+    """Return the direction of the body's x axis about the world's z, rad, [*b]."""
+    return torch.atan2(rotation[1, 0], rotation[0, 0])
+
+
+def skew(vector: Tensor) -> Tensor:
+    """Return the matrix that takes the cross product with `vector` [3, *b]; [3, 3, *b]."""
+    x, y, z = vector.unbind(0)
+    zero = torch.zeros_like(x)
+    return torch.stack((zero, -z, y, z, zero, -x, -y, x, zero)).view(3, *vector.shape)
+
+
 def project(matrix: Tensor) -> Tensor:
     """Return the rotation nearest to `matrix` [3, 3, *b] in the Frobenius norm.
 

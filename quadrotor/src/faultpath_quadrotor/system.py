@@ -19,8 +19,9 @@ from faultpath_quadrotor import native
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.choices import ClearanceName, DeviceName, calibration, noisy_state
 from faultpath_quadrotor.device import arithmetic, describe
-from faultpath_quadrotor.estimators import Estimator
-from faultpath_quadrotor.estimators.protocol import SENSORS, with_estimators
+from faultpath_quadrotor.estimators import Estimator, filtering
+from faultpath_quadrotor.estimators.protocol import with_estimators
+from faultpath_quadrotor.estimators.sensors import SENSORS, sensors
 from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.models import clearance_model
 from faultpath_quadrotor.options import QuadrotorOptions
@@ -70,7 +71,8 @@ class Quadrotor(LoopSystem):
         horizon = settings.planner.sampler.horizon
         clearance = dict.fromkeys(("estimated_clearance", "true_clearance"), (horizon, candidates))
         shapes = {**clearance, "predicted_motion": (6, horizon, candidates)}
-        return with_estimators(quadrotor_interface().shaped(shapes), self._estimators)
+        shaped = quadrotor_interface().shaped(shapes)
+        return with_estimators(shaped, self._estimators, self.options.fixes)
 
     @property
     @override
@@ -79,8 +81,9 @@ class Quadrotor(LoopSystem):
 
     @property
     def _estimators(self) -> Sequence[Estimator]:
-        parts = (part.blank for part in self.user_parts.values())
-        return tuple(part for part in parts if isinstance(part, Estimator))
+        own = [part.blank for part in self.user_parts.values()]
+        shipped = [filtering(self.options.estimator)] if self.options.filtered else []
+        return (*shipped, *(part for part in own if isinstance(part, Estimator)))
 
     def library(self, name: str) -> Library:
         """See `System.library`; a file's library keeps its path for a name, to be found again."""
@@ -128,12 +131,13 @@ class Quadrotor(LoopSystem):
         options, free, place = self.options, self.options.free_space, self.options.place
         own = self.user_parts.get(options.plant)
         read = {port.channel for each in self._estimators for port in each.ports}
-        sensors = sorted(SENSORS.keys() & read)
+        known = sensors(options.fixes)
+        needed = {name: known[name] for name in SENSORS if name in read}
 
         def world(scenes: Sequence[str]) -> World:
             flown, winds = self._records(scenes), PLATFORM.winds
             flies = TorchPlant if own is None else own.load(None)
-            return World(flown, options.wind, free, place, flies, winds)
+            return World(flown, options.wind, free, place, flies, winds, sampled=bool(needed))
 
         def camera(scenes: Sequence[str]) -> DepthRenderer:
             return _renderer(self._records(scenes), free, place)
@@ -142,15 +146,15 @@ class Quadrotor(LoopSystem):
             return _field(self._records(scenes), free, place)
 
         if options.clearance is ClearanceName.TRUE:
-            return VehiclePlant(world, None, field, sensors, options.sensor_noise)
-        return VehiclePlant(world, camera, None, sensors, options.sensor_noise)
+            return VehiclePlant(world, None, field, needed, options.sensor_noise)
+        return VehiclePlant(world, camera, None, needed, options.sensor_noise)
 
     @override
     def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
         setup, place = self.setups[variant], self.options.place
         predictor = setup.load_predictor(seed, place)
         reconstruction = setup.load_reconstruction(seed, place)
-        found = modelled(predictor, reconstruction, place, setup.load_estimator(seed, place))
+        found = modelled(predictor, reconstruction, place, setup.load_estimator(seed, self.options))
         found.append(Planning(setup.load_planner(seed, self.options), place, self._held))
         if self.options.clearance is not ClearanceName.TRUE:
             found.append(

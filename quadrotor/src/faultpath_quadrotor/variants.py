@@ -17,7 +17,7 @@ from faultpath.loop import Module
 from faultpath.trials import Wiring
 from faultpath_quadrotor.choices import ClearanceName
 from faultpath_quadrotor.device import CPU
-from faultpath_quadrotor.estimators import Estimator, ExactEstimator
+from faultpath_quadrotor.estimators import FILTERS, Estimator, ExactEstimator, Tuned, filtering
 from faultpath_quadrotor.models import (
     PREDICTORS,
     RECONSTRUCTIONS,
@@ -57,7 +57,7 @@ class Setup:
     planner: str | None = None
     """One of the user's; `None` for that of the options."""
     estimator: str | None = None
-    """One of the user's; `None` for the exact one."""
+    """A filter that ships or one of the user's; `None` for the exact one."""
     user_parts: Mapping[str, UserPart] = field(default_factory=dict[str, UserPart])
 
     @property
@@ -89,9 +89,13 @@ class Setup:
             return options.build_planner()
         return self.user_parts[self.planner].load(seed, options.place)
 
-    def load_estimator(self, seed: int | None, device: torch.device = CPU) -> Estimator | None:
-        """Return the user's estimator for an arm of this seed, if the variant has one."""
-        return self.user_parts[self.estimator].load(seed, device) if self.estimator else None
+    def load_estimator(self, seed: int | None, options: QuadrotorOptions) -> Estimator | None:
+        """Return the estimator for an arm of this seed; `None` for the exact one."""
+        if self.estimator in FILTERS:
+            return filtering(self.estimator, options.fixes, options.place)
+        if self.estimator is None:
+            return None
+        return self.user_parts[self.estimator].load(seed, options.place)
 
     def wiring(self, options: QuadrotorOptions) -> Wiring:
         """Describe the setup to an audit: in words, and which sources it takes."""
@@ -110,10 +114,10 @@ class Setup:
         if self.planner is not None:
             words = f"{words}. Planning: {self.user_parts[self.planner].description}"
         if self.estimator is not None:
-            words = f"{words}. Estimating: {self.user_parts[self.estimator].description}"
+            words = f"{words}. Estimating: {self._said(self.estimator, FILTERS)}"
         return Wiring(f"{words}.", bindings)
 
-    def _said(self, name: str, shipped: Mapping[str, Kind[Any]]) -> str:
+    def _said(self, name: str, shipped: Mapping[str, Kind[Any] | Tuned]) -> str:
         return (self.user_parts.get(name) or shipped[name]).description
 
 
@@ -145,7 +149,7 @@ def _setups(options: QuadrotorOptions, mine: Mapping[str, UserPart]) -> Iterator
         seed,
         None,
         planner=options.planner if options.planner in mine else None,
-        estimator=options.estimator if options.estimator in mine else None,
+        estimator=None if options.estimator == "exact" else options.estimator,
         user_parts=mine,
     )
     if _has_wind(chosen, mine):
@@ -156,7 +160,10 @@ def _setups(options: QuadrotorOptions, mine: Mapping[str, UserPart]) -> Iterator
         for name in (*PREDICTORS, *_of(Predictor, mine))
     ]
     named += [replace(base, name=name, planner=name) for name in _of(Planner, mine)]
-    named += [replace(base, name=name, estimator=name) for name in _of(Estimator, mine)]
+    filters = FILTERS if options.filtered else ()
+    named += [
+        replace(base, name=name, estimator=name) for name in (*filters, *_of(Estimator, mine))
+    ]
     for setup in named:
         windy = _has_wind(setup.predictor, mine)
         yield replace(setup, wind=ZERO_WIND if windy else None)

@@ -1,17 +1,14 @@
-"""What an estimator is to the loop, and the raw sensors that it may read."""
+"""What an estimator is to the loop, and the exact one."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Sequence
 from os import PathLike
-from types import MappingProxyType
 
-import numpy as np
-import torch
 from torch import Tensor
 
-from faultpath.core.streams import generator
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.loop import Inputs, Memory, Module, Outputs
+from faultpath_quadrotor.choices import Fixes
+from faultpath_quadrotor.estimators.sensors import raw, sensors
 
 STATE_SOURCES = {
     "position": "position_estimate",
@@ -28,7 +25,7 @@ class Estimator(Module):
     """Turns what the plant senses into what the controller knows of the vehicle.
 
     It writes some of the sources in `SOURCES`, `[B, ...]` each; the exact estimator writes the
-    rest. It may read any channel of the interface, the raw sensors of `SENSORS` among them.
+    rest. It may read any channel of the interface, and the raw sensors of `estimators.sensors`.
     """
 
     name = "estimator"
@@ -37,37 +34,9 @@ class Estimator(Module):
     """Of one that a user brings: the files that it reads, of every seed, such as weights."""
 
 
-@dataclass(frozen=True)
-class Sensor:
-    """A raw sensor of three axes, sampled at the control rate."""
-
-    unit: str
-    noise: float
-    """Standard deviation of a sample, for `sensor_noise` 1."""
-    bias: float
-    """Standard deviation of an offset that a trial keeps, for `sensor_noise` 1."""
-    description: str
-
-
-SENSORS: Mapping[str, Sensor] = MappingProxyType(
-    {
-        "gyroscope": Sensor("rad/s", 0.01, 0.01, "Angular velocity in the body frame, raw."),
-        "specific_force": Sensor(
-            "m/s^2", 0.1, 0.1, "Acceleration without gravity in the body frame, raw."
-        ),
-        "position_fix": Sensor("m", 0.02, 0.0, "Position in the world frame, of one sample."),
-    }
-)
-"""By channel; its source is `<channel>_raw`. Noise and bias are those of a small MEMS unit and of
-an indoor positioning system (derived)."""
-
-
-def raw(channel: str) -> str:
-    """Return the source behind a raw sensor's channel."""
-    return f"{channel}_raw"
-
-
-def with_estimators(interface: Interface, estimators: Iterable[Estimator]) -> Interface:
+def with_estimators(
+    interface: Interface, estimators: Iterable[Estimator], fixes: Fixes = Fixes.OPTICAL
+) -> Interface:
     """Return the interface with the consumers of estimators, and the raw sensors that they read."""
     consumers: dict[str, set[str]] = {}
     for estimator in estimators:
@@ -80,15 +49,17 @@ def with_estimators(interface: Interface, estimators: Iterable[Estimator]) -> In
         for each in interface.channels
     ]
     sources = list(interface.sources)
-    for name in sorted(consumers.keys() & SENSORS.keys()):
-        sensor = SENSORS[name]
+    known = sensors(fixes)
+    for name in sorted(consumers.keys() & known.keys()):
+        sensor = known[name]
         sources.append(
             Source(
                 name=raw(name),
                 unit=sensor.unit,
-                shape=(3,),
+                shape=sensor.shape,
                 provenance=Provenance.MEASURED,
-                rate_hz=20.0,
+                rate_hz=sensor.rate_hz,
+                latency_s=sensor.latency_s,
                 description=sensor.description,
             )
         )
@@ -101,25 +72,6 @@ def with_estimators(interface: Interface, estimators: Iterable[Estimator]) -> In
             )
         )
     return interface.model_copy(update={"sources": tuple(sources), "channels": tuple(channels)})
-
-
-class Errors:
-    """Noise and bias of the raw sensors in some scenes, drawn by scene, seed and step."""
-
-    def __init__(self, scenes: Sequence[str], seed: int, size: float) -> None:
-        self._scenes, self._seed, self._size = scenes, seed, size
-
-    def of(self, name: str, step: int, like: Tensor) -> Tensor:
-        """Return the errors of a sensor's samples at a step, `[B, 3]`."""
-        if not self._size:
-            return torch.zeros_like(like)
-        sensor, purpose = SENSORS[name], f"sensor/{name}"
-        drawn = [
-            sensor.bias * generator(purpose, scene, self._seed).standard_normal(3)
-            + sensor.noise * generator(purpose, scene, self._seed, step + 1).standard_normal(3)
-            for scene in self._scenes
-        ]
-        return torch.from_numpy(self._size * np.stack(drawn)).to(like)
 
 
 class ExactEstimator(Estimator):

@@ -10,9 +10,8 @@ from typing_extensions import override
 
 from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress, Query
 from faultpath.trials.outcome import VEHICLE
-from faultpath_quadrotor import so3
 from faultpath_quadrotor.device import host_readable
-from faultpath_quadrotor.estimators.protocol import Errors, raw
+from faultpath_quadrotor.estimators.sensors import Errors, Sensor, raw, readings
 from faultpath_quadrotor.lanes import lanes_last, scenes_first
 from faultpath_quadrotor.perception import DepthRenderer, mounted
 from faultpath_quadrotor.perception.module import geometric_clearance
@@ -46,8 +45,8 @@ class VehiclePlant(Plant):
         world: Makes the world of some scenes, by id.
         camera: Makes their camera; `None`: nothing reads depth.
         field: Makes their distance field; `None`: nothing reads the true clearance.
-        sensors: Channels of the raw sensors that an estimator reads.
-        sensor_noise: How large their errors are; see `estimators.protocol.SENSORS`.
+        needed: The raw sensors that an estimator reads, by channel.
+        sensor_noise: How large their errors are; see `estimators.sensors`.
     """
 
     name = "vehicle"
@@ -59,20 +58,20 @@ class VehiclePlant(Plant):
         world: Callable[[Sequence[str]], World],
         camera: Callable[[Sequence[str]], DepthRenderer] | None,
         field: Callable[[Sequence[str]], DistanceField] | None,
-        sensors: Sequence[str] = (),
+        needed: Mapping[str, Sensor] = MappingProxyType({}),
         sensor_noise: float = 0.0,
     ) -> None:
         self.steps = CONTROL_STEPS
         self._world = world
         self._camera = camera
         self._field = field
-        self._sensors = tuple(sensors)
+        self._needed = needed
         self._sensor_noise = sensor_noise
         self.senses = (
             *("mission_goal", "true_physics", "true_wind", "zero_wind"),
             *(("depth_image",) if camera else ()),
             *(("true_clearance",) if field else ()),
-            *map(raw, sensors),
+            *map(raw, needed),
         )
 
     def start(self, batch: Batch) -> Flying:
@@ -81,7 +80,9 @@ class VehiclePlant(Plant):
             world=self._world(batch.scenes),
             camera=self._camera(batch.scenes) if self._camera else None,
             clearance=geometric_clearance(self._field(batch.scenes)) if self._field else None,
-            errors=Errors(batch.scenes, batch.seed, self._sensor_noise),
+            errors=Errors(
+                batch.scenes, batch.seed, self._sensor_noise, self._needed, CONTROL_STEPS
+            ),
         )
 
     def sense(self, state: Flying) -> Outputs:
@@ -100,9 +101,10 @@ class VehiclePlant(Plant):
             sensed["depth_image"] = state.camera.render(here)
         if state.clearance is not None:
             sensed["true_clearance"] = state.clearance
-        for name in self._sensors:
-            exact = scenes_first(_SENSED[name](world), count)
-            sensed[raw(name)] = exact + state.errors.of(name, world.step, exact)
+        exact = readings(world.passed) if self._needed else {}
+        for name in self._needed:
+            read = scenes_first(exact[name], count)
+            sensed[raw(name)] = state.errors.on(name, world.step, read)
         return sensed
 
     def advance(self, state: Flying, inputs: Inputs) -> Flying:
@@ -140,23 +142,6 @@ class VehiclePlant(Plant):
 def commanded(inputs: Inputs, lanes: Tensor) -> Tensor:
     """Return the command `[4, L]` that reaches the actuators: N and rad/s."""
     return lanes_last(inputs[ACTION], lanes)
-
-
-def _specific_force(world: World) -> Tensor:
-    """Thrust and drag over mass in the body frame, `[3, L]`, m/s^2."""
-    vehicle, state = world.vehicle, world.state
-    force = vehicle.drag_kgps * so3.rotate_back(state.rotation, world.wind_mps - state.velocity)
-    force[2] += vehicle.thrust_scale * world.plant_state.thrusts.sum(0)
-    return force / vehicle.mass_kg
-
-
-_SENSED: Mapping[str, Callable[[World], Tensor]] = MappingProxyType(
-    {
-        "gyroscope": lambda world: world.state.rate,
-        "specific_force": _specific_force,
-        "position_fix": lambda world: world.state.position,
-    }
-)
 
 
 def _truth(world: World) -> dict[str, Tensor]:

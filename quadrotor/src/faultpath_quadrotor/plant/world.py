@@ -9,6 +9,7 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor.device import CPU
+from faultpath_quadrotor.estimators.sensors import SAMPLES
 from faultpath_quadrotor.plant import Plant, TorchPlant
 from faultpath_quadrotor.plant.protocol import Contact, Progress
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
@@ -43,6 +44,7 @@ class World:
         device: torch.device = CPU,
         plant: Callable[[Vehicle], Plant] = TorchPlant,
         winds: Winds | None = None,
+        sampled: bool = False,
     ) -> None:
         order = padded_lanes(len(scenes))
         lanes = [scenes[i] for i in order.tolist()]
@@ -61,6 +63,9 @@ class World:
         self.plant_state = self._plant.start(start.to(device))
         self.step = 0
         self.progress = self._contact.begin(self.state)
+        self._part = STEPS_PER_CONTROL // SAMPLES if sampled else STEPS_PER_CONTROL
+        self.passed: tuple[State, ...] = (self.state,) * (SAMPLES + 1)
+        """Where `sampled`: the states of the last interval at the ends of its parts."""
         self.initial_hashes = tuple(
             _hash(_row(start, i), scene.content_hash + self._plant.mark)
             for i, scene in enumerate(scenes)
@@ -81,9 +86,14 @@ class World:
         """Fly one control interval under `command` `[4, L]` and see whose trial ended."""
         made = self.step * STEPS_PER_CONTROL
         winds = self._winds[made : made + STEPS_PER_CONTROL]
-        self.plant_state, progress = self._plant.fly(
-            self.plant_state, command, winds, self._contact, self.progress, made
-        )
+        passed, progress = [self.state], self.progress
+        for part in winds.split(self._part):
+            self.plant_state, progress = self._plant.fly(
+                self.plant_state, command, part, self._contact, progress, made
+            )
+            made += len(part)
+            passed.append(self.state)
+        self.passed = tuple(passed)
         self.step += 1
         self.progress = _arrival(progress)
 

@@ -1,0 +1,135 @@
+"""The error-state Kalman filter as a module of the loop: raw sensors in, the state out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import torch
+from torch import Tensor
+
+from faultpath.loop import Batch, Inputs, Memory, Outputs, Port
+from faultpath_quadrotor.choices import Fixes
+from faultpath_quadrotor.device import CPU
+from faultpath_quadrotor.estimators.kalman import (
+    Belief,
+    Increment,
+    Innovation,
+    Trust,
+    carried,
+    corrected,
+    predicted,
+)
+from faultpath_quadrotor.estimators.protocol import Estimator
+from faultpath_quadrotor.estimators.sensors import SENSORS, sensors
+from faultpath_quadrotor.lanes import lanes_last, lanes_of, scenes_first
+
+AT = "filter"
+_INERTIAL, _AIDING = SENSORS[:2], SENSORS[2:]
+
+
+@dataclass(frozen=True)
+class Filtered:
+    """The belief of some steps ago, and what has been read since."""
+
+    belief: Belief
+    """Of the step whose fix may have arrived by now; before that of the start."""
+    inertial: tuple[tuple[Tensor, Tensor], ...]
+    """Of the intervals since: gyroscope and accelerometer."""
+    aiding: tuple[Mapping[str, Tensor], ...]
+    """Altitude and heading of the belief's step and of those since."""
+    innovations: tuple[Innovation, ...] = ()
+    """Of what was last taken in."""
+
+    def now(self) -> tuple[Tensor, Tensor, Tensor]:
+        """Return position, velocity and attitude of the last reading's step."""
+        belief = self.belief
+        pose = (belief.position, belief.velocity, belief.rotation)
+        if self.inertial:
+            rate, force = map(torch.stack, zip(*self.inertial, strict=True))
+            rate = (rate - belief.gyroscope_bias).transpose(0, 1)  # [SAMPLES, n, 3, L]
+            force = (force - belief.accelerometer_bias).transpose(0, 1)
+            for interval in range(len(self.inertial)):
+                pose = carried(*pose, Increment.of(rate[:, interval], force[:, interval]))
+        return pose
+
+
+class ErrorStateFilter(Estimator):
+    """Position, velocity, attitude and body rate from the raw sensors of `estimators.sensors`.
+
+    A fix is of some steps ago when it arrives. The filter therefore stands at that step: whatever
+    it reads is kept until then and taken in at its own moment, and the present follows from the
+    inertial samples since, as in PX4's EKF2. It knows rates and latencies as declared; a fault that
+    makes a fix later still is not known to it. The vehicle starts at rest on level ground.
+    """
+
+    reads = frozenset(Port(name, AT) for name in SENSORS)
+
+    def __init__(self, trust: Trust, device: torch.device = CPU) -> None:
+        self.trust = trust
+        self._device = device
+
+    def begin(self, batch: Batch) -> Memory:
+        """Return the lanes, and no belief yet."""
+        return lanes_of(batch, self._device), len(batch.scenes), None
+
+    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
+        """Take the step's readings in and return what they say of the state, `[B, ...]`."""
+        lanes, count, past = memory
+        read = {name: lanes_last(inputs[Port(name, AT)], lanes) for name in SENSORS}
+        known = self.begun(read) if past is None else self.taken(past, read, inputs.step)
+        position, velocity, attitude = known.now()
+        *_, before, last = read["gyroscope"]  # means over 10 ms: the present is half of that ahead
+        rate = last + 0.5 * (last - before) - known.belief.gyroscope_bias
+        found = (position, velocity, attitude, rate)
+        written = zip(self.writes, (scenes_first(each, count) for each in found), strict=True)
+        return dict(written), (lanes, count, known)
+
+    def begun(self, read: Mapping[str, Tensor]) -> Filtered:
+        """Return the memory after the first readings, `[..., L]` by channel."""
+        belief = Belief.at_rest(read["position_fix"], read["heading"], self.trust)
+        return Filtered(belief, (), (read,))
+
+    def taken(self, past: Filtered, read: Mapping[str, Tensor], step: int) -> Filtered:
+        """Return the memory after the readings of a later step."""
+        fix = self.trust.sensors["position_fix"]
+        inertial = (*past.inertial, (read["gyroscope"], read["accelerometer"]))
+        aiding = (*past.aiding, read)
+        if len(inertial) <= fix.late:
+            return Filtered(past.belief, inertial, aiding)
+        (rate, force), *later = inertial
+        belief = past.belief
+        by = Increment.of(rate - belief.gyroscope_bias, force - belief.accelerometer_bias)
+        due = {name: aiding[1][name] for name in ("altitude", "heading")}
+        if fix.sampled(step - fix.late):
+            due["position_fix"] = read["position_fix"]
+        belief, seen = corrected(predicted(belief, by, self.trust), due, self.trust)
+        return Filtered(belief, tuple(later), aiding[1:], tuple(seen))
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """A filter that ships."""
+
+    description: str
+    biases: bool = True
+    doubt: float = 1.0
+
+
+FILTERS: Mapping[str, Tuned] = MappingProxyType(
+    {
+        "eskf": Tuned("a Kalman filter that estimates the biases of its inertial sensors"),
+        "eskf-no-bias": Tuned("a Kalman filter that takes its inertial sensors for unbiased", False),
+        "eskf-cautious": Tuned("a Kalman filter that takes fixes for three times as noisy", doubt=3.0),
+    }
+)
+"""By the names of `choices.FILTERS`."""
+
+
+def filtering(
+    name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CPU
+) -> ErrorStateFilter:
+    """Return a filter that ships."""
+    tuned = FILTERS[name]
+    return ErrorStateFilter(Trust(sensors(fixes), tuned.biases, tuned.doubt), device)
