@@ -21,6 +21,7 @@ from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2
 
 _P, _V, _R, _G, _A = (slice(3 * part, 3 * part + 3) for part in range(5))
 SIZE = 15
+_MANOEUVRE_S = 0.5
 _STARTS = {"velocity": 0.05, "tilt": 0.02}
 """Standard deviations of a start from rest on level ground, m/s and rad (derived)."""
 
@@ -116,9 +117,8 @@ class Trust:
     """Factor on the noise of what corrects it: fixes, altitude and heading."""
 
     def noise(self, name: str) -> float:
-        """Return the standard deviation of a sample."""
-        inertial = name in ("gyroscope", "accelerometer")
-        return self.sensors[name].noise * (1.0 if inertial else self.doubt)
+        """Return the standard deviation of what corrects it."""
+        return self.sensors[name].noise * self.doubt
 
 
 def predicted(belief: Belief, by: Increment, trust: Trust) -> Belief:
@@ -142,8 +142,8 @@ def predicted(belief: Belief, by: Increment, trust: Trust) -> Belief:
     step[_R, _R] = by.turn.transpose(0, 1)
     step[_R, _G] = -dt * one
     covariance = _product(_product(step, belief.covariance), step.transpose(0, 1))
-    pushed = SAMPLES * (trust.noise("accelerometer") * SAMPLE_DT_S) ** 2
-    turns = SAMPLES * (trust.noise("gyroscope") * SAMPLE_DT_S) ** 2
+    pushed = _diffused(trust.sensors["accelerometer"], by.gained / dt)
+    turns = _diffused(trust.sensors["gyroscope"], so3.log(by.turn) / dt)
     covariance[_P, _P] += one * (pushed * dt * dt / 3.0)
     covariance[_P, _V] += one * (pushed * dt / 2.0)
     covariance[_V, _P] += one * (pushed * dt / 2.0)
@@ -155,6 +155,16 @@ def predicted(belief: Belief, by: Increment, trust: Trust) -> Belief:
     return replace(
         belief, position=position, velocity=velocity, rotation=turned, covariance=covariance
     )
+
+
+def _diffused(sensor: Sensor, mean: Tensor) -> Tensor:
+    """Return the variance that an interval adds to what a sensor's samples add up to, `[L]`.
+
+    Scale errors and misalignment stay, but motion turns their effect about: they count as noise
+    that lasts as long as a manoeuvre.
+    """
+    turned = sensor.scale**2 * mean.square().sum(0) * (_MANOEUVRE_S * CONTROL_DT_S)
+    return turned + SAMPLES * (sensor.noise * SAMPLE_DT_S) ** 2
 
 
 @dataclass(frozen=True)

@@ -60,7 +60,7 @@ _SENSORS = {
         noise=0.01,
         bias=0.01,
         walk=0.0005,
-        scale=0.002,
+        scale=0.0005,
     ),
     "accelerometer": Sensor(
         "m/s^2",
@@ -69,7 +69,7 @@ _SENSORS = {
         noise=0.1,
         bias=0.1,
         walk=0.005,
-        scale=0.002,
+        scale=0.0005,
     ),
     "position_fix": Sensor(
         "m", "Position in the world frame.", (3,), noise=0.02, rate_hz=10.0, latency_s=0.06
