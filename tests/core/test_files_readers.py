@@ -20,7 +20,7 @@ from faultpath.interface import read_interface
 from faultpath.learning.model_card import FitRecord, read_card
 from faultpath.trials.store.atomic import locked
 from faultpath.trials.store.folder import RunFolder, read_manifest, read_outcomes, read_regular
-from faultpath.trials.store.parquet import Unreadable
+from faultpath.core.files.parquet import Unreadable
 
 Read = Callable[[Path], object]
 

@@ -7,7 +7,8 @@ from toy_system import STEPS
 from faultpath.loop import TapCount
 from faultpath.trials import Deliveries
 from faultpath.trials.execution.runner import run_study
-from faultpath.trials.store import parquet, tables
+from faultpath.core.files import parquet
+from faultpath.trials.store import tables
 
 FAULTED = (STEPS - FAULT.onset_step) * len(SCENES)
 EACH = STEPS * len(SCENES)

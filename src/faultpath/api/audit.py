@@ -37,7 +37,7 @@ from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.question import AuditQuestion, Running
 from faultpath.trials.store.atomic import write_file, write_text
 from faultpath.trials.store.folder import keyed, read_regular, seal
-from faultpath.trials.store.parquet import Unreadable
+from faultpath.core.files.parquet import Unreadable
 from faultpath.trials.store.signals import SIGNALS, Signal, decode_signals, encode_signals
 from faultpath.trials.store.tables import TrialAddress
 from faultpath.trials.work.executor import Progress

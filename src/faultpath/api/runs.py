@@ -20,7 +20,7 @@ from faultpath.report.tables import markdown_table
 from faultpath.trials import Deliveries, OutcomeTable, Status, SystemShown
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, read_regular, unseal
-from faultpath.trials.store.parquet import Unreadable, read_table
+from faultpath.core.files.parquet import Unreadable, read_table
 from faultpath.trials.store.signals import SIGNALS, decode_signals
 from faultpath.trials.store.tables import decode_outcomes, decode_traces
 

@@ -13,11 +13,13 @@ from faultpath.faults.fault import (
     resolve,
 )
 from faultpath.faults.parse import FaultPreset, FaultText, each_size, parse_fault
-from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Scale
+from faultpath.faults.recorded import Address, Record, Recorded, encode_record
+from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Rotate, Scale
 
 __all__ = [
     "ALL",
     "INTERVENTIONS",
+    "Address",
     "AnyFault",
     "AnyIntervention",
     "Bias",
@@ -37,11 +39,15 @@ __all__ = [
     "Noise",
     "Offset",
     "Quantise",
+    "Record",
+    "Recorded",
+    "Rotate",
     "Scale",
     "Sequence",
     "Shuffle",
     "UniformScale",
     "each_size",
+    "encode_record",
     "parse_fault",
     "resolve",
 ]

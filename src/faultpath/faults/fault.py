@@ -13,7 +13,8 @@ from faultpath.core.results import Frozen
 from faultpath.core.text import listed, unknown
 from faultpath.faults.base import Draws, Intervention, Memory, Moment
 from faultpath.faults.drawn import Bias, Drift, Dropout, Noise, Shuffle, UniformScale
-from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Scale
+from faultpath.faults.recorded import Recorded
+from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Rotate, Scale
 from faultpath.interface import Channel, Interface, module_of, modules
 
 
@@ -61,6 +62,7 @@ Listed: TypeAlias = (
     Scale
     | UniformScale
     | Offset
+    | Rotate
     | Quantise
     | Erase
     | Noise
@@ -71,6 +73,7 @@ Listed: TypeAlias = (
     | Freeze
     | Dropout
     | Shuffle
+    | Recorded
     | Sequence
 )
 AnyIntervention: TypeAlias = Annotated[Listed, Discriminator("kind")]

@@ -244,7 +244,8 @@ def _intervention(
         if parts.sizes:
             raise UserError(f"'{kind}' takes no value; write {said}")
     elif parts.sizes:
-        given[cls.value_field] = _value(kind, parts.sizes[0])
+        size, wanted = parts.sizes[0], cls.model_fields[cls.value_field].annotation
+        given[cls.value_field] = size if wanted is str else _value(kind, size)
     elif cls.model_fields[cls.value_field].is_required():
         raise UserError(f"'{kind}' needs a value ({cls.value_field}), as in {said}=VALUE")
     try:

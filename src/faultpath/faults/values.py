@@ -3,8 +3,10 @@
 Those that hold a reading keep copies, so a producer may reuse its memory.
 """
 
+import math
 from typing import ClassVar, Literal, Self
 
+import numpy as np
 from pydantic import Field
 
 from faultpath.core.arrays import Array, Constant, constant, copy, filled, is_zero, namespace
@@ -36,6 +38,38 @@ class Offset(Intervention):
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return `reading + by`; an offset of zero leaves even the sign of a zero alone."""
         return (reading if is_zero(self.by) else reading + constant(self.by, reading)), None
+
+
+class Rotate(Intervention):
+    """Turn a vector by a rotation vector in radians, as a sensor does that is mounted askew."""
+
+    kind: Literal["rotate"] = "rotate"
+    said = "turned by {by} rad"
+    value_field: ClassVar[str | None] = "by"
+    by: tuple[float, float, float]
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return R v for each vector v along the last axis; R turns by |by| about `by`."""
+        if is_zero(self.by):
+            return reading, None
+        return namespace(reading).sum(
+            reading[..., None, :] * constant(_turn(self.by), reading), axis=-1
+        ), None
+
+    def misfit(self, shape: tuple[int, ...]) -> str | None:
+        """Refuse a reading that holds no vectors of three numbers."""
+        if shape[-1:] == (3,):
+            return None
+        return f"the reading of one scene has shape {list(shape)}, which ends with no vector of 3"
+
+
+def _turn(by: tuple[float, float, float]) -> Constant:
+    """Return the rotation by |by| rad about `by` (Rodrigues)."""
+    angle = math.hypot(*by)
+    x, y, z = (part / angle for part in by)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turned = np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
+    return tuple(map(tuple, turned.tolist()))
 
 
 class Quantise(Intervention):

@@ -20,7 +20,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.results import Frozen
 from faultpath.trials.store.atomic import write_file
-from faultpath.trials.store.parquet import INTEGER, NUMBER, TEXT, Unreadable, decode, encode
+from faultpath.core.files.parquet import INTEGER, NUMBER, TEXT, Unreadable, decode, encode
 
 Quantity: TypeAlias = Literal[
     "position-error",

@@ -21,7 +21,7 @@ from faultpath.trials.arm import Study
 from faultpath.trials.code import CodeState, named
 from faultpath.trials.store import atomic
 from faultpath.trials.store.atomic import Say, locked, make_folder, write_file
-from faultpath.trials.store.parquet import Unreadable
+from faultpath.core.files.parquet import Unreadable
 from faultpath.trials.store.tables import (
     Shard,
     decode_outcomes,

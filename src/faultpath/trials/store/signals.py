@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.trials.store.parquet import INTEGER, NUMBERS, TEXT, Unreadable, decode, encode
+from faultpath.core.files.parquet import INTEGER, NUMBERS, TEXT, Unreadable, decode, encode
 from faultpath.trials.store.tables import TrialAddress
 
 SIGNALS = "signals.parquet"

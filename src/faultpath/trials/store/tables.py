@@ -10,7 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from faultpath.loop import TapCount
 from faultpath.trials.outcome import VEHICLE, Outcome, Status, checked
-from faultpath.trials.store.parquet import (
+from faultpath.core.files.parquet import (
     INTEGER,
     NUMBER,
     NUMBERS,

@@ -1,0 +1,150 @@
+"""Errors that were recorded elsewhere, delivered step by step."""
+
+import hashlib
+from collections.abc import Collection, Mapping
+from functools import lru_cache
+from typing import Any, ClassVar, Literal, NamedTuple, Self, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.core.arrays import Array, like, namespace
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import contents
+from faultpath.faults.base import Intervention, Memory, Moment
+from faultpath.interface import Channel
+
+
+class Address(NamedTuple):
+    """Whose errors a part of a record holds."""
+
+    channel: str
+    scene: str
+    seed: int
+
+
+Record: TypeAlias = Mapping[Address, NDArray[np.float32]]
+"""Errors `[T, ...]`, one for each control step from the first on."""
+
+_COLUMNS = ("channel", "scene", "seed", "steps", "turns", "errors")
+
+
+def encode_record(record: Record, turning: Collection[str] = ()) -> bytes:
+    """Return a record as a Parquet file.
+
+    Readings of the channels in `turning` are rotation matrices, and so are their errors, which turn
+    them in their own axes; all other errors are added.
+    """
+    from faultpath.core.files.parquet import encode
+
+    rows = [
+        {
+            **address._asdict(),
+            "steps": len(errors),
+            "turns": int(address.channel in turning),
+            "errors": np.ascontiguousarray(errors, np.float32).reshape(-1),
+        }
+        for address, errors in sorted(record.items(), key=lambda each: each[0])
+    ]
+    return encode(_schema(), rows)
+
+
+class Recorded(Intervention):
+    """Deliver with the errors that a file holds for the channel, by scene, seed and step.
+
+    A module alone can so get the errors that all modules had in another flight. After the end of a
+    scene's record its last error stays.
+    """
+
+    kind: Literal["recorded"] = "recorded"
+    said = "with the errors of {file}"
+    value_field: ClassVar[str | None] = "file"
+    file: str
+    """A Parquet file of `encode_record`."""
+    channel: str = ""
+    """Filled in by `resolved`."""
+    digest: str = ""
+    """Of the file, filled in by `resolved`: trials belong to what it held."""
+
+    def resolved(self, channel: Channel) -> Self:
+        """Take channel and digest; `UserError` for a file that holds no errors of the channel."""
+        digest, errors, _ = _read(self.file, channel.name)
+        if self.digest not in ("", digest):
+            raise UserError(f"{self.file} is not the file that the fault was made with: {_AGAIN}")
+        if not errors:
+            raise UserError(
+                f"{self.file} holds no errors of channel '{channel.name}': aim the fault at one "
+                f"that it has, or {_AGAIN}"
+            )
+        return self.model_copy(update={"channel": channel.name, "digest": digest})
+
+    def begin(self, reading: Array, at: Moment) -> Memory:
+        """Return the errors of all steps, `[T, B, ...]`, on the host, and whether they turn."""
+        digest, errors, turns = _read(self.file, self.channel)
+        if digest != self.digest:
+            raise UserError(f"{self.file} has changed: {_AGAIN}")
+        found: list[NDArray[np.float32]] = []
+        for scene in at.draws.scenes:
+            rows = errors.get((scene, at.draws.seed))
+            shape = tuple(reading.shape[1:])
+            if rows is None or not len(rows) or rows.shape[1] != np.prod(shape):
+                raise UserError(
+                    f"{self.file} holds no errors like {list(shape)} of channel '{self.channel}' "
+                    f"in scene '{scene}', seed {at.draws.seed}: record that scene too"
+                )
+            found.append(rows.reshape(-1, *shape))
+        longest = max(map(len, found))
+        held = [np.concatenate((each, each[-1:].repeat(longest - len(each), 0))) for each in found]
+        return np.stack(held, axis=1), turns
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return the reading with the error of this step."""
+        errors, turns = memory
+        error = like(errors[min(at.step, len(errors) - 1)].astype(np.float64), reading)
+        if turns:
+            xp = namespace(reading)
+            return xp.sum(reading[..., None] * error[..., None, :, :], axis=-2), memory
+        return reading + error, memory
+
+
+_AGAIN = "record the errors again"
+
+
+def _schema() -> dict[str, Any]:
+    from faultpath.core.files.parquet import INTEGER, NUMBERS, TEXT
+
+    return dict(zip(_COLUMNS, (TEXT, TEXT, INTEGER, INTEGER, INTEGER, NUMBERS), strict=True))
+
+
+def _read(
+    file: str, channel: str
+) -> tuple[str, Mapping[tuple[str, int], NDArray[np.float32]], bool]:
+    """Return a file's digest, a channel's errors `[T, N]` by scene and seed, and whether they turn.
+
+    `UserError` for a file that cannot be read or is no record.
+    """
+    try:
+        data = contents(file)
+    except OSError as error:
+        raise UserError(f"the record {file} cannot be read: {error.strerror}.") from error
+    found = _decoded(data, file).get(channel, {})
+    turning = {turns for turns, _ in found.values()}
+    digest = hashlib.sha256(data).hexdigest()[:16]
+    return digest, {key: errors for key, (_, errors) in found.items()}, turning == {True}
+
+
+@lru_cache(maxsize=4)
+def _decoded(
+    data: bytes, file: str
+) -> Mapping[str, Mapping[tuple[str, int], tuple[bool, NDArray[np.float32]]]]:
+    from faultpath.core.files.parquet import Unreadable, decode
+
+    channels: dict[str, dict[tuple[str, int], tuple[bool, NDArray[np.float32]]]] = {}
+    try:
+        for row in decode(data, _schema())[0]:
+            errors = np.reshape(row["errors"], (row["steps"], -1))
+            by_trial = channels.setdefault(row["channel"], {})
+            by_trial[row["scene"], row["seed"]] = bool(row["turns"]), errors
+    except (Unreadable, ValueError) as error:
+        raise UserError(f"{file} is no record of errors: {error}.") from error
+    return channels
