@@ -9,7 +9,7 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field
 
 from faultpath.core.errors import UserError
-from faultpath.faults import Coupled, Delay, Fault, Noise, Scale, Sequence
+from faultpath.faults import Coupled, Delay, Fault, Noise, Rotate, Scale, Sequence
 from faultpath.trials import Offered
 
 
@@ -169,6 +169,16 @@ def calibration(error: float) -> Coupled:
             Fault(channel="thrust_scale", intervention=Scale(factor=1 - error)),
         ),
     )
+
+
+def mount(angle: float) -> Coupled:
+    """Return an inertial unit that is mounted askew: turned by `angle` rad about the body's y axis.
+
+    It acts on gyroscope and accelerometer alike.
+    """
+    turned = Rotate(by=(0.0, angle, 0.0))
+    faults = (Fault(channel=each, intervention=turned) for each in ("gyroscope", "accelerometer"))
+    return Coupled(name="mount", faults=tuple(faults))
 
 
 def noisy_state(size: float) -> Coupled:

@@ -23,6 +23,7 @@ from faultpath_quadrotor.predictors import (
 )
 from faultpath_quadrotor.reconstruction import (
     DisturbanceObserver,
+    InertialObserver,
     Reconstruction,
     RecurrentReconstruction,
     WindNetwork,
@@ -112,11 +113,17 @@ PREDICTORS: Mapping[str, Kind[Predictor]] = MappingProxyType(
     }
 )
 
+INERTIAL = "dob-inertial"
+"""The one that reads a raw sensor: a variant where a filter that ships has the sensors read."""
 RECONSTRUCTIONS: Mapping[str, Kind[Reconstruction]] = MappingProxyType(
     {
         "dob": Kind(
             "the acceleration that mass, thrust and drag do not explain",
             lambda: DisturbanceObserver(drag_kgps=_DRAG),
+        ),
+        INERTIAL: Kind(
+            "the acceleration that mass, thrust and drag do not explain, by the accelerometer",
+            lambda: InertialObserver(drag_kgps=_DRAG),
         ),
         "gru": Kind(
             "a network that reads recent motion, mass and thrust scale", _recurrent(calibrated=True)
@@ -124,6 +131,11 @@ RECONSTRUCTIONS: Mapping[str, Kind[Reconstruction]] = MappingProxyType(
         "gru+dcc": Kind(
             "a network that reads recent motion, mass and thrust scale, and was trained "
             "with errors of both",
+            _recurrent(calibrated=True),
+        ),
+        "gru+state": Kind(
+            "a network that reads recent motion, mass and thrust scale, and was trained "
+            "with errors of motion",
             _recurrent(calibrated=True),
         ),
         "gru-withheld": Kind(

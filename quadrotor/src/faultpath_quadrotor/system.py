@@ -12,18 +12,18 @@ from typing_extensions import override
 from faultpath.core.errors import UserError
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
-from faultpath.loop import Deliverer, Loop, Module, Plant
+from faultpath.loop import Deliverer, Loop, Module, Part, Plant
 from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
 from faultpath.trials.outcome import VEHICLE
 from faultpath_quadrotor import native
 from faultpath_quadrotor.checkpoint import shipped_folder
-from faultpath_quadrotor.choices import ClearanceName, DeviceName, calibration, noisy_state
-from faultpath_quadrotor.device import arithmetic, describe
+from faultpath_quadrotor.choices import ClearanceName, DeviceName, calibration, mount, noisy_state
+from faultpath_quadrotor.device import CPU, arithmetic, describe
 from faultpath_quadrotor.estimators import Estimator, filtering
 from faultpath_quadrotor.estimators.protocol import with_estimators
 from faultpath_quadrotor.estimators.sensors import SENSORS, sensors
 from faultpath_quadrotor.interface import quadrotor_interface
-from faultpath_quadrotor.models import clearance_model
+from faultpath_quadrotor.models import INERTIAL, clearance_model, reconstruction
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath_quadrotor.perception.module import Perception
@@ -33,6 +33,7 @@ from faultpath_quadrotor.plant.module import VehiclePlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.reconstruction.module import WindReconstruction
 from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.prisms import floor_plan
@@ -72,18 +73,23 @@ class Quadrotor(LoopSystem):
         clearance = dict.fromkeys(("estimated_clearance", "true_clearance"), (horizon, candidates))
         shapes = {**clearance, "predicted_motion": (6, horizon, candidates)}
         shaped = quadrotor_interface().shaped(shapes)
-        return with_estimators(shaped, self._estimators, self.options.fixes)
+        return with_estimators(shaped, self._sensing, self.options.fixes)
 
     @property
     @override
     def fault_presets(self) -> Mapping[str, FaultPreset]:
-        return {"calibration": calibration, "noisy_state": noisy_state}
+        always = {"calibration": calibration, "noisy_state": noisy_state}
+        return always | ({"mount": mount} if self.options.filtered else {})
 
     @property
-    def _estimators(self) -> Sequence[Estimator]:
+    def _sensing(self) -> Sequence[Part]:
+        """All that may read raw sensors."""
         own = [part.blank for part in self.user_parts.values()]
-        shipped = [filtering(self.options.estimator)] if self.options.filtered else []
-        return (*shipped, *(part for part in own if isinstance(part, Estimator)))
+        estimators = [part for part in own if isinstance(part, Estimator)]
+        if not self.options.filtered:
+            return estimators
+        inertial = WindReconstruction(reconstruction(INERTIAL, None), CPU)
+        return (filtering(self.options.estimator), inertial, *estimators)
 
     def library(self, name: str) -> Library:
         """See `System.library`; a file's library keeps its path for a name, to be found again."""
@@ -130,7 +136,7 @@ class Quadrotor(LoopSystem):
     def plant(self) -> Plant:
         options, free, place = self.options, self.options.free_space, self.options.place
         own = self.user_parts.get(options.plant)
-        read = {port.channel for each in self._estimators for port in each.ports}
+        read = {port.channel for each in self._sensing for port in each.ports}
         known = sensors(options.fixes)
         needed = {name: known[name] for name in SENSORS if name in read}
 

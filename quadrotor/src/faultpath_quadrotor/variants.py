@@ -19,6 +19,7 @@ from faultpath_quadrotor.choices import ClearanceName
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators import FILTERS, Estimator, ExactEstimator, Tuned, filtering
 from faultpath_quadrotor.models import (
+    INERTIAL,
     PREDICTORS,
     RECONSTRUCTIONS,
     Kind,
@@ -142,7 +143,8 @@ def setups(
 
 def _setups(options: QuadrotorOptions, mine: Mapping[str, UserPart]) -> Iterator[Setup]:
     chosen, seed = options.predictor, options.predictor_seed
-    winds = (ZERO_WIND, *RECONSTRUCTIONS, *_of(Reconstruction, mine), TRUE_WIND)
+    shipped = [each for each in RECONSTRUCTIONS if options.filtered or each != INERTIAL]
+    winds = (ZERO_WIND, *shipped, *_of(Reconstruction, mine), TRUE_WIND)
     base = Setup(
         chosen,
         chosen,

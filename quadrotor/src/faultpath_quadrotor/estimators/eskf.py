@@ -21,7 +21,7 @@ from faultpath_quadrotor.estimators.kalman import (
     corrected,
     predicted,
 )
-from faultpath_quadrotor.estimators.protocol import Estimator
+from faultpath_quadrotor.estimators.protocol import STATE_SOURCES, Estimator
 from faultpath_quadrotor.estimators.sensors import SENSORS, sensors
 from faultpath_quadrotor.lanes import lanes_last, lanes_of, scenes_first
 
@@ -79,12 +79,17 @@ class ErrorStateFilter(Estimator):
         lanes, count, past = memory
         read = {name: lanes_last(inputs[Port(name, AT)], lanes) for name in SENSORS}
         known = self.begun(read) if past is None else self.taken(past, read, inputs.step)
+        said = self.said(known, read)
+        outputs = {STATE_SOURCES[name]: scenes_first(each, count) for name, each in said.items()}
+        return outputs, (lanes, count, known)
+
+    def said(self, known: Filtered, read: Mapping[str, Tensor]) -> Mapping[str, Tensor]:
+        """Return the estimates `[..., L]` by channel at the step of `read`."""
         position, velocity, attitude = known.now()
         *_, before, last = read["gyroscope"]  # means over 10 ms: the present is half of that ahead
         rate = last + 0.5 * (last - before) - known.belief.gyroscope_bias
         found = (position, velocity, attitude, rate)
-        written = zip(self.writes, (scenes_first(each, count) for each in found), strict=True)
-        return dict(written), (lanes, count, known)
+        return dict(zip(STATE_SOURCES, found, strict=True))
 
     def begun(self, read: Mapping[str, Tensor]) -> Filtered:
         """Return the memory after the first readings, `[..., L]` by channel."""

@@ -6,7 +6,7 @@ from os import PathLike
 from torch import Tensor
 
 from faultpath.interface import Channel, Interface, Provenance, Source
-from faultpath.loop import Inputs, Memory, Module, Outputs
+from faultpath.loop import Inputs, Memory, Module, Outputs, Part
 from faultpath_quadrotor.choices import Fixes
 from faultpath_quadrotor.estimators.sensors import raw, sensors
 
@@ -35,13 +35,18 @@ class Estimator(Module):
 
 
 def with_estimators(
-    interface: Interface, estimators: Iterable[Estimator], fixes: Fixes = Fixes.OPTICAL
+    interface: Interface, readers: Iterable[Part], fixes: Fixes = Fixes.OPTICAL
 ) -> Interface:
-    """Return the interface with the consumers of estimators, and the raw sensors that they read."""
+    """Return the interface with the raw sensors that some modules read, and those consumers.
+
+    Estimators are shown at all that they read.
+    """
+    known = sensors(fixes)
     consumers: dict[str, set[str]] = {}
-    for estimator in estimators:
-        for port in estimator.ports:
-            consumers.setdefault(port.channel, set()).add(f"{estimator.name}.{port.place}")
+    for reader in readers:
+        for port in reader.ports:
+            if port.channel in known or isinstance(reader, Estimator):
+                consumers.setdefault(port.channel, set()).add(f"{reader.name}.{port.place}")
     channels = [
         each.model_copy(
             update={"consumers": (*each.consumers, *sorted(consumers.pop(each.name, ())))}
@@ -49,7 +54,6 @@ def with_estimators(
         for each in interface.channels
     ]
     sources = list(interface.sources)
-    known = sensors(fixes)
     for name in sorted(consumers.keys() & known.keys()):
         sensor = known[name]
         sources.append(

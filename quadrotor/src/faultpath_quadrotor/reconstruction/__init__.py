@@ -7,4 +7,8 @@ from faultpath_quadrotor.reconstruction.network import (
     RecurrentReconstruction,
     WindNetwork,
 )
-from faultpath_quadrotor.reconstruction.observer import DisturbanceObserver, ObserverMemory
+from faultpath_quadrotor.reconstruction.observer import (
+    DisturbanceObserver,
+    InertialObserver,
+    ObserverMemory,
+)

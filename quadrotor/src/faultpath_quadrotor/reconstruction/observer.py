@@ -7,6 +7,7 @@ import torch
 from torch import Tensor
 from typing_extensions import override
 
+from faultpath_quadrotor import so3
 from faultpath_quadrotor.lanes import Delivered, Read
 from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.reconstruction.base import Memory, Reconstruction
@@ -61,12 +62,16 @@ class DisturbanceObserver(Reconstruction):
     def update(self, memory: Memory, delivered: Delivered) -> Memory:
         now: ObserverMemory = memory
         velocity = delivered["velocity", "velocity_difference"]
-        observed = (velocity - now.velocity_mps) / self._dt
-        residual = observed - self.nominal(delivered)
+        residual = self.observed(now, delivered) - self.nominal(delivered)
         raw = self._air.inverse(
             delivered["attitude", "nominal_model"], residual * delivered["mass", "wind_map"]
         )
         return ObserverMemory(torch.lerp(now.wind_mps, raw, self._alpha), velocity)
+
+    def observed(self, memory: ObserverMemory, delivered: Delivered) -> Tensor:
+        """Return the acceleration of the last interval, `[3, *batch]`, m/s^2."""
+        velocity = delivered["velocity", "velocity_difference"]
+        return (velocity - memory.velocity_mps) / self._dt
 
     @override
     def wind(self, memory: Memory) -> Tensor:
@@ -81,5 +86,22 @@ class DisturbanceObserver(Reconstruction):
         acceleration = attitude[:, 2] * (thrust_scale * thrust / mass_kg)
         velocity = delivered["velocity", "velocity_difference"]
         acceleration += self._air.force(attitude, -velocity) / mass_kg
+        acceleration[2] -= GRAVITY_MPS2
+        return acceleration
+
+
+class InertialObserver(DisturbanceObserver):
+    """The same from the accelerometer: its innovation, what it reads beside what was expected.
+
+    It takes the last 10 ms, by when the motors have followed the command best. Its bias and the
+    attitude's error go into the wind.
+    """
+
+    reads = DisturbanceObserver.reads | {("accelerometer", "nominal_model")}
+
+    @override
+    def observed(self, memory: ObserverMemory, delivered: Delivered) -> Tensor:
+        force = delivered["accelerometer", "nominal_model"][-1]
+        acceleration = so3.rotate(delivered["attitude", "nominal_model"], force)
         acceleration[2] -= GRAVITY_MPS2
         return acceleration

@@ -1,10 +1,10 @@
-"""Calibration noise for training (DCC), by the same taps and faults that an audit uses."""
+"""Noise on calibration (DCC) and on motion for training, by the same taps and faults that an audit uses."""
 
 from collections.abc import Collection, Iterable, Mapping
 
 from torch import Tensor
 
-from faultpath.faults import AnyFault, Coupled, Fault, UniformScale, resolve
+from faultpath.faults import AnyFault, Bias, Coupled, Fault, UniformScale, resolve
 from faultpath.learning.windows import window_taps
 from faultpath.loop import Reading
 from faultpath_quadrotor.interface import quadrotor_interface
@@ -32,6 +32,23 @@ def dcc(consumers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> Coupled
     return Coupled(name="dcc", faults=faults).aimed_at(*sorted(readers & set(consumers)))
 
 
+STATE_STD = {"position": 0.012, "velocity": 0.026, "attitude": 0.005, "body_rate": 0.002}
+"""Standard deviations of the errors of motion, m, m/s, entries of the rotation matrix and rad/s:
+those that the error-state filter's own covariance gives after some seconds (derived)."""
+
+
+def state_noise(consumer: str) -> Coupled:
+    """Return independent Gaussian errors of the whole state at a consumer, one draw a window.
+
+    The law is that of `dcc`: each channel has its own cause, and an error stays for the window.
+    """
+    faults = tuple(
+        Fault(channel=channel, intervention=Bias(std=std), cause=f"state/{channel}")
+        for channel, std in STATE_STD.items()
+    )
+    return Coupled(name="state_noise", faults=faults).aimed_at(consumer)
+
+
 def corrupted(
     faults: Iterable[AnyFault],
     consumers: Collection[str],
@@ -50,7 +67,7 @@ def corrupted(
         consumers: Consumers that the model under training has.
         windows: Ids, one a row of every reading.
         seed: Seed of the model.
-        readings: Values by channel, `[W]`.
+        readings: Values by channel, `[W, ...]`.
 
     Raises:
         UserError: A name is unknown, or a fault acts on nobody here.

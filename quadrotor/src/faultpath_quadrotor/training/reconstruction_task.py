@@ -19,12 +19,18 @@ from faultpath.core.streams import generator
 from faultpath.learning.model_card import Schedule
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.reconstruction.network import WindNetwork
-from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
+from faultpath_quadrotor.training.corruption import (
+    DCC_HALF_RANGE,
+    STATE_STD,
+    corrupted,
+    dcc,
+    state_noise,
+)
 from faultpath_quadrotor.training.fitting import ModelTask
 from faultpath_quadrotor.training.provenance import rows_sha256
 from faultpath_quadrotor.training.windows import HISTORY, Windows, every_history, windows_of
 
-HEAD = "reconstruction.head"
+HEAD, PAST = "reconstruction.head", "reconstruction.history"
 TRAJECTORY_POOL = "trajectory"
 
 
@@ -37,6 +43,8 @@ class Model:
     calibrated: bool = True
     half_range: float | None = None
     """Of the noise on the head's calibration; `None`: the values are delivered as they are."""
+    moves: bool = False
+    """Whether there is noise on the motion in the history."""
 
 
 MODELS: Mapping[str, Model] = MappingProxyType(
@@ -45,6 +53,9 @@ MODELS: Mapping[str, Model] = MappingProxyType(
         "gru+dcc": Model(
             "The same, trained with noise on the calibration that enters its head.",
             half_range=DCC_HALF_RANGE,
+        ),
+        "gru+state": Model(
+            "The same, trained with noise on the motion in its history.", moves=True
         ),
         "gru-withheld": Model(
             "Wind from twelve completed intervals alone, without calibration.", calibrated=False
@@ -70,8 +81,11 @@ class _Samples:
     wind_mps: Tensor  # [3, N]
 
     @classmethod
-    def of(cls, windows: Windows, network: WindNetwork) -> _Samples:
-        intervals, latest = network.inputs(*_history(windows))
+    def of(
+        cls, windows: Windows, network: WindNetwork, errors: Tensor | float = 0.0
+    ) -> _Samples:
+        states, commands = _history(windows)
+        intervals, latest = network.inputs(states + errors, commands)
         return cls(intervals, latest, _calibration(windows), windows.wind_mps[:, HISTORY])
 
 
@@ -93,7 +107,7 @@ class ReconstructionTask(ModelTask):
         self.schedule = Schedule(epochs=40, batch_size=256, optimiser="adam")  # paper, appendix
         self._model = MODELS[name]
         self._data = data_folder
-        self.order_key = name.removesuffix("+dcc")
+        self.order_key = name.partition("+")[0]
         self._scaled = WindNetwork(self._model.calibrated)
 
     @override
@@ -104,7 +118,8 @@ class ReconstructionTask(ModelTask):
     def use(self, training: Windows, validation: Windows) -> None:
         """Take windows from memory, and the scales of inputs from the training ones."""
         self._scaled.measure(*_history(training), _calibration(training))
-        self._training = _Samples.of(training, self._scaled)
+        errors = self._errors(training) if self._model.moves else 0.0
+        self._training = _Samples.of(training, self._scaled, errors)
         self.count = len(training.ids)
         self._validation = _Samples.of(validation, self._scaled)
         self._supplied = self._calibration(training.ids) if self._model.calibrated else None
@@ -141,7 +156,19 @@ class ReconstructionTask(ModelTask):
             "data_sha256": rows_sha256(self._data, [self._model.pool]),
             "calibration_inputs": self._model.calibrated,
             "calibration_noise_half_range": self._model.half_range,
+            **({"motion_noise_std": STATE_STD} if self._model.moves else {}),
         }
+
+    def _errors(self, windows: Windows) -> Tensor:
+        """Return what is added to the state of every interval of a window, `[18, 1, N]`."""
+        latest = (
+            part[..., HISTORY, :].movedim(-1, 0)
+            for part in (windows.position, windows.velocity, windows.rotation, windows.rate)
+        )
+        given = dict(zip(STATE_STD, latest, strict=True))
+        got = corrupted([state_noise(PAST)], [PAST], windows.ids, self.seed, given)
+        apart = [(got[name, PAST] - value).flatten(1) for name, value in given.items()]
+        return torch.cat(apart, 1).T[:, None]
 
     def _calibration(self, windows: tuple[str, ...]) -> Tensor:
         """Return what the head gets of the calibration, standardised, `[2, N]`."""
