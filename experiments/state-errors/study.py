@@ -147,7 +147,7 @@ def decided(design: Design, table: OutcomeTable) -> list[dict]:
                 "repair": repair,
                 "success": {n: [float(np.mean(a)) for a in pair] for n, pair in success.items()},
                 "effects": {
-                    n: [100 * e.value, *(100 * end for end in e.interval()), e.sign]
+                    n: [e.value, *e.interval, e.sign]
                     for n, e in family.effects.items()
                 },
                 "turns": dict(family.turns),
