@@ -1,39 +1,58 @@
-"""An estimator as a user would bring it: gyroscope, specific force and position fixes, filtered."""
+"""An estimator as a user would bring it: attitude from the gyroscope, the rest by filterpy."""
 
+import numpy as np
 import torch
 from faultpath_quadrotor.estimators import Estimator
 from faultpath_quadrotor.so3 import exp
+from filterpy.kalman import KalmanFilter
 
 from faultpath.loop import Port
 
 GYROSCOPE, FORCE, FIX = (
-    Port(channel, "filter") for channel in ("gyroscope", "specific_force", "position_fix")
+    Port(channel, "filter") for channel in ("gyroscope", "accelerometer", "position_fix")
 )
-DT_S, GRAVITY = 0.05, torch.tensor([0.0, 0.0, -9.81]).double()
+LATE_S = 0.1  # of a fix when it arrives
+DT_S, GRAVITY = 0.05, np.array([0.0, 0.0, -9.81])
 
 
 class Filter(Estimator):
-    """Integrates gyroscope and specific force from the pose at the start, and follows the fixes."""
+    """Turns with the gyroscope; a Kalman filter a scene follows accelerations and fixes."""
 
     reads = frozenset({GYROSCOPE, FORCE, FIX})
     truths = ("vehicle",)
 
     def step(self, inputs, memory):
-        rate, force, fix = inputs[GYROSCOPE], inputs[FORCE], inputs[FIX]
+        rates, forces = (inputs[port] for port in (GYROSCOPE, FORCE))  # [B, 5, 3]: 10 ms each
+        fix = inputs[FIX].numpy()
         if memory is None:
             start = inputs.truth("vehicle")
-            position, velocity, attitude = fix, start["velocity"], start["attitude"]
+            filters = [kalman(each) for each in fix]
+            attitude = start["attitude"]
         else:
-            position, velocity, attitude, old_rate, old_force = memory
-            turn = exp(0.5 * DT_S * (old_rate + rate).T).movedim(-1, 0)
-            turned = attitude @ turn
-            world = 0.5 * (attitude @ old_force[..., None] + turned @ force[..., None])[..., 0]
-            ahead = velocity + DT_S * (world + GRAVITY)
-            position, attitude = position + 0.5 * DT_S * (velocity + ahead), turned
-            missed = fix - position
-            position, velocity = position + 0.3 * missed, ahead + 0.6 * missed
-        known = dict(zip(self.writes, (position, velocity, attitude, rate), strict=True))
-        return known, (position, velocity, attitude, rate, force)
+            filters, attitude = memory
+            moved = []
+            for sample in range(rates.shape[1]):
+                attitude = attitude @ exp(0.2 * DT_S * rates[:, sample].T).movedim(-1, 0)
+                moved.append((attitude @ forces[:, sample, :, None])[..., 0])
+            pushes = torch.stack(moved).mean(0).numpy() + GRAVITY
+            for each, push, seen in zip(filters, pushes, fix, strict=True):
+                each.predict(u=push)
+                each.update(seen + LATE_S * each.x[3:])
+        states = torch.from_numpy(np.stack([each.x for each in filters]))
+        known = (states[:, :3], states[:, 3:], attitude, rates[:, -1])
+        return dict(zip(self.writes, known, strict=True)), (filters, attitude)
+
+
+def kalman(fix):
+    one = np.eye(3)
+    found = KalmanFilter(dim_x=6, dim_z=3, dim_u=3)
+    found.x = np.concatenate((fix, np.zeros(3)))
+    found.F = np.block([[one, DT_S * one], [0 * one, one]])
+    found.B = np.vstack((0.5 * DT_S**2 * one, DT_S * one))
+    found.H = np.hstack((one, 0 * one))
+    found.Q = found.B @ found.B.T * 0.5**2
+    found.R, found.P = one * 0.05**2, np.eye(6) * 0.05**2
+    return found
 
 
 def create(seed):

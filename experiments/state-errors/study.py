@@ -42,6 +42,7 @@ class Design:
 
     @classmethod
     def read(cls, path: Path) -> "Design":
+        """Return the design in a file."""
         given = yaml.safe_load(path.read_text())
         repairs = {name: tuple(each) for name, each in given["repairs"].items()}
         every = [(fault, repair) for fault in given["faults"] for repair in repairs]
@@ -113,7 +114,9 @@ def study(design: Design, library: str, scenes: tuple[str, ...], files) -> Study
     def add(variant: str, path: str, *faults) -> None:
         consumers = system.variants[variant].consumers
         found = [p for f in faults for p in f.resolved(system.interface, consumers)]
-        arm = Arm(variant=variant, faults=resolve(found, system.interface, consumers), seed=design.seed)
+        arm = Arm(
+            variant=variant, faults=resolve(found, system.interface, consumers), seed=design.seed
+        )
         rows[variant, path] = Row(variant=variant, path=path, seed=design.seed, arm=arm)
 
     for fault, _ in design.audits:
@@ -124,7 +127,11 @@ def study(design: Design, library: str, scenes: tuple[str, ...], files) -> Study
                 text = f"state:recorded={files[fault, filter_]}@{place}"
                 add(variant, f"{fault}/{name}", _fault(system, text))
     return Study(
-        name="state-errors", system=design.spec, library=library, scenes=scenes, rows=tuple(rows.values())
+        name="state-errors",
+        system=design.spec,
+        library=library,
+        scenes=scenes,
+        rows=tuple(rows.values()),
     )
 
 
@@ -146,10 +153,7 @@ def decided(design: Design, table: OutcomeTable) -> list[dict]:
                 "fault": fault,
                 "repair": repair,
                 "success": {n: [float(np.mean(a)) for a in pair] for n, pair in success.items()},
-                "effects": {
-                    n: [e.value, *e.interval, e.sign]
-                    for n, e in family.effects.items()
-                },
+                "effects": {n: [e.value, *e.interval, e.sign] for n, e in family.effects.items()},
                 "turns": dict(family.turns),
             }
         )
@@ -157,6 +161,7 @@ def decided(design: Design, table: OutcomeTable) -> list[dict]:
 
 
 def main() -> None:
+    """Fly and decide."""
     parser = argparse.ArgumentParser()
     parser.add_argument("design", type=Path)
     parser.add_argument("--library", required=True)
@@ -171,7 +176,10 @@ def main() -> None:
     files = records(design, scenes, out / "errors")
     asks = study(design, asked.library, scenes, files)
     print(len(asks.arms()), "arms", len(scenes), "scenes", flush=True)
-    shown = lambda now: print(f"\r{now.done:g}/{now.total:g}", end="", flush=True)
+
+    def shown(now) -> None:
+        print(f"\r{now.done:g}/{now.total:g}", end="", flush=True)
+
     result = run_study(asks, out / "run", asked.workers, shown, print)
     found = decided(design, result.outcomes)
     (out / "found.json").write_text(json.dumps(found, indent=1) + "\n")
@@ -179,7 +187,10 @@ def main() -> None:
         print("\n", each["fault"], "|", each["repair"])
         for name, (value, low, high, sign) in each["effects"].items():
             one, two = each["success"][name]
-            print(f"  {name:15s} {one:.2f} {two:.2f} {value:+.3f} [{low:+.3f}, {high:+.3f}] {sign:+d} {each['turns'].get(name, '')}")
+            said = each["turns"].get(name, "")
+            print(
+                f"  {name:15s} {one:.2f} {two:.2f} {value:+.1f} [{low:+.1f}, {high:+.1f}] {sign} {said}"
+            )
 
 
 if __name__ == "__main__":

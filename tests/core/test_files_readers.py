@@ -14,13 +14,13 @@ from faultpath_quadrotor.paper.run import read_results
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
+from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, read_json, read_yaml, yaml_text
 from faultpath.decisions.plan.study import read_study
 from faultpath.interface import read_interface
 from faultpath.learning.model_card import FitRecord, read_card
 from faultpath.trials.store.atomic import locked
 from faultpath.trials.store.folder import RunFolder, read_manifest, read_outcomes, read_regular
-from faultpath.core.files.parquet import Unreadable
 
 Read = Callable[[Path], object]
 

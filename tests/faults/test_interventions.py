@@ -21,6 +21,7 @@ from faultpath.faults import (
     Noise,
     Offset,
     Quantise,
+    Rotate,
     Scale,
     Sequence,
     Shuffle,
@@ -243,6 +244,8 @@ def test_an_identity_keeps_every_bit(to: Any, intervention: Intervention) -> Non
         (Dropout(probability=0.1, substitute=Erase(default=(1.0,))), (3,), "default has shape [1]"),
         (Shuffle(axis=2), (3,), "axis 2 does not exist: the reading of one scene has 1 axes"),
         (Sequence(parts=(Freeze(), Shuffle(axis=1))), (), "axis 1 does not exist"),
+        (Rotate(by=(0.0, 0.0, 1.0)), (5, 3), None),
+        (Rotate(by=(0.0, 0.0, 1.0)), (3, 4), "the reading of one scene has shape [3, 4], which"),
         (Delay(steps=2), (), None),
     ],
 )

@@ -4,10 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from faultpath_quadrotor.evidence.state_errors import TURNING, state_errors
 from flights import HELD_OUT, bits, fault, fly, quadrotor
 
 from faultpath.core.errors import UserError
+from faultpath.faults import encode_record
 
+STILL = {"attitude": np.eye(3)}
 FILTER = f"{Path(__file__).parents[2] / 'examples' / 'own_filter.py'}:create"
 
 
@@ -16,18 +19,63 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 30)
 
 
-def test_a_filter_of_ones_own_estimates_the_state():
-    system = quadrotor(estimator=FILTER, wind="L1")
+def test_filters_estimate_the_state_and_feed_every_reader():
     (exact,), true = fly(quadrotor(wind="L1"))
-    (flown,), taps = fly(system)
-    assert "Estimating: Filter of" in system.variants["dob"].description
-    for channel, close in (("position", 0.05), ("velocity", 0.3), ("attitude", 0.05)):
-        known = taps.delivered(channel, "predictor.initial_state")[:10]
-        assert np.abs(known - true.delivered(channel, "predictor.initial_state")[:10]).max() < close
-    assert bits(flown) != bits(exact)
-    assert flown.disturbance_hash == exact.disturbance_hash
-    noisy, _ = fly(quadrotor(estimator=FILTER, wind="L1", sensor_noise="1"))
+    for estimator, said in ((FILTER, "Filter of"), ("eskf", "a Kalman filter")):
+        system = quadrotor(estimator=estimator, wind="L1", sensor_noise="0")
+        (flown,), taps = fly(system)
+        assert f"Estimating: {said}" in system.variants["dob"].description
+        for channel, close in (("position", 0.05), ("velocity", 0.3), ("attitude", 0.05)):
+            known = taps.delivered(channel, "predictor.initial_state")[:10]
+            truth = true.delivered(channel, "predictor.initial_state")[:10]
+            assert np.abs(known - truth).max() < close
+        assert bits(flown) != bits(exact)
+        assert flown.disturbance_hash == exact.disturbance_hash
+    noisy, _ = fly(quadrotor(estimator="eskf", wind="L1", sensor_noise="1"))
     assert bits(noisy[0]) != bits(flown)
+
+
+def test_a_filter_that_ships_flies_with_usual_sensors_and_beside_its_kin():
+    assert quadrotor(estimator="eskf").options.sensor_noise == 1.0
+    assert quadrotor().options.sensor_noise == 0.0
+    system = quadrotor(estimator="eskf", wind="L1")
+    assert {"dob-inertial", "eskf-no-bias/dob", "eskf-cautious/gru"} < set(system.variants)
+    assert "dob-inertial" not in quadrotor(wind="L1").variants
+    both, _ = fly(system, "dob-inertial", HELD_OUT[:2])
+    one, _ = fly(system, "dob-inertial", HELD_OUT[1:2])
+    assert bits(both[1]) == bits(one[0])
+    other, _ = fly(system, "eskf-no-bias/dob-inertial", HELD_OUT[1:2])
+    assert bits(other[0]) != bits(one[0])
+
+
+def test_errors_of_one_flight_are_delivered_to_one_module_of_another(tmp_path):
+    system = quadrotor(estimator="eskf-no-bias", wind="L1")
+    turned = fault("mount=0.1", system)
+    record = state_errors(system, "dob", HELD_OUT[:2], 0, [turned])
+    again = state_errors(system, "dob", HELD_OUT[:2], 0, [])
+    assert all(
+        np.abs(each - STILL.get(key.channel, 0.0)).max() < 1e-5 for key, each in again.items()
+    )
+    path = tmp_path / "errors.parquet"
+    path.write_bytes(encode_record(record, TURNING))
+    alone = fault(f"state:recorded={path}@reconstruction", system)
+    _, taps = fly(system, "dob", HELD_OUT[:2], [alone])
+    channel, place = "velocity", "reconstruction.velocity_difference"
+    for index, scene in enumerate(HELD_OUT[:2]):
+        given, got = (
+            np.stack([pair[part][index] for pair in taps.log[channel, place]]) for part in (0, 1)
+        )
+        wrong = record[channel, scene, 0]
+        count = min(len(wrong), len(got))
+        assert np.abs(wrong[-1]).max() > 0.05
+        assert np.abs(got[:count] - given[:count] - wrong[:count]).max() < 1e-6
+    for given, got in taps.log[channel, "predictor.initial_state"]:
+        assert (given == got).all()
+
+
+def test_only_a_filter_of_ours_has_errors_to_record():
+    with pytest.raises(UserError, match="no filter whose errors could be recorded"):
+        state_errors(quadrotor(), "dob", HELD_OUT[:1], 0, [])
 
 
 def test_faults_reach_the_sensors_of_an_estimator_and_variants_may_differ_in_it():

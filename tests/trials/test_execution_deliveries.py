@@ -4,10 +4,10 @@ import pytest
 from toy_study import FAULT, SCENES, study
 from toy_system import STEPS
 
+from faultpath.core.files import parquet
 from faultpath.loop import TapCount
 from faultpath.trials import Deliveries
 from faultpath.trials.execution.runner import run_study
-from faultpath.core.files import parquet
 from faultpath.trials.store import tables
 
 FAULTED = (STEPS - FAULT.onset_step) * len(SCENES)

@@ -24,6 +24,7 @@ from faultpath.api.runs import (
 )
 from faultpath.api.systems import Chosen, executor_of
 from faultpath.core.errors import UserError
+from faultpath.core.files.parquet import Unreadable
 from faultpath.decisions.decide import after_looks
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.phrases import counted
@@ -37,7 +38,6 @@ from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.question import AuditQuestion, Running
 from faultpath.trials.store.atomic import write_file, write_text
 from faultpath.trials.store.folder import keyed, read_regular, seal
-from faultpath.core.files.parquet import Unreadable
 from faultpath.trials.store.signals import SIGNALS, Signal, decode_signals, encode_signals
 from faultpath.trials.store.tables import TrialAddress
 from faultpath.trials.work.executor import Progress

@@ -11,6 +11,7 @@ import pyarrow as pa
 from pydantic import BaseModel
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.parquet import Unreadable, read_table
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import faulted_taps
@@ -20,7 +21,6 @@ from faultpath.report.tables import markdown_table
 from faultpath.trials import Deliveries, OutcomeTable, Status, SystemShown
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, read_regular, unseal
-from faultpath.core.files.parquet import Unreadable, read_table
 from faultpath.trials.store.signals import SIGNALS, decode_signals
 from faultpath.trials.store.tables import decode_outcomes, decode_traces
 

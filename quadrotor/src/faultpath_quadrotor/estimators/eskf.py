@@ -125,8 +125,12 @@ class Tuned:
 FILTERS: Mapping[str, Tuned] = MappingProxyType(
     {
         "eskf": Tuned("a Kalman filter that estimates the biases of its inertial sensors"),
-        "eskf-no-bias": Tuned("a Kalman filter that takes its inertial sensors for unbiased", False),
-        "eskf-cautious": Tuned("a Kalman filter that takes fixes for three times as noisy", doubt=3.0),
+        "eskf-no-bias": Tuned(
+            "a Kalman filter that takes its inertial sensors for unbiased", False
+        ),
+        "eskf-cautious": Tuned(
+            "a Kalman filter that takes fixes for three times as noisy", doubt=3.0
+        ),
     }
 )
 """By the names of `choices.FILTERS`."""

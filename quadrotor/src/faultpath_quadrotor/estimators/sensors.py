@@ -151,7 +151,7 @@ class Errors:
 def _draw(
     name: str, sensor: Sensor, scene: str, seed: int, steps: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return how axes are scaled and mixed, `[3, 3]`, and what is added at each step, `[T, ...]`."""
+    """Return how axes are mixed, `[3, 3]`, and what is added at each step, `[T, ...]`."""
     stream = generator(f"sensor/{name}", scene, seed)
     mixed = sensor.scale * stream.standard_normal((3, 3))
     axes = sensor.shape[-1:]

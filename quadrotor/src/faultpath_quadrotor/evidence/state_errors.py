@@ -83,7 +83,7 @@ def state_errors(
 def _apart(
     filter_: ErrorStateFilter, steps: Sequence[dict[str, torch.Tensor]]
 ) -> dict[str, np.ndarray]:
-    """Return the estimates beside those of the filter on readings without a fault, `[T, B, ...]`."""
+    """Return estimates beside those from readings without a fault, `[T, B, ...]` by channel."""
     past: Filtered | None = None
     apart: dict[str, list[torch.Tensor]] = {channel: [] for channel in STATE_SOURCES}
     for step, held in enumerate(steps):

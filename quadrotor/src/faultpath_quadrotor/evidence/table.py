@@ -18,9 +18,9 @@ from pydantic import Field
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
+from faultpath.core.files.parquet import INTEGER, NUMBER, TEXT, Unreadable, decode, encode
 from faultpath.core.results import Frozen
 from faultpath.trials.store.atomic import write_file
-from faultpath.core.files.parquet import INTEGER, NUMBER, TEXT, Unreadable, decode, encode
 
 Quantity: TypeAlias = Literal[
     "position-error",

@@ -1,4 +1,4 @@
-"""Noise on calibration (DCC) and on motion for training, by the same taps and faults that an audit uses."""
+"""Noise on calibration (DCC) and motion for training, by the taps and faults of audits."""
 
 from collections.abc import Collection, Iterable, Mapping
 

@@ -18,8 +18,8 @@ import pyarrow.parquet as pq
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
-from faultpath.trials.store import atomic
 from faultpath.core.files.parquet import read_table
+from faultpath.trials.store import atomic
 from faultpath_quadrotor.training.provenance import Provenance, read_provenance
 from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, Flights
 from faultpath_quadrotor.vehicle import VehicleParameters

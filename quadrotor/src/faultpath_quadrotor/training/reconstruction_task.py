@@ -81,9 +81,7 @@ class _Samples:
     wind_mps: Tensor  # [3, N]
 
     @classmethod
-    def of(
-        cls, windows: Windows, network: WindNetwork, errors: Tensor | float = 0.0
-    ) -> _Samples:
+    def of(cls, windows: Windows, network: WindNetwork, errors: Tensor | float = 0.0) -> _Samples:
         states, commands = _history(windows)
         intervals, latest = network.inputs(states + errors, commands)
         return cls(intervals, latest, _calibration(windows), windows.wind_mps[:, HISTORY])

@@ -15,13 +15,13 @@ from typing import Any
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, model_of, read_json
 from faultpath.core.results import Frozen
 from faultpath.trials.arm import Study
 from faultpath.trials.code import CodeState, named
 from faultpath.trials.store import atomic
 from faultpath.trials.store.atomic import Say, locked, make_folder, write_file
-from faultpath.core.files.parquet import Unreadable
 from faultpath.trials.store.tables import (
     Shard,
     decode_outcomes,

@@ -8,8 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
-from faultpath.loop import TapCount
-from faultpath.trials.outcome import VEHICLE, Outcome, Status, checked
 from faultpath.core.files.parquet import (
     INTEGER,
     NUMBER,
@@ -21,6 +19,8 @@ from faultpath.core.files.parquet import (
     decode,
     encode,
 )
+from faultpath.loop import TapCount
+from faultpath.trials.outcome import VEHICLE, Outcome, Status, checked
 from faultpath.trials.table import OutcomeTable, TrialRow
 
 Trace = NDArray[np.float32]
