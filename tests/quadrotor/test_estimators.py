@@ -67,7 +67,7 @@ def test_errors_of_one_flight_are_delivered_to_one_module_of_another(tmp_path):
         )
         wrong = record[channel, scene, 0]
         count = min(len(wrong), len(got))
-        assert np.abs(wrong[-1]).max() > 0.05
+        assert np.abs(wrong[-1]).max() > 0.02
         assert np.abs(got[:count] - given[:count] - wrong[:count]).max() < 1e-6
     for given, got in taps.log[channel, "predictor.initial_state"]:
         assert (given == got).all()
