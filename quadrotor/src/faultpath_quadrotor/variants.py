@@ -92,10 +92,10 @@ class Setup:
 
     def load_estimator(self, seed: int | None, options: QuadrotorOptions) -> Estimator | None:
         """Return the estimator for an arm of this seed; `None` for the exact one."""
-        if self.estimator in FILTERS:
-            return filtering(self.estimator, options.fixes, options.place)
         if self.estimator is None:
             return None
+        if self.estimator in FILTERS:
+            return filtering(self.estimator, options.fixes, options.place)
         return self.user_parts[self.estimator].load(seed, options.place)
 
     def wiring(self, options: QuadrotorOptions) -> Wiring:
