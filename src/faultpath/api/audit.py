@@ -83,7 +83,7 @@ def audit(
     place = run_folder(asked, chosen, named)
     with executor_of(chosen.system, chosen.workers, chosen.executor) as executor:
         job = Job(place, executor, display, {"time_limit_s": asked.time_limit_s})
-        _carry_out(chosen.system, laid, job, asked.signals)
+        carry_out(chosen.system, laid, job, asked.signals)
     run = Run(place, *read_run(place))
     run.report()
     return run
@@ -148,7 +148,7 @@ def run_folder(asked: Running, chosen: Chosen, named: Sequence[str]) -> Path:
     return place
 
 
-def _carry_out(system: System, audit: Audit, job: Job, signals: bool) -> None:
+def carry_out(system: System, audit: Audit, job: Job, signals: bool) -> None:
     """Run, decide and write what the run folder's pages are made from.
 
     What was concluded before in the folder stands in the record: see `after_looks`. Raises

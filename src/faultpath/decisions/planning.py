@@ -90,7 +90,7 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
     sequential = asked.stop_when is not None
     chosen = scenes_of(library, asked.scenes, in_order=not sequential)
     fault = system.fault(asked.fault)
-    faults = _faults_by_path(system, fault, variants)
+    faults = faults_by_path(system, fault, variants)
     titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
     paths = [
         Path(
@@ -153,7 +153,7 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
     return Audit(question, tuple(paths), study)
 
 
-def _faults_by_path(
+def faults_by_path(
     system: System, fault: AnyFault, variants: Sequence[Variant]
 ) -> dict[str, dict[str, tuple[Fault, ...]]]:
     """Return the faults of each path in each variant; none under correct inputs. With a single
