@@ -1,4 +1,4 @@
-"""`faultpath plan`, `audit`, `map`, `report` and `replay`: audits, and what is done with them."""
+"""`faultpath plan`, `audit`, `map`, `search`, `report` and `replay`: audits, and what follows."""
 
 import hashlib
 import json
@@ -13,7 +13,14 @@ from faultpath.cli.options import FOUND, Json, SystemName, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
-from faultpath.trials.question import AuditQuestion, MapQuestion, PlanQuestion, Question, Running
+from faultpath.trials.question import (
+    AuditQuestion,
+    MapQuestion,
+    PlanQuestion,
+    Question,
+    Running,
+    SearchQuestion,
+)
 
 if TYPE_CHECKING:
     from faultpath.api.runs import Run
@@ -123,6 +130,26 @@ def reversal_map(system: SystemName, as_json: Json = False, **given: Any) -> int
     run = reversal_map(system, **given, progress=display(as_json))
 
     from faultpath.report.map import shown
+
+    if as_json:
+        typer.echo(run.record.model_dump_json(indent=1))
+    else:
+        console = SafeConsole()
+        console.print(shown(run.record))
+        console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
+    return FOUND if run.record.failed else 0
+
+
+@takes(SearchQuestion)
+def search(system: SystemName, as_json: Json = False, **given: Any) -> int:
+    """Look within bounds for the fault that hurts those most who choose the repair by an isolated
+    audit: half of the scenes find it, and an audit of it in the other half decides."""
+    from faultpath.api.display import SafeConsole
+    from faultpath.api.searching import search
+
+    run = search(system, **given, progress=display(as_json))
+
+    from faultpath.report.search import shown
 
     if as_json:
         typer.echo(run.record.model_dump_json(indent=1))

@@ -166,7 +166,9 @@ def parse_fault(
     """
     if len(joined := text.split(JOINED.strip())) > 1:
         each = [parse_fault(part.strip(), interface, presets, dt_s) for part in joined]
-        faults = [part for one in each for part in (one.faults if one.kind == "coupled" else (one,))]
+        faults = [
+            part for one in each for part in (one.faults if one.kind == "coupled" else (one,))
+        ]
         # Without sizes: draws of the cause are the same at every size.
         names = (one.name if one.kind == "coupled" else one.drawn_from for one in each)
         return Coupled(name=JOINED.join(names), faults=tuple(faults))
