@@ -165,6 +165,8 @@ def parse_fault(
     that quotes the text and names the known values.
     """
     if len(joined := text.split(JOINED.strip())) > 1:
+        if "@" in text:
+            raise UserError(f"fault '{text}': joined faults reach every consumer; leave '@' out")
         each = [parse_fault(part.strip(), interface, presets, dt_s) for part in joined]
         faults = [
             part for one in each for part in (one.faults if one.kind == "coupled" else (one,))

@@ -1,7 +1,7 @@
 """Within which faults a search looks: `bounds.yaml`, and the fault at each point of it."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -59,7 +59,7 @@ class Bounds(Frozen, allow_inf_nan=False):
         times = [(*ends, True) for ends in (self.onset, self.duration) if ends]
         return [*sizes, *times, *([(*self.correlation, False)] if self.correlation else [])]
 
-    def fault(self, point: Sequence[float]) -> str:
+    def fault(self, point: Iterable[float]) -> str:
         """Return the fault at a point of the unit cube, which has a dimension for each range."""
         spread = zip(self.ranges(), point, strict=True)
         numbers = [_between(*ends, share) for ends, share in spread]

@@ -25,7 +25,7 @@ def proposals(
     `cmaes`.
     """
     try:
-        from cmaes import CMA
+        from cmaes import CMA  # pyright: ignore[reportMissingTypeStubs]
     except ModuleNotFoundError:
         raise UserError(
             f"a search needs the package 'cmaes', which is not installed: {extra('search')}"
