@@ -258,7 +258,9 @@ class SearchQuestion(Running):
     panel: ClassVar[str] = "What is searched"
 
     within: Annotated[
-        Path, BeforeValidator(lambda given: Path(given) if isinstance(given, str) else given)
+        Path,
+        BeforeValidator(lambda given: Path(given) if isinstance(given, str) else given),
+        PlainSerializer(str),
     ] = Field(
         description="File of bounds: the faults with their sizes, and the module that an isolated "
         "audit strikes."
