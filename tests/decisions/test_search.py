@@ -10,6 +10,7 @@ from outcome_tables import SCENES, three
 from outcome_tables import record as audit
 
 from faultpath.core.errors import UserError
+from faultpath.decisions.joined import fault_of
 from faultpath.decisions.search.bounds import BoundedFault, Bounds
 from faultpath.decisions.search.decide import conclude
 from faultpath.decisions.search.model import SearchQuestion, SearchRecord, Tried
@@ -74,10 +75,29 @@ def test_faults_stay_within_the_bounds_and_can_be_typed() -> None:
         "position:delay=1,onset=8"
     )
     for point in np.random.default_rng(0).random((20, 5)):
-        gain, velocity, position = TOY.fault(bounds.fault(point.tolist())).faults
+        gain, velocity, position = fault_of(TOY, bounds.fault(point.tolist())).faults
         assert gain.loading * velocity.loading == pytest.approx(2 * point[4] - 1, abs=6e-3)
         assert 0 <= gain.intervention.std <= 0.3
         assert 5 <= position.onset_step <= 10
+
+
+def test_joined_faults_have_one_cause_at_every_size_and_share_what_their_loadings_say() -> None:
+    text = "gain:bias={},loading=0.6 & velocity:bias=0.1,relative,loading=-0.6"
+    parts = [p for size in (1, 2) for p in fault_of(TOY, text.format(size)).resolved(TOY.interface)]
+    assert {part.cause for part in parts} == {"gain:bias & velocity:bias"}
+    assert [(part.channel, part.loading) for part in parts[:2]] == [
+        ("gain", 0.6),
+        ("velocity", -0.6),
+    ]
+    for wrong, said in (
+        ("gain:scale=1.1,loading=0.5 & velocity:noise=1", "and of errors that are drawn"),
+        ("gain:noise=1 & velocity:noise=1,loading=2", "a number from -1 to 1"),
+        ("gain:noise=1 & ", "empty"),
+        ("gain:noise=1@observer & velocity:scale=2", "leave '@' out"),
+        ("gian:noise=1 & velocity:scale=2", "did you mean 'gain'"),
+    ):
+        with pytest.raises(UserError, match=said):
+            fault_of(TOY, wrong)
 
 
 def test_no_scene_changes_its_half_with_the_number_of_scenes(tmp_path: Path) -> None:

@@ -130,22 +130,3 @@ def test_a_mistake_is_one_sentence_that_quotes_the_text(text: str, said: str) ->
         parse(text)
     assert str(caught.value).startswith(f"fault '{text}': ")
     assert said in str(caught.value)
-
-
-def test_joined_faults_have_one_cause_at_every_size_and_share_what_their_loadings_say():
-    found = parse("wind:bias=0.5,loading=0.6 & mass:bias=0.1,relative,loading=-0.6")
-    larger = parse("wind:bias=0.7,loading=0.6 & mass:bias=0.2,relative,loading=-0.6")
-    causes = {part.cause for each in (found, larger) for part in each.resolved(INTERFACE)}
-    assert causes == {"wind:bias & mass:bias"}
-    assert [(part.channel, part.loading) for part in found.faults] == [
-        ("wind", 0.6),
-        ("mass", -0.6),
-    ]
-    for text, said in (
-        ("mass:scale=1.1,loading=0.5 & wind:noise=1", "a loading is of errors that are drawn"),
-        ("wind:noise=1,loading=2", "from -1 to 1"),
-        ("wind:noise=1 & ", "empty"),
-        ("wind:noise=1@predictor & mass:scale=2", "leave '@' out"),
-    ):
-        with pytest.raises(UserError, match=said):
-            parse(text)

@@ -25,6 +25,7 @@ from faultpath.api.runs import (
 from faultpath.api.systems import Chosen, executor_of
 from faultpath.core.errors import UserError
 from faultpath.decisions.decide import after_looks
+from faultpath.decisions.joined import JOINED
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.phrases import counted
 from faultpath.decisions.planning import Audit, plan_audit
@@ -110,7 +111,9 @@ def audits(
     Raises:
         UserError: As `audit`, and for a size given twice.
     """
-    texts = each_size(given["fault"]) if isinstance(given.get("fault"), str) else ()
+    fault = given.get("fault")
+    several = isinstance(fault, str) and JOINED.strip() not in fault
+    texts = each_size(given["fault"]) if several else ()
     if len(texts) < 2:
         return (audit(system, progress=progress, **given),)
     folder = given.pop("folder", None)

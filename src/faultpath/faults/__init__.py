@@ -12,14 +12,12 @@ from faultpath.faults.fault import (
     Sequence,
     resolve,
 )
-from faultpath.faults.parse import JOINED, KINDS, FaultPreset, FaultText, each_size, parse_fault
+from faultpath.faults.parse import FaultPreset, FaultText, each_size, parse_fault
 from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Scale
 
 __all__ = [
     "ALL",
     "INTERVENTIONS",
-    "JOINED",
-    "KINDS",
     "AnyFault",
     "AnyIntervention",
     "Bias",

@@ -9,9 +9,6 @@
 
 Further sizes stand after commas without a name: `gain:scale=0.8,0.9,1.1,onset=20@observer`, or a
 range `FROM..TO/COUNT`. A correlation group may stand for its channels: `calibration:scale=1.1`.
-
-Faults joined by `&` act together and have one cause: drawn errors are the same draws, as far as
-each `loading` says: `wind:bias=0.5,loading=0.7 & mass:bias=0.1,relative,loading=-0.7`.
 """
 
 import re
@@ -30,9 +27,6 @@ from faultpath.interface import Interface, groups
 FaultPreset: TypeAlias = Callable[[float], Coupled]
 """A system's named fault: its size in, the faults out; raises `UserError` for a wrong size."""
 
-JOINED = " & "
-"""Between faults of one cause."""
-
 KINDS = {kind: each for kind, each in INTERVENTIONS.items() if kind != "sequence"}
 """Interventions that text can state: those that need no more than one value."""
 
@@ -42,7 +36,7 @@ _WINDOW = {
     "recover": ("recovery_steps", 0),
 }
 """Options on time: the field of `Fault` and the least number of steps."""
-_ANY_FAULT = (*(f"{name}{unit}" for name in _WINDOW for unit in ("", "_s")), "loading")
+_ANY_FAULT = tuple(f"{name}{unit}" for name in _WINDOW for unit in ("", "_s"))
 """Options that every fault takes."""
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
@@ -133,8 +127,6 @@ def each_size(text: str) -> tuple[str, ...]:
 
     `UserError` for a text that has no such form.
     """
-    if JOINED.strip() in text:
-        return (text,)
     asked = FaultText.read(text)
     if len(asked.sizes) < 2:
         return (text,)
@@ -164,16 +156,6 @@ def parse_fault(
     `dt_s` is the length of a control step, for options in seconds. Raises `UserError`, one sentence
     that quotes the text and names the known values.
     """
-    if len(joined := text.split(JOINED.strip())) > 1:
-        if "@" in text:
-            raise UserError(f"fault '{text}': joined faults reach every consumer; leave '@' out")
-        each = [parse_fault(part.strip(), interface, presets, dt_s) for part in joined]
-        faults = [
-            part for one in each for part in (one.faults if one.kind == "coupled" else (one,))
-        ]
-        # Without sizes: draws of the cause are the same at every size.
-        names = (one.name if one.kind == "coupled" else one.drawn_from for one in each)
-        return Coupled(name=JOINED.join(names), faults=tuple(faults))
     parts = FaultText.read(text)
     try:
         if len(parts.sizes) > 1:
@@ -181,11 +163,6 @@ def parse_fault(
         update, options = _timing(parts.options, dt_s)
         if parts.consumers:
             update["consumers"] = parts.consumers
-        if "loading" in options:
-            update["loading"] = loading = _number("loading", options.pop("loading"))
-            drawn = getattr(KINDS.get(parts.kind or ""), "random", False)
-            if not drawn or not -1.0 <= loading <= 1.0:
-                raise UserError("a loading is of errors that are drawn, and from -1 to 1")
         if parts.kind is None:
             fault = _preset(parts, options, interface, presets)
         else:

@@ -12,7 +12,9 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml
 from faultpath.core.results import Frozen
-from faultpath.faults import JOINED, KINDS, FaultText
+from faultpath.decisions.joined import JOINED
+from faultpath.faults import FaultText
+from faultpath.faults.parse import KINDS
 from faultpath.trials import System
 
 _DIGITS = 3

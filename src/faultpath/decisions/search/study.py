@@ -8,6 +8,7 @@ import numpy as np
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import listed
+from faultpath.decisions.joined import fault_of
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.planning import Audit, faults_by_path, plan_audit, scenes_of, two_variants
 from faultpath.decisions.search.bounds import read_bounds
@@ -38,7 +39,7 @@ class SearchPlan:
         asked, rows = self.question, list[Row]()
         variants = two_variants(self.system, self.asked)
         for text in faults:
-            paths = faults_by_path(self.system, self.system.fault(text), variants)
+            paths = faults_by_path(self.system, fault_of(self.system, text), variants)
             for path in (asked.bounds.isolated, SHARED):
                 for name, parts in paths[path].items():
                     for seed in asked.seeds:
@@ -117,7 +118,7 @@ def plan_search(
     variants = two_variants(system, asked)
     bounds = read_bounds(asked.within, system)
     for corner in (0.0, 1.0):
-        fault = system.fault(bounds.fault([corner] * len(bounds.ranges())))
+        fault = fault_of(system, bounds.fault([corner] * len(bounds.ranges())))
         paths = faults_by_path(system, fault, variants)
         alone = [path for path in paths if path not in (CORRECT, SHARED)]
         if SHARED not in paths:
