@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -23,7 +23,9 @@ from faultpath.trials.question import (
 )
 
 if TYPE_CHECKING:
-    from faultpath.api.runs import Run
+    from rich.console import RenderableType
+
+    from faultpath.api.runs import FinishedRun, Run
 
 
 @takes(PlanQuestion)
@@ -124,32 +126,31 @@ def study(
 def reversal_map(system: SystemName, as_json: Json = False, **given: Any) -> int:
     """Map the success difference over the error at one module and that at another: where repair
     or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
-    from faultpath.api.display import SafeConsole
     from faultpath.api.mapping import reversal_map
 
     run = reversal_map(system, **given, progress=display(as_json))
 
     from faultpath.report.map import shown
 
-    if as_json:
-        typer.echo(run.record.model_dump_json(indent=1))
-    else:
-        console = SafeConsole()
-        console.print(shown(run.record))
-        console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
-    return FOUND if run.record.failed else 0
+    return _tell(run, shown, as_json)
 
 
 @takes(SearchQuestion)
 def search(system: SystemName, as_json: Json = False, **given: Any) -> int:
     """Look within bounds for the fault that hurts those most who choose the repair by an isolated
     audit: half of the scenes find it, and an audit of it in the other half decides."""
-    from faultpath.api.display import SafeConsole
     from faultpath.api.searching import search
 
     run = search(system, **given, progress=display(as_json))
 
     from faultpath.report.search import shown
+
+    return _tell(run, shown, as_json)
+
+
+def _tell(run: "FinishedRun", shown: "Callable[[Any], RenderableType]", as_json: bool) -> int:
+    """Print the record of a map or a search; return the status."""
+    from faultpath.api.display import SafeConsole
 
     if as_json:
         typer.echo(run.record.model_dump_json(indent=1))
