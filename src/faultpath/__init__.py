@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from faultpath.api.comparing import compare
     from faultpath.api.mapping import reversal_map
     from faultpath.api.runs import Run, open_run
+    from faultpath.api.searching import search
     from faultpath.api.systems import load_system
     from faultpath.core.errors import Stopped, UserError
     from faultpath.core.streams import generator
@@ -36,6 +37,7 @@ __all__ = [
     "open_run",
     "plan",
     "reversal_map",
+    "search",
     "trace",
 ]
 
@@ -53,6 +55,7 @@ _HOMES = {
     "open_run": "faultpath.api.runs",
     "plan": "faultpath.api.before",
     "reversal_map": "faultpath.api.mapping",
+    "search": "faultpath.api.searching",
     "trace": "faultpath.api.before",
 }
 

@@ -61,6 +61,7 @@ RIGHT = {
     "replay": ["folder"],
     "report": ["folder"],
     "reproduce": ["table-99"],
+    "search": [TOY, *ARMS, "--within", "text.txt", "--workers", "0"],
     "trace": [TOY, "--library", "carts"],
     "train quadrotor": ["nobody"],
 }

@@ -15,6 +15,8 @@ from scipy.stats import multinomial
 
 from faultpath.core.streams import generator
 from faultpath.decisions.family import CORRECT, SHARED, Arms, Family, alpha_shares, decide_paths
+from faultpath.decisions.search.propose import proposals
+from faultpath.decisions.search.study import regret
 from faultpath.statistics.estimate import IN_FORCE, RULES
 from faultpath.statistics.power import detectable, detected, rule_power
 from faultpath.statistics.resamples import Resamples
@@ -196,6 +198,43 @@ def reversals(scenes: int, seeds: int, isolated: float, runs: int = 600) -> floa
     for _ in range(runs):
         family = decide_paths(audit_of(stream, scenes, paths, 0.3), rule=IN_FORCE)
         announced += "reversal" in family.turns.values()
+    return announced / runs
+
+
+def searches(
+    scenes: int, isolated: float, fresh: bool = True, candidates: int = 48, runs: int = 400
+) -> float:
+    """Return the share of searches that announce a reversal where no fault has one: isolated
+    effects as stated, and none where the fault is shared.
+
+    `fresh`: whether other scenes confirm than those that find, as they do; else what would come of
+    judging a fault by the scenes that chose it.
+    """
+    stream = generator("statistics", f"searches {scenes} {isolated} {fresh} {candidates}", 0)
+    none = Population(0.3, 0.0)
+    paths = dict.fromkeys(PATHS, none) | {"predictor": Population(0.3, isolated / 0.3)}
+    announced = 0
+    for _ in range(runs):
+        source = proposals(2, int(stream.integers(2**31)), candidates)
+        seen: list[tuple[float, dict[str, Arms]]] = []
+        points = next(source)
+        while points:
+            tried = [audit_of(stream, scenes, paths, 0.3) for _ in points]
+            ahead = [
+                [(one.astype(float) - two).mean(axis=1) for one, two in (a["predictor"], a[SHARED])]
+                for a in tried
+            ]
+            values = [regret(alone, shared) for alone, shared in ahead]
+            seen += zip(values, tried, strict=True)
+            try:
+                points = source.send(values)
+            except StopIteration:
+                break
+        value, found = max(seen, key=lambda each: each[0])
+        if value > 0.0:
+            judged = audit_of(stream, scenes, paths, 0.3) if fresh else found
+            family = decide_paths(judged, rule=IN_FORCE)
+            announced += family.turns["predictor"] == "reversal"
     return announced / runs
 
 

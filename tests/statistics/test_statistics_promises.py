@@ -112,3 +112,10 @@ def test_a_p_divided_by_four_breaks_a_promise(monkeypatch):
     monkeypatch.setattr(unconditional, "p_value", lambda *given: real(*given) / 4)
     found = simulated.equal_arms(100, Population(0.3, 0.0), 0.0, 400)
     assert not kept(found, 400, most=ALPHA)
+
+
+def test_few_searches_announce_a_reversal_where_no_fault_has_one():
+    """And many would, if the scenes that chose the fault were to judge it too."""
+    asked = {"scenes": 60, "isolated": 0.2, "candidates": 24, "runs": 100}
+    assert kept(simulated.searches(**asked), 100, most=0.05)
+    assert simulated.searches(**asked, fresh=False) > 0.1

@@ -2,24 +2,26 @@
 
 import inspect
 import textwrap
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
 
 from faultpath.api.display import Display, Show, display
 from faultpath.api.systems import Chosen, choose
-from faultpath.trials import Library, Study, System, library_of
+from faultpath.trials import Library, OutcomeTable, Study, System, library_of
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import Failure, RunResult, run_study
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import Request, ask
-from faultpath.trials.work.executor import Executor
+from faultpath.trials.work.executor import Executor, Progress
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
 _Asked = TypeVar("_Asked", bound=Request)
+_Item = TypeVar("_Item")
 
 _ERRORS_SHOWN = 5
 
@@ -92,6 +94,49 @@ class Job:
         every: dict[str, Any] = {"notice": self.display.say, **self.how, **how}
         place, executor = folder or self.folder, self.executor
         return run_study(study, place, progress=show, system=system, executor=executor, **every)
+
+    def rounds(
+        self,
+        system: System,
+        items: Sequence[_Item],
+        study: Callable[[Sequence[_Item]], Study],
+        more: Callable[[Sequence[_Item], OutcomeTable], Iterable[_Item]],
+        most: int,
+        noun: str,
+    ) -> tuple[list[_Item], RunResult]:
+        """Run the `study` of some items, then with `more` of them from what those before have
+        shown, until none come; the folder serves studies of other items too.
+
+        About `most` items are expected, each a `noun`. Raises as `run`.
+        """
+        every, computed, said = [*items], 0, set[str]()
+
+        def notice(text: str) -> None:
+            key = "Kept " if text.startswith("Kept ") else text
+            if key not in said:
+                said.add(key)
+                self.display.say(text)
+
+        with self.display.progress("Running") as show:
+
+            def note(now: Progress) -> None:
+                whole = (now.total or 0.0) * max(1.0, most / len(every))
+                show(now.within(max(now.done, whole), remark=f"{len(every)} {noun}"))
+
+            run = partial(self.run, system=system, show=note, notice=notice, shared=True)
+            while True:
+                result = run(study(every), recheck=False)
+                said.add("Kept ")  # what later rounds keep, this call has run itself
+                computed += result.blocks_computed
+                new = list(more(every, result.outcomes))
+                if not new:
+                    break
+                every += new
+            result = run(study(every), recheck=True)
+            trials = len(result.outcomes.rows)
+            show(Progress(trials, trials, f"{len(every)} {noun}"))
+        blocks = result.blocks_kept + result.blocks_computed
+        return every, replace(result, blocks_computed=computed, blocks_kept=blocks - computed)
 
     def finish(
         self, result: RunResult, system: System, names: Iterable[str], folder: Path | None = None

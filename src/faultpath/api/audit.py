@@ -26,6 +26,7 @@ from faultpath.api.systems import Chosen, executor_of
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
 from faultpath.decisions.decide import after_looks
+from faultpath.decisions.joined import JOINED
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.phrases import counted
 from faultpath.decisions.planning import Audit, plan_audit
@@ -83,7 +84,7 @@ def audit(
     place = run_folder(asked, chosen, named)
     with executor_of(chosen.system, chosen.workers, chosen.executor) as executor:
         job = Job(place, executor, display, {"time_limit_s": asked.time_limit_s})
-        _carry_out(chosen.system, laid, job, asked.signals)
+        carry_out(chosen.system, laid, job, asked.signals)
     run = Run(place, *read_run(place))
     run.report()
     return run
@@ -110,7 +111,9 @@ def audits(
     Raises:
         UserError: As `audit`, and for a size given twice.
     """
-    texts = each_size(given["fault"]) if isinstance(given.get("fault"), str) else ()
+    fault = given.get("fault")
+    several = isinstance(fault, str) and JOINED.strip() not in fault
+    texts = each_size(given["fault"]) if several else ()
     if len(texts) < 2:
         return (audit(system, progress=progress, **given),)
     folder = given.pop("folder", None)
@@ -148,7 +151,7 @@ def run_folder(asked: Running, chosen: Chosen, named: Sequence[str]) -> Path:
     return place
 
 
-def _carry_out(system: System, audit: Audit, job: Job, signals: bool) -> None:
+def carry_out(system: System, audit: Audit, job: Job, signals: bool) -> None:
     """Run, decide and write what the run folder's pages are made from.
 
     What was concluded before in the folder stands in the record: see `after_looks`. Raises

@@ -12,6 +12,7 @@ from faultpath.api.runs import Run
 from faultpath.api.systems import Chosen, choose
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
+from faultpath.decisions.joined import fault_of
 from faultpath.decisions.plan.plan import Plan, make_plan, sentences
 from faultpath.decisions.plan.study import StudyFile, check_arms
 from faultpath.decisions.planning import plan_audit
@@ -178,7 +179,7 @@ def traced(asked: TraceQuestion, chosen: Chosen) -> "TraceReport":
     from faultpath.systems.checks.tracing import trace_system
 
     system = chosen.system
-    fault = None if asked.fault is None else system.fault(asked.fault)
+    fault = None if asked.fault is None else fault_of(system, asked.fault)
     name = asked.variant or next(iter(system.variants))
     return trace_system(
         system, chosen.spec, name, asked.library, asked.scene, asked.steps, asked.seed, fault

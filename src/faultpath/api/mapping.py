@@ -1,7 +1,6 @@
 """`faultpath.reversal_map`: run two errors of one source against each other, decide, report."""
 
-from dataclasses import replace
-from functools import partial
+from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -12,13 +11,12 @@ from faultpath.api.display import Display
 from faultpath.api.runs import MAP, MAP_MADE_FROM, MapRun
 from faultpath.api.systems import executor_of
 from faultpath.decisions.map.decide import conclude
-from faultpath.decisions.map.lattice import COARSE, lattice
+from faultpath.decisions.map.lattice import COARSE, Point, lattice
 from faultpath.decisions.map.study import MapPlan, plan_map
 from faultpath.decisions.map.surface import next_points
-from faultpath.trials import System
+from faultpath.trials import OutcomeTable, System
 from faultpath.trials.question import MapQuestion
 from faultpath.trials.store.atomic import write_text
-from faultpath.trials.work.executor import Progress
 
 _BISECTING = 18
 """Points that are typically added to bisect the paths of the fault."""
@@ -64,7 +62,7 @@ def _carry_out(plan: MapPlan, job: Job) -> MapRun:
 
     Raises `Stopped` on Ctrl-C, and `UserError` where nothing is left to compare.
     """
-    asked, points, computed, display = plan.question, list(lattice(COARSE)), 0, job.display
+    asked, points, display = plan.question, lattice(COARSE), job.display
     if plan.system.backend:
         display.say(f"Computing with {plan.system.backend}.")
     study = plan.study(points)
@@ -74,36 +72,14 @@ def _carry_out(plan: MapPlan, job: Job) -> MapRun:
         f"{len(points)} pairs of errors first, {first} trials; then more where the sign is not "
         f"decided, about {round(first * most)} trials at most."
     )
-    said: set[str] = set()
 
-    def notice(text: str) -> None:
-        key = "Kept " if text.startswith("Kept ") else text
-        if key not in said:
-            said.add(key)
-            display.say(text)
+    def more(points: Sequence[Point], table: OutcomeTable) -> Sequence[Point]:
+        found, _ = plan.differences(points, table)
+        return next_points(found, asked.against, asked.points, asked.library_hash)
 
-    with display.progress("Running") as show:
-
-        def note(now: Progress) -> None:
-            most = max(len(points), asked.points + _BISECTING) / len(points)
-            remark = f"{len(points)} pairs of errors"
-            show(now.within(max(now.done, (now.total or 0.0) * most), remark=remark))
-
-        run = partial(job.run, system=plan.system, show=note, notice=notice, shared=True)
-        while True:
-            result = run(plan.study(points), recheck=False)
-            said.add("Kept ")  # what later rounds keep, this call has run itself
-            computed += result.blocks_computed
-            found, _ = plan.differences(points, result.outcomes)
-            new = next_points(found, asked.against, asked.points, asked.library_hash)
-            if not new:
-                break
-            points += new
-        result = run(plan.study(points), recheck=True)
-        trials = len(result.outcomes.rows)
-        show(Progress(trials, trials, f"{len(points)} pairs of errors"))
-    blocks = result.blocks_kept + result.blocks_computed
-    result = replace(result, blocks_computed=computed, blocks_kept=blocks - computed)
+    points, result = job.rounds(
+        plan.system, points, plan.study, more, asked.points + _BISECTING, "pairs of errors"
+    )
     record = conclude(plan, points, result.outcomes, result.findings)
     write_text(job.folder / MAP, record.model_dump_json(indent=1) + "\n", job.folder)
     return MapRun(job.folder, record, job.finish(result, plan.system, MAP_MADE_FROM))

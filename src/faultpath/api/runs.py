@@ -26,12 +26,15 @@ from faultpath.trials.store.tables import decode_outcomes, decode_traces
 
 if TYPE_CHECKING:
     from faultpath.decisions.map.model import MapRecord
+    from faultpath.decisions.search.model import SearchRecord
 
-RECORD, SYSTEM, MAP = "record.json", "system.json", "map.json"
+RECORD, SYSTEM, MAP, SEARCH = "record.json", "system.json", "map.json", "search.json"
 MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES)
 """The files of an audit's folder that its pages are made from, and checked against."""
 MAP_MADE_FROM = (MAP, OUTCOMES)
 """Those of a map's."""
+SEARCH_MADE_FROM = (SEARCH, OUTCOMES)
+"""Those of a search's; its confirming audit has a folder of its own."""
 
 _Model = TypeVar("_Model", bound=BaseModel)
 
@@ -112,8 +115,22 @@ class MapRun(FinishedRun):
         return write_map(self.record, self.provenance, place)
 
 
-def open_run(folder: str | PathLike[str]) -> "Run | MapRun | Any":
-    """Open the folder of a finished audit or map, one's own or anybody's.
+class SearchRun(FinishedRun):
+    """A finished search: what was confirmed, and where its files are."""
+
+    record: "SearchRecord"
+    """`headline` and `sentences` in words; `tried`, and `confirmed`, the record of the audit."""
+
+    def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
+        """Write report.html, tried.svg and table.md, and return their paths."""
+        from faultpath.report.search import write_search
+
+        place = self.folder if folder is None else Path(folder)
+        return write_search(self.record, self.provenance, place)
+
+
+def open_run(folder: str | PathLike[str]) -> "Run | MapRun | SearchRun | Any":
+    """Open the folder of a finished audit, map or search, one's own or anybody's.
 
     It is taken for data: no code that it names is run, and every file is compared with its digest.
     What an installed distribution leaves behind is opened by it: an entry point in the group
@@ -122,17 +139,24 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | Any":
     """
     place = Path(folder)
     provenance = read_provenance(place)
-    if MAP in provenance.files:
+    for name, made_from, kind in (
+        (MAP, MAP_MADE_FROM, MapRun),
+        (SEARCH, SEARCH_MADE_FROM, SearchRun),
+    ):
+        if name not in provenance.files:
+            continue
         from faultpath.decisions.map.model import MapRecord
+        from faultpath.decisions.search.model import SearchRecord
 
-        held = unseal(place, provenance.files, MAP_MADE_FROM)
-        record = parsed(held[MAP], place / MAP, MapRecord)
+        held = unseal(place, provenance.files, made_from)
+        model = MapRecord if kind is MapRun else SearchRecord
+        record = parsed(held[name], place / name, model)
         if (provenance.files[OUTCOMES], provenance.library_hash) != (
             provenance.outcomes_sha256,
             record.question.library_hash,
         ):
             raise UserError(f"the files of {place} do not belong together: {AGAIN}.")
-        return MapRun(place, record, provenance)
+        return kind(place, record, provenance)
     if RECORD not in provenance.files:
         for point in entry_points(group="faultpath.runs"):
             if point.name in provenance.files:

@@ -50,6 +50,13 @@ _PANELS = {
             f"{_ASKED} --against controller,observer --up-to 0.4 --library carts",
             of_a_system=True,
         ),
+        Entry(
+            "search",
+            audits.search,
+            f"{_TOY} --baseline calibrated --repair blind --within examples/toy_bounds.yaml "
+            "--library carts",
+            of_a_system=True,
+        ),
     ),
     "Finished runs": (
         Entry("report", audits.report, "runs/one runs/two --out comparison.html"),

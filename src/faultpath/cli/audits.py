@@ -1,8 +1,8 @@
-"""`faultpath plan`, `audit`, `map`, `report` and `replay`: audits, and what is done with them."""
+"""`faultpath plan`, `audit`, `map`, `search`, `report` and `replay`: audits, and what follows."""
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -13,10 +13,19 @@ from faultpath.cli.options import FOUND, Json, SystemName, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
-from faultpath.trials.question import AuditQuestion, MapQuestion, PlanQuestion, Question, Running
+from faultpath.trials.question import (
+    AuditQuestion,
+    MapQuestion,
+    PlanQuestion,
+    Question,
+    Running,
+    SearchQuestion,
+)
 
 if TYPE_CHECKING:
-    from faultpath.api.runs import Run
+    from rich.console import RenderableType
+
+    from faultpath.api.runs import FinishedRun, Run
 
 
 @takes(PlanQuestion)
@@ -117,12 +126,31 @@ def study(
 def reversal_map(system: SystemName, as_json: Json = False, **given: Any) -> int:
     """Map the success difference over the error at one module and that at another: where repair
     or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
-    from faultpath.api.display import SafeConsole
     from faultpath.api.mapping import reversal_map
 
     run = reversal_map(system, **given, progress=display(as_json))
 
     from faultpath.report.map import shown
+
+    return _tell(run, shown, as_json)
+
+
+@takes(SearchQuestion)
+def search(system: SystemName, as_json: Json = False, **given: Any) -> int:
+    """Look within bounds for the fault that hurts those most who choose the repair by an isolated
+    audit: half of the scenes find it, and an audit of it in the other half decides."""
+    from faultpath.api.searching import search
+
+    run = search(system, **given, progress=display(as_json))
+
+    from faultpath.report.search import shown
+
+    return _tell(run, shown, as_json)
+
+
+def _tell(run: "FinishedRun", shown: "Callable[[Any], RenderableType]", as_json: bool) -> int:
+    """Print the record of a map or a search; return the status."""
+    from faultpath.api.display import SafeConsole
 
     if as_json:
         typer.echo(run.record.model_dump_json(indent=1))

@@ -7,6 +7,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import unknown
 from faultpath.decisions.decide import decide, primary_path, stops
+from faultpath.decisions.joined import fault_of
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, FaultedTap, Path
 from faultpath.decisions.question import Question, StopRule
 from faultpath.faults import AnyFault, Fault
@@ -89,8 +90,8 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
     variants = two_variants(system, asked)
     sequential = asked.stop_when is not None
     chosen = scenes_of(library, asked.scenes, in_order=not sequential)
-    fault = system.fault(asked.fault)
-    faults = _faults_by_path(system, fault, variants)
+    fault = fault_of(system, asked.fault)
+    faults = faults_by_path(system, fault, variants)
     titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
     paths = [
         Path(
@@ -153,7 +154,7 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
     return Audit(question, tuple(paths), study)
 
 
-def _faults_by_path(
+def faults_by_path(
     system: System, fault: AnyFault, variants: Sequence[Variant]
 ) -> dict[str, dict[str, tuple[Fault, ...]]]:
     """Return the faults of each path in each variant; none under correct inputs. With a single

@@ -1,4 +1,4 @@
-"""What can be asked: every option of an audit, a map, a plan, a check and a trace, declared once.
+"""What can be asked: every option of an audit, map, search, plan, check and trace, declared once.
 
 The flags of the command line, Python's keywords, their help, the study file and the checks follow
 from these models. Texts are taken where the command line gives them, as in `seeds="0,1,2"`.
@@ -249,6 +249,27 @@ class MapQuestion(Running):
     )
     correlation: float | None = Field(
         default=None, description="Of the errors, to tell the expected difference there."
+    )
+
+
+class SearchQuestion(Running):
+    """What a search asks."""
+
+    panel: ClassVar[str] = "What is searched"
+
+    within: Annotated[
+        Path,
+        BeforeValidator(lambda given: Path(given) if isinstance(given, str) else given),
+        PlainSerializer(str),
+    ] = Field(
+        description="File of bounds: the faults with their sizes, and the module that an isolated "
+        "audit strikes."
+    )
+    candidates: int = Field(
+        default=48, ge=8, le=10_000, description="Faults to try in the scenes that find."
+    )
+    search_seed: int = Field(
+        default=0, ge=0, le=LARGEST, description="Seed of the proposals; not that of the trials."
     )
 
 

@@ -1,0 +1,149 @@
+"""What a search asks, and the trials in which a fault is tried, or put to the test."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from faultpath.core.errors import UserError
+from faultpath.core.streams import generator
+from faultpath.core.text import listed
+from faultpath.decisions.joined import fault_of
+from faultpath.decisions.model import CORRECT, SHARED
+from faultpath.decisions.planning import Audit, faults_by_path, plan_audit, scenes_of, two_variants
+from faultpath.decisions.search.bounds import read_bounds
+from faultpath.decisions.search.model import SearchQuestion, Tried
+from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.estimate import ALPHA
+from faultpath.statistics.inputs import Floats
+from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, SystemSpec
+from faultpath.trials import question as asking
+from faultpath.trials.pairing import Side, pair
+
+
+@dataclass(frozen=True)
+class SearchPlan:
+    """A question, and the trials of any fault within its bounds."""
+
+    question: SearchQuestion
+    asked: asking.SearchQuestion
+    system: System
+    spec: SystemSpec
+    library: Library = field(repr=False)
+    finding: tuple[str, ...] = field(repr=False)
+    confirming: tuple[str, ...] = field(repr=False)
+
+    def study(self, faults: Sequence[str]) -> Study:
+        """Return the study of faults in the scenes that find: both variants, with each at the
+        isolated module alone and with it shared. An arm that it cannot reach runs once for all."""
+        asked, rows = self.question, list[Row]()
+        variants = two_variants(self.system, self.asked)
+        for text in faults:
+            paths = faults_by_path(self.system, fault_of(self.system, text), variants)
+            for path in (asked.bounds.isolated, SHARED):
+                for name, parts in paths[path].items():
+                    for seed in asked.seeds:
+                        arm = Arm(variant=name, faults=parts, seed=seed)
+                        at = f"{path}: {text}"
+                        rows.append(Row(variant=name, path=at, seed=seed, arm=arm))
+        return Study(
+            name=f"{self.spec.name}-search-{asked.repair}-vs-{asked.baseline}",
+            system=self.spec,
+            library=asked.library,
+            scenes=self.finding,
+            rows=tuple(rows),
+        )
+
+    def tried(self, fault: str, table: OutcomeTable) -> Tried:
+        """Return what the scenes that find show of a fault; nothing without a pair of trials."""
+        asked, ahead = self.question, list[Floats]()
+        for path in (asked.bounds.isolated, SHARED):
+            at = f"{path}: {fault}"
+            pairs = pair(table, Side(asked.repair, at), Side(asked.baseline, at))
+            difference = pairs.first.success.astype(np.float64) - pairs.second.success
+            ahead.append(difference.mean(axis=1) if len(pairs.scenes) else np.zeros(1))
+        isolated, shared = ahead
+        return Tried(
+            fault=fault,
+            isolated_pp=100.0 * float(isolated.mean()),
+            shared_pp=100.0 * float(shared.mean()),
+            regret_pp=100.0 * regret(isolated, shared),
+        )
+
+    def audit(self, fault: str) -> Audit:
+        """Return the audit of a fault in the scenes that confirm."""
+        scenes = tuple(each for each in self.library.scenes if each.id in self.confirming)
+        asked = self.asked.audit_of(fault).model_copy(update={"scenes": None})
+        return plan_audit(self.system, self.spec, asked, replace(self.library, scenes=scenes))
+
+
+def regret(isolated: Floats, shared: Floats) -> float:
+    """Return what the choice by the isolated fault loses under the shared one, a fraction, from
+    the differences of scenes `[scenes]`.
+
+    Where the lead is not clear in these scenes no isolated audit would choose by it, and no more
+    counts than there is of it.
+    """
+    lead = float(isolated.mean())
+    lost = -float(np.sign(lead)) * float(shared.mean())
+    clear = sign_p_value(int((isolated > 0).sum()), int((isolated < 0).sum())) <= ALPHA
+    return lost if clear else min(abs(lead), lost)
+
+
+def halves(library: Library, count: int | None) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the scenes that find and those that confirm: of two neighbours in the library one
+    each, by coins that know only the library, so that neither the number of scenes nor the seed
+    of a search moves a scene into the other half.
+
+    `UserError` for a number of scenes that the library has not got, or that leaves a half empty.
+    """
+    chosen = scenes_of(library, count)
+    if len(chosen) < 2:
+        raise UserError(
+            "one scene cannot both find a fault and confirm it: give 2 --scenes or more."
+        )
+    coins = generator("search halves", library.content_hash, 0).integers(2, size=len(chosen))
+    sides = [(i + int(coins[i // 2])) % 2 for i in range(len(chosen))]
+    finding, confirming = (
+        tuple(scene for scene, of in zip(chosen, sides, strict=True) if of == side)
+        for side in (0, 1)
+    )
+    return finding, confirming
+
+
+def plan_search(
+    system: System, spec: SystemSpec, asked: asking.SearchQuestion, library: Library
+) -> SearchPlan:
+    """Lay out a search. `UserError` for anything that cannot be run or means nothing."""
+    variants = two_variants(system, asked)
+    bounds = read_bounds(asked.within, system)
+    for corner in (0.0, 1.0):
+        fault = fault_of(system, bounds.fault([corner] * len(bounds.ranges())))
+        paths = faults_by_path(system, fault, variants)
+        alone = [path for path in paths if path not in (CORRECT, SHARED)]
+        if SHARED not in paths:
+            raise UserError(
+                f"{asked.within}: only the {listed(alone)} gets this fault, so that nothing is "
+                "shared: name a channel that several modules read."
+            )
+        if bounds.isolated not in alone:
+            raise UserError(
+                f"{asked.within}: isolated: '{bounds.isolated}' is no module that gets the fault: "
+                f"name one of {listed(alone)}."
+            )
+    finding, confirming = halves(library, asked.scenes)
+    question = SearchQuestion(
+        system=spec.name,
+        options=spec.options,
+        baseline=asked.baseline,
+        repair=asked.repair,
+        bounds=bounds,
+        candidates=asked.candidates,
+        search_seed=asked.search_seed,
+        library=library.name,
+        library_hash=library.content_hash,
+        finding=len(finding),
+        confirming=len(confirming),
+        seeds=asked.seeds,
+    )
+    return SearchPlan(question, asked, system, spec, library, finding, confirming)

@@ -1,0 +1,121 @@
+"""A search as table, picture, terminal and page; all numbers are the record's."""
+
+from pathlib import Path
+
+from markupsafe import Markup
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from faultpath.decisions import wording
+from faultpath.decisions.search.model import SearchRecord
+from faultpath.decisions.tables import Table, line
+from faultpath.decisions.tables.html import html
+from faultpath.decisions.tables.markdown import block
+from faultpath.decisions.tables.terminal import Parted
+from faultpath.report.effects import forest
+from faultpath.report.frame import render
+from faultpath.report.svg import Axis, Svg, tick_label
+from faultpath.report.tables import DIFFERENCE, by_path
+from faultpath.trials.provenance import RunProvenance
+from faultpath.trials.store.atomic import make_folder, write_text
+
+_ROWS = 8
+"""Of the faults tried, those shown in a table."""
+_EFFECTS = ("baseline", "repair", *DIFFERENCE, "holm", "scenes")
+
+
+def tables(record: SearchRecord) -> tuple[Table, ...]:
+    """Return the faults tried that looked worst, and the effects of the one that was audited."""
+    asked, many = record.question, len(record.tried)
+    worst = sorted(record.tried, key=lambda each: -each.regret_pp)[:_ROWS]
+    tried = Table(
+        name="tried",
+        title=f"Tried, {asked.repair} minus {asked.baseline}, success, pp: no evidence",
+        corner="Fault",
+        columns=(f"{asked.bounds.isolated} alone", "shared", "regret"),
+        lines=tuple(
+            line(
+                each.fault,
+                *map(wording.signed, (each.isolated_pp, each.shared_pp)),
+                wording.plain(each.regret_pp),
+                aside="chosen" if each.fault == record.best else "",
+            )
+            for each in worst
+        ),
+        notes=(
+            f"{len(worst)} of {many} faults, in the {asked.finding} scenes that find. Regret is "
+            "what the choice by the isolated fault loses under the shared one, as far as it would "
+            "be made. The best of many looks better than it is: only the confirming audit decides.",
+        ),
+    )
+    if record.confirmed is None:
+        return (tried,)
+    return by_path(record.confirmed, _EFFECTS, "Confirming audit; bold is decided"), tried
+
+
+def picture(record: SearchRecord) -> Svg:
+    """Return the faults tried: the difference with the isolated module alone across, that with the
+    fault shared upward. In the shaded corners the two disagree."""
+    asked, side, left, top = record.question, 320.0, 46.0, 46.0
+    svg = Svg(
+        left + side + 20, top + side + 48, "Faults tried in the scenes that find", "No evidence."
+    )
+    svg.text(0, 13, "Faults tried in the scenes that find: no evidence", "head", room=svg.width)
+    svg.text(0, 32, "fault shared, pp", "small soft")
+    x, y = Axis(-100.0, 100.0, left, left + side), Axis(-100.0, 100.0, top + side, top)
+    for across, up in ((-100.0, 100.0), (0.0, 0.0)):
+        svg.rect(x(across), y(up), side / 2, side / 2, "band")
+    for tick in (-100.0, -50.0, 0.0, 50.0, 100.0):
+        cls = "axis" if tick else "zero"
+        svg.line((x(tick), y.start), (x(tick), y.end), cls)
+        svg.line((x.start, y(tick)), (x.end, y(tick)), cls)
+        svg.text(x(tick), y.start + 16, tick_label(tick), "small soft", "middle")
+        svg.text(x.start - 8, y(tick) + 4, tick_label(tick), "small soft", "end")
+    below = f"only the {asked.bounds.isolated} faulted, {asked.repair} minus {asked.baseline}, pp"
+    svg.text(x(0.0), y.start + 36, below, "small soft", "middle", room=svg.width)
+    for each in record.tried:
+        at, chosen = (x(each.isolated_pp), y(each.shared_pp)), each.fault == record.best
+        values = ", ".join(map(wording.signed, (each.isolated_pp, each.shared_pp)))
+        tip = f"{each.fault}: {values} pp{', chosen' if chosen else ''}"
+        if chosen:
+            svg.circle(at, 8.0, "star", tip=tip)
+        svg.circle(at, 3.5, "dot open", tip=tip)
+    return svg
+
+
+def shown(record: SearchRecord) -> RenderableType:
+    """Return the record for a terminal."""
+    parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
+    parts += map(Text, record.sentences)
+    parts += [Text(f"Found in the run: {each}", style="bold red") for each in record.findings]
+    for table in tables(record):
+        parts += [Text(""), Parted(table), *map(Text, table.notes)]
+    return Group(*parts)
+
+
+def write_search(record: SearchRecord, provenance: RunProvenance, folder: Path) -> list[Path]:
+    """Write `report.html`, `tried.svg` and `table.md`; return their paths."""
+    *effects, tried = tables(record)
+    page = render(
+        "search.html.j2",
+        ("tokens.css", "svg.css", "page.css"),
+        (),
+        record=record,
+        asked=record.question,
+        provenance=provenance,
+        picture=Markup(picture(record).render()),
+        tried=Markup(html(tried)),
+        notes=tried.notes,
+        forest=Markup(forest(record.confirmed)) if record.confirmed else "",
+        effects=Markup(html(effects[0])) if effects else "",
+        w=wording,
+    )
+    made = {
+        "report.html": page,
+        "tried.svg": picture(record).render(standalone=True) + "\n",
+        "table.md": "\n\n".join(map(block, tables(record))) + "\n",
+    }
+    make_folder(folder)
+    for name, text in made.items():
+        write_text(folder / name, text, folder)
+    return [folder / name for name in made]
