@@ -1,6 +1,7 @@
 """Finished runs as a program and a notebook use them, read as data: nothing they name is run."""
 
 import json
+import math
 from collections import Counter
 from importlib.metadata import entry_points
 from os import PathLike
@@ -184,8 +185,10 @@ def read_provenance(folder: Path) -> RunProvenance:
 
 def as_text(record: DecisionRecord) -> str:
     """Return a record as its file holds it."""
-    absent = set[str]() if record.earlier else {"earlier"}
-    return json.dumps(record.model_dump(mode="json", exclude=absent), indent=2) + "\n"
+    data = record.model_dump(mode="json", exclude=set() if record.earlier else {"earlier"})
+    if data["question"]["judged"] is None:
+        del data["question"]["judged"]
+    return json.dumps(data, indent=2) + "\n"
 
 
 def parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:
@@ -223,6 +226,10 @@ def _doubt(
         return "the system's variants are not those of the question"
     if not paths or set(cells) != wanted or set(trials) != wanted:
         return "the record and the outcomes have different arms"
+    ended = (row.outcome for row in outcomes.rows if not row.outcome.failed)
+    untimed = any(math.isnan(each.time_s) for each in ended)
+    if untimed and asked.judged is None:
+        return "trials of an audit have no time"
     if any(cells[at].trials != trials[at] or cells[at].success != solved[at] for at in wanted):
         return "the record and the outcomes count different successes"
     measured = {name for row in outcomes.rows for name in row.outcome.metrics}

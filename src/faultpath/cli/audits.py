@@ -14,9 +14,17 @@ from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
 from faultpath.trials.question import AuditQuestion, MapQuestion, PlanQuestion, Question, Running
+from faultpath.trials.received.question import JudgeQuestion
 
 if TYPE_CHECKING:
     from faultpath.api.runs import Run
+
+Details = Annotated[
+    bool,
+    typer.Option(
+        "--details", help="Print every sentence of the record too, and what would change it."
+    ),
+]
 
 
 @takes(PlanQuestion)
@@ -60,12 +68,7 @@ def plan(
 @takes(AuditQuestion)
 def audit(
     system: SystemName,
-    details: Annotated[
-        bool,
-        typer.Option(
-            "--details", help="Print every sentence of the record too, and what would change it."
-        ),
-    ] = False,
+    details: Details = False,
     as_json: Json = False,
     **given: Any,
 ) -> int:
@@ -111,6 +114,28 @@ def study(
 
     runs = audit_study(read_study(study), progress=display(as_json), **running)
     return _print(runs, as_json)
+
+
+@takes(JudgeQuestion)
+def judge(
+    results: Annotated[
+        list[str],
+        typer.Argument(
+            help="Files or folders: CSV, Parquet, JSON lines, LeRobot's eval_info.json, logs of "
+            "Inspect, samples of lm-eval. ARM=FILE or ARM@CONDITION=FILE says what a file does not."
+        ),
+    ],
+    details: Details = False,
+    as_json: Json = False,
+    **given: Any,
+) -> int:
+    """Decide from trials that other tools ran: record, report and words are those of an audit.
+
+    Trials are paired by task, scene, seed and condition; what cannot be paired is refused, and a
+    missing pair is named with what it could change."""
+    from faultpath.api.judging import judge
+
+    return _print((judge(results, **given, progress=display(as_json)),), as_json, True, details)
 
 
 @takes(MapQuestion)

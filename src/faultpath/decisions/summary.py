@@ -254,4 +254,7 @@ def _left_open(record: DecisionRecord) -> Iterator[str]:
     if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
         at = " or the ".join(same)
         yield f"No change is detected from the fault at the {at} alone to the shared fault."
+    if record.question.judged:
+        yield "Other scenes and other conditions are not among the results."
+        return
     yield "Another size or sign of the fault, another library and another wiring were not tried."
