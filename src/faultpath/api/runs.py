@@ -13,6 +13,7 @@ from pydantic import BaseModel
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.plain import Misread, model_of
+from faultpath.decisions.gate import Answer, Ask, found, holds_when_shared
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import faulted_taps
 from faultpath.report.html import write_report
@@ -79,6 +80,17 @@ class Run(FinishedRun):
     def failed(self) -> int:
         """Number of trials in which the program raised an error; each voids its pair."""
         return self._trials.column("status").to_pylist().count(Status.FAILED.value)
+
+    @property
+    def repair_holds_when_shared(self) -> Answer:
+        """Whether the repair is decided to be ahead under the shared fault; a failed assert shows
+        what was decided instead. `UserError` where the audit has no shared fault."""
+        return holds_when_shared(self.record)
+
+    def found(self, what: Ask) -> Answer:
+        """Return whether `reversal`, `repair-behind`, `undecided` or `void` was found, as
+        `--fail-if` asks."""
+        return found(self.record, what)
 
     def table(self) -> pa.Table:
         """Return the trials as an Arrow table, one row each: variant, path, seed, scene, status,

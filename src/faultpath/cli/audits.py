@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from faultpath.cli.flags import takes
+from faultpath.cli.gates import FailIf, Gate, Junit, Summary
 from faultpath.cli.options import FOUND, Json, SystemName, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
@@ -70,12 +71,16 @@ def audit(
     system: SystemName,
     details: Details = False,
     as_json: Json = False,
+    fail_if: FailIf = None,
+    junit: Junit = None,
+    summary: Summary = None,
     **given: Any,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault.
 
     `faultpath audit --study FILE` carries out what `faultpath plan` wrote instead."""
+    gate = Gate.of(fail_if, junit, summary)
     # What builds a system may load for seconds; until then this is all that there is to see.
     arms = f"{one_line(given['repair'])} with {one_line(given['baseline'])}"
     typer.echo(f"Building {one_line(system)}, to compare {arms}.", err=as_json)
@@ -86,7 +91,7 @@ def audit(
     from faultpath.report.comparison import shown
 
     runs = audits(system, **given, progress=display(as_json))
-    status = _print(runs, as_json, len(runs) == 1 or details, details)
+    status = _print(runs, as_json, gate, len(runs) == 1 or details, details)
     if len(runs) > 1:
         compared, first, folder = compare(runs), runs[0].folder, given.get("folder")
         names = "/".join(run.folder.name for run in runs)
@@ -105,6 +110,9 @@ def study(
         Path, typer.Option(parser=as_path, help="Study file that `faultpath plan` wrote.")
     ],
     as_json: Json = False,
+    fail_if: FailIf = None,
+    junit: Junit = None,
+    summary: Summary = None,
     **running: Any,
 ) -> int:
     """Carry out the audits of a study file. The file says system, variants, faults, scenes and
@@ -112,8 +120,9 @@ def study(
     from faultpath.api.before import audit_study
     from faultpath.decisions.plan.study import read_study
 
+    gate = Gate.of(fail_if, junit, summary)
     runs = audit_study(read_study(study), progress=display(as_json), **running)
-    return _print(runs, as_json)
+    return _print(runs, as_json, gate)
 
 
 @takes(JudgeQuestion)
@@ -127,6 +136,9 @@ def judge(
     ],
     details: Details = False,
     as_json: Json = False,
+    fail_if: FailIf = None,
+    junit: Junit = None,
+    summary: Summary = None,
     **given: Any,
 ) -> int:
     """Decide from trials that other tools ran: record, report and words are those of an audit.
@@ -135,7 +147,9 @@ def judge(
     missing pair is named with what it could change."""
     from faultpath.api.judging import judge
 
-    return _print((judge(results, **given, progress=display(as_json)),), as_json, True, details)
+    gate = Gate.of(fail_if, junit, summary)
+    run = judge(results, **given, progress=display(as_json))
+    return _print((run,), as_json, gate, True, details)
 
 
 @takes(MapQuestion)
@@ -252,7 +266,11 @@ def replay(
 
 
 def _print(
-    runs: "Sequence[Run]", as_json: bool, sentences: bool = True, details: bool = False
+    runs: "Sequence[Run]",
+    as_json: bool,
+    gate: Gate,
+    sentences: bool = True,
+    details: bool = False,
 ) -> int:
     """Print what was decided in each run, and its folder and record as JSON; return the status."""
     from faultpath.api.comparing import compare, folder_and_record
@@ -269,4 +287,4 @@ def _print(
             console.print(f"\nFault {run.record.question.fault}", markup=False)
         console.print(decision(run.record, details))
         console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
-    return FOUND if any(run.failed for run in runs) else 0
+    return gate.end(runs, console.print)
