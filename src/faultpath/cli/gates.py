@@ -66,17 +66,18 @@ class Gate:
 
     def end(self, runs: "Sequence[Run]", say: Callable[..., Any]) -> int:
         """Write what was asked for, say what a build fails for, and return the exit status."""
+        from faultpath.core.files.opening import contents
         from faultpath.decisions.gate import broken
         from faultpath.report.build import junit, summary
-        from faultpath.trials.store.atomic import write_text
+        from faultpath.trials.store.atomic import write_file, write_text
 
         records = [run.record for run in runs]
         if self.junit is not None:
             write_text(self.junit, junit(records, self.asked))
         if self.summary is not None:
             # A build's summary holds that of its other steps too.
-            before = self.summary.read_text("utf-8") if self.summary.is_file() else ""
-            write_text(self.summary, before + summary(records, self.asked))
+            before = contents(self.summary) if self.summary.exists() else b""
+            write_file(self.summary, before + summary(records, self.asked).encode())
         status = FOUND if any(run.failed for run in runs) else 0
         for record in records:
             for name, answer in broken(record, self.asked).items():
