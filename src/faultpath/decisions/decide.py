@@ -48,7 +48,10 @@ def decide(
     cells = cells_of(asked, paths, table)
     # Whether a fault acted is told by receipts, and other tools' results have none.
     untested = () if asked.judged else untested_paths(paths, cells)
-    found, resamples, family = _family(asked, paths, table, untested)
+    # Only times and metrics rest on resamples, and of very many scenes these take gigabytes.
+    timed = any(cell.median_time_s is not None for cell in cells)
+    none = asked.judged is not None and not (timed or asked.metrics)
+    found, resamples, family = _family(asked, paths, table, untested, 1 if none else 10_000)
     effects = {
         path: _effect(asked, path, found, family, resamples, path not in untested)
         for path in found.arms

@@ -22,6 +22,8 @@ from faultpath.trials.table import OutcomeTable, TrialRow, unproven
 _ONE = "one module"
 """The path of a condition that is called isolated, and says no module."""
 _NONE = "none"
+_MOST = 15_000
+"""Scenes of the rule in force: the memory of its test grows with their square."""
 _FIRST = {CORRECT: 0, SHARED: 2}
 
 _Key = tuple[str, str]
@@ -58,10 +60,14 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
     paths = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
     _check_paired(trials, paths, asked)
 
-    labels: dict[str, list[str]] = {}
+    labels: dict[str, dict[str, None]] = {}
     for _, _, (unit, label) in trials:
-        labels.setdefault(unit, [])
-        labels[unit] += [] if label in labels[unit] else [label]
+        labels.setdefault(unit, {})[label] = None
+    if len(labels) > _MOST and asked.rule == "unconditional":
+        raise UserError(
+            f"the rule in force takes at most {_MOST:,} scenes, and these are {len(labels):,}: "
+            "give --rule exact, or --cluster task."
+        )
     seen = {tuple(sorted(each, key=_in_order)) for each in labels.values()}
     # Seeds that are the same everywhere are seeds; others only number the trials of a scene.
     alike = len(seen) == 1
