@@ -45,7 +45,10 @@ def reach(record: DecisionRecord) -> Iterator[str]:
     yield f"{holds} for {record.estimand}{'; models trained anew may differ' if given else ''}."
     if asked.judged:
         yield _PAIRED[asked.judged.pairing]
-        yield "Other tools ran the trials: who looked at them before, or stopped when, is unknown."
+        yield (
+            "Of two equal arms at most 5 % of such judgements would decide anything, if the number "
+            "of scenes was fixed before anybody looked: other tools do not tell."
+        )
     run = len(asked.seeds)
     if asked.generalise == "models" and run < FEW_TRAININGS:
         yield (

@@ -184,6 +184,8 @@ def _answers(record: DecisionRecord) -> dict[str, list[str]]:
         return {"Not decided": [few], "How sure": sure}
     if record.earlier:
         sure.append(phrases.looks(record))
+    elif record.question.judged:
+        pass  # it is said of how trials were paired
     elif record.question.generalise == "scenes" and any(each.sign for each in record.effects):
         sure.append("Of audits of two equal systems, at most 5 % would decide anything.")
     return {

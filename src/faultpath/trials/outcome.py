@@ -69,8 +69,7 @@ class Outcome:
     scene: str
     status: Status
     time_s: float
-    """Time at which the trial ended, above zero: the time to the goal for a success. Not a number
-    where another tool ran the trial and did not tell."""
+    """Time at which the trial ended, above zero: the time to the goal for a success."""
     initial_hash: str
     disturbance_hash: str
     planner_noise_hash: str
