@@ -1,5 +1,6 @@
 """What an audit leaves for a build: exit status, JUnit's XML, a summary; and asserts in pytest."""
 
+import os
 import subprocess
 import sys
 import tomllib
@@ -99,7 +100,8 @@ def test_a_test_of_ones_own_asserts_what_was_decided(tmp_path: Path) -> None:
     (plugin,) = points["pytest11"].values()
     (file := tmp_path / "test_mine.py").write_text(WRITTEN.format(toy=TOY))
     command = [sys.executable, "-m", "pytest", "-q", "-p", plugin, "-p", "no:cacheprovider", file]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
+    alone = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # by its entry point, once more
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=alone)
     assert done.returncode == 1, done.stdout + done.stderr
     assert "assert no: Under the shared fault, calibrated succeeds more often." in done.stdout
     assert not (tmp_path / "runs").exists()
