@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from faultpath.api.audit import audit, audits
     from faultpath.api.before import check, plan, trace
     from faultpath.api.comparing import compare
+    from faultpath.api.judging import judge
     from faultpath.api.mapping import reversal_map
     from faultpath.api.runs import Run, open_run
     from faultpath.api.searching import search
@@ -33,6 +34,7 @@ __all__ = [
     "check",
     "compare",
     "generator",
+    "judge",
     "load_system",
     "open_run",
     "plan",
@@ -51,6 +53,7 @@ _HOMES = {
     "check": "faultpath.api.before",
     "compare": "faultpath.api.comparing",
     "generator": "faultpath.core.streams",
+    "judge": "faultpath.api.judging",
     "load_system": "faultpath.api.systems",
     "open_run": "faultpath.api.runs",
     "plan": "faultpath.api.before",

@@ -111,7 +111,7 @@ def _cell(name: str, value: object) -> Callable[[pa.Table], pa.Table]:
         (_cell("time_s", float("nan")), "time_s is nan"),
         (_cell("time_s", float("inf")), "time_s is inf"),
         (_cell("time_s", -1.0), "time_s is -1.0"),
-        (_cell("time_s", None), "time_s is None"),
+        (_cell("time_s", None), "trials of an audit have no time"),
         (_cell("terminal_distance_m", float("nan")), "terminal_distance_m is nan"),
         (_cell("faulted_steps", -1), "steps is below 0"),
         (_cell("status", "won"), "won"),

@@ -15,7 +15,7 @@ import pytest
 from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parents[2]
-BUILT_FROM = ("pyproject.toml", "README.md", "LICENSE", "src")
+BUILT_FROM = ("pyproject.toml", "README.md", "LICENSE", "src", "examples")
 PIP = (sys.executable, "-m", "pip", "--disable-pip-version-check", "-q")
 ASKED = ("--baseline", "calibrated", "--repair", "blind", "--fault", "gain:scale=0.6")
 
@@ -110,6 +110,9 @@ def test_the_engine_is_installed_and_audits_without_compiler_or_extra(
     flown = ("--library", "carts", "--scenes", "10", "--workers", "1", "--out", run)
     assert "Correct inputs" in called(command, "audit", toy, *ASKED, *flown, **outside)
     assert (run / "report.html").is_file()
+    shown = called(command, "demo", "--out", tmp_path / "demo", **outside)
+    assert "Do not choose by the isolated fault" in shown
+    assert (tmp_path / "demo" / "report.html").is_file()
 
     page = (ROOT / "docs" / "faq.md").read_text("utf-8")
     found = re.search(r"```console refused-by-the-engine\n\$ (.*)\n(.*)\n```", page)

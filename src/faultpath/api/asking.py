@@ -16,7 +16,7 @@ from faultpath.trials import Library, OutcomeTable, Study, System, library_of
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import Failure, RunResult, run_study
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.question import Request, ask
+from faultpath.trials.question import Asked, Request, ask
 from faultpath.trials.work.executor import Executor, Progress
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
@@ -26,7 +26,7 @@ _Item = TypeVar("_Item")
 _ERRORS_SHOWN = 5
 
 
-def asks(model: type[Request]) -> Callable[[_Call], _Call]:
+def asks(model: type[Asked]) -> Callable[[_Call], _Call]:
     """Give a function whose last parameter is `**given` the signature and the help of a model."""
 
     def described(function: _Call) -> _Call:

@@ -30,6 +30,7 @@ from faultpath.decisions.joined import JOINED
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.phrases import counted
 from faultpath.decisions.planning import Audit, plan_audit
+from faultpath.decisions.question import Question
 from faultpath.faults import each_size
 from faultpath.report.inputs import Traces
 from faultpath.statistics.estimate import IN_FORCE, RULES
@@ -160,18 +161,9 @@ def carry_out(system: System, audit: Audit, job: Job, signals: bool) -> None:
     folder, question = job.folder, audit.question
     if system.backend:
         job.display.say(f"Computing with {system.backend}.")
-    earlier, before = None, None
+    earlier, before = None, concluded_before(folder, question)
     with suppress(UserError):  # nothing sound stands there: it is made anew
         earlier = read_provenance(folder)
-    with suppress(UserError):
-        before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
-    if before is not None and not (before.question.stop or question.stop):
-        rule = before.question.rule
-        if rule != question.rule:
-            raise UserError(
-                f"{folder} was decided by the rule '{rule}' ({RULES[rule].words}), and a verdict "
-                f"is not redone by another: give --rule {rule}, or another folder."
-            )
     shown = system_shown(system, (question.baseline, question.repair), audit.study.scenes)
     with job.display.progress("Running") as show:
         result = job.run(audit.study, system, show, stop=audit.stops)
@@ -195,6 +187,21 @@ def carry_out(system: System, audit: Audit, job: Job, signals: bool) -> None:
     if held:
         write_file(folder / SIGNALS, encode_signals(dict(sorted(held.items()))), folder)
     job.finish(result, system, (*MADE_FROM, *([SIGNALS] if held else ())))
+
+
+def concluded_before(folder: Path, question: Question) -> DecisionRecord | None:
+    """Return the record that a folder holds, if any; `UserError` for one by another rule."""
+    try:
+        before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
+    except UserError:
+        return None
+    rule = before.question.rule
+    if rule != question.rule and not (before.question.stop or question.stop):
+        raise UserError(
+            f"{folder} was decided by the rule '{rule}' ({RULES[rule].words}), and a verdict "
+            f"is not redone by another: give --rule {rule}, or another folder."
+        )
+    return before
 
 
 def _recorded(

@@ -74,6 +74,10 @@ def replay(
     of the run.
     """
     asked = held.record.question
+    if asked.judged:
+        raise UserError(
+            "other tools ran these trials, and nothing of theirs can be run again here."
+        )
     if SystemSpec(name=asked.system).is_object:
         raise UserError(
             f"the run is of a {asked.system}, which only its own process had: put what builds the "

@@ -1,6 +1,7 @@
 """Finished runs as a program and a notebook use them, read as data: nothing they name is run."""
 
 import json
+import math
 from collections import Counter
 from importlib.metadata import entry_points
 from os import PathLike
@@ -13,6 +14,7 @@ from pydantic import BaseModel
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable, read_table
 from faultpath.core.files.plain import Misread, model_of
+from faultpath.decisions.gate import Answer, Ask, found, holds_when_shared
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import faulted_taps
 from faultpath.report.html import write_report
@@ -81,6 +83,17 @@ class Run(FinishedRun):
     def failed(self) -> int:
         """Number of trials in which the program raised an error; each voids its pair."""
         return self._trials.column("status").to_pylist().count(Status.FAILED.value)
+
+    @property
+    def repair_holds_when_shared(self) -> Answer:
+        """Whether the repair is decided to be ahead under the shared fault; a failed assert shows
+        what was decided instead. `UserError` where the audit has no shared fault."""
+        return holds_when_shared(self.record)
+
+    def found(self, what: Ask) -> Answer:
+        """Return whether `reversal`, `repair-behind`, `undecided` or `void` was found, as
+        `--fail-if` asks."""
+        return found(self.record, what)
 
     def table(self) -> pa.Table:
         """Return the trials as an Arrow table, one row each: variant, path, seed, scene, status,
@@ -208,8 +221,10 @@ def read_provenance(folder: Path) -> RunProvenance:
 
 def as_text(record: DecisionRecord) -> str:
     """Return a record as its file holds it."""
-    absent = set[str]() if record.earlier else {"earlier"}
-    return json.dumps(record.model_dump(mode="json", exclude=absent), indent=2) + "\n"
+    data = record.model_dump(mode="json", exclude=set() if record.earlier else {"earlier"})
+    if data["question"]["judged"] is None:
+        del data["question"]["judged"]
+    return json.dumps(data, indent=2) + "\n"
 
 
 def parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:
@@ -247,6 +262,10 @@ def _doubt(
         return "the system's variants are not those of the question"
     if not paths or set(cells) != wanted or set(trials) != wanted:
         return "the record and the outcomes have different arms"
+    ended = (row.outcome for row in outcomes.rows if not row.outcome.failed)
+    untimed = any(math.isnan(each.time_s) for each in ended)
+    if untimed and asked.judged is None:
+        return "trials of an audit have no time"
     if any(cells[at].trials != trials[at] or cells[at].success != solved[at] for at in wanted):
         return "the record and the outcomes count different successes"
     measured = {name for row in outcomes.rows for name in row.outcome.metrics}

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 import typer
 
-from faultpath.cli import audits, systems
+from faultpath.cli import audits, demo, systems
 from faultpath.cli.flags import with_system_flags
 from faultpath.cli.options import Verbs
 from faultpath.core.version import __version__
@@ -37,6 +37,7 @@ class Entry:
 
 _PANELS = {
     "Your system": (
+        Entry("demo", demo.demo, "--out runs/demo"),
         Entry("init", systems.init, "mine --with numpy"),
         Entry("trace", systems.trace, _TOY, of_a_system=True),
         Entry("check", systems.check, _TOY, of_a_system=True),
@@ -59,6 +60,7 @@ _PANELS = {
         ),
     ),
     "Finished runs": (
+        Entry("judge", audits.judge, "results.csv --baseline old --repair new"),
         Entry("report", audits.report, "runs/one runs/two --out comparison.html"),
         Entry("replay", audits.replay, "runs/mine --scene cart/003 --signals"),
     ),

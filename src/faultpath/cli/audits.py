@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from faultpath.cli.flags import takes
+from faultpath.cli.gates import FailIf, Gate, Junit, Summary
 from faultpath.cli.options import FOUND, Json, SystemName, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
@@ -21,11 +22,19 @@ from faultpath.trials.question import (
     Running,
     SearchQuestion,
 )
+from faultpath.trials.received.question import JudgeQuestion
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from faultpath.api.runs import FinishedRun, Run
+
+Details = Annotated[
+    bool,
+    typer.Option(
+        "--details", help="Print every sentence of the record too, and what would change it."
+    ),
+]
 
 
 @takes(PlanQuestion)
@@ -69,19 +78,18 @@ def plan(
 @takes(AuditQuestion)
 def audit(
     system: SystemName,
-    details: Annotated[
-        bool,
-        typer.Option(
-            "--details", help="Print every sentence of the record too, and what would change it."
-        ),
-    ] = False,
+    details: Details = False,
     as_json: Json = False,
+    fail_if: FailIf = None,
+    junit: Junit = None,
+    summary: Summary = None,
     **given: Any,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault.
 
     `faultpath audit --study FILE` carries out what `faultpath plan` wrote instead."""
+    gate = Gate.of(fail_if, junit, summary)
     # What builds a system may load for seconds; until then this is all that there is to see.
     arms = f"{one_line(given['repair'])} with {one_line(given['baseline'])}"
     typer.echo(f"Building {one_line(system)}, to compare {arms}.", err=as_json)
@@ -92,7 +100,7 @@ def audit(
     from faultpath.report.comparison import shown
 
     runs = audits(system, **given, progress=display(as_json))
-    status = _print(runs, as_json, len(runs) == 1 or details, details)
+    status = _print(runs, as_json, gate, len(runs) == 1 or details, details)
     if len(runs) > 1:
         compared, first, folder = compare(runs), runs[0].folder, given.get("folder")
         names = "/".join(run.folder.name for run in runs)
@@ -111,6 +119,9 @@ def study(
         Path, typer.Option(parser=as_path, help="Study file that `faultpath plan` wrote.")
     ],
     as_json: Json = False,
+    fail_if: FailIf = None,
+    junit: Junit = None,
+    summary: Summary = None,
     **running: Any,
 ) -> int:
     """Carry out the audits of a study file. The file says system, variants, faults, scenes and
@@ -118,8 +129,36 @@ def study(
     from faultpath.api.before import audit_study
     from faultpath.decisions.plan.study import read_study
 
+    gate = Gate.of(fail_if, junit, summary)
     runs = audit_study(read_study(study), progress=display(as_json), **running)
-    return _print(runs, as_json)
+    return _print(runs, as_json, gate)
+
+
+@takes(JudgeQuestion)
+def judge(
+    results: Annotated[
+        list[str],
+        typer.Argument(
+            help="Files or folders: CSV, Parquet, JSON lines, LeRobot's eval_info.json, logs of "
+            "Inspect, samples of lm-eval. ARM=FILE or ARM@CONDITION=FILE says what a file does not."
+        ),
+    ],
+    details: Details = False,
+    as_json: Json = False,
+    fail_if: FailIf = None,
+    junit: Junit = None,
+    summary: Summary = None,
+    **given: Any,
+) -> int:
+    """Decide from trials that other tools ran: record, report and words are those of an audit.
+
+    Trials are paired by task, scene, seed and condition; what cannot be paired is refused, and a
+    missing pair is named with what it could change."""
+    from faultpath.api.judging import judge
+
+    gate = Gate.of(fail_if, junit, summary)
+    run = judge(results, **given, progress=display(as_json))
+    return _print((run,), as_json, gate, True, details)
 
 
 @takes(MapQuestion)
@@ -255,7 +294,11 @@ def replay(
 
 
 def _print(
-    runs: "Sequence[Run]", as_json: bool, sentences: bool = True, details: bool = False
+    runs: "Sequence[Run]",
+    as_json: bool,
+    gate: Gate,
+    sentences: bool = True,
+    details: bool = False,
 ) -> int:
     """Print what was decided in each run, and its folder and record as JSON; return the status."""
     from faultpath.api.comparing import compare, folder_and_record
@@ -272,4 +315,4 @@ def _print(
             console.print(f"\nFault {run.record.question.fault}", markup=False)
         console.print(decision(run.record, details))
         console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
-    return FOUND if any(run.failed for run in runs) else 0
+    return gate.end(runs, console.print)

@@ -13,7 +13,7 @@ from typer.models import OptionInfo
 
 from faultpath.cli.options import literal, path
 from faultpath.core.errors import UserError
-from faultpath.trials.question import Flag, Request, flag
+from faultpath.trials.question import Asked, Flag, flag
 
 _Verb = TypeVar("_Verb", bound=Callable[..., Any])
 _KEYWORD = inspect.Parameter.KEYWORD_ONLY
@@ -24,7 +24,7 @@ _DEST = "system_"
 """Before the names of the system's options, which may be those of the verb's own."""
 
 
-def takes(model: type[Request], *without: str) -> Callable[[_Verb], _Verb]:
+def takes(model: type[Asked], *without: str) -> Callable[[_Verb], _Verb]:
     """Give a verb the flags of a model.
 
     The verb has a last parameter `**given`, which gets what the line says, by the model's names.
@@ -64,7 +64,7 @@ def takes(model: type[Request], *without: str) -> Callable[[_Verb], _Verb]:
     return decorate
 
 
-def _parameter(model: type[Request], name: str) -> inspect.Parameter:
+def _parameter(model: type[Asked], name: str) -> inspect.Parameter:
     """Return the option of a field: its type, default, help and heading."""
     field = model.model_fields[name]
     notes = [note for note in field.metadata if isinstance(note, Flag)]
@@ -85,7 +85,7 @@ def _parameter(model: type[Request], name: str) -> inspect.Parameter:
         default = False
     owners = (each for each in model.__mro__ if name in vars(each).get("__annotations__", {}))
     panels = [note.panel for note in notes if note.panel]
-    panels += [each.panel for each in owners if issubclass(each, Request)]
+    panels += [each.panel for each in owners if issubclass(each, Asked)]
     said = field.description or ""
     option = typer.Option(
         flag(model, name),

@@ -7,6 +7,7 @@ from faultpath.decisions import phrases, wording
 from faultpath.decisions.described import cells_of, percent, secondary, untested_paths
 from faultpath.decisions.family import Compared, Family, alpha_shares, compared, decide_paths, led
 from faultpath.decisions.model import (
+    AS_RUN,
     CORRECT,
     SHARED,
     Change,
@@ -45,8 +46,12 @@ def decide(
     """
     asked = question.model_copy(update={"primary": primary_path(question.primary, paths)})
     cells = cells_of(asked, paths, table)
-    untested = untested_paths(paths, cells)
-    found, resamples, family = _family(asked, paths, table, untested)
+    # Whether a fault acted is told by receipts, and other tools' results have none.
+    untested = () if asked.judged else untested_paths(paths, cells)
+    # Only times and metrics rest on resamples, and of very many scenes these take gigabytes.
+    timed = any(cell.median_time_s is not None for cell in cells)
+    none = asked.judged is not None and not (timed or asked.metrics)
+    found, resamples, family = _family(asked, paths, table, untested, 1 if none else 10_000)
     effects = {
         path: _effect(asked, path, found, family, resamples, path not in untested)
         for path in found.arms
@@ -60,7 +65,7 @@ def decide(
         break_even=tuple(
             _break_even(asked, family, effects[CORRECT], effects[path])
             for path in effects
-            if path != CORRECT and path not in untested
+            if path not in (CORRECT, AS_RUN, *untested)
         ),
         scenes=found.scenes,
         scenes_needed=family.scenes_needed,
@@ -138,7 +143,16 @@ def _family(
 ) -> tuple[Compared, Resamples, Family]:
     names = [path.name for path in paths]
     sequential = question.stop is not None
-    found = compared(question.repair, question.baseline, names, table, distinct=not sequential)
+    # The trials of a task are no seeds: those that came out alike are no repetition.
+    tasks = question.judged is not None and question.judged.unit == "task"
+    found = compared(
+        question.repair,
+        question.baseline,
+        names,
+        table,
+        distinct=not (sequential or tasks),
+        judged=question.judged is not None,
+    )
     if question.generalise == "models" and next(iter(found.arms.values()))[0].shape[1] < 2:
         raise UserError(
             "all seeds gave the same outcome in every trial, so they say nothing of newly trained "

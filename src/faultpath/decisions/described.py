@@ -1,8 +1,11 @@
 """What is told of a path and decides nothing: how trials ended, times, metrics."""
 
 from collections.abc import Sequence
+from math import isfinite
 from statistics import median
 from typing import Any
+
+import numpy as np
 
 from faultpath.decisions.model import CORRECT, AtThreshold, Cell, Path
 from faultpath.decisions.question import Question
@@ -29,7 +32,7 @@ def cells_of(question: Question, paths: Sequence[Path], table: OutcomeTable) -> 
             ends = [r.outcome for seed in seeds for r in table.arm(variant, path.name, seed)]
             count = {status: sum(end.status is status for end in ends) for status in Status}
             ran = len(ends) - count[Status.FAILED]
-            times = [end.time_s for end in ends if end.status is Status.SUCCESS]
+            times = [e.time_s for e in ends if e.status is Status.SUCCESS and isfinite(e.time_s)]
             found.append(
                 Cell(
                     variant=variant,
@@ -73,6 +76,7 @@ def secondary(pairs: Pairs, resamples: Resamples, asked: Question) -> dict[str, 
 
     first, second = pairs.first, pairs.second
     joint = first.success & second.success
+    joint &= np.isfinite(first.time_s) & np.isfinite(second.time_s)  # no times, in some results
     time_s = None
     if joint.any():
         time_s = median_effect(first.time_s, second.time_s, joint, resamples).estimate()

@@ -35,6 +35,8 @@ class Voids:
     """Failed trials of the repair and of the baseline."""
     alone: tuple[int, int]
     """Pairs in which only that of the repair failed, or only that of the baseline."""
+    open: int
+    """Pairs that could have gone either way."""
     against: Arms
     """Success, where what is open goes against the repair."""
     favour: Arms
@@ -67,13 +69,19 @@ class Compared:
 
 
 def compared(
-    repair: str, baseline: str, paths: Iterable[str], table: OutcomeTable, distinct: bool = True
+    repair: str,
+    baseline: str,
+    paths: Iterable[str],
+    table: OutcomeTable,
+    distinct: bool = True,
+    judged: bool = False,
 ) -> Compared:
     """Return the trials of two variants that are compared; `UserError` when no scene is left.
 
     Of seeds that repeat others one is kept, unless not only those that are `distinct` are asked
     for: a sequential audit keeps all, because which differ is only seen later, and the value of a
-    scene has to be what it was when it was run.
+    scene has to be what it was when it was run. Where trials are `judged` that other tools ran, a
+    pair that is missing in both arms could have gone either way too.
     """
     pairs = {path: pair(table, Side(repair, path), Side(baseline, path)) for path in paths}
     mismatches = tuple(each for path in pairs.values() for each in path.mismatches)
@@ -83,7 +91,7 @@ def compared(
     scenes = {row.outcome.scene for row in table.rows}
     while not (kept := scenes.intersection(*(each.scenes for each in left.values()))):
         faulty = [name for name in left if name != CORRECT]
-        if not faulty or not left[CORRECT].scenes:
+        if len(left) == 1 or not left[CORRECT].scenes:
             raise UserError(
                 "no scene is left to compare, because in each of them a trial failed or the arms "
                 "met different conditions: mend what made it fail, or choose other scenes."
@@ -106,11 +114,13 @@ def compared(
             ours, theirs = (side.failed for side in each.ended)
             won, lost = (side.success[keep][:, seeds] for side in each.ended)
             alone = ours & ~theirs, theirs & ~ours
+            could = (ours, theirs) if judged else alone
             voids[name] = Voids(
                 failed=(int(ours.sum()), int(theirs.sum())),
                 alone=(int(alone[0].sum()), int(alone[1].sum())),
-                against=(won, lost | alone[1][keep][:, seeds]),
-                favour=(won | alone[0][keep][:, seeds], lost),
+                open=int((could[0] | could[1]).sum()),
+                against=(won, lost | could[1][keep][:, seeds]),
+                favour=(won | could[0][keep][:, seeds], lost),
             )
     return Compared(
         pairs=cut,
@@ -191,7 +201,7 @@ def decide_paths(
             _change(path): (change(high[path], low[SHARED]), change(low[path], high[SHARED]))
             for path in isolated
         }
-        if any(sum(each.alone) for each in voids.values()):
+        if any(each.open for each in voids.values()):
             least = {name: _nearest(*pair, rule) for name, pair in ends.items()}
             stands = decide_family(least, alpha, shares, weights)
             unsettled = [name for name in made if made[name].sign not in (0, stands[name].sign)]

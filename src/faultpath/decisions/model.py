@@ -9,6 +9,8 @@ from faultpath.statistics.estimate import BreakEven, Estimate, Sign
 
 CORRECT = "correct"
 SHARED = "shared"
+AS_RUN = "as-run"
+"""The only path of results that name no condition; no module can be called so."""
 Extreme = Literal["floor", "ceiling"]
 """Both arms below 10 %, or both above 90 %."""
 

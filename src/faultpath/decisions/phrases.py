@@ -21,10 +21,19 @@ FEW_TRAININGS = 10
 """With fewer, an interval for newly trained models rests on how trainings are distributed."""
 
 
+_PAIRED = {
+    "keys": "Trials are paired by their keys alone: nothing shows that both arms began alike.",
+    "hashes": "Pairs share their keys and a hash of what they began with; nothing shows that later "
+    "noise was the same.",
+}
+
+
 def estimand(question: Question) -> str:
     """Return what intervals and tests speak of."""
     if question.generalise == "models":
         return "new scenes like these and models newly trained with other seeds"
+    if question.judged and question.judged.unit == "task":
+        return "new tasks like these"
     return "new scenes like these" + (", for these trained models" if question.trained else "")
 
 
@@ -34,6 +43,12 @@ def reach(record: DecisionRecord) -> Iterator[str]:
     holds = "The intervals hold" if record.few else "What is decided holds"
     given = asked.trained and asked.generalise == "scenes"
     yield f"{holds} for {record.estimand}{'; models trained anew may differ' if given else ''}."
+    if asked.judged:
+        yield _PAIRED[asked.judged.pairing]
+        yield (
+            "Of two equal arms at most 5 % of such judgements would decide anything, if the number "
+            "of scenes was fixed before anybody looked: other tools do not tell."
+        )
     run = len(asked.seeds)
     if asked.generalise == "models" and run < FEW_TRAININGS:
         yield (
@@ -174,6 +189,7 @@ def hardly_acted(record: DecisionRecord) -> Iterator[str]:
 def would_change(record: DecisionRecord) -> Iterator[str]:
     """Say what would change the verdict."""
     held, tested = record.stopped, [each for each in record.effects if each.acted]
+    judged = record.question.judged is not None
     if held and not all(each.sign for each in record.effects):
         yield (
             "More scenes: --stop-when all-decided goes on until every effect is decided."
@@ -190,12 +206,15 @@ def would_change(record: DecisionRecord) -> Iterator[str]:
     if any(each.extreme == "ceiling" for each in tested):
         yield "Harder scenes or a larger fault: where both succeed, a difference can hardly show."
     if not record.few and any(e.minimum_detectable_pp and not e.sign for e in tested):
+        instead = "" if judged else ", or --stop-when, which allows for looks"
         yield (
-            "Fresh scenes, which no audit has looked at, and more of them, or --stop-when, which "
-            "allows for looks: they find smaller differences. Adding scenes to this audit would "
-            "break its 5 %."
+            f"Fresh scenes, which no audit has looked at, and more of them{instead}: they find "
+            "smaller differences. Adding scenes to this audit would break its 5 %."
         )
-    yield "Another size or sign of the fault, another library or wiring: none of these was run."
+    if judged:
+        yield "Other scenes, other conditions: none of these is among the results."
+    else:
+        yield "Another size or sign of the fault, another library or wiring: none of these was run."
 
 
 def no_pair(path: str) -> str:
@@ -211,8 +230,9 @@ def failed_trials(record: DecisionRecord) -> Iterator[str]:
         if found is None or not (found.repair or found.baseline or found.unsettled):
             continue
         yield (
-            f"{capital(where(each.path))}, {found.repair} trials of {asked.repair} failed and "
-            f"{found.baseline} of {asked.baseline}: depending on how they would have ended, the "
+            f"{capital(where(each.path))}, {found.repair} trials of {asked.repair} failed"
+            f"{' or are missing' if asked.judged else ''} and {found.baseline} of "
+            f"{asked.baseline}: depending on how they would have ended, the "
             f"difference over all scenes lies anywhere from {signed(found.against_pp)} to "
             f"{signed(found.favour_pp)} pp."
         )

@@ -1,5 +1,7 @@
 """What an audit asks, and by which rule it is answered."""
 
+from typing import Literal
+
 from pydantic import Field
 
 from faultpath.core.results import Result
@@ -24,6 +26,15 @@ class StopRule(Result):
     """Scenes from one look at the results to the next."""
     trials: int
     """That a scene takes: distinct arms."""
+
+
+class Judged(Result):
+    """What is known of trials that other tools ran."""
+
+    pairing: Literal["keys", "hashes"]
+    """`hashes`: the two trials of a pair agree in a hash of what they began with."""
+    unit: Literal["scene", "task"] = "scene"
+    """What counts as one scene: a scene, or a task with all of its scenes."""
 
 
 class Question(Result):
@@ -61,6 +72,8 @@ class Question(Result):
     rule: RuleName = "exact"
     """By which it is decided, then and ever after; records that do not say were by the first. A
     sequential audit is decided by bets, whatever the rule."""
+    judged: Judged | None = None
+    """Of results that other tools wrote."""
 
     @property
     def family(self) -> str:

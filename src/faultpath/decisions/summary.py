@@ -184,6 +184,8 @@ def _answers(record: DecisionRecord) -> dict[str, list[str]]:
         return {"Not decided": [few], "How sure": sure}
     if record.earlier:
         sure.append(phrases.looks(record))
+    elif record.question.judged:
+        pass  # it is said of how trials were paired
     elif record.question.generalise == "scenes" and any(each.sign for each in record.effects):
         sure.append("Of audits of two equal systems, at most 5 % would decide anything.")
     return {
@@ -254,4 +256,7 @@ def _left_open(record: DecisionRecord) -> Iterator[str]:
     if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
         at = " or the ".join(same)
         yield f"No change is detected from the fault at the {at} alone to the shared fault."
+    if record.question.judged:
+        yield "Other scenes and other conditions are not among the results."
+        return
     yield "Another size or sign of the fault, another library and another wiring were not tried."

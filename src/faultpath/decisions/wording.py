@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Sequence
 
-from faultpath.decisions.model import CORRECT, SHARED, Effect
+from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Effect
 from faultpath.decisions.question import Question
 from faultpath.statistics.estimate import BreakEven, Estimate
 
@@ -126,6 +126,8 @@ def where(path: str) -> str:
     """Return a path as part of a sentence."""
     if path == CORRECT:
         return "under correct inputs"
+    if path == AS_RUN:
+        return "in these results"
     return "under the shared fault" if path == SHARED else f"with only the {path} faulted"
 
 

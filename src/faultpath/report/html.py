@@ -38,6 +38,7 @@ def report_page(source: ReportInput) -> str:
         record=record,
         asked=asked,
         provenance=source.provenance,
+        sources=source.provenance.data if asked.judged else {},
         n_trials=len(source.outcomes.rows),
         paths=titles,
         tiles=[

@@ -116,10 +116,14 @@ def by_quantity(
 def whole_table(record: DecisionRecord) -> Table:
     """Return every quantity of every path, with the question as title: the table of a paper."""
     asked = record.question
+    arms, seeds = f"{asked.repair} against {asked.baseline}", wording.seeds(asked.seeds)
     title = (
-        f"{asked.repair} against {asked.baseline} on {asked.system}, fault {asked.fault}: "
-        f"{record.scenes_run} scenes of {asked.library}, {wording.seeds(asked.seeds)}"
+        f"{arms} on {asked.system}, fault {asked.fault}: {record.scenes_run} scenes of "
+        f"{asked.library}, {seeds}"
     )
+    if asked.judged:
+        under = f", {asked.fault}" if asked.fault else ""
+        title = f"{arms}{under}: {record.scenes_run} {asked.judged.unit}s, {seeds}"
     corrected = f"Holm's correction is for {record.hypotheses} contrasts."
     if record.stopped is not None:
         others = "" if record.hypotheses == 1 else ", half of it for the primary one"

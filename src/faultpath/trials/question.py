@@ -35,14 +35,15 @@ class Flag:
     """Heading in the help; by default that of the class which declares the field."""
 
 
-def _several(given: object) -> tuple[object, ...]:
+def several(given: object) -> tuple[object, ...]:
+    """Return what may be given by itself, or several of it."""
     if isinstance(given, Sequence) and not isinstance(given, str):
         return tuple(cast("Sequence[object]", given))
     return (given,)
 
 
 def _seeds(given: object) -> object:
-    found = _several(given)
+    found = several(given)
     if isinstance(given, str):
         parts = [part.strip() for part in given.split(",")]
         if not all(re.fullmatch(r"-?[0-9]+", part) for part in parts):
@@ -58,7 +59,7 @@ def _seeds(given: object) -> object:
 
 def _sizes(given: object) -> object:
     if not isinstance(given, str):
-        return _several(given)
+        return several(given)
     try:
         return tuple(float(part) for part in given.split(","))
     except ValueError:
@@ -67,7 +68,7 @@ def _sizes(given: object) -> object:
 
 def _names(given: object) -> object:
     if not isinstance(given, str):
-        return _several(given)
+        return several(given)
     found = tuple(part.strip() for part in given.split(","))
     if not all(found):
         raise ValueError(f"'{given}' holds an empty name: part names by one comma each")
@@ -85,11 +86,15 @@ Place = Annotated[
 Scenes = Annotated[str, Field(description="Library of scenes, by name or file.")]
 
 
-class Request(Frozen, strict=True, allow_inf_nan=False):
-    """What is asked of a system."""
+class Asked(Frozen, strict=True, allow_inf_nan=False):
+    """What a call asks."""
 
     panel: ClassVar[str] = ""
     """Heading in the help of the fields that a class declares."""
+
+
+class Request(Asked):
+    """What is asked of a system."""
 
     library: Scenes = "selection"
     options: Annotated[
@@ -279,13 +284,13 @@ class PlanQuestion(Question):
     panel: ClassVar[str] = "What is planned"
 
     fault: Annotated[
-        tuple[str, ...], BeforeValidator(_several), Flag(several=True, panel=Question.panel)
+        tuple[str, ...], BeforeValidator(several), Flag(several=True, panel=Question.panel)
     ] = Field(
         default=(),
         description="Expected error of a source that declares none, or another one: "
         "`gain:scale=1.1`; repeat the option for more.",
     )
-    module: Annotated[tuple[str, ...], BeforeValidator(_several), Flag(several=True)] = Field(
+    module: Annotated[tuple[str, ...], BeforeValidator(several), Flag(several=True)] = Field(
         default=(), description="Module that the repair changes, where its reads do not show it."
     )
 

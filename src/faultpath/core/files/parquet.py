@@ -47,6 +47,31 @@ def read_table(data: bytes) -> pa.Table:
     return pq.ParquetFile(pa.BufferReader(data), pre_buffer=False).read(use_threads=False)
 
 
+def unpacked(data: bytes, size: int) -> bytes:
+    """Return the `size` bytes that were compressed by Zstandard; `Unreadable` for others."""
+    try:
+        return pa.decompress(data, size, "zstd", asbytes=True)
+    except (pa.ArrowException, OSError) as error:
+        raise Unreadable(str(error)) from error
+
+
+def read_rows(data: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Yield the rows of anybody's Parquet file, numbered from one; `Unreadable` for another file.
+
+    Its columns have any types.
+    """
+    try:
+        names, batches = (table := read_table(data)).column_names, table.to_batches()
+        if len(set(names)) < len(names):
+            raise Unreadable("two columns have one name")
+        number = 0
+        for batch in batches:
+            for row in batch.to_pylist():
+                yield (number := number + 1), row
+    except (pa.ArrowException, OSError) as error:
+        raise Unreadable(str(error)) from error
+
+
 def decode(
     data: bytes, schema: Schema, may_lack: Collection[str] = (), more: Any = None
 ) -> tuple[Iterator[dict[str, Any]], dict[str, str]]:

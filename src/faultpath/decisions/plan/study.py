@@ -32,13 +32,13 @@ class StudyArm(Frozen):
 
 
 class StudyAudit(Frozen):
-    """One audit of the repair: a fault, and its arms."""
+    """One audit of the repair: a fault, and its arms where they were planned."""
 
     name: Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}$")]
     """Names its folder."""
     fault: str
     why: str = ""
-    arms: tuple[StudyArm, ...] = Field(min_length=2)
+    arms: tuple[StudyArm, ...] = ()
 
     @model_validator(mode="after")
     def _paths_once(self) -> Self:
@@ -47,13 +47,16 @@ class StudyAudit(Frozen):
 
 
 class StudyFile(Question, strict=False):
-    """What `faultpath plan` writes and `faultpath audit --study` carries out."""
+    """What `faultpath plan` writes and `faultpath audit --study` carries out.
+
+    One that was written by hand may leave out arms and hash: they follow from the system as it is.
+    """
 
     faultpath_study: Literal[1] = 1
     """Version of the form."""
     system: str
-    library_hash: str
-    scenes: int | None = Field(ge=1)
+    library_hash: str = ""
+    scenes: int | None = Field(default=None, ge=1)
     audits: tuple[StudyAudit, ...] = Field(min_length=1, max_length=_MOST)
 
     @model_validator(mode="after")
@@ -105,13 +108,13 @@ def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...
 
 def check_arms(study: StudyFile, planned: StudyAudit, audit: Audit) -> None:
     """Raise `UserError` unless the system still lays out the arms and scenes of the file."""
-    if audit.question.library_hash != study.library_hash:
+    if study.library_hash and audit.question.library_hash != study.library_hash:
         raise UserError(
             f"library '{study.library}' is not the one of the study file any more: plan anew."
         )
     now = {(arm.path, arm.baseline, arm.repair) for arm in arms_of(audit)}
     then = {(arm.path, arm.baseline, arm.repair) for arm in planned.arms}
-    if now != then:
+    if planned.arms and now != then:
         other = sorted({path for path, _, _ in now ^ then})
         raise UserError(
             f"audit '{planned.name}' of the study file has other arms than the system now has for "

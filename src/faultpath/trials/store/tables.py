@@ -1,7 +1,8 @@
 """Outcomes and traces as Parquet: one schema for the shards, one for the assembled tables."""
 
+import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,6 +35,8 @@ _RESULT = {**_COUNTS, **_HASHES, "error": TEXT}
 _TRACE = dict.fromkeys(("x_m", "y_m", "z_m"), NUMBERS)
 _MAY_LACK = ("time_s", "error", *_TRACE)
 _TRACES = {**_ADDRESS, **_TRACE}
+FIXED = frozenset({*_ADDRESS, *_PLACE, *_END, *_RESULT, *_TRACE})
+"""Columns that no metric can be called."""
 _KEY = "faultpath.key"
 """Under which name a shard's metadata keeps the key of its unit."""
 _TAPS = "faultpath.loop.taps"
@@ -88,11 +91,14 @@ def encode_outcomes(table: OutcomeTable) -> bytes:
 
 
 def decode_outcomes(data: bytes) -> OutcomeTable:
-    """Return an assembled outcome table (without traces); `Unreadable` when it is not one."""
+    """Return an assembled outcome table (without traces); `Unreadable` when it is not one.
+
+    Where a trial that did not fail has no time, it is not a number: other tools write none.
+    """
     schema = {**_ADDRESS, **_PLACE, **_END, **_RESULT}
     rows, _ = decode(data, schema, _MAY_LACK, more=NUMBER)
     at = ("variant", "path", "seed", *_PLACE)
-    placed = (({name: row[name] for name in at}, _outcome(row, None)) for row in rows)
+    placed = (({name: row[name] for name in at}, _outcome(row, None, True)) for row in rows)
     return OutcomeTable(tuple(TrialRow(**place, outcome=outcome) for place, outcome in placed))
 
 
@@ -130,7 +136,9 @@ def _columns(outcomes: Iterable[Outcome]) -> Schema:
 
 def _cells(outcome: Outcome) -> Row:
     axes = (None,) * 3 if outcome.trace is None else np.asarray(outcome.trace, np.float32).T
-    return {**outcome.metrics, **vars(outcome), **dict(zip(_TRACE, axes, strict=True))}
+    time_s = None if outcome.time_s != outcome.time_s else outcome.time_s  # not a number
+    traced = dict(zip(_TRACE, axes, strict=True))
+    return {**outcome.metrics, **vars(outcome), **traced, "time_s": time_s}
 
 
 def _trace(row: Row) -> Trace | None:
@@ -145,7 +153,7 @@ def _trace(row: Row) -> Trace | None:
     return trace
 
 
-def _outcome(row: Mapping[str, Any], trace: Trace | None) -> Outcome:
+def _outcome(row: Mapping[str, Any], trace: Trace | None, untimed: bool = False) -> Outcome:
     """Return the outcome in a row; refuse what no trial leaves behind, whoever wrote it."""
     fixed = {"scene", *_END, *_RESULT}
     others = fixed.union(_ADDRESS, _PLACE, _TRACE)
@@ -155,15 +163,16 @@ def _outcome(row: Mapping[str, Any], trace: Trace | None) -> Outcome:
         fields["status"] = Status(fields["status"])
     except ValueError as error:
         raise Unreadable(str(error)) from error
+    unknown = untimed and fields["time_s"] is None
     outcome = Outcome(**fields, trace=trace, metrics=metrics)
     wrong: str | None = None
     if min(outcome.faulted_steps, outcome.altered_steps) < 0:
         wrong = "a count of steps is below 0"
     elif not outcome.failed:
-        found = checked(outcome, metrics)
+        found = checked(replace(outcome, time_s=1.0) if unknown else outcome, metrics)
         wrong = found.error if found.failed else None
     elif fields["time_s"] is not None and not np.isfinite(fields["time_s"]):
         wrong = "time_s is not finite"
     if wrong:
         raise Unreadable(f"scene '{outcome.scene}': {wrong}")
-    return outcome
+    return replace(outcome, time_s=math.nan) if unknown and not outcome.failed else outcome

@@ -1,0 +1,121 @@
+"""`faultpath.judge`: decide from trials that other tools ran, and write the run folder."""
+
+import hashlib
+import json
+import re
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from faultpath.api.asking import asks
+from faultpath.api.audit import concluded_before
+from faultpath.api.display import Display, display
+from faultpath.api.runs import MADE_FROM, RECORD, SYSTEM, Run, as_text, read_run
+from faultpath.core.errors import UserError
+from faultpath.decisions.decide import after_looks, decide
+from faultpath.decisions.judging import LaidOut, lay_out
+from faultpath.interface import Interface
+from faultpath.trials.execution.provenance import amend, run_provenance
+from faultpath.trials.execution.runner import RunResult
+from faultpath.trials.question import ask
+from faultpath.trials.received.files import read_results
+from faultpath.trials.received.question import JudgeQuestion
+from faultpath.trials.shown import SystemShown, VariantShown
+from faultpath.trials.store.atomic import make_folder, write_file, write_text
+from faultpath.trials.store.folder import DELIVERIES, OUTCOMES, TRACES
+from faultpath.trials.store.tables import encode_outcomes, encode_traces
+from faultpath.trials.table import Deliveries, OutcomeTable, RowDeliveries
+from faultpath.trials.work.processes import local
+
+
+@asks(JudgeQuestion)
+def judge(
+    results: str | PathLike[str] | Sequence[str | PathLike[str]],
+    *,
+    progress: bool | Display = True,
+    **given: Any,
+) -> Run:
+    """Decide from trials that other tools ran, as an audit does from its own.
+
+    Args:
+        results: Files, or folders of them: named columns as CSV, Parquet or JSON lines, LeRobot's
+            `eval_info.json`, logs of Inspect, samples of lm-eval. `mine=FILE` says of which arm all
+            trials of a file are, `mine@shared=FILE` under which condition too.
+        progress: Whether notices are shown, on the standard error.
+        **given: ...
+
+    Raises:
+        UserError: A file cannot be read, the trials cannot be paired, or nothing can be compared.
+    """
+    asked = ask(JudgeQuestion, given, isinstance(progress, Display) and progress.is_command)
+    named = [results] if isinstance(results, str | PathLike) else list(results)
+    if not named:
+        raise UserError("there are no results to judge: name a file.")
+    said = {"results": [str(each) for each in named], **asked.model_dump(exclude_unset=True)}
+    shown = display(progress, "judge", said)
+    started = datetime.now(UTC)
+    rows, sources = read_results(named, asked)
+    laid = lay_out(rows, asked)
+    folder = asked.folder or _folder(laid, sources)
+    if (folder / "manifest.json").exists():
+        raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
+    before = concluded_before(folder, laid.question)
+    record = decide(laid.question, laid.paths, laid.table, laid.findings)
+    if before is not None and before.question.library_hash == laid.question.library_hash:
+        record = after_looks(record, (before,))
+    make_folder(folder)
+    result = _stored(folder, laid)
+    write_text(folder / RECORD, as_text(record), folder)
+    made = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
+    amend(folder, made.model_copy(update={"data": sources}), MADE_FROM)
+    run = Run(folder, *read_run(folder))
+    run.report()
+    if not shown.is_command:
+        for finding in laid.findings:
+            shown.say(finding)
+    return run
+
+
+def _folder(laid: LaidOut, sources: dict[str, str]) -> Path:
+    asked = laid.question
+    content = json.dumps([sorted(sources.values()), asked.model_dump(mode="json")], sort_keys=True)
+    digest = hashlib.sha256(content.encode()).hexdigest()[:8]
+    arms = re.sub(r"[^A-Za-z0-9.+,_-]+", "_", f"{asked.repair}-vs-{asked.baseline}")[:150]
+    return Path("runs") / f"judged-{arms}-{digest}"
+
+
+def _stored(folder: Path, laid: LaidOut) -> RunResult:
+    """Write the trials and what else pages are made from, of a system of which nothing is known."""
+    asked, table = laid.question, laid.table
+    rows = dict.fromkeys((row.variant, row.path, row.seed) for row in table.rows)
+    taps = tuple(RowDeliveries(variant=v, path=p, seed=s, taps=()) for v, p, s in rows)
+    deliveries = Deliveries(rows=taps, findings=laid.findings)
+    shown = SystemShown(
+        control_dt_s=1.0,
+        interface=Interface(name="results", sources=(), channels=()),
+        variants=tuple(
+            VariantShown(name=name, consumers=(), bindings={})
+            for name in (asked.baseline, asked.repair)
+        ),
+        plans={},
+    )
+    outcomes = encode_outcomes(table)
+    write_file(folder / OUTCOMES, outcomes, folder)
+    write_file(folder / TRACES, encode_traces(OutcomeTable(())), folder)
+    write_text(folder / DELIVERIES, deliveries.model_dump_json(indent=1) + "\n", folder)
+    write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
+    digest = hashlib.sha256(outcomes).hexdigest()
+    return RunResult(
+        outcomes=table,
+        deliveries=deliveries,
+        traces={},
+        blocks_computed=0,
+        blocks_kept=0,
+        failures=(),
+        outcomes_sha256=digest,
+        system_fingerprint=digest[:16],
+        code=(),
+        library_hash=asked.library_hash,
+    )

@@ -1,0 +1,42 @@
+"""The fixture `faultpath` for pytest, found by its entry point: audits and judgements in tests."""
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from faultpath.api.runs import Run
+
+
+class Audits:
+    """`audit` and `judge` as from Python; a run goes into the test's own folder unless told."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._count = 0
+
+    def audit(self, system: Any, **given: Any) -> "Run":
+        """Return `faultpath.audit(system, ...)`."""
+        import faultpath
+
+        return self._run(partial(faultpath.audit, system), given)
+
+    def judge(self, results: Any, **given: Any) -> "Run":
+        """Return `faultpath.judge(results, ...)`."""
+        import faultpath
+
+        return self._run(partial(faultpath.judge, results), given)
+
+    def _run(self, call: "Callable[..., Run]", given: dict[str, Any]) -> "Run":
+        self._count += 1
+        place = self._folder / f"faultpath-{self._count}"
+        return call(**{"folder": place, "progress": False, **given})
+
+
+@pytest.fixture
+def faultpath(tmp_path: Path) -> Audits:
+    """Audit a repair, or judge trials that other tools ran, and assert what was decided."""
+    return Audits(tmp_path)

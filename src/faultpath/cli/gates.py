@@ -1,0 +1,86 @@
+"""What a verb leaves for a build: its exit status, JUnit's XML and a summary."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from faultpath.cli.options import FOUND
+from faultpath.cli.options import path as as_path
+from faultpath.core.errors import UserError
+from faultpath.core.text import unknown
+
+if TYPE_CHECKING:
+    from faultpath.api.runs import Run
+
+_PANEL = "For a build"
+_ASKS = ("reversal", "repair-behind", "undecided", "void")  # those of `faultpath.decisions.gate`
+
+FailIf = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--fail-if",
+        metavar=f"<{'|'.join(_ASKS)}>",
+        help="Exit with 1 where this is found; repeat the option for more. undecided is about the "
+        "primary contrast.",
+        rich_help_panel=_PANEL,
+    ),
+]
+Junit = Annotated[
+    Path | None,
+    typer.Option("--junit", parser=as_path, help="Write JUnit's XML here.", rich_help_panel=_PANEL),
+]
+Summary = Annotated[
+    Path | None,
+    typer.Option(
+        "--summary",
+        parser=as_path,
+        help="Add a summary in Markdown to this file.",
+        rich_help_panel=_PANEL,
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Gate:
+    """What a line says of a build, checked before any trial runs."""
+
+    asked: tuple[str, ...]
+    junit: Path | None
+    summary: Path | None
+
+    @classmethod
+    def of(cls, fail_if: Sequence[str] | None, junit: Path | None, summary: Path | None) -> "Gate":
+        """Read the options; `UserError` for what cannot be asked, or written."""
+        from faultpath.trials.store.atomic import check_writable
+
+        asked = tuple(dict.fromkeys(fail_if or ()))
+        for each in asked:
+            if each not in _ASKS:
+                raise UserError(f"--fail-if {each}: {unknown('name', each, _ASKS)}.")
+        for place in filter(None, (junit, summary)):
+            check_writable(place)
+        return cls(asked, junit, summary)
+
+    def end(self, runs: "Sequence[Run]", say: Callable[..., Any]) -> int:
+        """Write what was asked for, say what a build fails for, and return the exit status."""
+        from faultpath.core.files.opening import contents
+        from faultpath.decisions.gate import broken
+        from faultpath.report.build import junit, summary
+        from faultpath.trials.store.atomic import write_file, write_text
+
+        records = [run.record for run in runs]
+        if self.junit is not None:
+            write_text(self.junit, junit(records, self.asked))
+        if self.summary is not None:
+            # A build's summary holds that of its other steps too.
+            before = contents(self.summary) if self.summary.exists() else b""
+            write_file(self.summary, before + summary(records, self.asked).encode())
+        status = FOUND if any(run.failed for run in runs) else 0
+        for record in records:
+            for name, answer in broken(record, self.asked).items():
+                say(f"--fail-if {name}: {answer.said}", markup=False, style="bold red")
+                status = FOUND
+        return status

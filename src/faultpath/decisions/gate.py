@@ -1,0 +1,83 @@
+"""What a build or a test asks of a record, answered from what was decided and nothing else."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from faultpath.core.errors import UserError
+from faultpath.core.text import unknown
+from faultpath.decisions import phrases
+from faultpath.decisions.model import SHARED, DecisionRecord
+from faultpath.decisions.summary import in_short, places
+from faultpath.decisions.wording import capital, counted, sentence, where
+
+Ask = Literal["reversal", "repair-behind", "undecided", "void"]
+ASKS: tuple[Ask, ...] = get_args(Ask)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Yes or no, with what was decided: true and false as a bool, and read in a failed assert."""
+
+    yes: bool
+    said: str
+
+    def __bool__(self) -> bool:
+        return self.yes
+
+    def __repr__(self) -> str:
+        """Return the answer and what it rests on."""
+        return f"{'yes' if self.yes else 'no'}: {self.said}"
+
+
+def found(record: DecisionRecord, what: str) -> Answer:
+    """Return whether a record holds what is named; `UserError` for what is none of `ASKS`.
+
+    `reversal`: sharing the fault is decided to reverse the ranking. `repair-behind`: on some path
+    the baseline is decided to be ahead. `undecided`: on the primary path nobody is, nor is the
+    difference shown to be small. `void`: pairs of trials count for nothing.
+    """
+    match what:
+        case "reversal":
+            turned = [each for each in record.changes if each.turn == "reversal"]
+            said = " ".join(phrases.change(record, each) for each in turned)
+            return Answer(bool(turned), said or "no reversal is decided.")
+        case "repair-behind":
+            behind = [each for each in record.effects if each.sign < 0]
+            if not behind:
+                return Answer(False, "on no path is the baseline decided to be ahead.")
+            ahead = f"{record.question.baseline} succeeds more often."
+            return Answer(True, f"{capital(places(behind))}, {ahead}")
+        case "undecided":
+            primary = record.question.primary
+            main = next((each for each in record.effects if each.path == primary), None)
+            settled = main is not None and (main.sign != 0 or record.is_small(main))
+            return Answer(not settled, f"{capital(where(primary))}: {in_short(record, main)}.")
+        case "void":
+            void = sum(each.void_pairs for each in record.effects)
+            lost = [each.name for each in record.paths]
+            lost = [name for name in lost if name not in {each.path for each in record.effects}]
+            said = [f"{counted(void, 'pair')} of trials {'is' if void == 1 else 'are'} void."]
+            said += [f"{phrases.no_pair(name)}." for name in lost]
+            return Answer(bool(void or lost), " ".join(said))
+        case _:
+            raise UserError(f"a record cannot be asked for that: {unknown('name', what, ASKS)}.")
+
+
+def holds_when_shared(record: DecisionRecord) -> Answer:
+    """Return whether the repair is decided to be ahead under the shared fault.
+
+    Away from floor and ceiling, and not because the baseline's trials failed. `UserError` for a
+    record without a shared fault.
+    """
+    if SHARED not in {each.name for each in record.paths}:
+        raise UserError("the record has no shared fault, so nothing says whether the repair holds.")
+    effect = next((each for each in record.effects if each.path == SHARED), None)
+    said = sentence(f"{where(SHARED)}, {in_short(record, effect)}")
+    return Answer(effect is not None and effect.leads and effect.sign > 0, said)
+
+
+def broken(record: DecisionRecord, asked: Sequence[str]) -> dict[str, Answer]:
+    """Return what a build fails for, of what it was told to: by name, each with its answer."""
+    answers = {each: found(record, each) for each in asked}
+    return {name: answer for name, answer in answers.items() if answer}

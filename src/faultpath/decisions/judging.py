@@ -1,0 +1,270 @@
+"""From trials that other tools ran to what an audit is decided from: question, paths, table."""
+
+import hashlib
+import json
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from faultpath.core.errors import UserError
+from faultpath.core.text import listed, unknown
+from faultpath.decisions.decide import primary_path
+from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Path
+from faultpath.decisions.question import Judged, Question
+from faultpath.decisions.wording import capital, counted, where
+from faultpath.trials.outcome import Metric, Outcome, Status, failed_outcome
+from faultpath.trials.received.question import JudgeQuestion
+from faultpath.trials.received.trial import NO_OUTCOME, Received
+from faultpath.trials.store.tables import FIXED
+from faultpath.trials.table import OutcomeTable, TrialRow, unproven
+
+_ONE = "one module"
+"""The path of a condition that is called isolated, and says no module."""
+_NONE = "none"
+_MOST = 15_000
+"""Scenes of the rule in force: the memory of its test grows with their square."""
+_FIRST = {CORRECT: 0, SHARED: 2}
+
+_Key = tuple[str, str]
+"""Of a trial within its arm and path: what counts as a scene, and which of its trials it is."""
+
+
+@dataclass(frozen=True)
+class LaidOut:
+    """What `decide` takes."""
+
+    question: Question
+    paths: tuple[Path, ...]
+    table: OutcomeTable
+    findings: tuple[str, ...]
+
+
+def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
+    """Pair the trials of two arms by what names them: task, scene, seed and condition.
+
+    What one arm has and the other lacks is a failed trial, so that its pair is void, and is named.
+    Raises `UserError` for arms and conditions that are not there, a trial that is there twice, arms
+    without a trial in common, and hashes that only some trials have.
+    """
+    if asked.baseline == asked.repair:
+        raise UserError(f"baseline and repair are both '{asked.repair}': name two arms.")
+    for name in (asked.baseline, asked.repair):
+        if name not in (arms := {row.arm for row in rows}):
+            raise UserError(f"the results have no such arm: {unknown('arm', name, arms)}.")
+    rows = [row for row in rows if row.arm in (asked.baseline, asked.repair)]
+    names = _path_names({row.condition for row in rows}, asked)
+    if asked.cluster == "task" and not all(row.task for row in rows):
+        raise UserError("not every trial names its task: give --column task=NAME.")
+    trials = _by_address(rows, names, asked)
+    paths = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
+    _check_paired(trials, paths, asked)
+
+    labels: dict[str, dict[str, None]] = {}
+    for _, _, (unit, label) in trials:
+        labels.setdefault(unit, {})[label] = None
+    if len(labels) > _MOST and asked.rule == "unconditional":
+        raise UserError(
+            f"the rule in force takes at most {_MOST:,} scenes, and these are {len(labels):,}: "
+            "give --rule exact, or --cluster task."
+        )
+    seen = {tuple(sorted(each, key=_in_order)) for each in labels.values()}
+    # Seeds that are the same everywhere are seeds; others only number the trials of a scene.
+    alike = len(seen) == 1
+    if asked.generalise == "models" and (not alike or len(min(seen)) < 2):
+        raise UserError(
+            "newly trained models need several seeds, the same ones in every scene: leave "
+            "--generalise models out."
+        )
+    most = max(map(len, labels.values()))
+    seeds = tuple(range(most))
+    if alike and all(label.isdecimal() and len(label) < 19 for label in min(seen)):
+        seeds = tuple(map(int, min(seen)))
+    hashed = _hashed(rows)
+    found: list[TrialRow] = []
+    missing: dict[tuple[str, str], list[_Key]] = {}
+    tasks = {address[2][0]: row.task for address, row in trials.items()}
+    for path, arm in product(paths, (asked.baseline, asked.repair)):
+        for place, at in product(range(most), enumerate(sorted(labels, key=_in_order))):
+            index, unit = at
+            ordered = sorted(labels[unit], key=_in_order)[place:]
+            row = trials.get((arm, path, (unit, ordered[0]))) if ordered else None
+            if row is None:
+                missing.setdefault((arm, path), []).append((unit, "".join(ordered[:1])))
+            topology = tasks[unit] if asked.cluster == "scene" else ""
+            outcome = _outcome(unit, row, hashed)
+            found.append(TrialRow(arm, path, seeds[place], index, topology, outcome))
+    found.sort(key=lambda row: (paths.index(row.path), row.variant, row.seed, row.scene_index))
+    table = OutcomeTable(tuple(found))
+    keys = json.dumps({unit: sorted(each) for unit, each in labels.items()}, sort_keys=True)
+    laid = tuple(_path(name) for name in paths)
+    dull = not any(row.status is Status.CRASH for row in rows)
+    question = Question(
+        system="results of other tools",
+        options={},
+        baseline=asked.baseline,
+        repair=asked.repair,
+        fault=asked.fault,
+        library="results",
+        library_hash=hashlib.sha256(keys.encode()).hexdigest()[:16],
+        n_scenes=len(labels),
+        seeds=seeds,
+        primary=primary_path(asked.primary or "", laid),
+        generalise=asked.generalise,
+        trained=asked.generalise == "models",
+        ends={Status.TIMEOUT.value: "no success"} if dull else {},
+        metrics=_metrics(asked),
+        rule=asked.rule,
+        judged=Judged(pairing="hashes" if hashed else "keys", unit=asked.cluster),
+    )
+    return LaidOut(question, laid, table, tuple(_findings(table, missing, tasks, asked, hashed)))
+
+
+def _path_names(conditions: Collection[str], asked: JudgeQuestion) -> dict[str, str]:
+    """Return the path of each condition; `UserError` without one that is nominal."""
+    for given in filter(None, (asked.nominal, asked.shared)):
+        if given not in conditions:
+            raise UserError(
+                f"the results have no such condition: {unknown('condition', given, conditions)}."
+            )
+    if conditions == {""}:
+        return {"": AS_RUN}
+    nominal = {asked.nominal} if asked.nominal else {"", "nominal", "correct"}
+    shared = {asked.shared} if asked.shared else {"shared"}
+    names: dict[str, str] = {}
+    for each in sorted(conditions):
+        if each in nominal:
+            names[each] = CORRECT
+        elif each in shared:
+            names[each] = SHARED
+        else:
+            names[each] = _ONE if each == "isolated" else each.removeprefix("isolated:")
+    if CORRECT not in names.values():
+        raise UserError(
+            f"no condition is nominal ({listed(conditions)}): say with --nominal which one is "
+            "without the fault."
+        )
+    if len(set(names.values())) < len(names):
+        raise UserError(
+            f"two of the conditions are one path ({listed(conditions)}): say with --nominal and "
+            "--shared which is which."
+        )
+    return names
+
+
+def _by_address(
+    rows: Iterable[Received], names: Mapping[str, str], asked: JudgeQuestion
+) -> dict[tuple[str, str, _Key], Received]:
+    found: dict[tuple[str, str, _Key], Received] = {}
+    for row in rows:
+        scene = f"{row.task}/{row.scene}" if row.task else row.scene
+        key = (scene, row.seed)
+        if asked.cluster == "task":
+            key = (row.task, f"{row.scene}, seed {row.seed}" if row.seed else row.scene)
+        address = (row.arm, names[row.condition], key)
+        if (before := found.setdefault(address, row)) is not row:
+            seed = f", seed {row.seed}" if row.seed else ""
+            raise UserError(
+                f"{row.where} and {before.where} are the same trial (arm {row.arm}, scene {scene}"
+                f"{seed}): give each once, or name the column that tells them apart, as in "
+                "--column seed=NAME."
+            )
+    return found
+
+
+def _check_paired(
+    trials: Collection[tuple[str, str, _Key]], paths: Sequence[str], asked: JudgeQuestion
+) -> None:
+    """Raise `UserError` for a path on which no trial of one arm has its pair in the other."""
+    for path in paths:
+        ones, twos = (
+            sorted(key for arm, at, key in trials if (arm, at) == (name, path))
+            for name in (asked.baseline, asked.repair)
+        )
+        for name, keys in ((asked.baseline, ones), (asked.repair, twos)):
+            if not keys:
+                raise UserError(
+                    f"'{name}' has no trial {where(path)}: give both arms under each condition."
+                )
+        if not set(ones) & set(twos):
+            first, second = (", seed ".join(filter(None, keys[0])) for keys in (ones, twos))
+            raise UserError(
+                f"no trial of '{asked.baseline}' has its pair in '{asked.repair}' {where(path)} "
+                f"(the first are scene {first} and scene {second}): name the columns that say "
+                "what belongs together, as in --column scene=NAME."
+            )
+
+
+def _hashed(rows: Sequence[Received]) -> bool:
+    """Return whether trials carry hashes of what they began with; `UserError` if only some do."""
+    ended = [row for row in rows if row.status is not Status.FAILED]
+    bare = [row for row in ended if not row.initial]
+    if bare and len(bare) < len(ended):
+        raise UserError(
+            f"{bare[0].where} has no hash of its initial state, and other trials have one: fill "
+            "the column, or take it out."
+        )
+    return bool(ended) and not bare
+
+
+def _outcome(scene: str, row: Received | None, hashed: bool) -> Outcome:
+    if row is None or row.status is Status.FAILED:
+        return failed_outcome(scene, "it is not among the results" if row is None else row.error)
+    initial = row.initial if hashed else _NONE
+    return Outcome(scene, row.status, row.time_s, initial, _NONE, _NONE, row.metrics)
+
+
+def _path(name: str) -> Path:
+    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault", AS_RUN: "The results"}
+    title = titles.get(name, f"{capital(name.replace('_', ' '))} only")
+    return Path(name=name, title=title, consumers=(), baseline_consumers=())
+
+
+def _metrics(asked: JudgeQuestion) -> dict[str, Metric]:
+    found: dict[str, Metric] = {}
+    for name, _, better in (each.partition(":") for each in asked.metrics):
+        if not re.fullmatch("[a-z][a-z0-9_]*", name) or name in FIXED:
+            raise UserError(
+                f"--metric {name} cannot be the name of a metric: rename the column to small "
+                "letters, digits and underscores, and not to what every trial has."
+            )
+        if better not in ("", "more", "less"):
+            raise UserError(f"--metric {name}:{better} is neither less nor more: give one of them.")
+        found[name] = Metric(unit="1", better="less" if better == "less" else "more")
+    return found
+
+
+def _findings(
+    table: OutcomeTable,
+    missing: Mapping[tuple[str, str], Sequence[_Key]],
+    tasks: Mapping[str, str],
+    asked: JudgeQuestion,
+    hashed: bool,
+) -> Iterable[str]:
+    for (arm, path), keys in missing.items():
+        unit, label = keys[0]
+        which = "" if not label else f" ({'' if asked.cluster == 'task' else 'seed '}{label})"
+        yield (
+            f"{capital(where(path))}, {counted(len(keys), 'trial')} of {arm} "
+            f"{'is' if len(keys) == 1 else 'are'} missing, for example that in {unit}{which}: "
+            "each voids its pair."
+        )
+    several = len(set(tasks.values()))
+    if asked.cluster == "scene" and several > 1:
+        yield (
+            f"The scenes come from {several} tasks and are taken for independent: what is decided "
+            "is not about new tasks. --cluster task asks about those."
+        )
+    ended = [row.outcome for row in table.rows if not row.outcome.failed]
+    if hashed:
+        yield from unproven(ended)
+    silent = [row for row in table.failed() if row.outcome.error == NO_OUTCOME]
+    if silent and all(each.status is Status.SUCCESS for each in ended):
+        yield (
+            "No trial ended without success, and some say nothing: where `failed` or an empty cell "
+            "means no success, write 0."
+        )
+
+
+def _in_order(label: str) -> tuple[bool, int, str]:
+    return (not label.isdecimal(), int(label) if label.isdecimal() else 0, label)

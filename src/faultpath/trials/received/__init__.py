@@ -1,0 +1,1 @@
+"""Trials that other tools ran: what is asked of their results, and how their files are read."""

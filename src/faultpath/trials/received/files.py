@@ -1,0 +1,200 @@
+"""Results of other tools, read as data: named columns, LeRobot, Inspect, lm-eval.
+
+Nothing that a file names is run or imported, JSON is read strictly, and sizes have limits.
+"""
+
+import csv
+import hashlib
+import io
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any, cast
+
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.plain import Misread, read_json, text_of
+from faultpath.core.text import listed, unknown
+from faultpath.trials.received import inspect_logs
+from faultpath.trials.received.question import JudgeQuestion
+from faultpath.trials.received.trial import Given, Received, received
+from faultpath.trials.store.parquet import Unreadable, read_rows
+
+_READ = ("eval_info.json", "samples_*.jsonl", "*.eval")
+"""What is looked for in a folder."""
+_SAMPLES = re.compile(r"samples_(.+)_\d{4}-\d\d-\d\dT[\d.-]+\.jsonl")
+_OF_SAMPLES = ("doc_id", "target", "filter", "metrics")
+
+Cells = Iterator[tuple[str, Mapping[str, Any]]]
+"""Each trial with where it stands in its file."""
+
+
+def read_results(
+    results: Sequence[str | PathLike[str]], asked: JudgeQuestion
+) -> tuple[list[Received], dict[str, str]]:
+    """Return the trials in some files, and the SHA-256 of each file.
+
+    A result is a file, a folder, or either with the arm of its trials before it: `mine=runs/a`, and
+    the condition too, `mine@shared=runs/b`. Raises `UserError` for a file that cannot be read, and
+    as `received`.
+    """
+    found: list[Received] = []
+    digests: dict[str, str] = {}
+    for given in (each for result in results for each in _files(str(result))):
+        path = Path(given.path)
+        try:
+            data = contents(path, LARGEST_TEXT if path.suffix != ".eval" else inspect_logs.LARGEST)
+            for where, cells in _as_expected(_cells(path, data, asked)):
+                found.append(received(f"{path}{where}", cells, given, asked))
+        except OSError as error:
+            raise UserError(f"{path}: cannot be read ({error.strerror}): give a file.") from None
+        except Misread as error:
+            raise UserError(f"{error.at(path)}.") from None
+        except Unreadable as error:
+            raise UserError(f"{path} is no sound Parquet file ({error}): write it anew.") from None
+        digests[str(path)] = hashlib.sha256(data).hexdigest()
+    return found, digests
+
+
+def _files(result: str) -> list[Given]:
+    label, equals, rest = result.partition("=")
+    if not equals or Path(result).exists():
+        label, rest = "", result
+    arm, _, condition = label.partition("@")
+    place = Path(rest)
+    if not place.is_dir():
+        return [Given(rest, arm, condition)]
+    inside = sorted({file for pattern in _READ for file in place.glob(pattern)})
+    if not inside:
+        raise UserError(f"{place} holds none of {', '.join(_READ)}: name the files themselves.")
+    return [Given(str(file), arm, condition) for file in inside]
+
+
+def _as_expected(cells: Cells) -> Cells:
+    """Yield what a reader finds; `Misread` where a part of the file is not what it takes it for."""
+    try:
+        yield from cells
+    except Misread:
+        raise
+    except KeyError as error:
+        raise Misread(f"lacks {error}, which files of its kind have") from None
+    except (TypeError, AttributeError, ValueError):
+        raise Misread("is not laid out as files of its kind are") from None
+
+
+def _cells(path: Path, data: bytes, asked: JudgeQuestion) -> Cells:
+    match path.suffix:
+        case ".csv":
+            yield from _named(_csv(text_of(data)), asked)
+        case ".parquet":
+            yield from _named(((f", row {n}", row) for n, row in read_rows(data)), asked)
+        case ".eval":
+            yield from inspect_logs.cells(inspect_logs.unzipped(data), asked)
+        case ".jsonl":
+            lines = text_of(data).splitlines()
+            rows = [
+                (f", line {n}", _object(line.encode(), n))
+                for n, line in enumerate(lines, 1)
+                if line
+            ]
+            if rows and "doc_id" in rows[0][1]:
+                yield from _samples(path, rows, asked)
+            else:
+                yield from _named(iter(rows), asked)
+        case ".json":
+            log = _object(data)
+            if isinstance(log.get("eval"), dict):
+                yield from inspect_logs.cells(log, asked)
+            else:
+                yield from _episodes(log)
+        case _:
+            raise Misread("is of no kind that is read; give .csv, .parquet, .json, .jsonl or .eval")
+
+
+def _object(data: bytes, line: int | None = None) -> dict[str, Any]:
+    try:
+        found = read_json(data)
+    except Misread as error:
+        raise Misread(str(error), line or error.line) from None
+    if isinstance(found, dict):
+        return cast("dict[str, Any]", found)
+    raise Misread("is no group of fields, {...}", line)
+
+
+def _csv(text: str) -> Cells:
+    rows = csv.reader(io.StringIO(text, newline=""), strict=True)
+    try:
+        names = next(rows, list[str]())
+        if twice := [name for at, name in enumerate(names) if name in names[:at]]:
+            raise Misread(f"column '{twice[0]}' appears twice; drop one", 1)
+        for row in filter(None, rows):
+            if len(row) != len(names):
+                said = f"has {len(row)} cells where the first line names {len(names)} columns"
+                raise Misread(said, rows.line_num)
+            yield f", line {rows.line_num}", dict(zip(names, row, strict=True))
+    except csv.Error as error:
+        raise Misread(f"is not CSV ({error})", rows.line_num) from None
+
+
+def _named(rows: Cells, asked: JudgeQuestion) -> Cells:
+    """Yield trials by the names that are asked for; a column that was named has to be there."""
+    for where, row in rows:
+        for name, column in asked.columns.items():
+            if column not in row:
+                raise Misread(f"--column {name}={column}: {unknown('column', column, row)}")
+        yield where, {**row, **{name: row[column] for name, column in asked.columns.items()}}
+
+
+def _episodes(info: Mapping[str, Any]) -> Cells:
+    """Yield the episodes of LeRobot's `eval_info.json`: by task and place, or by seed where it says
+    one."""
+    if "per_episode" in info:
+        for number, episode in enumerate(_each(info["per_episode"])):
+            seed = episode["seed"]
+            scene = f"episode {episode['episode_ix']}" if seed is None else f"seed {seed}"
+            yield f", episode {number}", {**episode, "scene": scene, "seed": None}
+        return
+    if "per_task" not in info:
+        raise Misread(
+            "is neither LeRobot's eval_info.json (per_task or per_episode) nor a log of Inspect "
+            "(eval and samples); give one of these, or columns as CSV"
+        )
+    for each in _each(info["per_task"]):
+        task = f"{each['task_group']}/{each['task_id']}"
+        metrics: dict[str, list[Any]] = each["metrics"]
+        lists = {"success": "successes", "sum_reward": "sum_rewards", "max_reward": "max_rewards"}
+        columns = {name: metrics[key] for name, key in lists.items() if key in metrics}
+        for at, row in enumerate(zip(*columns.values(), strict=True)):
+            cells = dict(zip(columns, row, strict=True))
+            yield f", {task}, episode {at}", {**cells, "task": task, "scene": f"episode {at}"}
+
+
+def _each(value: Any) -> list[dict[str, Any]]:
+    if not isinstance(value, list):
+        raise TypeError
+    return cast("list[dict[str, Any]]", value)
+
+
+def _samples(path: Path, rows: Sequence[tuple[str, dict[str, Any]]], asked: JudgeQuestion) -> Cells:
+    """Yield the documents of lm-eval's `samples_<task>_<date>.jsonl`, by the hash of each."""
+    named = _SAMPLES.fullmatch(path.name)
+    task = named[1] if named else path.stem
+    metric, _, wanted = asked.columns.get("success", "").partition(",")
+    filters = list(dict.fromkeys(str(row.get("filter", "none")) for _, row in rows))
+    metrics = rows[0][1].get("metrics") or [
+        name
+        for name, value in rows[0][1].items()
+        if isinstance(value, int | float) and name not in _OF_SAMPLES
+    ]
+    metric = metric or (str(metrics[0]) if len(metrics) == 1 else "")
+    wanted = wanted or (filters[0] if len(filters) == 1 else "")
+    if metric not in metrics or wanted not in filters:
+        raise Misread(
+            f"has the metrics {listed(map(str, metrics))} and the filters {listed(filters)}; say "
+            f"which of them is success, as in --column success={metrics[0]},{filters[0]}"
+        )
+    for where, row in rows:
+        if str(row.get("filter", "none")) == wanted:
+            same = {"task": task, "scene": row["doc_id"], "initial": row.get("doc_hash")}
+            yield where, {**row, **same, "success": row.get(metric)}

@@ -1,0 +1,97 @@
+"""What can be asked of results that other tools wrote."""
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, ClassVar, Literal, cast
+
+from pydantic import BeforeValidator, Field
+
+from faultpath.trials.question import Asked, Flag, Generalise, Place, Rule, several
+
+COLUMNS = (
+    "arm",
+    "scene",
+    "seed",
+    "task",
+    "condition",
+    "success",
+    "initial",
+    "time_s",
+)
+"""What is read of a trial, and the name of its column where none is given."""
+
+
+def _columns(given: object) -> object:
+    if isinstance(given, Mapping):
+        found = dict(cast("Mapping[str, str]", given))
+    else:
+        pairs = [str(each).partition("=") for each in several(given)]
+        if bad := [name for name, equals, column in pairs if not (name and equals and column)]:
+            raise ValueError(f"'{bad[0]}' is not of the form scene=episode_id")
+        found = {name: column for name, _, column in pairs}
+        if len(found) < len(pairs):
+            raise ValueError("gives one of them two columns: name each once")
+    if odd := sorted(set(found) - set(COLUMNS)):
+        raise ValueError(f"'{odd[0]}' is nothing that is read: choose from {', '.join(COLUMNS)}")
+    return found
+
+
+def _metrics(given: object) -> object:
+    found = several(given)
+    names = [str(each).partition(":")[0] for each in cast("Sequence[object]", found)]
+    if len(set(names)) < len(names):
+        raise ValueError("names a metric twice: name each once")
+    return found
+
+
+class JudgeQuestion(Asked):
+    """What is asked of results that other tools wrote."""
+
+    panel: ClassVar[str] = "What is compared"
+
+    baseline: str = Field(description="Arm to compare with, as the results name it.")
+    repair: str = Field(description="Arm that is meant to be better.")
+    columns: Annotated[
+        dict[str, str], BeforeValidator(_columns), Flag("--column", several=True)
+    ] = Field(
+        default_factory=dict,
+        description="Column by another name, scene=episode_id: of arm, scene, seed, task, "
+        "condition, success, initial (a hash of the initial state), time_s. For Inspect and "
+        "lm-eval success=NAME is the scorer or metric.",
+    )
+    metrics: Annotated[
+        tuple[str, ...], BeforeValidator(_metrics), Flag("--metric", several=True)
+    ] = Field(
+        default=(),
+        description="Column of numbers to tell beside success; NAME:less where less is better.",
+    )
+    success_from: float | None = Field(
+        default=None, description="Score from which on a trial counts as a success."
+    )
+    nominal: str = Field(
+        default="", description="Condition without a fault; default nominal or correct."
+    )
+    shared: str = Field(
+        default="",
+        description="Condition under which the fault reaches every module; default shared. Any "
+        "other is the name of the module that alone got it.",
+    )
+    fault: str = Field(default="", description="What the conditions did, in words.")
+    cluster: Annotated[Literal["scene", "task"], Flag(panel="How it is decided")] = Field(
+        default="scene",
+        description="What would be drawn anew: new scenes, or new tasks with all of their scenes.",
+    )
+    primary: Annotated[str | None, Flag(panel="How it is decided")] = Field(
+        default=None, description="Path of the primary contrast, a module or shared (default)."
+    )
+    generalise: Annotated[Generalise, Flag(panel="How it is decided")] = Field(
+        default="scenes",
+        description="What intervals speak of: new scenes, or newly trained models too, one a seed.",
+    )
+    rule: Annotated[Rule, Flag(panel="How it is decided")] = Field(
+        default="unconditional",
+        description="By which it is decided: that in force, or the exact one for scenes that were "
+        "seen under it.",
+    )
+    folder: Annotated[Place, Flag("--out")] = Field(
+        default=None, description="Run folder; default runs/judged-<arms>-<results>."
+    )

@@ -1,0 +1,135 @@
+"""One trial as another tool wrote it: from cells to what ended how."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from faultpath.core.errors import UserError
+from faultpath.core.text import unknown
+from faultpath.trials.declared import check_name, shown
+from faultpath.trials.outcome import Status
+from faultpath.trials.received.question import JudgeQuestion
+
+_TRUTH = {"true": True, "yes": True, "false": False, "no": False}
+NO_OUTCOME = "the results give no outcome"
+
+
+@dataclass(frozen=True)
+class Received:
+    """One trial."""
+
+    where: str
+    """File and line, or what else finds it there."""
+    arm: str
+    condition: str
+    task: str
+    scene: str
+    seed: str
+    status: Status
+    initial: str
+    """A hash of what it began with; empty where none is given."""
+    time_s: float
+    """Not a number where none is given."""
+    metrics: Mapping[str, float] = field(default_factory=dict[str, float])
+    error: str = ""
+    """Why it says nothing, of a failed one."""
+
+
+@dataclass(frozen=True)
+class Given:
+    """A file with what the command line says of all its trials."""
+
+    path: str
+    arm: str = ""
+    condition: str = ""
+
+
+def received(where: str, cells: Mapping[str, Any], given: Given, asked: JudgeQuestion) -> Received:
+    """Return the trial in `cells`, by the names of `COLUMNS` and of metrics.
+
+    `UserError` for a trial without an arm, scene or success, and for cells that cannot be.
+    """
+    arm = given.arm or _text(cells.get("arm"))
+    if not arm:
+        raise UserError(
+            f"{where} names no arm: write it before the file, as in {asked.repair}={given.path}, "
+            "or name the column with --column arm=NAME."
+        )
+    scene = _text(cells.get("scene"))
+    if not scene:
+        raise UserError(f"{where} names no scene: name the column with --column scene=NAME.")
+    if "success" not in cells:
+        raise UserError(f"{where} has no success: name the column with --column success=NAME.")
+    texts = {name: _text(cells.get(name)) for name in ("task", "seed", "initial", "condition")}
+    for name, text in {"arm": arm, "scene": scene, **texts}.items():
+        if text:
+            check_name(f"{where}: the {name}", text)
+    status = _status(cells["success"], where, asked.success_from)
+    time_s = _number(cells.get("time_s"), f"{where}: time_s")
+    if time_s is not None and time_s <= 0.0:
+        raise UserError(f"{where}: time_s is {time_s:g}: give seconds above 0, or leave it empty.")
+    metrics: dict[str, float] = {}
+    for name in (each.partition(":")[0] for each in asked.metrics):
+        if name not in cells:
+            raise UserError(f"{where}: {unknown('metric', name, map(str, cells))}.")
+        value = _number(cells[name], f"{where}: {name}")
+        metrics |= {} if value is None else {name: value}
+    return Received(
+        where,
+        arm,
+        given.condition or texts["condition"],
+        texts["task"],
+        scene,
+        texts["seed"],
+        status,
+        texts["initial"],
+        math.nan if time_s is None else time_s,
+        metrics,
+        str(cells.get("error") or NO_OUTCOME) if status is Status.FAILED else "",
+    )
+
+
+def _text(cell: object) -> str:
+    """Return a name: `3` for 3.0 too, which is how a column of whole numbers with a gap is read."""
+    if isinstance(cell, float) and cell.is_integer():
+        cell = int(cell)
+    return "" if cell is None or cell != cell else str(cell).strip()
+
+
+def _number(cell: object, what: str) -> float | None:
+    if cell is None or cell == "" or cell != cell:
+        return None
+    try:
+        number = float(cell) if isinstance(cell, str | int | float) else math.nan
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise UserError(f"{what} is {shown(cell)}: give a finite number, or leave it empty.")
+    return number
+
+
+def _status(cell: object, where: str, least: float | None) -> Status:
+    """Return how a trial ended; a cell without an outcome is a trial that says nothing."""
+    word = cell.strip().lower() if isinstance(cell, str) else cell
+    if word is None or word == "" or word != word or word == "nan":
+        return Status.FAILED
+    if word in set(Status):
+        return Status(str(word))
+    if isinstance(word, str):
+        word = _TRUTH.get(word, word)
+    try:
+        score = float(word) if isinstance(word, str | int | float) else math.nan
+    except ValueError:
+        score = math.nan
+    if math.isnan(score):
+        raise UserError(
+            f"{where}: success is {shown(cell)}: give true or false, 1 or 0, a number with "
+            "--success-from, or success, crash, timeout, or failed for a trial that says nothing."
+        )
+    if least is None and score not in (0.0, 1.0):
+        raise UserError(
+            f"{where}: success is {score:g}: give 0 or 1, or say with --success-from from which "
+            "score on a trial counts as a success."
+        )
+    return Status.SUCCESS if score >= (1.0 if least is None else least) else Status.TIMEOUT

@@ -1,0 +1,113 @@
+"""Results as other tools write them, made from who succeeded where."""
+
+import json
+import struct
+import zipfile
+import zlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+
+Successes = Mapping[str, Sequence[bool]]
+"""By arm, scene by scene."""
+HEADER = "arm,scene,seed,condition,success,initial\n"
+
+
+def table(path: Path, found: Mapping[str, Successes]) -> Path:
+    """Write the successes of each condition as CSV, with a hash for each scene."""
+    lines = [
+        f"{arm},s{n},0,{condition},{int(won)},h{n}"
+        for condition, arms in found.items()
+        for arm, each in arms.items()
+        for n, won in enumerate(each)
+    ]
+    path.write_text(HEADER + "\n".join(lines) + "\n")
+    return path
+
+
+def lerobot(folder: Path, won: Sequence[bool], single: bool = False) -> str:
+    """Write an `eval_info.json`: of two tasks, or of one environment as before there were tasks."""
+    half = len(won) // 2
+    metrics = [
+        {"sum_rewards": [0.5] * half, "max_rewards": [1.0] * half, "successes": list(part)}
+        for part in (won[:half], won[half:])
+    ]
+    info: dict[str, Any] = {
+        "per_task": [
+            {"task_group": "libero_10", "task_id": n, "metrics": each}
+            for n, each in enumerate(metrics)
+        ]
+    }
+    if single:
+        info = {
+            "per_episode": [
+                {"episode_ix": n, "sum_reward": 0.5, "success": each, "seed": 1000 + n}
+                for n, each in enumerate(won)
+            ]
+        }
+    folder.mkdir()
+    (folder / "eval_info.json").write_text(json.dumps(info))
+    return f"={folder}"
+
+
+def samples(won: Sequence[bool]) -> list[dict[str, Any]]:
+    return [
+        {
+            "id": n,
+            "epoch": 1,
+            "input": [{"role": "user", "content": f"question {n}", "id": str(id(won))}],
+            "target": "4",
+            "scores": {"match": {"value": "C" if each else "I"}},
+        }
+        for n, each in enumerate(won)
+    ]
+
+
+def inspect_log(path: Path, model: str, won: Sequence[bool]) -> str:
+    """Write a log of Inspect: JSON, or packed as it was and, for `.new.eval`, as it is now."""
+    about = {"version": 2, "status": "success", "eval": {"task": "sums", "model": model}}
+    if path.suffix == ".json":
+        path.write_text(json.dumps({**about, "samples": samples(won)}))
+        return str(path)
+    files = {"header.json": about}
+    files |= {f"samples/{each['id']}_epoch_1.json": each for each in samples(won)}
+    texts = {name: json.dumps(content).encode() for name, content in files.items()}
+    if ".new" not in path.suffixes:
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, text in texts.items():
+                archive.writestr(name, text)
+        return str(path)
+    path.write_bytes(zstandard(texts))
+    return str(path)
+
+
+def zstandard(texts: Mapping[str, bytes]) -> bytes:
+    """Return a zip file packed by a method that Python's own library learns in 3.14."""
+    data, places = b"", b""
+    for name, text in texts.items():
+        packed = pa.compress(text, codec="zstd", asbytes=True)
+        sizes = (zlib.crc32(text), len(packed), len(text), len(name), 0)
+        fields = struct.pack("<HHHHHIIIHH", 20, 0, 93, 0, 0, *sizes)
+        places += b"PK\1\2" + struct.pack("<H", 20) + fields
+        places += struct.pack("<HHHII", 0, 0, 0, 0, len(data)) + name.encode()
+        data += b"PK\3\4" + fields + name.encode() + packed
+    ends = struct.pack("<HHHHIIH", 0, 0, len(texts), len(texts), len(places), len(data), 0)
+    return data + places + b"PK\5\6" + ends
+
+
+def lm_eval(folder: Path, won: Sequence[bool]) -> str:
+    """Write the samples of lm-eval, under two filters."""
+    folder.mkdir()
+    lines = [
+        {"doc_id": n, "doc_hash": f"h{n}", "filter": name, "metrics": ["exact_match"], **score}
+        for n, each in enumerate(won)
+        for name, score in (
+            ("strict-match", {"exact_match": float(each)}),
+            ("flexible-extract", {"exact_match": 1.0}),
+        )
+    ]
+    file = folder / "samples_gsm8k_2026-01-02T03-04-05.678901.jsonl"
+    file.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    return f"={folder}"

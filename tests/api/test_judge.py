@@ -1,0 +1,227 @@
+"""Trials that other tools ran are read strictly, paired by keys, and decided as an audit's are."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from judged_files import HEADER, Successes, inspect_log, lerobot, lm_eval, table
+
+import faultpath
+from faultpath import Run, UserError
+from faultpath.decisions.model import AS_RUN, SHARED
+
+TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
+WON: Successes = {
+    "old": [n < 6 or n % 3 == 0 for n in range(30)],
+    "new": [n % 5 != 0 for n in range(30)],
+}
+WINS = sum(b and not a for a, b in zip(*WON.values(), strict=True))
+LOSSES = sum(a and not b for a, b in zip(*WON.values(), strict=True))
+
+
+def judged(results: object, folder: Path, **more: Any) -> Run:
+    asked = {"baseline": "old", "repair": "new", "folder": folder, "progress": False} | more
+    return faultpath.judge(results, **asked)  # pyright: ignore[reportArgumentType]
+
+
+def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None:
+    arms = {"baseline": "calibrated", "repair": "blind"}
+    more: dict[str, Any] = {"scenes": 40, "workers": 0, "signals": False, "progress": False}
+    run = faultpath.audit(
+        TOY, **arms, fault="gain:scale=0.6", library="carts", folder=tmp_path / "run", **more
+    )
+    columns = {"arm": "variant", "condition": "path", "success": "status"}
+    metrics = {"metrics": ["terminal_distance_m:less"]}
+    results = tmp_path / "run" / "outcomes.parquet"
+    folder = tmp_path / "judged"
+    again = judged(
+        results, folder, **arms, columns={**columns, "initial": "initial_hash"}, **metrics
+    )
+
+    for one, two in zip(run.record.effects, again.record.effects, strict=True):
+        for name in ("sign", "wins", "losses", "p_value", "adjusted_p_value", "baseline_percent"):
+            assert getattr(one, name) == getattr(two, name), (one.path, name)
+        assert (one.success.low, one.success.high) == (two.success.low, two.success.high)
+        assert two.metrics["terminal_distance_m"].value == one.metrics["terminal_distance_m"].value
+    turns = [[each.turn for each in each.record.changes] for each in (run, again)]
+    assert turns[0] == turns[1]
+    assert "reversal" in turns[1]
+    assert again.record.headline == run.record.headline
+    assert again.record.question.judged is not None
+    assert again.record.question.judged.pairing == "hashes"
+    assert list(again.provenance.data) == [str(results)]
+
+    opened = faultpath.open_run(folder)
+    assert opened.record == again.record
+    page = (folder / "report.html").read_text()
+    assert "Other tools ran the trials" in page
+    assert "Only what a tap delivers" not in page
+    assert str(results) in page
+    assert "judged" not in json.loads((tmp_path / "run" / "record.json").read_text())["question"]
+
+
+KINDS: dict[str, tuple[Callable[[Path, str, Any], str], str, dict[str, Any]]] = {
+    "lerobot": (lambda p, arm, won: arm + lerobot(p / arm, won), "keys", {}),
+    "lerobot, one task": (lambda p, arm, won: arm + lerobot(p / arm, won, True), "keys", {}),
+    "inspect": (lambda p, arm, won: inspect_log(p / f"{arm}.json", arm, won), "hashes", {}),
+    "inspect, zip": (lambda p, arm, won: inspect_log(p / f"{arm}.eval", arm, won), "hashes", {}),
+    "inspect, new zip": (
+        lambda p, arm, won: inspect_log(p / f"{arm}.new.eval", arm, won),
+        "hashes",
+        {},
+    ),
+    "lm-eval": (
+        lambda p, arm, won: arm + lm_eval(p / arm, won),
+        "hashes",
+        {"columns": ["success=exact_match,strict-match"]},
+    ),
+}
+
+
+@pytest.mark.parametrize(("write", "pairing", "more"), KINDS.values(), ids=KINDS)
+def test_what_other_tools_write_is_read(
+    write: Callable[[Path, str, Any], str], pairing: str, more: dict[str, Any], tmp_path: Path
+) -> None:
+    run = judged([write(tmp_path, *each) for each in WON.items()], tmp_path / "run", **more)
+    (effect,) = run.record.effects
+    assert (effect.path, effect.scenes) == (AS_RUN, 30)
+    assert (effect.wins, effect.losses) == ((WINS,), (LOSSES,))
+    assert effect.time_s is None
+    assert run.record.question.judged is not None
+    assert run.record.question.judged.pairing == pairing
+    assert run.table().column("time_s").null_count == 60
+    said = " ".join(run.record.sentences)
+    assert ("by their keys alone" in said) == (pairing == "keys")
+    assert "correct inputs" not in said + run.headline
+
+
+def test_missing_pairs_are_named_and_bound_what_is_decided(tmp_path: Path) -> None:
+    better: Successes = {"old": [False] * 12 + [True] * 8, "new": [True] * 20}
+    file = table(tmp_path / "all.csv", {"nominal": better, "shared": better})
+    whole = judged(file, tmp_path / "whole")
+    assert [each.sign for each in whole.record.effects] == [1, 1]
+
+    lines = file.read_text().splitlines(keepends=True)
+    alone = [line for line in lines if line.startswith("new") and "shared" in line][:7]
+    both = [line for line in lines if ",s19,0,nominal" in line]
+    file.write_text("".join(line for line in lines if line not in (*alone, *both)))
+    run = judged(file, tmp_path / "run")
+    nominal, shared = run.record.effects
+    assert (shared.path, shared.void_pairs, shared.scenes) == (SHARED, 7, 12)
+    for each, against, favour in ((nominal, 55.0, 65.0), (shared, 25.0, 60.0)):
+        assert each.failed is not None
+        assert each.failed.against_pp == pytest.approx(against)
+        assert each.failed.favour_pp == pytest.approx(favour)
+    assert not shared.sign
+    found = " ".join(run.record.findings)
+    assert "Under the shared fault, 7 trials of new are missing, for example that in s0" in found
+    assert "1 trial of old is missing, for example that in s19 (seed 0)" in found
+    assert run.failed == 9
+
+
+def test_trials_that_began_otherwise_are_no_pair(tmp_path: Path) -> None:
+    file = table(tmp_path / "all.csv", {"": WON})
+    file.write_text(file.read_text().replace("new,s3,0,,1,h3", "new,s3,0,,1,other"))
+    run = judged(file, tmp_path / "run")
+    assert run.record.effects[0].void_pairs == 1
+    assert any("are no pair in scene 's3'" in said for said in run.record.findings)
+
+
+def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
+    lines = [
+        f"{arm},{task}/{n},,,{int(won and task != 't1')},h,{task}"
+        for task in ("t0", "t1", "t2")
+        for arm, each in WON.items()
+        for n, won in enumerate(each)
+    ]
+    header = HEADER.replace("\n", ",task\n")
+    (file := tmp_path / "all.csv").write_text(header + "\n".join(lines))
+    run = judged(file, tmp_path / "run", cluster="task")
+    assert run.record.scenes == 3
+    assert len(run.record.effects[0].wins) == 30  # though many of them came out alike
+    assert run.record.estimand == "new tasks like these"
+    assert run.headline.startswith("Too few scenes to decide")
+    by_scene = judged(file, tmp_path / "scenes")
+    assert any("--cluster task" in said for said in by_scene.record.findings)
+
+
+@pytest.mark.parametrize("n", [1, 2, 4])
+@pytest.mark.parametrize("won", [(True, False), (True, True), (False, False)])
+def test_few_scenes_and_ties_claim_nothing(n: int, won: tuple[bool, bool], tmp_path: Path) -> None:
+    arms = {"old": [won[0]] * n, "new": [won[1]] * n}
+    run = judged(table(tmp_path / "few.csv", {"": arms}), tmp_path / "run")
+    assert run.headline.startswith("Too few scenes to decide")
+    assert not any("more often" in said for said in run.record.sentences)
+
+
+ROW = "old,s0,0,,1,h\nnew,s0,0,,1,h\n"
+REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
+    "arm": (HEADER + ROW, {"repair": "newer"}, "unknown arm 'newer'; did you mean 'new'?"),
+    "twice": (HEADER + ROW + ROW, {}, "all.csv, line 4 and .*all.csv, line 2 are the same trial"),
+    "unpaired": (HEADER + ROW.replace("new,s0", "new,s1"), {}, "no trial of 'old' has its pair"),
+    "condition": (
+        HEADER + ROW.replace(",0,,", ",0,fog,"),
+        {},
+        r"no condition is nominal \(fog\): say with --nominal",
+    ),
+    "one arm": (HEADER + ROW + "new,s0,0,shared,1,h\n", {}, "'old' has no trial under the shared"),
+    "score": (
+        HEADER + ROW.replace(",,1,", ",,0.5,"),
+        {},
+        "line 2: success is 0.5: give 0 or 1, or",
+    ),
+    "word": (HEADER + ROW.replace(",,1,", ",,won,"), {}, "success is 'won': give true or false"),
+    "hashes": (HEADER + ROW.replace("h\nnew", "\nnew"), {}, "line 2 has no hash of its initial"),
+    "cells": (HEADER + "old,s0\n", {}, "all.csv, line 2: has 2 cells where the first line names 6"),
+    "column": (HEADER + ROW, {"columns": {"scene": "sccene"}}, "unknown column 'sccene'; did you"),
+    "no success": ("arm,scene\nold,s0\n", {}, "line 2 has no success: name the column"),
+    "metric": (HEADER + ROW, {"metrics": "reward"}, "line 2: unknown metric 'reward'"),
+    "many": (
+        "arm,scene,success\n" + "".join(f"old,{n},1\nnew,{n},1\n" for n in range(15_001)),
+        {},
+        "at most 15,000 scenes, and these are 15,001: give --rule exact",
+    ),
+    "task": (HEADER + ROW, {"cluster": "task"}, "not every trial names its task"),
+    "models": (HEADER + ROW, {"generalise": "models"}, "newly trained models need several seeds"),
+}
+
+
+@pytest.mark.parametrize(("text", "more", "says"), REFUSED.values(), ids=REFUSED)
+def test_what_cannot_be_judged_is_refused(
+    text: str, more: dict[str, Any], says: str, tmp_path: Path
+) -> None:
+    (file := tmp_path / "all.csv").write_text(text)
+    with pytest.raises(UserError, match=says):
+        judged(file, tmp_path / "run", **more)
+    assert not (tmp_path / "run").exists()
+
+
+DAMAGED: dict[str, tuple[str, bytes, str]] = {
+    "kind": ("a.txt", b"", "is of no kind that is read"),
+    "pickle": ("a.pkl", b"\x80\x04.", "is of no kind that is read"),
+    "json": ("a.json", b'{"per_task": [{"task_id": 1}]}', "lacks 'task_group'"),
+    "not a list": ("a.json", b'{"per_task": 3}', "is not laid out as files of its kind are"),
+    "neither": ("a.json", b"{}", "is neither LeRobot's eval_info.json"),
+    "nan": ("a.json", b'{"per_task": NaN}', "holds NaN, which is no number of JSON"),
+    "line": ("a.jsonl", b'{"arm": 1}\n{', "a.jsonl, line 2: is not JSON"),
+    "zip": ("a.eval", b"PK\3\4", "is no sound zip file"),
+    "parquet": ("a.parquet", b"PAR1", "is no sound Parquet file"),
+}
+
+
+@pytest.mark.parametrize(("name", "data", "says"), DAMAGED.values(), ids=DAMAGED)
+def test_a_damaged_file_is_one_sentence(name: str, data: bytes, says: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(data)
+    with pytest.raises(UserError, match=says):
+        judged(tmp_path / name, tmp_path / "run")
+
+
+def test_a_damaged_sample_is_refused(tmp_path: Path) -> None:
+    path = Path(inspect_log(tmp_path / "old.new.eval", "old", WON["old"]))
+    data = path.read_bytes()
+    at = data.index(b"samples/7_epoch_1.json") + 30
+    path.write_bytes(data[:at] + bytes(each ^ 1 for each in data[at : at + 9]) + data[at + 9 :])
+    with pytest.raises(UserError, match=r"no sound zip file|is damaged"):
+        judged(path, tmp_path / "run")

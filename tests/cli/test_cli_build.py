@@ -1,0 +1,118 @@
+"""What an audit leaves for a build: exit status, JUnit's XML, a summary; and asserts in pytest."""
+
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from cli_runs import ROOT, TOY, Ended, audit, faultpath
+
+from faultpath import open_run
+from faultpath.core.errors import UserError
+from faultpath.decisions.gate import ASKS
+
+COLUMNS = {"arm": "variant", "condition": "path", "success": "status", "initial": "initial_hash"}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("build")
+    told = ["--summary", place / "summary.md", "--junit", place / "junit.xml"]
+    (place / "summary.md").write_text("Before.\n")
+    asked = [part for each in ("reversal", "repair-behind", "void") for part in ("--fail-if", each)]
+    done = audit(*asked, *told, "--no-signals", scenes=40, out=place / "run")
+    assert done.status == 1, done.err
+    (place / "out.txt").write_text(done.out)
+    return place
+
+
+def test_a_build_fails_for_what_was_found_and_says_why(folder: Path) -> None:
+    out = " ".join((folder / "out.txt").read_text().split())
+    assert "--fail-if reversal: Sharing the fault reverses the ranking" in out
+    assert "--fail-if repair-behind: Under correct inputs and under the shared fault" in out
+    assert "--fail-if void" not in out
+
+
+def test_the_xml_has_a_case_for_each_question(folder: Path) -> None:
+    (suite,) = ElementTree.parse(folder / "junit.xml").getroot()
+    cases = {case.get("name"): case.find("failure") for case in suite.iter("testcase")}
+    failed = {name for name, failure in cases.items() if failure is not None}
+    assert set(cases) == {"trials-ran", "no-reversal", "no-repair-behind", "no-void"}
+    assert failed == {"no-reversal", "no-repair-behind"}
+    assert (suite.get("tests"), suite.get("failures")) == ("4", "2")
+
+
+def test_the_summary_is_added_to_what_is_there(folder: Path) -> None:
+    text = (folder / "summary.md").read_text()
+    assert text.startswith("Before.\n### Do not choose by the isolated fault")
+    assert "- **passes** `void`" in text
+    assert "| Difference, pp |" in text
+
+
+def judged(folder: Path, *arguments: object) -> Ended:
+    named = [part for name, column in COLUMNS.items() for part in ("--column", f"{name}={column}")]
+    results, arms = folder / "run" / "outcomes.parquet", ("--baseline", "blind", "--repair")
+    return faultpath("judge", results, *arms, "calibrated", *named, *arguments)
+
+
+def test_judged_trials_end_a_build_likewise(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = judged(folder, "--fail-if", "undecided", "--fail-if", "void")
+    assert (done.status, done.err) == (0, "")
+    assert judged(folder, "--fail-if", "reversal").status == 1
+    (place,) = (tmp_path / "runs").iterdir()  # the same question, asked twice
+    assert "other tools ran these trials" in faultpath("replay", place).refused()
+    assert faultpath("report", place, folder / "run").status == 0
+    assert "--fail-if reversed: unknown name 'reversed'; did you mean 'reversal'?" in (
+        judged(folder, "--fail-if", "reversed").refused()
+    )
+    assert "holds an audit's trials" in judged(folder, "--out", folder / "run").refused()
+
+
+def test_a_run_answers_with_what_was_decided(folder: Path) -> None:
+    run = open_run(folder / "run")
+    answer = run.repair_holds_when_shared
+    assert not answer
+    assert repr(answer) == "no: Under the shared fault, calibrated succeeds more often."
+    assert [bool(run.found(each)) for each in ASKS] == [True, True, False, False]
+    with pytest.raises(UserError, match="unknown name 'behind'"):
+        run.found("behind")
+
+
+WRITTEN = """
+def test_the_repair(faultpath):
+    run = faultpath.audit(
+        {toy!r}, baseline="calibrated", repair="blind", fault="gain:scale=0.6", library="carts",
+        scenes=20, workers=0, signals=False,
+    )
+    assert run.found("void") or run.folder.is_dir()
+    assert run.repair_holds_when_shared
+"""
+
+
+def test_a_test_of_ones_own_asserts_what_was_decided(tmp_path: Path) -> None:
+    points = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]
+    (plugin,) = points["pytest11"].values()
+    (file := tmp_path / "test_mine.py").write_text(WRITTEN.format(toy=TOY))
+    command = [sys.executable, "-m", "pytest", "-q", "-p", plugin, "-p", "no:cacheprovider", file]
+    alone = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # by its entry point, once more
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=alone)
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "assert no: Under the shared fault, calibrated succeeds more often." in done.stdout
+    assert not (tmp_path / "runs").exists()
+
+
+def test_a_question_in_a_file_needs_no_plan(tmp_path: Path) -> None:
+    (file := tmp_path / "question.yaml").write_text(
+        f"system: {TOY}\nbaseline: calibrated\nrepair: blind\nlibrary: carts\nscenes: 8\n"
+        "audits:\n- {name: low-gain, fault: 'gain:scale=0.6'}\n"
+    )
+    out = tmp_path / "runs"
+    done = faultpath("audit", "--study", file, "--out", out, "--workers", 0, "--fail-if", "void")
+    assert done.status == 0, done.err
+    assert len(open_run(out / "low-gain").record.effects) == 4
