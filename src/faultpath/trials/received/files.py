@@ -14,12 +14,12 @@ from typing import Any, cast
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.parquet import Unreadable, read_rows
 from faultpath.core.files.plain import Misread, read_json, text_of
 from faultpath.core.text import listed, unknown
 from faultpath.trials.received import inspect_logs
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import Given, Received, received
-from faultpath.trials.store.parquet import Unreadable, read_rows
 
 _READ = ("eval_info.json", "samples_*.jsonl", "*.eval")
 """What is looked for in a folder."""

@@ -10,10 +10,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
 from faultpath.core.files.opening import LARGEST_TEXT
+from faultpath.core.files.parquet import Unreadable, unpacked
 from faultpath.core.files.plain import Misread, read_json
 from faultpath.core.text import listed
 from faultpath.trials.received.question import JudgeQuestion
-from faultpath.trials.store.parquet import Unreadable, unpacked
 
 LARGEST = 2**30
 """Bytes of a log, and of all that is packed into it."""
