@@ -63,6 +63,8 @@ class World:
     """A hash of what its set-up did."""
     step: Callable[[HostArray, int], tuple[Any, float, bool, bool, Mapping[str, Any]]]
     """Moves it by an action at a step; returns observation, reward, terminated, truncated, info."""
+    seen: Callable[[], Any]
+    """Returns what `trace` and `render` look at: the environment, or the state."""
     close: Callable[[], None] = lambda: None
     """Frees what it holds."""
 
@@ -78,6 +80,10 @@ class Measure:
 Look = str | int | slice | tuple[Any, ...] | Callable[[Any], Any]
 """Where in the observation a source stands: a key, an index or slice, several in turn, or a
 function of the batch's observation that returns an array `[B, ...]`."""
+
+
+Show = Callable[[Any], Any]
+"""Returns numbers, in metres, that show a scene."""
 
 
 @dataclass
@@ -96,6 +102,8 @@ class _Batch:
     metrics: dict[str, HostArray]
     log: dict[str, list[HostArray]]
     rewards: list[HostArray]
+    at: HostArray | None
+    """Where each is, `[B, 3]`, metres."""
 
 
 class EpisodePlant(Plant):
@@ -104,6 +112,10 @@ class EpisodePlant(Plant):
     A scene that has ended is frozen: it is not moved any more, and what it senses stays what it
     was at its end. It counts as a success where `succeeded` says so of its episode; else as a crash
     where the environment ended it, and as a timeout where its time was up.
+
+    `trace` says where a scene's vehicle is, `(x, y)` or `(x, y, z)` in metres, and `render` draws
+    the scene as a line through points `(x, y)`: that is what the report's player moves. Both look
+    at the environment, or at the state where the plant is made of functions.
 
     Raises `SystemMistake` for a source that the observation does not hold.
     """
@@ -123,8 +135,11 @@ class EpisodePlant(Plant):
         dt_s: float,
         succeeded: Callable[[Episode], bool],
         metrics: Mapping[str, Measure] | None = None,
+        trace: Show | None = None,
+        render: Show | None = None,
     ) -> None:
         self.dt_s, self.steps, self.metrics = dt_s, steps, dict(metrics or {})
+        self._trace, self._render = trace, render
         self.reads = frozenset({Port(action, "actuator")})
         self.action = action
         self._observes, self._succeeded = dict(observes), succeeded
@@ -175,7 +190,36 @@ class EpisodePlant(Plant):
             metrics={name: np.full(n, np.nan) for name in self.metrics},
             log={name: [value] for name, value in sensed.items()},
             rewards=[],
+            at=self._places(worlds),
         )
+
+    def _places(self, worlds: Sequence[World]) -> HostArray | None:
+        """Return where each world is, `[B, 3]`."""
+        if self._trace is None:
+            return None
+        places = np.zeros((len(worlds), 3))
+        for row, world in zip(places, worlds, strict=True):
+            at = np.ravel(self._trace(world.seen()))
+            if not 0 < len(at) < 4:
+                raise SystemMistake(f"`trace` returned {len(at)} numbers: give x, y and z in metres")
+            row[: len(at)] = at
+        return places
+
+    @override
+    def position(self, state: _Batch) -> HostArray | None:
+        return state.at
+
+    @override
+    def drawn(self, state: _Batch) -> HostArray | None:
+        if self._render is None:
+            return None
+        lines = [np.asarray(self._render(world.seen()), float) for world in state.worlds]
+        if any(line.ndim != 2 or line.shape != (len(lines[0]), 2) for line in lines):
+            raise SystemMistake(
+                "`render` must return points (x, y) in metres, as many at each step; it returned "
+                f"an array of shape {list(lines[0].shape)}"
+            )
+        return np.stack(lines)
 
     @override
     def sense(self, state: _Batch) -> dict[str, HostArray]:
@@ -220,6 +264,7 @@ class EpisodePlant(Plant):
                 now.metrics[name][i] = measure.of(episode)
             crashed[i] = terminated[i] and not succeeded[i]
         now.running, now.succeeded, now.crashed = was & ~ended, succeeded, crashed
+        now.at = self._places(now.worlds)
         if not now.running.any():
             for world in now.worlds:
                 world.close()

@@ -24,7 +24,7 @@ from faultpath.systems.checks.recording import Enough, Read, Recording, signals
 from faultpath.trials import Arm, LoopSystem, Outcome, System
 from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
 from faultpath.trials.execution.dispatch import Built, dispatch
-from faultpath.trials.store.signals import Signal
+from faultpath.trials.store.signals import DRAWN, Signal
 from faultpath.trials.work.executor import Executor
 
 MISTAKES: dict[str, tuple[type[Exception], ...]] = {
@@ -154,6 +154,8 @@ def _with_plant(system: System, recording: Recording) -> System:
 
         def sensed(state: Any) -> Mapping[str, Any]:
             outputs, now = sense(state), next(step)
+            if (lines := plant.drawn(state)) is not None:
+                recording.sources.setdefault(DRAWN, {})[now] = lines.reshape(len(lines), -1)
             for name, value in outputs.items():
                 # What a plant shows to estimators alone is named after the plant.
                 shown = plant.name if isinstance(value, Mapping) else name

@@ -212,29 +212,32 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
     topics = {name: channel.name for channel in interface.channels for name in channel.sources}
     units = {source.name: source.unit for source in interface.sources}
     fed = {channel.name: channel.sources[0] for channel in interface.channels}
+    parts = {source.name: source.components for source in interface.sources}
     fixed = {s.name for s in interface.sources if s.provenance is Provenance.CONSTANT}
-    found: list[tuple[str, str, str, Mapping[int, Values]]] = []
+    found: list[tuple[str, str, str, tuple[str, ...], Mapping[int, Values]]] = []
     for name, held in recording.sources.items():
         if name in fixed:
             continue
         part = name.partition(".")[2]  # of a truth, which may be that of a channel
         topic = part if part in fed else topics.get(name, name)
-        found.append((name, topic, units.get(name, units.get(fed.get(part, ""), "")), held))
+        like = name if name in units else fed.get(part, "")
+        found.append((name, topic, units.get(like, ""), parts.get(like, ()), held))
     for (channel, consumer), got in recording.got.items():
         given = recording.given[channel, consumer]
         if all(np.array_equal(got[step], given[step], equal_nan=True) for step in got):
             continue
-        unit = units[fed[channel]]
+        unit, named_parts = units[fed[channel]], parts[fed[channel]]
         error = {step: got[step] - given[step] for step in got}
-        found.append((f"{channel} at {consumer}", channel, unit, got))
-        found.append((f"{channel} error at {consumer}", f"{channel} error", unit, error))
+        found.append((f"{channel} at {consumer}", channel, unit, named_parts, got))
+        wrong = f"{channel} error"
+        found.append((f"{wrong} at {consumer}", wrong, unit, named_parts, error))
     if recording.force:
         many = len(done.outcomes)
         force = {
             step: np.broadcast_to(mask, many)[:, None].astype(np.float64)
             for step, mask in recording.force.items()
         }
-        found.append((IN_FORCE, IN_FORCE, "1", force))
+        found.append((IN_FORCE, IN_FORCE, "1", (), force))
     every = trials(recording, done, system.control_dt_s)
     if system.more_signals:
         more: list[tuple[Signal, ...]] = named(system.more_signals)(system, recording, done)
@@ -242,8 +245,14 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
         more = [_error_signals(system, trial) for trial in every]
     return [
         tuple(
-            Signal(name, topic, unit, trial.rows(held).astype(np.float32))
-            for name, topic, unit, held in found
+            Signal(
+                name,
+                topic,
+                unit,
+                values := trial.rows(held).astype(np.float32),
+                named_parts if len(named_parts) == values.shape[1] else (),
+            )
+            for name, topic, unit, named_parts, held in found
             if held
         )
         + beside
