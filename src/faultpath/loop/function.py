@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from inspect import Parameter, signature
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from typing_extensions import override
@@ -92,12 +92,12 @@ class FunctionModule(Module):
         values = {port.channel: inputs[port] for port in self.ports} | self._given
         if not self._remembers:
             return {self.writes[0]: self._function(**values)}, None
-        returned = self._function(**values, memory=memory)
-        if not isinstance(returned, tuple) or len(returned) != 2:  # pyright: ignore[reportUnknownArgumentType]
+        pair: Any = self._function(**values, memory=memory)
+        if not isinstance(pair, tuple) or len(cast("tuple[Any, ...]", pair)) != 2:
             raise SystemMistake(
                 f"module '{self.name}' has a memory and returned no pair: return (value, memory)"
             )
-        return {self.writes[0]: returned[0]}, returned[1]
+        return {self.writes[0]: pair[0]}, pair[1]
 
 
 def row_wise(function: Callable[..., Any]) -> Callable[..., Any]:

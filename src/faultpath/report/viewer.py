@@ -24,7 +24,7 @@ _MOST_WITH_SIGNALS = 12
 _FARTHEST_M = 1e6
 """Beyond this a position is no longer drawn where it was: in centimetres it must stay a number."""
 _MOST_COMPONENTS = 4
-"""A rotation matrix or an image says little as lines."""
+"""A rotation matrix says little as lines, unless its numbers have names."""
 _LEVELS = 4095
 _GAP = -1
 """In place of a level, where nothing was read."""
@@ -209,7 +209,8 @@ def _plots(signals: Signals) -> list[_Plot]:
     words: dict[tuple[str, str], tuple[str, ...]] = {}
     for address, named in signals.items():
         for each in named:
-            if each.name in (IN_FORCE, DRAWN) or each.values.shape[1] > _MOST_COMPONENTS:
+            many_unnamed = each.values.shape[1] > _MOST_COMPONENTS and not each.parts
+            if each.name in (IN_FORCE, DRAWN) or many_unnamed:
                 continue
             if each.parts:
                 words[each.topic, each.unit] = each.parts

@@ -201,7 +201,9 @@ class EpisodePlant(Plant):
         for row, world in zip(places, worlds, strict=True):
             at = np.ravel(self._trace(world.seen()))
             if not 0 < len(at) < 4:
-                raise SystemMistake(f"`trace` returned {len(at)} numbers: give x, y and z in metres")
+                raise SystemMistake(
+                    f"`trace` returned {len(at)} numbers: give x, y and z in metres"
+                )
             row[: len(at)] = at
         return places
 

@@ -66,13 +66,16 @@ class RecordedBlock:
     fails: str = ""
     """The check that reports the error."""
 
-    def readings(self, dt_s: float) -> dict[tuple[str, int, str, str], bytes]:
-        """Return the digest of each reading by scene, step, channel and consumer, while it ran."""
+    def readings(self, dt_s: float, what: str = "given") -> dict[tuple[str, int, str, str], Any]:
+        """Return what is noted of each reading by scene, step, channel and consumer, while it ran.
+
+        `what` is a field of `Read` by scene: a digest, or the sum.
+        """
         ends = {o.scene: math.ceil(o.time_s / dt_s) for o in self.outcomes}
         return {
-            (scene, read.step, *read.tap): digest
+            (scene, read.step, *read.tap): noted
             for read in self.reads
-            for scene, digest in read.given.items()
+            for scene, noted in getattr(read, what).items()
             if read.step < ends.get(scene, read.step + 1)
         }
 

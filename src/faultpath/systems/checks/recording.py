@@ -62,6 +62,8 @@ class Read(Result):
     """A scene with a number that is not finite."""
     given: Mapping[str, bytes] = Field(default={}, exclude=True)
     """A digest of what the source held, by scene."""
+    sums: Mapping[str, float] = Field(default={}, exclude=True)
+    """Of the finite numbers that the source held, by scene."""
     got: Mapping[str, bytes] = Field(default={}, exclude=True)
     """A digest of what the consumer got, by scene."""
 
@@ -156,6 +158,9 @@ class Recording(Observer):
             "lost": self._scenes[lost[0]] if lost.size else read.lost,
             "asks": read.asks + asks,
         }
+        sums = np.where(finite, numbers, 0.0).reshape(len(values), -1).sum(axis=1).tolist()
+        scenes = zip(self._scenes, sums, strict=False)
+        changed["sums"] = {scene: read.sums.get(scene, 0.0) + each for scene, each in scenes}
         for name, before, rows in (("given", read.given, values), ("got", read.got, to_numpy(got))):
             changed[name] = {
                 scene: blake2b(before.get(scene, b"") + row.tobytes(), digest_size=8).digest()
