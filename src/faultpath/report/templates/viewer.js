@@ -64,7 +64,8 @@ if (document.getElementById("viewer-data")) {
     // Both trials of a pair from above: baseline dashed, what is still to come pale.
     const drawPlan = (host, title, pair) => {
       const { svg, w, h } = picture(host, title), plan = data.plans[current().scene], [[x0, x1], [y0, y1]] = state.box;
-      const scale = Math.min((w - 12) / (x1 - x0 || 1), (h - 12) / (y1 - y0 || 1));
+      const edge = data.space === "picture" ? 60 : 12; // the scale lies under a picture
+      const scale = Math.min((w - edge) / (x1 - x0 || 1), (h - edge) / (y1 - y0 || 1));
       const at = ([x, y]) => [w / 2 + (x - (x0 + x1) / 2) * scale, h / 2 - (y - (y0 + y1) / 2) * scale];
       const join = (points) => points.map((p) => at(p).map((v) => v.toFixed(1)).join(",")).join(" ");
       const disc = (where, r, cls) => { const [cx, cy] = at(where); draw(svg, "circle", { cx, cy, r, class: cls }); };
