@@ -60,7 +60,7 @@ class Wall(System):
                 wind += 0.01 * np.arange(n)
             case "crowded":
                 wind += 0.01 * n
-            case "rounds":
+            case "rounds" | "last digit":
                 wind += 1e-16 * n
             case "barely crowded":
                 wind += 1e-9 * n
@@ -83,6 +83,7 @@ class Wall(System):
             if broken == "nosy" and variant == "bare":
                 taps.deliver("range", "guard.limit", seen, step)
             left = left - 0.1 * (pull + wind)
+        left = 0.6 * np.sin(1e16 * left) if broken == "last digit" else left
         ends = zip(scenes, left, draws, strict=True)
         return [_outcome(broken, variant, *end) for end in ends]
 

@@ -75,6 +75,12 @@ def test_rounding_is_told_from_dependence_by_its_size():
     assert "the same to rounding" in found.says
 
 
+def test_where_a_last_digit_decides_dependence_is_not_judged():
+    named = {each.name: each for each in check(broken="last digit").checks}
+    assert (found := named["scene independence"]).status == "not judged"
+    assert "rounding cannot be told from dependence" in found.remarks[0]
+
+
 def test_a_network_rounds_by_its_batch_unless_it_takes_row_by_row():
     batched, by_row = (
         next(e for e in check(broken=kind).checks if e.name == "scene independence")

@@ -77,7 +77,8 @@ class FunctionModule(Module):
 
     def __str__(self) -> str:
         """Return its name and the numbers that it was given."""
-        told = [f"{name} {value:g}" for name, value in self._given.items() if np.isscalar(value)]
+        numbers = {n: v for n, v in self._given.items() if isinstance(v, int | float)}
+        told = [f"{name} {value:g}" for name, value in numbers.items()]
         return f"{self.name} ({', '.join(told)})" if told else self.name
 
     @override
@@ -97,7 +98,8 @@ class FunctionModule(Module):
             raise SystemMistake(
                 f"module '{self.name}' has a memory and returned no pair: return (value, memory)"
             )
-        return {self.writes[0]: pair[0]}, pair[1]
+        value, memory = cast("tuple[Any, Any]", pair)
+        return {self.writes[0]: value}, memory
 
 
 def row_wise(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -3,8 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from hashlib import sha256
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from typing_extensions import override
@@ -13,6 +12,7 @@ from faultpath.core.arrays import HostArray, to_numpy
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
+from faultpath.systems.observed import stacked
 from faultpath.trials import Metric
 
 SCENE = "seed/"
@@ -156,7 +156,7 @@ class EpisodePlant(Plant):
 
     def _sensed(self, worlds: Sequence[World], each: Sequence[Any]) -> dict[str, HostArray]:
         """Return every source of worlds that are observed as `each`, `[B, ...]`."""
-        seen, found = _stacked(each), dict[str, HostArray]()
+        seen, found = stacked(each), dict[str, HostArray]()
         try:
             for name, at in self._observes.items():
                 part = at(seen) if callable(at) else seen
@@ -280,32 +280,3 @@ class EpisodePlant(Plant):
     @override
     def conditions(self, state: _Batch) -> tuple[Sequence[str], Sequence[str]]:
         return [w.initial for w in state.worlds], [w.disturbance for w in state.worlds]
-
-
-def _stacked(rows: Sequence[Any]) -> Any:
-    """Return observations of single scenes as that of a batch."""
-    first = rows[0]
-    if isinstance(first, Mapping):
-        return {
-            key: _stacked([row[key] for row in rows]) for key in cast("Mapping[Any, Any]", first)
-        }
-    if isinstance(first, tuple):
-        return tuple(_stacked(each) for each in zip(*rows, strict=True))
-    return np.stack(rows)
-
-
-def hashed(*parts: Any) -> str:
-    """Return a hash of arrays, numbers and what holds such, exact to the bit."""
-
-    def exact(part: Any) -> str:
-        if isinstance(part, Mapping):
-            items = cast("Mapping[Any, Any]", part).items()
-            return str({str(key): exact(value) for key, value in items})
-        if isinstance(part, tuple | list):
-            return str([exact(each) for each in cast("Sequence[Any]", part)])
-        if isinstance(part, np.ndarray | np.generic):
-            array = cast("HostArray", part)
-            return f"{array.dtype}{array.shape}{array.tobytes().hex()}"
-        return repr(part)
-
-    return sha256("\n".join(map(exact, parts)).encode()).hexdigest()

@@ -8,7 +8,8 @@ from typing_extensions import override
 
 from faultpath.core.arrays import HostArray
 from faultpath.core.streams import generator
-from faultpath.systems.episodes import Episode, EpisodePlant, Look, Measure, Show, World, hashed
+from faultpath.systems.episodes import Episode, EpisodePlant, Look, Measure, Show, World
+from faultpath.systems.observed import hashed
 
 
 class FunctionPlant(EpisodePlant):

@@ -24,8 +24,8 @@ from faultpath.systems.episodes import (
     Measure,
     Show,
     World,
-    hashed,
 )
+from faultpath.systems.observed import hashed
 from faultpath.trials import Metric
 from faultpath.trials.imports import release
 

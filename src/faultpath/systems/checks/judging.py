@@ -150,9 +150,8 @@ def _independence(name: str, seen: Seen) -> Check:
         elif math.isinf(gap):
             open_ended = True
             remarks.append(
-                f"{said} {differs}; so it does where readings change in their last digits, so "
-                "rounding cannot be told from dependence: wrap a torch module in "
-                "faultpath.loop.row_wise."
+                f"{said} {differs}; but so it does where readings change in their last digits, and "
+                "rounding cannot be told from dependence: use faultpath.loop.row_wise."
             )
         else:
             remarks.append(
@@ -162,15 +161,10 @@ def _independence(name: str, seen: Seen) -> Check:
             )
     bits = "to rounding" if remarks else "bits"
     says = f"in another order and without some others, the same {bits}"
-    if open_ended:
+    if open_ended and not failures:
         says = "a last digit decides how scenes end"
-    return Check(
-        name=name,
-        says=says,
-        failures=tuple(failures),
-        remarks=tuple(remarks),
-        judged=not open_ended,
-    )
+    said = {"failures": tuple(failures), "remarks": tuple(remarks)}
+    return Check(name=name, says=says, judged=not open_ended, **said)
 
 
 def coarsest(run: RecordedBlock) -> float:
