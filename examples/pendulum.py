@@ -17,8 +17,7 @@ does. Repair `nominal`: the filter uses the data sheet's, so a bad calibration c
 import numpy as np
 from scipy.linalg import expm, solve_discrete_are
 
-from faultpath.loop import writes
-from faultpath.systems import ComposedSystem, Measure, Parts
+from faultpath.systems import ComposedSystem, Measure, Parts, writes
 from faultpath.systems.gymnasium import GymnasiumPlant
 from faultpath.trials import Metric
 

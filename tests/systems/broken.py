@@ -7,7 +7,8 @@ import numpy as np
 
 from faultpath.core.streams import generator
 from faultpath.interface import read_interface
-from faultpath.loop import Reading, row_wise
+from faultpath.loop import Reading
+from faultpath.systems import row_wise
 from faultpath.trials import Library, Metric, Outcome, SceneRef, Status, System, Variant
 
 INTERFACE = read_interface("""

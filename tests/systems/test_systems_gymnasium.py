@@ -211,6 +211,10 @@ class Whole(Steer):
         (lambda: fly(system(plant(succeeded=lambda e: None))), "returned None of an episode"),
         (lambda: fly(system(plant(succeeded=lambda e: e["x"]))), "unknown source 'x'"),
         (lambda: fly(system(plant()), ["a"]), "scene 'a' names no seed"),
+        (
+            lambda: system(plant(), units={"place": {"unit": "m", "components": ("a", "b")}}),
+            r"'place' has 2 components and is of shape \[\]",
+        ),
         (lambda: fly(system(plant(trace=lambda env: []))), "`trace` returned 0 numbers"),
     ],
 )

@@ -113,8 +113,6 @@ class Source(Frozen, allow_inf_nan=False):
     """`1` for a number without a unit."""
     shape: tuple[Annotated[int, Field(ge=1)], ...] = ()
     """Of one scene's reading; `()` for a scalar."""
-    components: tuple[Words, ...] = ()
-    """What its numbers are called, for charts: `("place", "angle")`."""
     provenance: Provenance
     latency_s: float = Field(default=0.0, ge=0)
     rate_hz: float | None = Field(default=None, gt=0)

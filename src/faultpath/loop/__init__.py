@@ -1,6 +1,5 @@
 """The closed loop, executed: modules declare ports, and every edge between them is a tap."""
 
-from faultpath.loop.function import row_wise, writes
 from faultpath.loop.graph import graph, interface_of
 from faultpath.loop.loop import Deliverer, Instant, Loop
 from faultpath.loop.module import (
@@ -67,6 +66,4 @@ __all__ = [
     "consumers",
     "graph",
     "interface_of",
-    "row_wise",
-    "writes",
 ]

@@ -189,12 +189,6 @@ class Plant(Part):
         del state
         return None
 
-    def drawn(self, state: State) -> Array | None:
-        """Return each scene as a line through points, `[B, P, 2]`, metres, not a number where the
-        pen is lifted; for a player alone. `None`: there is no such picture."""
-        del state
-        return None
-
 
 @dataclass(frozen=True)
 class Graph:

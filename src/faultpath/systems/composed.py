@@ -12,8 +12,8 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import unknown
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Loop, Module, Reading, graph, interface_of
-from faultpath.loop.function import FunctionModule
 from faultpath.systems.episodes import SCENE, EpisodePlant
+from faultpath.systems.modules import FunctionModule
 from faultpath.trials import Library, LoopSystem, SceneRef, Wiring
 
 SCENES: Mapping[str, Sequence[int]] = {
@@ -51,8 +51,8 @@ class ComposedSystem(LoopSystem):
         plant: What senses and is moved.
         variants: The ways to wire it: `Parts`, or just their modules.
         units: Unit of each source, or the fields of a `faultpath.interface.Source` where there is
-            more to say: unit, components, provenance, latency_s, rate_hz, uncertainty,
-            correlation_group.
+            more to say: unit, provenance, latency_s, rate_hz, uncertainty, correlation_group; and
+            components, what its numbers are called in charts.
         channels: Those that several sources may feed, with these sources; every other source is a
             channel of its own. In a variant the first that one of its modules writes feeds it, else
             the first that the plant gives.
@@ -80,6 +80,7 @@ class ComposedSystem(LoopSystem):
             else Parts(f"Modules: {', '.join(map(_said, parts))}.", parts)
             for key, parts in variants.items()
         }
+        self.components = dict[str, tuple[str, ...]]()
         several = dict(channels or {})
         self._wirings: dict[str, Wiring] = {}
         for variant, parts in self._parts.items():
@@ -160,6 +161,13 @@ class ComposedSystem(LoopSystem):
                 )
             given = units[name]
             facts = {"unit": given} if isinstance(given, str) else dict(given)
+            if named := facts.pop("components", ()):
+                self.components[name] = tuple(named)
+                if name in shapes and len(named) != np.prod(shapes[name], dtype=int):
+                    raise SystemMistake(
+                        f"system '{self.name}': source '{name}' has {len(named)} components and is "
+                        f"of shape {list(shapes[name])}: name each of its numbers once"
+                    )
             sources[name] = {
                 "name": name,
                 "shape": shapes.get(name, ()),

@@ -211,8 +211,9 @@ class EpisodePlant(Plant):
     def position(self, state: _Batch) -> HostArray | None:
         return state.at
 
-    @override
     def drawn(self, state: _Batch) -> HostArray | None:
+        """Return each scene as a line through points, `[B, P, 2]`, metres, not a number where the
+        pen is lifted; `None`: there is no such picture."""
         if self._render is None:
             return None
         lines = [np.asarray(self._render(world.seen()), float) for world in state.worlds]

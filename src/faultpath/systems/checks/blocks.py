@@ -21,6 +21,7 @@ from faultpath.loop import (
     UndeclaredReader,
 )
 from faultpath.systems.checks.recording import Enough, Read, Recording, signals
+from faultpath.systems.episodes import EpisodePlant
 from faultpath.trials import Arm, LoopSystem, Outcome, System
 from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
 from faultpath.trials.execution.dispatch import Built, dispatch
@@ -157,8 +158,9 @@ def _with_plant(system: System, recording: Recording) -> System:
 
         def sensed(state: Any) -> Mapping[str, Any]:
             outputs, now = sense(state), next(step)
-            if (lines := plant.drawn(state)) is not None:
-                recording.sources.setdefault(DRAWN, {})[now] = lines.reshape(len(lines), -1)
+            drawn = plant.drawn(state) if isinstance(plant, EpisodePlant) else None
+            if drawn is not None:
+                recording.sources.setdefault(DRAWN, {})[now] = drawn.reshape(len(drawn), -1)
             for name, value in outputs.items():
                 # What a plant shows to estimators alone is named after the plant.
                 shown = plant.name if isinstance(value, Mapping) else name

@@ -145,13 +145,13 @@ def _independence(name: str, seen: Seen) -> Check:
         if gap > _SEVERAL * max(rounding, coarsest(first)):
             failures.append(
                 f"{said} {differs}; let nothing that scenes of one call of run() share decide a "
-                "result, draw by scene, and wrap a torch module in faultpath.loop.row_wise."
+                "result, draw by scene, and wrap a torch module in faultpath.systems.row_wise."
             )
         elif math.isinf(gap):
             open_ended = True
             remarks.append(
                 f"{said} {differs}; but so it does where readings change in their last digits, and "
-                "rounding cannot be told from dependence: use faultpath.loop.row_wise."
+                "rounding cannot be told from dependence: use faultpath.systems.row_wise."
             )
         else:
             remarks.append(

@@ -22,6 +22,7 @@ from faultpath.core.errors import SystemMistake
 from faultpath.core.results import Result
 from faultpath.interface import Provenance
 from faultpath.loop import Observer, Query, Reading, Tap
+from faultpath.systems.composed import ComposedSystem
 from faultpath.trials import System
 from faultpath.trials.attempt import Done
 from faultpath.trials.registry import named
@@ -217,7 +218,7 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
     topics = {name: channel.name for channel in interface.channels for name in channel.sources}
     units = {source.name: source.unit for source in interface.sources}
     fed = {channel.name: channel.sources[0] for channel in interface.channels}
-    parts = {source.name: source.components for source in interface.sources}
+    parts = system.components if isinstance(system, ComposedSystem) else {}
     fixed = {s.name for s in interface.sources if s.provenance is Provenance.CONSTANT}
     found: list[tuple[str, str, str, tuple[str, ...], Mapping[int, Values]]] = []
     for name, held in recording.sources.items():
@@ -231,7 +232,7 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
         given = recording.given[channel, consumer]
         if all(np.array_equal(got[step], given[step], equal_nan=True) for step in got):
             continue
-        unit, named_parts = units[fed[channel]], parts[fed[channel]]
+        unit, named_parts = units[fed[channel]], parts.get(fed[channel], ())
         error = {step: got[step] - given[step] for step in got}
         found.append((f"{channel} at {consumer}", channel, unit, named_parts, got))
         wrong = f"{channel} error"

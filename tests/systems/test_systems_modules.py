@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from faultpath.core.errors import SystemMistake
-from faultpath.loop import Batch, Inputs, Port, row_wise, writes
+from faultpath.loop import Batch, Inputs, Port
+from faultpath.systems import row_wise, writes
 
 
 @writes("sum", past="late", before=(1.0, 2.0))

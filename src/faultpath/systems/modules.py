@@ -10,7 +10,7 @@ from typing_extensions import override
 from faultpath.core.arrays import is_array, namespace
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
-from faultpath.loop.module import Batch, Inputs, Memory, Module, Outputs, Port
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
 
 MEMORY = "memory"
 """The argument that is no channel."""
