@@ -17,8 +17,7 @@ does. Repair `nominal`: the filter uses the data sheet's, so a bad calibration c
 import numpy as np
 from scipy.linalg import expm, solve_discrete_are
 
-from faultpath.loop import Module, Port
-from faultpath.systems import ComposedSystem, Measure, Parts
+from faultpath.systems import ComposedSystem, Measure, Parts, writes
 from faultpath.systems.gymnasium import GymnasiumPlant
 from faultpath.trials import Metric
 
@@ -52,36 +51,19 @@ def applied(matrix, rows):
     return (matrix * rows[:, None]).sum(axis=-1)
 
 
-class Filter(Module):
-    name, writes = "filter", ("state",)
-    reads_past = frozenset({Port("command", "executed")})
-
-    def __init__(self, calibrated):
-        calibration = {Port("motor_gain", "model")} if calibrated else set()
-        self.reads = frozenset({Port("encoders", "innovation"), *calibration})
-
-    def step(self, inputs, memory):
-        seen = inputs["encoders", "innovation"]
-        gain = inputs.get(Port("motor_gain", "model"), DATA_SHEET_GAIN)
-        if memory is None:
-            memory = np.hstack([seen, np.zeros((len(seen), 3))])
-        force = gain * inputs["command", "executed"]
-        state = applied(A, memory) + force[:, None] * B
-        state = state + applied(INNOVATION, seen - state[:, :2])
-        return {"state": state}, state
+@writes("state", past="command")
+def filter(encoders, command, motor_gain, memory):
+    if memory is None:
+        memory = np.hstack([encoders, np.zeros((len(encoders), 3))])
+    state = applied(A, memory) + (motor_gain * command)[:, None] * B
+    state = state + applied(INNOVATION, encoders - state[:, :2])
+    return state, state
 
 
-class Regulator(Module):
-    name, writes = "regulator", ("command",)
-    reads = frozenset({Port("state", "feedback"), Port("motor_gain", "inverse")})
-
-    def before(self, batch):
-        return {"command": np.zeros(len(batch.scenes))}
-
-    def step(self, inputs, memory):
-        state = inputs["state", "feedback"]
-        force = -(state[:, :4] * FEEDBACK).sum(axis=-1) - state[:, 4]
-        return {"command": np.clip(force / inputs["motor_gain", "inverse"], -3.0, 3.0)}, memory
+@writes("command", before=0.0)
+def regulator(state, motor_gain):
+    force = -(state[:, :4] * FEEDBACK).sum(axis=-1) - state[:, 4]
+    return np.clip(force / motor_gain, -3.0, 3.0)
 
 
 # --- scenes ---
@@ -91,6 +73,13 @@ def setup(env, rng):
     world.model.actuator_gear[0, 0] = gain = rng.uniform(80.0, 120.0)
     world.data.qfrc_applied[0] = rng.uniform(-40.0, 40.0)
     return {"motor_gain": gain}
+
+
+def cart_and_pole(env):
+    """Draw the scene as a line: the cart is 0.4 m long, the pole 0.6 m."""
+    place, angle = env.unwrapped.data.qpos
+    tip = place + 0.6 * np.sin(angle), 0.6 * np.cos(angle)
+    return [(place - 0.2, 0), (place + 0.2, 0), (place, 0), tip]
 
 
 def offset_m(episode):
@@ -106,20 +95,25 @@ def create():
         action="command",
         steps=200,
         setup=setup,
+        render=cart_and_pole,
         succeeded=lambda episode: not episode.terminated and offset_m(episode) <= 0.05,
         metrics={"offset_m": Measure(Metric(unit="m", better="less"), offset_m)},
     )
+    by_data_sheet = filter.given(motor_gain=DATA_SHEET_GAIN)
     return ComposedSystem(
         "pendulum",
         plant,
         variants={
-            "calibrated": Parts("The filter uses the calibration.", [Filter(True), Regulator()]),
-            "nominal": Parts("The filter uses the data sheet.", [Filter(False), Regulator()]),
+            "calibrated": Parts("The filter uses the calibration.", [filter, regulator]),
+            "nominal": Parts("The filter uses the data sheet.", [by_data_sheet, regulator]),
         },
         units={
-            "encoders": "m, rad",
+            "encoders": {"unit": "m, rad", "components": ("place", "angle")},
             "motor_gain": "N",
-            "state": "m, rad, m/s, rad/s, N",
+            "state": {
+                "unit": "m, rad, m/s, rad/s, N",
+                "components": ("place", "angle", "speed", "rate", "force"),
+            },
             "command": "1",
         },
     )

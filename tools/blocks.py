@@ -249,6 +249,13 @@ def code(place: str, part: str) -> str:
     return fence("python", found[part].rstrip().strip("\n"))
 
 
+def template(kind: str, name: str) -> str:
+    """Return the file that `faultpath init NAME --with KIND` writes."""
+    folder = ROOT / "src" / "faultpath" / "systems" / "templates"
+    text = (folder / f"{kind}.py.txt").read_text("utf-8")
+    return fence("python", text.replace("NAME", name).rstrip())
+
+
 def fence(info: str, body: str) -> str:
     """Return a fenced block."""
     return f"```{info}\n{body}\n```"
@@ -284,5 +291,6 @@ KINDS: dict[str, Callable[..., str]] = {
     "picture": _about(picture),
     "times": times,
     "code": code,
+    "template": template,
 }
 """What fills the kinds of blocks about runs and about the code of examples."""

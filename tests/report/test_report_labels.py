@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from faultpath_quadrotor.paper.reproduction import ReproductionRun
 from playwright.sync_api import Browser
@@ -12,6 +13,8 @@ from faultpath import compare, open_run
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import FloorPlan
+from faultpath.trials.store.signals import DRAWN, Signal
+from faultpath.trials.store.tables import TrialAddress
 
 pytestmark = pytest.mark.browser
 REFERENCE = Path(__file__).parents[2] / "docs" / "reference"
@@ -59,6 +62,37 @@ def test_a_cart_has_its_goal(
     opened.wait_for_selector("#viewer[data-ready]")
     assert opened.locator(".v-goal").count() == len(source.record.paths)
     assert opened.locator("#viewer text", has_text="goal").count() == len(source.record.paths)
+    opened.close()
+
+
+def test_a_picture_moves_with_the_clock_and_lifts_its_pen(
+    make: Callable[..., ReportInput], browser: Browser, tmp_path: Path
+) -> None:
+    """Without positions: a cart that drives on, and a mark that stays."""
+    source = replace(make(n_scenes=4, void=False), traces=Traces({}, 0.5), plans={})
+    steps, lift = np.arange(9.0, dtype=np.float32)[:, None], np.full((9, 2), np.nan, np.float32)
+    cart = np.hstack([steps, steps * 0, steps + 2, steps * 0, lift, steps * 0 + 5, steps * 0 + 1])
+    named = (
+        Signal(DRAWN, DRAWN, "m", np.hstack([cart, steps * 0 + 5, steps * 0 + 2])),
+        Signal("body", "body", "m, rad", np.hstack([steps, -steps]), ("place", "angle")),
+    )
+    heard = {
+        TrialAddress(r.variant, r.path, r.seed, r.outcome.scene): named
+        for r in source.outcomes.rows
+    }
+    opened = browser.new_page()
+    written = write_report(replace(source, signals=heard), tmp_path / "cart")
+    opened.goto(f"{written[0].as_uri()}#scene={source.outcomes.rows[0].outcome.scene}&t=0")
+    opened.wait_for_selector("#viewer[data-ready]")
+    line = opened.locator("#viewer-across .plan path.v-track").first
+    began = line.get_attribute("d") or ""
+    assert [began.count(letter) for letter in "ML"] == [2, 2]
+    opened.locator("#viewer-time").fill("4")
+    moved = line.get_attribute("d") or ""
+    assert moved != began
+    assert moved.split("M")[2] == began.split("M")[2]
+    titles = opened.locator("#viewer-signal option").all_inner_texts()
+    assert titles == ["body, place (m)", "body, angle (rad)"]
     opened.close()
 
 

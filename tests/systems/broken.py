@@ -8,6 +8,7 @@ import numpy as np
 from faultpath.core.streams import generator
 from faultpath.interface import read_interface
 from faultpath.loop import Reading
+from faultpath.systems import row_wise
 from faultpath.trials import Library, Metric, Outcome, SceneRef, Status, System, Variant
 
 INTERFACE = read_interface("""
@@ -60,10 +61,12 @@ class Wall(System):
                 wind += 0.01 * np.arange(n)
             case "crowded":
                 wind += 0.01 * n
-            case "rounds":
+            case "rounds" | "last digit":
                 wind += 1e-16 * n
             case "barely crowded":
                 wind += 1e-9 * n
+        net = _network(broken) if "network" in broken else None
+        left = left.astype(np.float32) if net else left
         unit = 1000.0 if broken == "millimetres" else 1.0
         for step in range(20):
             shown = np.where((broken == "nan") & (step > 9), np.nan, unit * left)
@@ -73,6 +76,7 @@ class Wall(System):
             pull = np.nan_to_num(taps.deliver("range", "pilot.approach", seen, step))
             known = Reading(mass, "mass_estimate", step)
             thrust = taps.deliver("mass", "pilot.thrust", known, step)
+            pull = net(pull) if net else pull
             pull = pull.reshape(n) / unit / (mass if broken == "ignores" else thrust)
             if variant == "guarded" and broken != "deaf" and not _kept(broken, scenes):
                 limit = taps.deliver("range", "guard.limit", seen, step) / unit
@@ -80,8 +84,27 @@ class Wall(System):
             if broken == "nosy" and variant == "bare":
                 taps.deliver("range", "guard.limit", seen, step)
             left = left - 0.1 * (pull + wind)
+        left = 0.6 * np.sin(1e16 * left) if broken == "last digit" else left
         ends = zip(scenes, left, draws, strict=True)
         return [_outcome(broken, variant, *end) for end in ends]
+
+
+def _network(kind):
+    """Return a torch module that pulls: as it is, row by row, or with a batch norm."""
+    import torch
+
+    torch.manual_seed(0)
+    layers = [torch.nn.Linear(1, 256), torch.nn.Tanh(), torch.nn.Linear(256, 1)]
+    if kind == "network with batch norm":
+        layers.insert(1, torch.nn.BatchNorm1d(256))
+    net = torch.nn.Sequential(*layers)
+    call = row_wise(net) if kind == "network row by row" else net
+
+    def pull(seen):
+        with torch.no_grad():
+            return seen + call(torch.tensor(seen, dtype=torch.float32)[:, None])[:, 0].numpy()
+
+    return pull
 
 
 def _kept(broken, scenes):

@@ -33,6 +33,7 @@ SAID = {
     "by place": ("scene independence", "Variant 'bare' run in another order, without"),
     "crowded": ("scene independence", "without some of the scenes beside it, differs"),
     "barely crowded": ("scene independence", "differs in"),
+    "network with batch norm": ("scene independence", "wrap a torch module in"),
     "unpaired": ("pairing", "their disturbances differ"),
     "hashless": ("pairing", "All 4 scenes carry the same hashes"),
     "deaf": ("declared reads", "Variant 'guarded' declares that guard.limit reads 'range'"),
@@ -72,6 +73,22 @@ def test_rounding_is_told_from_dependence_by_its_size():
     assert (found := named["scene independence"]).status == "passed"
     assert re.search(r"differs by rounding alone, at most [1-9]e-1[5-7]", found.remarks[0])
     assert "the same to rounding" in found.says
+
+
+def test_where_a_last_digit_decides_dependence_is_not_judged():
+    named = {each.name: each for each in check(broken="last digit").checks}
+    assert (found := named["scene independence"]).status == "not judged"
+    assert "rounding cannot be told from dependence" in found.remarks[0]
+
+
+def test_a_network_rounds_by_its_batch_unless_it_takes_row_by_row():
+    batched, by_row = (
+        next(e for e in check(broken=kind).checks if e.name == "scene independence")
+        for kind in ("network", "network row by row")
+    )
+    assert (batched.status, by_row.status) == ("passed", "passed")
+    assert "differs by rounding alone" in batched.remarks[0]
+    assert by_row.remarks == ()
 
 
 def test_a_system_that_takes_one_scene_at_a_time_flies_all_that_are_asked_for():

@@ -11,9 +11,11 @@ import faultpath
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Module, Port
 from faultpath.systems import ComposedSystem, Parts
-from faultpath.trials import SystemSpec
+from faultpath.systems.checks.blocks import Block, run_block
+from faultpath.trials import Arm, SystemSpec
 from faultpath.trials.code import system_code
 from faultpath.trials.registry import load_parts
+from faultpath.trials.store.signals import DRAWN
 
 PENDULUM = Path(__file__).resolve().parents[2] / "examples" / "pendulum.py"
 
@@ -113,6 +115,47 @@ def test_scenes_set_up_in_another_way_are_no_pair():
     assert not set(twice) & set(disturbances(0.1))
 
 
+def test_what_disturbs_a_step_is_drawn_by_scene_seed_and_step():
+    drawn = []
+
+    def gust(env, rng, step):
+        env.unwrapped.slope = rng.uniform(-0.5, 0.5)
+        drawn.append((env.unwrapped.slope, step))
+
+    built = system(plant(on_step=gust))
+    drawn.clear()
+    first = fly(built, SCENES[:1])
+    alone = drawn.copy()
+    assert [step for _, step in alone] == list(range(len(alone)))
+    assert len({slope for slope, _ in alone}) == len(alone) > 1
+    drawn.clear()
+    both = fly(built, SCENES[1::-1])
+    assert both[1] == first[0]
+    assert set(alone) < set(drawn)
+    drawn.clear()
+    again = fly(built, SCENES[:1], seed=1)
+    assert not set(alone) & set(drawn)
+    assert again[0].disturbance_hash != first[0].disturbance_hash
+
+
+def test_what_is_traced_and_rendered_is_kept_for_the_player():
+    def rod(env):
+        return [(0, 0), (env.unwrapped.at, 1)]
+
+    made = system(
+        plant(trace=lambda env: [env.unwrapped.at], render=rod, observes={"place": slice(0, 2)}),
+        units={"place": {"unit": "m, 1", "components": ("where", "clock")}},
+        modules=[Ahead()],
+    )
+    found = run_block(made, Block(Arm(variant="only", seed=0), SCENES[:2], signals=True))
+    for outcome, signals in zip(found.outcomes, found.signals, strict=True):
+        named = {each.name: each for each in signals}
+        assert named["place"].parts == ("where", "clock")
+        assert np.array_equal(named[DRAWN].values[:, 2], named["place"].values[:, 0])
+        assert np.array_equal(outcome.trace[:-1, 0], named["place"].values[:, 0])
+        assert named[DRAWN].values.shape[1] == 4
+
+
 def test_several_sources_of_a_channel_and_the_one_that_a_variant_writes():
     class Guess(Module):
         name, writes, reads = "guess", ("guessed",), frozenset({Port("clock", "model")})
@@ -142,6 +185,11 @@ def test_libraries_are_seeds():
         built.library("held-out")
 
 
+class Ahead(Steer):
+    def step(self, inputs, memory):
+        return {"push": 0.1 * inputs["place", "feedback"][:, 0]}, memory
+
+
 class Whole(Steer):
     def step(self, inputs, memory):
         return {"push": np.zeros((len(inputs["place", "feedback"]), 2))}, memory
@@ -163,6 +211,11 @@ class Whole(Steer):
         (lambda: fly(system(plant(succeeded=lambda e: None))), "returned None of an episode"),
         (lambda: fly(system(plant(succeeded=lambda e: e["x"]))), "unknown source 'x'"),
         (lambda: fly(system(plant()), ["a"]), "scene 'a' names no seed"),
+        (
+            lambda: system(plant(), units={"place": {"unit": "m", "components": ("a", "b")}}),
+            r"'place' has 2 components and is of shape \[\]",
+        ),
+        (lambda: fly(system(plant(trace=lambda env: []))), "`trace` returned 0 numbers"),
     ],
 )
 def test_mistakes_are_told_in_a_sentence(make, said):

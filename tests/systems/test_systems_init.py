@@ -4,10 +4,12 @@ import os
 import shlex
 import subprocess
 import sys
+from importlib.resources import files
 
 import pytest
 
 import faultpath
+from faultpath.cli.systems import init
 from faultpath.core.errors import UserError
 from faultpath.systems.init import TEMPLATES, write_system
 
@@ -28,22 +30,33 @@ def test_a_new_system_passes_its_own_test(kind, tmp_path):
     assert "3 passed" in done.stdout
 
 
-def test_the_audit_that_the_template_with_gymnasium_suggests_shows_a_reversal(tmp_path):
+@pytest.mark.parametrize("kind", TEMPLATES)
+def test_the_audit_that_a_template_suggests_shows_a_reversal(kind, tmp_path, monkeypatch, capsys):
     """Once every cell of it said 100 %."""
-    system, _ = write_system("my_swing", "gymnasium", tmp_path)
-    line = next(each for each in system.read_text().splitlines() if "faultpath audit" in each)
-    words = shlex.split(line)[3:]
+    monkeypatch.chdir(tmp_path)
+    init(f"my_{kind}", kind)
+    line = next(each for each in capsys.readouterr().out.splitlines() if "audit" in each)
+    name, *words = shlex.split(line)[2:]
     asked = dict(zip((word.removeprefix("--") for word in words[::2]), words[1::2], strict=True))
-    run = faultpath.audit(
-        system, **asked, scenes=16, workers=0, folder=tmp_path / "run", progress=False
-    )
+    run = faultpath.audit(name, **asked, scenes=16, workers=0, signals=False, progress=False)
     decided = {each.path: each.sign for each in run.record.effects}
     assert decided["observer"] > 0 > decided["shared"]
+
+
+def test_an_audit_of_an_environment_takes_forty_lines():
+    text = (files("faultpath.systems") / "templates" / "gymnasium.py.txt").read_bytes()
+    ruff = [sys.executable, "-m", "ruff", "format", "--isolated", "--line-length", "88", "-"]
+    formatted = subprocess.run(ruff, input=text, capture_output=True, check=True).stdout
+    assert formatted == text
+    assert text.count(b"\n") <= 40
 
 
 def test_what_cannot_be_written_is_said(tmp_path):
     for name in ("my rover", "Rover", "test_rover", "1st", ""):
         with pytest.raises(UserError, match="cannot name a system"):
+            write_system(name, "numpy", tmp_path)
+    for name in ("numpy", "torch", "gymnasium", "json", "class"):
+        with pytest.raises(UserError, match=rf"^'{name}' is an?\b.*: choose .* my_{name}\.$"):
             write_system(name, "numpy", tmp_path)
     with pytest.raises(UserError, match="no template 'jax'"):
         write_system("rover", "jax", tmp_path)

@@ -16,7 +16,7 @@ from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.viewer_choice import captions, choose
 from faultpath.trials import Outcome
-from faultpath.trials.store.signals import IN_FORCE, Signal, Signals
+from faultpath.trials.store.signals import DRAWN, IN_FORCE, Signal, Signals
 from faultpath.trials.store.tables import TrialAddress
 
 _MOST_WITH_SIGNALS = 12
@@ -24,10 +24,12 @@ _MOST_WITH_SIGNALS = 12
 _FARTHEST_M = 1e6
 """Beyond this a position is no longer drawn where it was: in centimetres it must stay a number."""
 _MOST_COMPONENTS = 4
-"""A rotation matrix or an image says little as lines."""
+"""A rotation matrix says little as lines, unless its numbers have names."""
 _LEVELS = 4095
 _GAP = -1
 """In place of a level, where nothing was read."""
+_LIFTED = 10**9
+"""In place of a coordinate of a picture, where the pen is lifted."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +37,8 @@ class Viewer:
     """What a page needs of the viewer beside its script."""
 
     space: str
-    """`space`: trials are drawn from above; `line`: their positions lie on one axis and are plotted
-    over time; `none`: the system gives no positions."""
+    """`space`: trials are drawn from above; `picture`: as the system renders them; `line`: their
+    positions lie on one axis and are plotted over time; `none`: the system gives neither."""
     shown: frozenset[tuple[str, int]]
     """Scenes and seeds that can be looked at."""
     packed: str
@@ -49,15 +51,15 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     Left out are scenes without any track and, where no trial has one, those without signals.
     """
     asked, plans, positions = source.record.question, source.plans, source.traces.positions
-    space = "space"
-    if not any(map(len, positions.values())):
-        space = "none"
-    elif not any(plan.prisms or plan.pillars for plan in plans.values()):
-        flat = all(not track[:, 1:].any() for track in positions.values())
-        space = "line" if flat else "space"
-    recorded = {(at.scene, at.seed) for at in source.signals}
     tracked = {(at.scene, at.seed) for at, track in positions.items() if len(track)}
-    playable = recorded if space == "none" else tracked
+    flat = not any(plan.prisms or plan.pillars for plan in plans.values()) and all(
+        not track[:, 1:].any() for track in positions.values()
+    )
+    space = "line" if tracked and flat else "space" if tracked else "none"
+    if flat and any(each.name == DRAWN for named in source.signals.values() for each in named):
+        space = "picture"
+    recorded = {(at.scene, at.seed) for at in source.signals}
+    playable = tracked or recorded
     groups = {at: group for at, group in by_scene(pairs).items() if at in playable}
     if not groups:
         return None
@@ -65,7 +67,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     order = dict.fromkeys((*chosen, *groups))
     few = [at for at in order if at in recorded][:_MOST_WITH_SIGNALS]
     signals = {at: s for at, s in source.signals.items() if (at.scene, at.seed) in few}
-    if space == "line":
+    if tracked and flat:
         signals = _with_positions(signals, positions)
     plots, series, why = _plots(signals), list[NDArray[np.int32]](), captions(pairs)
 
@@ -77,8 +79,11 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
         place, track = None, positions.get(address, np.empty((0, 3), np.float32))
         if len(track):
             place = len(series)
-            held = np.clip(np.nan_to_num(track[:, :2]), -_FARTHEST_M, _FARTHEST_M)
-            series.extend(np.rint(100.0 * held).astype(np.int32).T)
+            series.extend(_centimetres(np.nan_to_num(track[:, :2])).T)
+        picture = None
+        if DRAWN in named:
+            picture = [len(series), named[DRAWN].values.shape[1]]
+            series.extend(_centimetres(named[DRAWN].values).T)
         faulted: list[list[int]] = []
         if IN_FORCE in named:
             on = named[IN_FORCE].values[:, 0] > 0
@@ -89,6 +94,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
             "ended": wording.ended(asked, trial.status),
             "time_s": trial.time_s,
             "track": place,
+            "drawn": picture,
             "lines": _levels(named, plots, series),
             "faulted": faulted,
         }
@@ -137,6 +143,11 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
         ],
     }
     return Viewer(space, frozenset(groups), pack(content, series))
+
+
+def _centimetres(metres: NDArray[np.float32]) -> NDArray[np.int32]:
+    held = 100.0 * np.clip(metres.astype(np.float64), -_FARTHEST_M, _FARTHEST_M)
+    return np.where(np.isfinite(held), np.rint(held), _LIFTED).astype(np.int32)
 
 
 def pack(content: Mapping[str, Any], series: Sequence[NDArray[np.int32]]) -> str:
@@ -195,10 +206,14 @@ def _plots(signals: Signals) -> list[_Plot]:
     one that is zero throughout is left out too.
     """
     topics: dict[tuple[str, str, int], dict[_Line, _Trials]] = {}
+    words: dict[tuple[str, str], tuple[str, ...]] = {}
     for address, named in signals.items():
         for each in named:
-            if each.name == IN_FORCE or each.values.shape[1] > _MOST_COMPONENTS:
+            many_unnamed = each.values.shape[1] > _MOST_COMPONENTS and not each.parts
+            if each.name in (IN_FORCE, DRAWN) or many_unnamed:
                 continue
+            if each.parts:
+                words[each.topic, each.unit] = each.parts
             for part, values in enumerate(each.values.T):
                 lines = topics.setdefault((each.topic, each.unit, part), {})
                 lines.setdefault((each.name, part), {})[address] = values
@@ -214,7 +229,8 @@ def _plots(signals: Signals) -> list[_Plot]:
             continue
         title, units = topic.replace("_", " "), unit.split(", ")
         if (count := many[topic, unit]) > 1:
-            title, unit = f"{title}, {part + 1}", units[part] if len(units) == count else unit
+            called = words.get((topic, unit), range(1, count + 1))[part]
+            title, unit = f"{title}, {called}", units[part] if len(units) == count else unit
         same: dict[_Line, list[str]] = {}
         for line, trials in lines.items():
             twin = next((other for other in same if _alike(trials, lines[other])), line)

@@ -13,6 +13,7 @@ from faultpath.core.text import unknown
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Loop, Module, Reading, graph, interface_of
 from faultpath.systems.episodes import SCENE, EpisodePlant
+from faultpath.systems.modules import FunctionModule
 from faultpath.trials import Library, LoopSystem, SceneRef, Wiring
 
 SCENES: Mapping[str, Sequence[int]] = {
@@ -48,9 +49,10 @@ class ComposedSystem(LoopSystem):
     Args:
         name: Of the system.
         plant: What senses and is moved.
-        variants: The ways to wire it.
+        variants: The ways to wire it: `Parts`, or just their modules.
         units: Unit of each source, or the fields of a `faultpath.interface.Source` where there is
-            more to say: unit, provenance, latency_s, rate_hz, uncertainty, correlation_group.
+            more to say: unit, provenance, latency_s, rate_hz, uncertainty, correlation_group; and
+            components, what its numbers are called in charts.
         channels: Those that several sources may feed, with these sources; every other source is a
             channel of its own. In a variant the first that one of its modules writes feeds it, else
             the first that the plant gives.
@@ -64,14 +66,21 @@ class ComposedSystem(LoopSystem):
         self,
         name: str,
         plant: EpisodePlant,
-        variants: Mapping[str, Parts],
+        variants: Mapping[str, Parts | Sequence[Module]],
         units: Mapping[str, str | Mapping[str, Any]],
         channels: Mapping[str, Sequence[str]] | None = None,
         scenes: Mapping[str, Sequence[int]] = SCENES,
     ) -> None:
         self.name, self.control_dt_s = name, plant.dt_s
         self.metrics = {key: measure.metric for key, measure in plant.metrics.items()}
-        self._plant, self._parts, self._scenes = plant, dict(variants), dict(scenes)
+        self._plant, self._scenes = plant, dict(scenes)
+        self._parts = {
+            key: parts
+            if isinstance(parts, Parts)
+            else Parts(f"Modules: {', '.join(map(_said, parts))}.", parts)
+            for key, parts in variants.items()
+        }
+        self.components = dict[str, tuple[str, ...]]()
         several = dict(channels or {})
         self._wirings: dict[str, Wiring] = {}
         for variant, parts in self._parts.items():
@@ -152,6 +161,13 @@ class ComposedSystem(LoopSystem):
                 )
             given = units[name]
             facts = {"unit": given} if isinstance(given, str) else dict(given)
+            if named := facts.pop("components", ()):
+                self.components[name] = tuple(named)
+                if name in shapes and len(named) != np.prod(shapes[name], dtype=int):
+                    raise SystemMistake(
+                        f"system '{self.name}': source '{name}' has {len(named)} components and is "
+                        f"of shape {list(shapes[name])}: name each of its numbers once"
+                    )
             sources[name] = {
                 "name": name,
                 "shape": shapes.get(name, ()),
@@ -171,6 +187,10 @@ class ComposedSystem(LoopSystem):
             return interface_of(content, (*modules, plant))
         except UserError as error:
             raise SystemMistake(f"system '{self.name}': {error}") from None
+
+
+def _said(module: Module) -> str:
+    return str(module) if isinstance(module, FunctionModule) else module.name
 
 
 class _Shapes:

@@ -3,8 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from hashlib import sha256
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from typing_extensions import override
@@ -13,6 +12,7 @@ from faultpath.core.arrays import HostArray, to_numpy
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
+from faultpath.systems.observed import stacked
 from faultpath.trials import Metric
 
 SCENE = "seed/"
@@ -63,6 +63,8 @@ class World:
     """A hash of what its set-up did."""
     step: Callable[[HostArray, int], tuple[Any, float, bool, bool, Mapping[str, Any]]]
     """Moves it by an action at a step; returns observation, reward, terminated, truncated, info."""
+    seen: Callable[[], Any]
+    """Returns what `trace` and `render` look at: the environment, or the state."""
     close: Callable[[], None] = lambda: None
     """Frees what it holds."""
 
@@ -78,6 +80,10 @@ class Measure:
 Look = str | int | slice | tuple[Any, ...] | Callable[[Any], Any]
 """Where in the observation a source stands: a key, an index or slice, several in turn, or a
 function of the batch's observation that returns an array `[B, ...]`."""
+
+
+Show = Callable[[Any], Any]
+"""Returns numbers, in metres, that show a scene."""
 
 
 @dataclass
@@ -96,6 +102,8 @@ class _Batch:
     metrics: dict[str, HostArray]
     log: dict[str, list[HostArray]]
     rewards: list[HostArray]
+    at: HostArray | None
+    """Where each is, `[B, 3]`, metres."""
 
 
 class EpisodePlant(Plant):
@@ -104,6 +112,10 @@ class EpisodePlant(Plant):
     A scene that has ended is frozen: it is not moved any more, and what it senses stays what it
     was at its end. It counts as a success where `succeeded` says so of its episode; else as a crash
     where the environment ended it, and as a timeout where its time was up.
+
+    `trace` says where a scene's vehicle is, `(x, y)` or `(x, y, z)` in metres, and `render` draws
+    the scene as a line through points `(x, y)`: that is what the report's player moves. Both look
+    at the environment, or at the state where the plant is made of functions.
 
     Raises `SystemMistake` for a source that the observation does not hold.
     """
@@ -123,8 +135,11 @@ class EpisodePlant(Plant):
         dt_s: float,
         succeeded: Callable[[Episode], bool],
         metrics: Mapping[str, Measure] | None = None,
+        trace: Show | None = None,
+        render: Show | None = None,
     ) -> None:
         self.dt_s, self.steps, self.metrics = dt_s, steps, dict(metrics or {})
+        self._trace, self._render = trace, render
         self.reads = frozenset({Port(action, "actuator")})
         self.action = action
         self._observes, self._succeeded = dict(observes), succeeded
@@ -141,7 +156,7 @@ class EpisodePlant(Plant):
 
     def _sensed(self, worlds: Sequence[World], each: Sequence[Any]) -> dict[str, HostArray]:
         """Return every source of worlds that are observed as `each`, `[B, ...]`."""
-        seen, found = _stacked(each), dict[str, HostArray]()
+        seen, found = stacked(each), dict[str, HostArray]()
         try:
             for name, at in self._observes.items():
                 part = at(seen) if callable(at) else seen
@@ -175,7 +190,39 @@ class EpisodePlant(Plant):
             metrics={name: np.full(n, np.nan) for name in self.metrics},
             log={name: [value] for name, value in sensed.items()},
             rewards=[],
+            at=self._places(worlds),
         )
+
+    def _places(self, worlds: Sequence[World]) -> HostArray | None:
+        """Return where each world is, `[B, 3]`."""
+        if self._trace is None:
+            return None
+        places = np.zeros((len(worlds), 3))
+        for row, world in zip(places, worlds, strict=True):
+            at = np.ravel(self._trace(world.seen()))
+            if not 0 < len(at) < 4:
+                raise SystemMistake(
+                    f"`trace` returned {len(at)} numbers: give x, y and z in metres"
+                )
+            row[: len(at)] = at
+        return places
+
+    @override
+    def position(self, state: _Batch) -> HostArray | None:
+        return state.at
+
+    def drawn(self, state: _Batch) -> HostArray | None:
+        """Return each scene as a line through points, `[B, P, 2]`, metres, not a number where the
+        pen is lifted; `None`: there is no such picture."""
+        if self._render is None:
+            return None
+        lines = [np.asarray(self._render(world.seen()), float) for world in state.worlds]
+        if any(line.ndim != 2 or line.shape != (len(lines[0]), 2) for line in lines):
+            raise SystemMistake(
+                "`render` must return points (x, y) in metres, as many at each step; it returned "
+                f"an array of shape {list(lines[0].shape)}"
+            )
+        return np.stack(lines)
 
     @override
     def sense(self, state: _Batch) -> dict[str, HostArray]:
@@ -220,6 +267,7 @@ class EpisodePlant(Plant):
                 now.metrics[name][i] = measure.of(episode)
             crashed[i] = terminated[i] and not succeeded[i]
         now.running, now.succeeded, now.crashed = was & ~ended, succeeded, crashed
+        now.at = self._places(now.worlds)
         if not now.running.any():
             for world in now.worlds:
                 world.close()
@@ -233,32 +281,3 @@ class EpisodePlant(Plant):
     @override
     def conditions(self, state: _Batch) -> tuple[Sequence[str], Sequence[str]]:
         return [w.initial for w in state.worlds], [w.disturbance for w in state.worlds]
-
-
-def _stacked(rows: Sequence[Any]) -> Any:
-    """Return observations of single scenes as that of a batch."""
-    first = rows[0]
-    if isinstance(first, Mapping):
-        return {
-            key: _stacked([row[key] for row in rows]) for key in cast("Mapping[Any, Any]", first)
-        }
-    if isinstance(first, tuple):
-        return tuple(_stacked(each) for each in zip(*rows, strict=True))
-    return np.stack(rows)
-
-
-def hashed(*parts: Any) -> str:
-    """Return a hash of arrays, numbers and what holds such, exact to the bit."""
-
-    def exact(part: Any) -> str:
-        if isinstance(part, Mapping):
-            items = cast("Mapping[Any, Any]", part).items()
-            return str({str(key): exact(value) for key, value in items})
-        if isinstance(part, tuple | list):
-            return str([exact(each) for each in cast("Sequence[Any]", part)])
-        if isinstance(part, np.ndarray | np.generic):
-            array = cast("HostArray", part)
-            return f"{array.dtype}{array.shape}{array.tobytes().hex()}"
-        return repr(part)
-
-    return sha256("\n".join(map(exact, parts)).encode()).hexdigest()

@@ -8,7 +8,8 @@ from typing_extensions import override
 
 from faultpath.core.arrays import HostArray
 from faultpath.core.streams import generator
-from faultpath.systems.episodes import Episode, EpisodePlant, Look, Measure, World, hashed
+from faultpath.systems.episodes import Episode, EpisodePlant, Look, Measure, Show, World
+from faultpath.systems.observed import hashed
 
 
 class FunctionPlant(EpisodePlant):
@@ -27,6 +28,8 @@ class FunctionPlant(EpisodePlant):
         succeeded: Says of each finished episode whether it was a success.
         metrics: What else is measured of each finished episode, by name.
         over: `over(state)` says whether the scene ends before its time; without it none does.
+        trace: `trace(state)` returns where it is, `(x, y)` or `(x, y, z)` in metres.
+        render: `render(state)` returns points `(x, y)` of a line that draws it, in metres.
     """
 
     def __init__(
@@ -41,6 +44,8 @@ class FunctionPlant(EpisodePlant):
         succeeded: Callable[[Episode], bool],
         metrics: Mapping[str, Measure] | None = None,
         over: Callable[[Any], bool] | None = None,
+        trace: Show | None = None,
+        render: Show | None = None,
     ) -> None:
         self._start, self._step, self._over = start, step, over
         super().__init__(
@@ -50,6 +55,8 @@ class FunctionPlant(EpisodePlant):
             dt_s=dt_s,
             succeeded=succeeded,
             metrics=metrics,
+            trace=trace,
+            render=render,
         )
 
     @override
@@ -62,4 +69,4 @@ class FunctionPlant(EpisodePlant):
             return state, 0.0, self._over is not None and self._over(state), False, {}
 
         # What a step draws is addressed by scene and seed, so these are all that decides it.
-        return World(state, {}, hashed(state), hashed(scene, seed), step)
+        return World(state, {}, hashed(state), hashed(scene, seed), step, lambda: state)

@@ -22,13 +22,15 @@ from faultpath.systems.episodes import (
     EpisodePlant,
     Look,
     Measure,
+    Show,
     World,
-    hashed,
 )
+from faultpath.systems.observed import hashed
 from faultpath.trials import Metric
 from faultpath.trials.imports import release
 
 Setup = Callable[[Any, np.random.Generator], Mapping[str, Any] | None]
+OnStep = Callable[[Any, np.random.Generator, int], None]
 
 _PLACE = re.compile(r"(?<=faultpath_system_)\w*(?=:)| at 0x[0-9a-f]+")
 """Where a system's file lies, which its module is called after, and where in memory a function is:
@@ -51,6 +53,10 @@ class GymnasiumPlant(EpisodePlant):
         setup: Called as `setup(env, rng)` for each scene, after its seeded reset, to set model
             parameters and disturbances. What it returns by name are sources too. It is hashed:
             two trials whose scenes were set up in another way are no pair.
+        on_step: Called as `on_step(env, rng, step)` before each step, to disturb the scene. What it
+            draws is another for each step and seed, and the same in every arm.
+        trace: `trace(env)` returns where it is, `(x, y)` or `(x, y, z)` in metres, for the report.
+        render: `render(env)` returns points `(x, y)` of a line that draws it, in metres.
     """
 
     def __init__(
@@ -64,8 +70,11 @@ class GymnasiumPlant(EpisodePlant):
         steps: int | None = None,
         dt_s: float | None = None,
         setup: Setup | None = None,
+        on_step: OnStep | None = None,
+        trace: Show | None = None,
+        render: Show | None = None,
     ) -> None:
-        self._environment, self._setup = environment, setup
+        self._environment, self._setup, self._on_step = environment, setup, on_step
         self._limit = steps
         sample = self._make()
         self.identity, self.code = _identity(sample), _code(sample)
@@ -83,6 +92,8 @@ class GymnasiumPlant(EpisodePlant):
             dt_s=float(dt_s or 0),
             succeeded=succeeded,
             metrics={"return": returned, **(metrics or {})},
+            trace=trace,
+            render=render,
         )
 
     @override
@@ -98,9 +109,12 @@ class GymnasiumPlant(EpisodePlant):
             rng = generator("environment/setup", scene, 0)
             told = self._setup(env, rng) or {}
             disturbance = hashed((sorted(told.items()), rng.bit_generator.state))
+        if self._on_step:  # its draws are addressed by scene and seed, which so decide it
+            disturbance = hashed(disturbance, scene, seed)
 
         def step(action: HostArray, step: int) -> tuple[Any, float, bool, bool, Mapping[str, Any]]:
-            del step
+            if self._on_step:
+                self._on_step(env, generator("environment/step", scene, seed, step), step)
             space = env.action_space
             if space.shape is None:
                 raise SystemMistake(
@@ -120,7 +134,7 @@ class GymnasiumPlant(EpisodePlant):
                 ) from None
             return env.step(row[()])
 
-        return World(observation, told, initial, disturbance, step, env.close)
+        return World(observation, told, initial, disturbance, step, lambda: env, env.close)
 
     def _make(self) -> Any:
         if not isinstance(self._environment, str):

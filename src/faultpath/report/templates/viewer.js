@@ -37,7 +37,7 @@ if (document.getElementById("viewer-data")) {
   };
 
   const begin = (data) => {
-    const spatial = data.space === "space", { series, dt_s: dt } = data;
+    const spatial = ["space", "picture"].includes(data.space), { series, dt_s: dt } = data;
     const several = new Set(data.scenes.map((s) => s.seed)).size > 1;
     const state = { scene: data.picked[0] ?? 0, path: data.path, step: 0, plot: 0, playing: 0, last: 1, box: null, range: null };
     // Along one axis the track itself is a plot, and comes first.
@@ -45,6 +45,15 @@ if (document.getElementById("viewer-data")) {
     const current = () => data.scenes[state.scene];
     const trials = (pair) => ARMS.filter((arm) => pair[arm]).map((arm) => ({ arm, ...pair[arm] }));
     const track = ({ track: at }) => (at === null ? [] : series[at].map((x, i) => [x / 100, series[at + 1][i] / 100]));
+    // What a system renders: at each step a line through points, broken where the pen is lifted.
+    const drawn = ({ drawn: at }, step) => {
+      const points = [];
+      for (let n = 0; at && n < at[1]; n += 2) {
+        const row = Math.min(step, series[at[0]].length - 1);
+        points.push([series[at[0] + n][row], series[at[0] + n + 1][row]].map((v) => (v === 1e9 ? null : v / 100)));
+      }
+      return points;
+    };
     const ends = (values, low = Infinity, high = -Infinity) => {
       for (const v of values) if (v !== null) { low = Math.min(low, v); high = Math.max(high, v); }
       return [low, high];
@@ -55,7 +64,8 @@ if (document.getElementById("viewer-data")) {
     // Both trials of a pair from above: baseline dashed, what is still to come pale.
     const drawPlan = (host, title, pair) => {
       const { svg, w, h } = picture(host, title), plan = data.plans[current().scene], [[x0, x1], [y0, y1]] = state.box;
-      const scale = Math.min((w - 12) / (x1 - x0 || 1), (h - 12) / (y1 - y0 || 1));
+      const edge = data.space === "picture" ? 60 : 12; // the scale lies under a picture
+      const scale = Math.min((w - edge) / (x1 - x0 || 1), (h - edge) / (y1 - y0 || 1));
       const at = ([x, y]) => [w / 2 + (x - (x0 + x1) / 2) * scale, h / 2 - (y - (y0 + y1) / 2) * scale];
       const join = (points) => points.map((p) => at(p).map((v) => v.toFixed(1)).join(",")).join(" ");
       const disc = (where, r, cls) => { const [cx, cy] = at(where); draw(svg, "circle", { cx, cy, r, class: cls }); };
@@ -67,7 +77,11 @@ if (document.getElementById("viewer-data")) {
         disc(plan.goal, Math.max(5, 0.5 * scale), "v-mark");
         disc(plan.start, 3, "v-solid");
       }
-      for (const trial of trials(pair).filter((each) => each.track !== null)) {
+      for (const trial of trials(pair)) {
+        const line = drawn(trial, state.step), gap = (n) => !line[n] || line[n].includes(null);
+        const d = line.map((p, n) => (gap(n) ? "" : `${gap(n - 1) ? "M" : "L"}${at(p).map((v) => v.toFixed(1))}`)).join("");
+        if (d) draw(svg, "path", { d, class: `v-track ${trial.arm}` });
+        if (data.space === "picture" || trial.track === null) continue;
         const points = track(trial), now = Math.min(state.step, points.length - 1), [x, y] = at(points[points.length - 1]);
         draw(svg, "polyline", { points: join(points.slice(now)), class: `v-track rest ${trial.arm}` });
         draw(svg, "polyline", { points: join(points.slice(0, now + 1)), class: `v-track ${trial.arm}` });
@@ -139,7 +153,8 @@ if (document.getElementById("viewer-data")) {
       for (const { path, title, plan, said, plot } of columns) {
         const pair = current().pairs.find((each) => each.path === path);
         if (!pair) continue;
-        if (spatial) drawPlan(plan, `${title}, from above. ${said.textContent}`, pair);
+        plan.hidden = state.box[0][0] > state.box[0][1];
+        if (spatial && !plan.hidden) drawPlan(plan, `${title}, from above. ${said.textContent}`, pair);
         drawPlot(plot, `${data.plots[state.plot]?.title}, ${title}`, pair);
       }
       get("clock").textContent = `${(state.step * dt).toFixed(2)} s`;
@@ -174,7 +189,8 @@ if (document.getElementById("viewer-data")) {
       const length = (each) => (each.track === null ? Math.ceil(each.time_s / dt - 1e-6) + 1 : series[each.track].length);
       state.last = Math.max(1, ends(every.map(length))[1] - 1);
       state.step = Math.min(Math.max(0, step ?? state.last), state.last);
-      const points = [...every.flatMap(track), ...(plan ? [plan.low, plan.high] : [])];
+      const pictures = every.flatMap((each) => Array.from({ length: state.last }, (_, step) => drawn(each, step)).flat());
+      const points = [...(data.space === "picture" ? pictures : every.flatMap(track)), ...(plan ? [plan.low, plan.high] : [])];
       state.box = [0, 1].map((axis) => ends(points.map((point) => point[axis])));
       get("time").max = String(state.last);
       get("scene").value = String(state.scene);

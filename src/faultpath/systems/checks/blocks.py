@@ -21,10 +21,11 @@ from faultpath.loop import (
     UndeclaredReader,
 )
 from faultpath.systems.checks.recording import Enough, Read, Recording, signals
+from faultpath.systems.episodes import EpisodePlant
 from faultpath.trials import Arm, LoopSystem, Outcome, System
 from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
 from faultpath.trials.execution.dispatch import Built, dispatch
-from faultpath.trials.store.signals import Signal
+from faultpath.trials.store.signals import DRAWN, Signal
 from faultpath.trials.work.executor import Executor
 
 MISTAKES: dict[str, tuple[type[Exception], ...]] = {
@@ -66,13 +67,16 @@ class RecordedBlock:
     fails: str = ""
     """The check that reports the error."""
 
-    def readings(self, dt_s: float) -> dict[tuple[str, int, str, str], bytes]:
-        """Return the digest of each reading by scene, step, channel and consumer, while it ran."""
+    def readings(self, dt_s: float, what: str = "given") -> dict[tuple[str, int, str, str], Any]:
+        """Return what is noted of each reading by scene, step, channel and consumer, while it ran.
+
+        `what` is a field of `Read` by scene: a digest, or the sum.
+        """
         ends = {o.scene: math.ceil(o.time_s / dt_s) for o in self.outcomes}
         return {
-            (scene, read.step, *read.tap): digest
+            (scene, read.step, *read.tap): noted
             for read in self.reads
-            for scene, digest in read.given.items()
+            for scene, noted in getattr(read, what).items()
             if read.step < ends.get(scene, read.step + 1)
         }
 
@@ -154,6 +158,9 @@ def _with_plant(system: System, recording: Recording) -> System:
 
         def sensed(state: Any) -> Mapping[str, Any]:
             outputs, now = sense(state), next(step)
+            drawn = plant.drawn(state) if isinstance(plant, EpisodePlant) else None
+            if drawn is not None:
+                recording.sources.setdefault(DRAWN, {})[now] = drawn.reshape(len(drawn), -1)
             for name, value in outputs.items():
                 # What a plant shows to estimators alone is named after the plant.
                 shown = plant.name if isinstance(value, Mapping) else name

@@ -1,6 +1,6 @@
 """Run a system as a careful reviewer would, and judge what was seen."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Literal
 
 from faultpath.core.errors import UserError
@@ -9,7 +9,7 @@ from faultpath.core.text import unknown
 from faultpath.faults import AnyIntervention, Erase, Fault, Offset, Scale
 from faultpath.faults import Sequence as InTurn
 from faultpath.systems.checks.blocks import Block, RecordedBlock, run_blocks
-from faultpath.systems.checks.judging import Check, Seen, judged
+from faultpath.systems.checks.judging import Check, Seen, coarsest, judged
 from faultpath.systems.checks.recording import Read
 from faultpath.trials import Arm, System, SystemSpec, Variant, library_of
 from faultpath.trials.execution.dispatch import Built
@@ -73,6 +73,9 @@ def check_system(
     run([Block(Arm(variant=v.name, seed=asked.seed), scenes, "first") for v in variants], None)
     again = [block for name, first in seen.firsts() for block in _again(seen, name, first)]
     run(again, len(variants) + len(again))  # in new processes: they share nothing with the first
+    rounded = [block for name, first in seen.firsts() for block in _rounded(seen, name, first)]
+    if rounded:
+        run(rounded, len(variants) + len(again) + len(rounded))
     return Report(
         system=spec.name,
         options=spec.options,
@@ -101,19 +104,10 @@ def _again(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[Block]:
     yield Block(arm, seen.scenes, "again")
     if len(seen.scenes) > 1:
         yield Block(arm, seen.scenes[::-2], "part")
-    begins: dict[tuple[str, str], Read] = {}
-    readers: dict[str, list[str]] = {}
-    for read in first.reads:
-        if read.given and read.tap not in begins:
-            begins[read.tap] = read
-            if "float" in read.dtype:
-                readers.setdefault(read.channel, []).append(read.consumer)
+    begins, readers = _begun(first)
 
     def faulted(channel: str, doing: AnyIntervention, consumers: Sequence[str]) -> Arm:
-        fault = Fault(channel=channel, intervention=doing, consumers=tuple(consumers))
-        present = seen.system.variants[variant].consumers
-        faults = fault.resolved(seen.system.interface, present)
-        return Arm(variant=variant, seed=seen.seed, faults=faults)
+        return _faulted(seen, variant, {channel: consumers}, doing)
 
     if readers:
         most = max(readers, key=lambda channel: len(readers[channel]))
@@ -125,3 +119,37 @@ def _again(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[Block]:
             doing = Erase(default=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
         alone = faulted(channel, doing, (consumer,))
         yield Block(alone, seen.scenes, "tap", read.step + _AFTER, read.tap)
+
+
+def _rounded(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[Block]:
+    """Yield what shows how far rounding goes, where scenes differ by those beside them."""
+    readers = _begun(first)[1]
+    if readers and seen.differs(variant, "part") and not seen.differs(variant, "again"):
+        arm = _faulted(seen, variant, readers, Scale(factor=1.0 + 4.0 * coarsest(first)))
+        yield Block(arm, seen.scenes, "rounded")
+
+
+def _begun(run: RecordedBlock) -> tuple[dict[tuple[str, str], Read], dict[str, list[str]]]:
+    """Return the first read of each tap, and by channel who reads numbers with a fraction."""
+    begins: dict[tuple[str, str], Read] = {}
+    readers: dict[str, list[str]] = {}
+    for read in run.reads:
+        if read.given and read.tap not in begins:
+            begins[read.tap] = read
+            if "float" in read.dtype:
+                readers.setdefault(read.channel, []).append(read.consumer)
+    return begins, readers
+
+
+def _faulted(
+    seen: Seen, variant: str, readers: Mapping[str, Sequence[str]], doing: AnyIntervention
+) -> Arm:
+    interface, present = seen.system.interface, seen.system.variants[variant].consumers
+    faults = [
+        each
+        for channel, consumers in readers.items()
+        for each in Fault(channel=channel, intervention=doing, consumers=tuple(consumers)).resolved(
+            interface, present
+        )
+    ]
+    return Arm(variant=variant, seed=seen.seed, faults=tuple(faults))

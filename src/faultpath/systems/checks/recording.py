@@ -22,6 +22,7 @@ from faultpath.core.errors import SystemMistake
 from faultpath.core.results import Result
 from faultpath.interface import Provenance
 from faultpath.loop import Observer, Query, Reading, Tap
+from faultpath.systems.composed import ComposedSystem
 from faultpath.trials import System
 from faultpath.trials.attempt import Done
 from faultpath.trials.registry import named
@@ -62,6 +63,8 @@ class Read(Result):
     """A scene with a number that is not finite."""
     given: Mapping[str, bytes] = Field(default={}, exclude=True)
     """A digest of what the source held, by scene."""
+    sums: Mapping[str, float] = Field(default={}, exclude=True)
+    """Of the finite numbers that the source held, by scene."""
     got: Mapping[str, bytes] = Field(default={}, exclude=True)
     """A digest of what the consumer got, by scene."""
 
@@ -156,6 +159,9 @@ class Recording(Observer):
             "lost": self._scenes[lost[0]] if lost.size else read.lost,
             "asks": read.asks + asks,
         }
+        sums = np.where(finite, numbers, 0.0).reshape(len(values), -1).sum(axis=1).tolist()
+        scenes = zip(self._scenes, sums, strict=False)
+        changed["sums"] = {scene: read.sums.get(scene, 0.0) + each for scene, each in scenes}
         for name, before, rows in (("given", read.given, values), ("got", read.got, to_numpy(got))):
             changed[name] = {
                 scene: blake2b(before.get(scene, b"") + row.tobytes(), digest_size=8).digest()
@@ -212,29 +218,32 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
     topics = {name: channel.name for channel in interface.channels for name in channel.sources}
     units = {source.name: source.unit for source in interface.sources}
     fed = {channel.name: channel.sources[0] for channel in interface.channels}
+    parts = system.components if isinstance(system, ComposedSystem) else {}
     fixed = {s.name for s in interface.sources if s.provenance is Provenance.CONSTANT}
-    found: list[tuple[str, str, str, Mapping[int, Values]]] = []
+    found: list[tuple[str, str, str, tuple[str, ...], Mapping[int, Values]]] = []
     for name, held in recording.sources.items():
         if name in fixed:
             continue
         part = name.partition(".")[2]  # of a truth, which may be that of a channel
         topic = part if part in fed else topics.get(name, name)
-        found.append((name, topic, units.get(name, units.get(fed.get(part, ""), "")), held))
+        like = name if name in units else fed.get(part, "")
+        found.append((name, topic, units.get(like, ""), parts.get(like, ()), held))
     for (channel, consumer), got in recording.got.items():
         given = recording.given[channel, consumer]
         if all(np.array_equal(got[step], given[step], equal_nan=True) for step in got):
             continue
-        unit = units[fed[channel]]
+        unit, named_parts = units[fed[channel]], parts.get(fed[channel], ())
         error = {step: got[step] - given[step] for step in got}
-        found.append((f"{channel} at {consumer}", channel, unit, got))
-        found.append((f"{channel} error at {consumer}", f"{channel} error", unit, error))
+        found.append((f"{channel} at {consumer}", channel, unit, named_parts, got))
+        wrong = f"{channel} error"
+        found.append((f"{wrong} at {consumer}", wrong, unit, named_parts, error))
     if recording.force:
         many = len(done.outcomes)
         force = {
             step: np.broadcast_to(mask, many)[:, None].astype(np.float64)
             for step, mask in recording.force.items()
         }
-        found.append((IN_FORCE, IN_FORCE, "1", force))
+        found.append((IN_FORCE, IN_FORCE, "1", (), force))
     every = trials(recording, done, system.control_dt_s)
     if system.more_signals:
         more: list[tuple[Signal, ...]] = named(system.more_signals)(system, recording, done)
@@ -242,8 +251,14 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
         more = [_error_signals(system, trial) for trial in every]
     return [
         tuple(
-            Signal(name, topic, unit, trial.rows(held).astype(np.float32))
-            for name, topic, unit, held in found
+            Signal(
+                name,
+                topic,
+                unit,
+                values := trial.rows(held).astype(np.float32),
+                named_parts if len(named_parts) == values.shape[1] else (),
+            )
+            for name, topic, unit, named_parts, held in found
             if held
         )
         + beside

@@ -18,6 +18,9 @@ SIGNALS = "signals.parquet"
 IN_FORCE = "fault in force"
 """The signal that is 1 while a fault was in force at some tap."""
 
+DRAWN = "drawn"
+"""The signal that is a picture: a line through points in metres, `x` and `y` in turn."""
+
 TOGETHER = "both together"
 """The signal that is the sum of the two others of its topic, the errors of two modules."""
 

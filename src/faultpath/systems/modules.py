@@ -1,0 +1,123 @@
+"""Functions as modules: what one is called with is what it reads."""
+
+from collections.abc import Callable, Sequence
+from inspect import Parameter, signature
+from typing import Any, cast
+
+import numpy as np
+from typing_extensions import override
+
+from faultpath.core.arrays import is_array, namespace
+from faultpath.core.errors import SystemMistake
+from faultpath.core.text import unknown
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
+
+MEMORY = "memory"
+"""The argument that is no channel."""
+
+
+def writes(
+    source: str, *, past: str | Sequence[str] = (), before: Any = None
+) -> Callable[[Callable[..., Any]], "FunctionModule"]:
+    """Make a function a module that writes `source`: `@writes("push")` above its `def`.
+
+    Each argument is a channel, read at a place of the same name, and is handed one row a scene,
+    `[B, ...]`; what the function returns is what `source` holds. One that has an argument `memory`,
+    `None` at the first step, returns `(value, memory)`.
+
+    Args:
+        source: What it writes.
+        past: Arguments that get the value of the step before.
+        before: What `source` holds before the first step, of one scene, for who reads its past.
+
+    Raises:
+        SystemMistake: The function takes no names, or has no such argument.
+    """
+    late = (past,) if isinstance(past, str) else tuple(past)
+    return lambda function: FunctionModule(function, source, late, before, {})
+
+
+class FunctionModule(Module):
+    """A module that is a function; see `writes`."""
+
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        source: str,
+        past: Sequence[str],
+        before: Any,
+        given: dict[str, Any],
+    ) -> None:
+        self.name, self.writes = function.__name__, (source,)
+        self._function, self._past, self._before, self._given = function, past, before, given
+        parameters = signature(function).parameters
+        if odd := [
+            each.name
+            for each in parameters.values()
+            if each.kind not in (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
+        ]:
+            raise SystemMistake(
+                f"module '{self.name}': its argument '{odd[0]}' has no name to hand it over by: "
+                "give each channel an argument of its own"
+            )
+        for name in (*past, *given):
+            if name not in parameters:
+                raise SystemMistake(
+                    f"module '{self.name}': {unknown('argument', name, list(parameters))}"
+                )
+        self._remembers = MEMORY in parameters
+        read = {Port(name, name) for name in parameters if name not in (MEMORY, *given)}
+        self.reads_past = frozenset(port for port in read if port.channel in past)
+        self.reads = frozenset(read - self.reads_past)
+
+    def given(self, **values: Any) -> "FunctionModule":
+        """Return it with other values for some arguments, which it then reads no more."""
+        values = self._given | values
+        return FunctionModule(self._function, self.writes[0], self._past, self._before, values)
+
+    def __str__(self) -> str:
+        """Return its name and the numbers that it was given."""
+        numbers = {n: v for n, v in self._given.items() if isinstance(v, int | float)}
+        told = [f"{name} {value:g}" for name, value in numbers.items()]
+        return f"{self.name} ({', '.join(told)})" if told else self.name
+
+    @override
+    def before(self, batch: Batch) -> Outputs:
+        if self._before is None:
+            return {}
+        row = np.asarray(self._before, np.float64)
+        return {self.writes[0]: np.tile(row, (len(batch.scenes), *[1] * row.ndim))}
+
+    @override
+    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
+        values = {port.channel: inputs[port] for port in self.ports} | self._given
+        if not self._remembers:
+            return {self.writes[0]: self._function(**values)}, None
+        pair: Any = self._function(**values, memory=memory)
+        if not isinstance(pair, tuple) or len(cast("tuple[Any, ...]", pair)) != 2:
+            raise SystemMistake(
+                f"module '{self.name}' has a memory and returned no pair: return (value, memory)"
+            )
+        value, memory = cast("tuple[Any, Any]", pair)
+        return {self.writes[0]: value}, memory
+
+
+def row_wise(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function, such as a torch module, that takes the rows of a batch one at a time.
+
+    A product of matrices rounds otherwise for another number of rows; called row by row it gives
+    each scene the same bits, whatever the scenes beside it. Arrays are `[B, ...]`, and so is each
+    that is returned; all else is handed on.
+    """
+
+    def each(*values: Any) -> Any:
+        rows = max(len(value) for value in values if is_array(value) and value.ndim)
+        single = [
+            function(*(v[i : i + 1] if is_array(v) and v.ndim else v for v in values))
+            for i in range(rows)
+        ]
+        if isinstance(single[0], tuple):
+            return tuple(namespace(parts[0]).concat(parts) for parts in zip(*single, strict=True))
+        return namespace(single[0]).concat(single)
+
+    return each

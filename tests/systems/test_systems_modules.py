@@ -1,0 +1,53 @@
+"""A function as a module: its arguments are what it reads."""
+
+import re
+
+import numpy as np
+import pytest
+
+from faultpath.core.errors import SystemMistake
+from faultpath.loop import Batch, Inputs, Port
+from faultpath.systems import row_wise, writes
+
+
+@writes("sum", past="late", before=(1.0, 2.0))
+def adder(now, late, scale, memory):
+    total = scale * (now + late) + (0.0 if memory is None else memory)
+    return total, total
+
+
+def test_arguments_are_ports_and_what_is_given_is_read_no_more():
+    assert adder.reads == {Port("now", "now"), Port("scale", "scale")}
+    assert adder.reads_past == {Port("late", "late")}
+    half = adder.given(scale=0.5)
+    assert half.ports == adder.ports - {Port("scale", "scale")}
+    assert str(half) == "adder (scale 0.5)"
+    delivered = {Port("now", "now"): np.ones(2), Port("late", "late"): np.ones(2)}
+    inputs = Inputs("adder", 0, delivered, {})
+    outputs, memory = half.step(inputs, None)
+    assert list(half.step(inputs, memory)[0]["sum"]) == [2.0, 2.0]
+    assert list(outputs["sum"]) == [1.0, 1.0]
+    assert half.before(Batch(("a", "b", "c"), 0, 0.1))["sum"].tolist() == [[1.0, 2.0]] * 3
+
+
+def test_mistakes_are_told_in_a_sentence():
+    with pytest.raises(SystemMistake, match="unknown argument 'nwo'; did you mean 'now'"):
+        adder.given(nwo=1)
+    with pytest.raises(SystemMistake, match=re.escape("'readings' has no name")):
+        writes("sum")(lambda *readings: readings)
+    forgets = writes("sum")(lambda memory: np.zeros(2))
+    with pytest.raises(SystemMistake, match="returned no pair"):
+        forgets.step(Inputs("forgets", 0, {}, {}), None)
+
+
+def test_rows_are_computed_one_at_a_time():
+    sizes = []
+
+    def both(rows, factor):
+        sizes.append(len(rows))
+        return rows * factor, rows[:, 0]
+
+    product, first = row_wise(both)(np.arange(6.0).reshape(3, 2), 2.0)
+    assert sizes == [1, 1, 1]
+    assert product.tolist() == [[0, 2], [4, 6], [8, 10]]
+    assert first.tolist() == [0, 2, 4]
