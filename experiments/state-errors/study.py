@@ -171,8 +171,9 @@ def main() -> None:
     asked = parser.parse_args()
     design = Design.read(asked.design)
     library = load_system(design.spec).library(asked.library)
+    name = Path(asked.library).stem
     scenes = tuple(scene.id for scene in library.scenes[: asked.scenes])
-    out = asked.out / asked.library
+    out = asked.out / name
     files = records(design, scenes, out / "errors")
     asks = study(design, asked.library, scenes, files)
     print(len(asks.arms()), "arms", len(scenes), "scenes", flush=True)
@@ -188,9 +189,8 @@ def main() -> None:
         for name, (value, low, high, sign) in each["effects"].items():
             one, two = each["success"][name]
             said = each["turns"].get(name, "")
-            print(
-                f"  {name:15s} {one:.2f} {two:.2f} {value:+.1f} [{low:+.1f}, {high:+.1f}] {sign} {said}"
-            )
+            ends = f"[{low:+.1f}, {high:+.1f}]"
+            print(f"  {name:15s} {one:.2f} {two:.2f} {value:+.1f} {ends} {sign} {said}")
 
 
 if __name__ == "__main__":
