@@ -1,6 +1,6 @@
 """How far the filter's estimates are from the truth in flight, and what it costs.
 
-    python experiments/state-errors/accuracy.py        # writes accuracy.json beside itself
+python experiments/state-errors/accuracy.py        # writes accuracy.json beside itself
 """
 
 import json
