@@ -62,18 +62,22 @@ class Design:
         return {self.baseline: self.own, **dict(met)}
 
 
-def record(design: Design, fault: str, filter_: str, scenes: tuple[str, ...], part: Path) -> None:
+def record(
+    design: Design, fault: str, filter_: str, library: str, scenes: tuple[str, ...], part: Path
+) -> None:
     """Fly the baseline with a filter under the fault of a sensor; keep the filter's errors."""
     torch.set_num_threads(1)
     system = load_system(design.spec)
-    system.library(scenes[0].rpartition("/")[0])
+    system.library(library)
     variant = design.baseline if filter_ == design.own else f"{filter_}/{design.baseline}"
     faults = [_fault(system, design.faults[fault])]
     found = state_errors(system, variant, scenes, design.seed, faults)
     write(part, encode_record(found, TURNING), part.parent)
 
 
-def records(design: Design, scenes: tuple[str, ...], out: Path) -> dict[tuple[str, str], Path]:
+def records(
+    design: Design, library: str, scenes: tuple[str, ...], out: Path
+) -> dict[tuple[str, str], Path]:
     """Return the file of each fault's and filter's errors, made where it is missing."""
     from faultpath.faults.recorded import _decoded
 
@@ -87,7 +91,7 @@ def records(design: Design, scenes: tuple[str, ...], out: Path) -> dict[tuple[st
             files[fault, filter_] = [out / f"{stem}.{i}.parquet" for i in range(len(blocks))]
             for block, part in zip(blocks, files[fault, filter_], strict=True):
                 if not part.is_file():
-                    jobs.append(pool.submit(record, design, fault, filter_, block, part))
+                    jobs.append(pool.submit(record, design, fault, filter_, library, block, part))
         for done, job in enumerate(as_completed(jobs), 1):
             job.result()
             print(f"recorded {done}/{len(jobs)}", flush=True)
@@ -171,9 +175,10 @@ def main() -> None:
     asked = parser.parse_args()
     design = Design.read(asked.design)
     library = load_system(design.spec).library(asked.library)
+    name = Path(asked.library).stem
     scenes = tuple(scene.id for scene in library.scenes[: asked.scenes])
-    out = asked.out / asked.library
-    files = records(design, scenes, out / "errors")
+    out = asked.out / name
+    files = records(design, asked.library, scenes, out / "errors")
     asks = study(design, asked.library, scenes, files)
     print(len(asks.arms()), "arms", len(scenes), "scenes", flush=True)
 
@@ -188,9 +193,8 @@ def main() -> None:
         for name, (value, low, high, sign) in each["effects"].items():
             one, two = each["success"][name]
             said = each["turns"].get(name, "")
-            print(
-                f"  {name:15s} {one:.2f} {two:.2f} {value:+.1f} [{low:+.1f}, {high:+.1f}] {sign} {said}"
-            )
+            ends = f"[{low:+.1f}, {high:+.1f}]"
+            print(f"  {name:15s} {one:.2f} {two:.2f} {value:+.1f} {ends} {sign} {said}")
 
 
 if __name__ == "__main__":
