@@ -102,7 +102,9 @@ class QuadrotorChoices(BaseModel):
     ] = "mppi"
     sampler: Annotated[SamplerName, "How candidates are drawn."] = SamplerName.AUTOREGRESSIVE
     candidates: Annotated[
-        int, "Candidates a replan, in all iterations together.", Offered(512, 1024, 2048)  # paper, Sections IV-A and VII-B
+        int,
+        "Candidates a replan, in all iterations together.",
+        Offered(512, 1024, 2048),  # paper, Sections IV-A and VII-B
     ] = 512
     plant: Annotated[
         str,
