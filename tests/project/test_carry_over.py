@@ -6,9 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "experiments" / "carry-over"))
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 import carry_blocks
 import study
 from carry_design import Cell, Design, Flown
@@ -17,7 +15,8 @@ from carry_verdicts import lead, moves, overall, sentences, settled, sign
 from faultpath.api.display import Display
 from faultpath.core.errors import Stopped, UserError
 
-PLANNERS, WINDS, SIGNS = ("mppi", "cem"), ("L2", "L3"), ("+", "-")
+ROOT = carry_blocks.ROOT
+WINDS, SIGNS = ("L2", "L3"), ("+", "-")
 ALL, NONE, TIE = ("0", "1"), ("1", "0"), ("01", "10")
 """What baseline and repair are made of: the repair ahead in all scenes, in none, in every other."""
 
