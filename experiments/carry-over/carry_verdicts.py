@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from faultpath.decisions.phrases import counted
 from faultpath.statistics.betting import log_capital
+from faultpath.statistics.distributions import t_interval
 from faultpath.statistics.power import fewest_scenes
-from faultpath.statistics.score import SceneValues
 
 Floats = NDArray[np.float64]
 _KINDS = np.array([-1.0, 0.0, 1.0])
@@ -196,9 +196,10 @@ def _mean(flown: Flown, values: Sequence[Floats], bound: float, moves: int) -> M
     alpha = flown.design.alpha / family
     if not values or scenes < fewest_scenes(alpha):
         return None
-    means = np.mean([each[:scenes] for each in values], axis=0).round(9)
-    ends = SceneValues.paired(means, bound, 100.0).interval(1 - alpha)
-    return Mean(100 * float(means.mean()), *ends)
+    means = 100 * np.mean([each[:scenes] for each in values], axis=0)
+    least = (100 / scenes) ** 2 / 12  # a mean of so many scenes is known no better
+    low, high = (float(end) for end in t_interval(means, 1 - alpha, least))
+    return Mean(float(means.mean()), max(low, -100 * bound), min(high, 100 * bound))
 
 
 def moved(found: Sequence[Move]) -> str:
