@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import blocks
+import carry_blocks
 import fact_blocks
 import map_blocks
 import model_blocks
@@ -39,6 +40,7 @@ TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md")
 
 KINDS: Mapping[str, Any] = {
     **blocks.KINDS,
+    "carry": carry_blocks.KIND,
     "map": map_blocks.KIND,
     "central": paper_blocks.central_claim,
     "models": model_blocks.table,
@@ -154,6 +156,9 @@ def take(what: str) -> None:
         raise Wrong(f"--take {what}: give NAME=FOLDER of a finished run")
     if (Path(folder) / MAP).is_file():
         map_blocks.take(name, Path(folder))
+        return
+    if (Path(folder) / carry_blocks.CELLS).is_file():
+        carry_blocks.take(name, Path(folder))
         return
     heard = (SIGNALS,) if (Path(folder) / SIGNALS).is_file() else ()
     copied((*TAKEN, *heard), Path(folder), REFERENCE / name)

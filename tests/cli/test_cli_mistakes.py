@@ -73,7 +73,7 @@ QUADROTOR_MISTAKES = {
     "environment": ({"environment": "sea"}, ["'sea'", "obstacles, free-space"]),
     "predictor": ({"predictor": "oracle"}, ["'oracle'", "dki, dki-drag, true-parameter"]),
     "clearance": ({"clearance": "radar"}, ["'radar'", "depth, true"]),
-    "planner": ({"planner": "rrt"}, ["'rrt'", "choose one of mppi"]),
+    "planner": ({"planner": "rrt"}, ["'rrt'", "choose one of mppi, cem"]),
     "plant": ({"plant": "gazebo"}, ["'gazebo'", "choose one of torch"]),
     "plant on a GPU": (
         {"plant": "my.py:create", "device": "cuda"},

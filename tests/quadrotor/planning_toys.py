@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 
 import torch
-from faultpath_quadrotor.planners import Planner, Scored
+from faultpath_quadrotor.planners import Planner, Scored, Search
 from faultpath_quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.rollout import rolling
@@ -19,11 +19,12 @@ def replan(
     step: int = 0,
     goal: Tensor | None = None,
     clearance: Callable[[Tensor], Tensor] = lambda positions: torch.ones_like(positions[0]),
+    seen: Callable[[Search], object] = lambda search: None,
 ) -> Tensor:
     """Return the plan that one step makes of `plan`, `[H, 4, S]`.
 
     `clearance` gives `[S, H, K]` at positions `[3, S, H, K]`, a metre where it is not given; the
-    goal `[3, S]` is the origin where it is not.
+    goal `[3, S]` is the origin where it is not. `seen` is called with each search.
     """
     hover = hover_thrust(inputs.delivered, "trim")[:, 0]
     roll = rolling(KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS))
@@ -34,4 +35,5 @@ def replan(
         near = clearance(rollout.positions)
         goals = torch.zeros(3, len(scenes)) if goal is None else goal
         search = planner.update(search, Scored(rollout, commands, near, goals, hover))
+        seen(search)
     return search.plan

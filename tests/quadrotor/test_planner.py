@@ -10,6 +10,8 @@ from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
 from planning_toys import replan
 
+from faultpath.core.errors import UserError
+
 SCENES = ["s/0", "s/1", "s/2", "s/3"]
 
 
@@ -60,8 +62,9 @@ def test_trim_follows_the_supplied_calibration():
     assert torch.allclose(plan[:, 0], torch.tensor(1.1 * GRAVITY_MPS2))
 
 
-def test_plan_moves_towards_the_goal_and_away_from_what_is_close():
-    planner = QuadrotorOptions().build_planner()
+@pytest.mark.parametrize("name", ["mppi", "cem"])
+def test_plan_moves_towards_the_goal_and_away_from_what_is_close(name):
+    planner = QuadrotorOptions(planner=name).build_planner()
     given = planner_inputs()
     plan = planner.initial_plan(torch.full((4,), GRAVITY_MPS2))
     goal = torch.zeros(3, 4)
@@ -73,3 +76,24 @@ def test_plan_moves_towards_the_goal_and_away_from_what_is_close():
     # A ceiling just above: the same goal no longer pulls the plan up.
     kept = replan(planner, given, plan, SCENES, goal=goal, clearance=lambda at: 0.3 - at[2])
     assert (kept[:, 0].mean(0)[[0, 2]] < better[:, 0].mean(0)[[0, 2]]).all()
+
+
+def test_the_cross_entropy_method_closes_in_with_as_many_candidates():
+    options = QuadrotorOptions(planner="cem")
+    planner, given = options.build_planner(), planner_inputs()
+    assert planner.iterations * options.sampling.candidates == QuadrotorOptions().candidates
+    goal = torch.tensor([[1.0], [0.5], [0.5]]).expand(3, 4)
+    hover = torch.full((4,), GRAVITY_MPS2)
+    searched = []
+    replan(planner, given, planner.initial_plan(hover), SCENES, goal=goal, seen=searched.append)
+    first, *_, last = [search.spread for search in searched]
+    assert last.mean() < 0.7 * first.mean()
+    alone = replan(
+        planner, planner_inputs(1), planner.initial_plan(hover[:1]), SCENES[2:3], goal=goal[:, :1]
+    )
+    assert torch.equal(alone[..., 0], searched[-1].plan[..., 2])
+
+
+def test_no_sampler_keeps_modes_apart_for_the_cross_entropy_method():
+    with pytest.raises(UserError, match="leave --sampler out"):
+        QuadrotorOptions.parse(planner="cem", sampler="mode-preserving")

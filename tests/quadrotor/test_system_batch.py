@@ -57,9 +57,14 @@ def test_any_selection_in_any_order_gives_what_the_whole_block_gives(chosen, who
 
 MANY = tuple(f"held-out/{i:03d}" for i in range(40))
 OTHER_MODULES = {"predictor": "true-parameter", "sampler": "mode-preserving", "wind": "L3"}
+OTHER_PLANNER = {"planner": "cem", "wind": "L3"}
 
 
-@pytest.mark.parametrize("options", [STRONG_WIND, OTHER_MODULES], ids=["usual", "other modules"])
+@pytest.mark.parametrize(
+    "options",
+    [STRONG_WIND, OTHER_MODULES, OTHER_PLANNER],
+    ids=["usual", "other modules", "other planner"],
+)
 def test_chunks_of_every_size_and_more_than_one_group_of_lanes_change_nothing(options, monkeypatch):
     """Scenes are planned in eights, fours, twos and ones, and flown in groups of 32 lanes."""
     monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 5)

@@ -110,11 +110,13 @@ class QuadrotorChoices(BaseModel):
     planner: Annotated[
         str,
         "What plans, or your own as file.py:factory.",
-        Offered("mppi", factories=True),
+        Offered("mppi", "cem", factories=True),
     ] = "mppi"
     sampler: Annotated[SamplerName, "How candidates are drawn."] = SamplerName.AUTOREGRESSIVE
     candidates: Annotated[
-        int, "Candidates a replan.", Offered(512, 1024, 2048)  # paper, Sections IV-A and VII-B
+        int,
+        "Candidates a replan, in all iterations together.",
+        Offered(512, 1024, 2048),  # paper, Sections IV-A and VII-B
     ] = 512
     plant: Annotated[
         str,

@@ -16,6 +16,7 @@ from faultpath_quadrotor.choices import (
 )
 from faultpath_quadrotor.device import device_of, require
 from faultpath_quadrotor.planners import (
+    CEM,
     MPPI,
     AutoregressiveSampler,
     BundledSampler,
@@ -52,6 +53,11 @@ class QuadrotorOptions(QuadrotorChoices):
             raise UserError(
                 f"plant '{choices.plant}' flies on the CPU only: leave --device out, or --plant."
             )
+        if choices.planner == "cem" and choices.sampler is SamplerName.MODE_PRESERVING:
+            raise UserError(
+                "planner 'cem' fits one mean to all candidates, so no sampler keeps its modes "
+                "apart: leave --sampler out, or plan with mppi."
+            )
         require(choices.device)
         return cls.model_validate(given)
 
@@ -77,12 +83,17 @@ class QuadrotorOptions(QuadrotorChoices):
 
     @property
     def sampling(self) -> SamplerSettings:
-        """How many candidates are drawn, and how."""
-        return PLATFORM.planner.sampler.model_copy(update={"candidates": self.candidates})
+        """How many candidates are drawn at once, and how."""
+        rounds = CEM.iterations if self.planner == "cem" else 1
+        candidates = self.candidates // rounds
+        return PLATFORM.planner.sampler.model_copy(update={"candidates": candidates})
 
     def build_planner(self) -> Planner:
         """Return the planner that ships."""
         planner = PLATFORM.planner
+        cost = NavigationCost(planner.weights)
+        if self.planner == "cem":
+            return CEM(AutoregressiveSampler(self.sampling), cost)
         bundled = self.sampler is SamplerName.MODE_PRESERVING
         sampler = (BundledSampler if bundled else AutoregressiveSampler)(self.sampling)
-        return MPPI(sampler, NavigationCost(planner.weights), planner.temperature)
+        return MPPI(sampler, cost, planner.temperature)

@@ -68,8 +68,8 @@ class Quadrotor(LoopSystem):
     @property
     def interface(self) -> Interface:
         """See `System.interface`; the clearance is asked for along the planner's candidates."""
-        settings, candidates = PLATFORM, self.options.candidates
-        horizon = settings.planner.sampler.horizon
+        sampling = self.options.sampling
+        horizon, candidates = sampling.horizon, sampling.candidates
         clearance = dict.fromkeys(("estimated_clearance", "true_clearance"), (horizon, candidates))
         shapes = {**clearance, "predicted_motion": (6, horizon, candidates)}
         shaped = quadrotor_interface().shaped(shapes)

@@ -1,5 +1,6 @@
 """The planners, with their samplers and costs as objects."""
 
+from faultpath_quadrotor.planners.cem import CEM
 from faultpath_quadrotor.planners.costs import CostWeights, NavigationCost, Scored
 from faultpath_quadrotor.planners.mppi import MPPI, Planner, Search, shift
 from faultpath_quadrotor.planners.sampler import (

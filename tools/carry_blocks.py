@@ -1,0 +1,146 @@
+"""What the page about the carry-over of verdicts shows of its study."""
+
+import sys
+from collections.abc import Callable
+from functools import cache
+from itertools import product
+from pathlib import Path
+
+from blocks import REFERENCE, ROOT, TAKE_AGAIN, copied, missing, parsed
+from flown_code import flown_by
+
+from faultpath.decisions import wording
+from faultpath.decisions.phrases import counted
+from faultpath.decisions.tables import Entry, Line, Table, line
+from faultpath.decisions.tables.markdown import grid
+from faultpath.trials.provenance import RunProvenance
+
+sys.path.insert(0, str(ROOT / "experiments" / "carry-over"))
+from carry_design import Cell, Flown
+from carry_verdicts import Mean, hours, lead, moves, overall, questions, reason, sentences, title
+
+CELLS = "cells.json"
+TAKEN = (CELLS, "provenance.json")
+NODES = 10
+MARKS = {1: "repair", -1: "baseline", 0: "·"}
+
+
+@cache
+def load(name: str) -> Flown | None:
+    """Return what a study left, `None` where there is none; `Wrong` for a damaged file."""
+    path = REFERENCE / name / CELLS
+    return parsed(path, Flown, TAKE_AGAIN) if path.is_file() else None
+
+
+def take(name: str, folder: Path) -> None:
+    """Make the folder of a study a reference run."""
+    copied(TAKEN, folder, REFERENCE / name)
+    load.cache_clear()
+
+
+def _said(flown: Flown, name: str) -> str:
+    return "\n".join(f"- {each}" for each in sentences(flown))
+
+
+def _matrix(flown: Flown, name: str) -> str:
+    """Return a table a question and path: planner, estimator and plant down, the rest across."""
+    parts: list[str] = []
+    means = {(q.repair, q.baseline, reach): mean for q, reach, mean in overall(flown)}
+    for question, reach, cells in questions(flown):
+        if not cells:
+            continue
+        used = {
+            factor: [each for each in levels if any(c.levels[factor] == each for c in cells)]
+            for factor, levels in flown.design.factors.items()
+        }
+        down, across = list(used)[:3], list(used)[3:]
+        found = {tuple(cell.levels[name] for name in used): cell for cell in cells}
+        columns = list(product(*(used[name] for name in across)))
+        table = Table(
+            columns=tuple(" ".join((*each[:-2], "".join(each[-2:]))) for each in columns),
+            lines=tuple(
+                line(", ".join(row), *(_entry(flown, found.get((*row, *each))) for each in columns))
+                for row in product(*(used[name] for name in down))
+            ),
+            corner=", ".join(down),
+            words=(),
+        )
+        mean = means[question.repair, question.baseline, reach]
+        whole = f"Mean over its cells, first {flown.design.first} scenes: {_shown(mean)} pp."
+        parts += [f"**{title(question, reach)}**", grid(table), whole]
+    return "\n\n".join(parts)
+
+
+def _entry(flown: Flown, cell: Cell | None) -> Entry:
+    if cell is None:
+        return Entry(text="–")
+    side = lead(flown.design, cell)
+    return Entry(text=MARKS[side], detected=bool(side), aside="" if side else reason(cell))
+
+
+def _shown(mean: Mean | None) -> str:
+    if mean is None:
+        return "–"
+    ends = f"[{wording.plain(mean.low_pp)}, {wording.plain(mean.high_pp)}]"
+    return f"{wording.signed(mean.value_pp)} {ends}"
+
+
+def _factors(flown: Flown, name: str) -> str:
+    lines: list[Line] = []
+    every = moves(flown)
+    for question, reach, _ in questions(flown):
+        own = [each for each in every if (each.question, each.reach) == (question, reach)]
+        lines += [Line(label=title(question, reach))] if own else []
+        for move in own:
+            counts = (move.same, move.opposite, move.one, move.neither)
+            lines.append(
+                line(
+                    f"{move.factor} {' → '.join(move.levels)}",
+                    *map(str, counts),
+                    Entry(
+                        text=_shown(move.change),
+                        detected=move.change is not None and bool(move.change.sign),
+                    ),
+                )
+            )
+    columns = ("Same side", "Opposite", "At one level", "At neither", "Mean change, pp")
+    return grid(Table(columns=columns, lines=tuple(lines), corner="Pairs of cells"))
+
+
+def _cost(flown: Flown, name: str) -> str:
+    origin = parsed(REFERENCE / name / "provenance.json", RunProvenance, TAKE_AGAIN)
+    timed = sum(each.trials for each in flown.rounds)
+    spent = sum(each.seconds for each in flown.rounds) / 60
+    crowds = sorted({each.workers for each in flown.rounds})
+    workers = f"{' or '.join(map(str, crowds))} worker{'s' * (crowds != [1])}"
+    left = "".join(f" Left out: {level}: {why}" for level, why in flown.left_out.items())
+    whole = "" if flown.complete else " The study was not flown to its end."
+    asked = flown.design
+    return (
+        f"{counted(len(flown.cells), 'cell')}, {asked.first} to {asked.most} scenes each of "
+        f"`{asked.library}`, {wording.seeds((asked.seed,))}; {counted(flown.trials, 'trial')}. "
+        f"{counted(timed, 'trial')} took {spent:.0f} minutes on {workers} ({origin.processor}); on "
+        f"{NODES} nodes of two cores the same blocks would take {60 * hours(flown, NODES):.0f} "
+        f"minutes, without what sending them costs.{whole}{left} "
+        f"{flown_by(origin, 'quadrotor', flown.options)}"
+    )
+
+
+def _about(fill: Callable[[Flown, str], str]) -> Callable[[str], str]:
+    def filled(name: str) -> str:
+        flown = load(name)
+        return missing(name) if flown is None else fill(flown, name)
+
+    return filled
+
+
+KIND = {
+    part: _about(fill)
+    for part, fill in (
+        ("said", _said),
+        ("matrix", _matrix),
+        ("factors", _factors),
+        ("cost", _cost),
+    )
+}
+"""What fills the blocks of docs/carry-over.md."""
