@@ -26,6 +26,7 @@ import fact_blocks
 import map_blocks
 import model_blocks
 import paper_blocks
+import state_blocks
 from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images, name_of
 
@@ -46,6 +47,7 @@ KINDS: Mapping[str, Any] = {
     "models": model_blocks.table,
     "paper": paper_blocks.KIND,
     "performance": performance.KIND,
+    "state": state_blocks.KIND,
 }
 """What fills a block, by its kind, or by kind and part; takes the other words of its name."""
 

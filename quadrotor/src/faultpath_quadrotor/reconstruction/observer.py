@@ -97,11 +97,11 @@ class InertialObserver(DisturbanceObserver):
     attitude's error go into the wind.
     """
 
-    reads = DisturbanceObserver.reads | {("accelerometer", "nominal_model")}
+    reads = DisturbanceObserver.reads | {("accelerometer", "innovation")}
 
     @override
     def observed(self, memory: ObserverMemory, delivered: Delivered) -> Tensor:
-        force = delivered["accelerometer", "nominal_model"][-1]
+        force = delivered["accelerometer", "innovation"][-1]
         acceleration = so3.rotate(delivered["attitude", "nominal_model"], force)
         acceleration[2] -= GRAVITY_MPS2
         return acceleration

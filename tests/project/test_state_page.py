@@ -1,0 +1,60 @@
+"""The page about sensors' faults says what was decided, and nothing of what was not."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from faultpath.decisions.family import decide_paths
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def blocks():
+    sys.path.insert(0, str(ROOT / "tools"))
+    try:
+        import state_blocks
+    finally:
+        sys.path.remove(str(ROOT / "tools"))
+    return state_blocks
+
+
+def audit(scenes: int, alone: int, shared: int) -> dict:
+    """Decide an audit in which the arms differ in all scenes, to a side or (0) in none."""
+
+    def arms(side: int):
+        won, lost = (np.full((scenes, 1), side == of) for of in (1, -1))
+        return won, lost
+
+    success = {"correct": arms(0), "present": arms(alone), "shared": arms(shared)}
+    family = decide_paths(success, rule="unconditional")
+    effects = {n: [e.value, *(e.interval or (-100, 100)), e.sign] for n, e in family.effects.items()}
+    return {"fault": "bias", "repair": "filter", "effects": effects, "turns": dict(family.turns)}
+
+
+@pytest.mark.parametrize("scenes", [1, 2, 4])
+def test_few_scenes_decide_nothing(blocks, scenes):
+    told = blocks.said([audit(scenes, 1, -1), audit(scenes, 0, 0)])
+    assert told == [
+        "No reversal between one module and all of them was decided.",
+        "With the fault shared 2 audits of 2 decided nothing.",
+    ]
+
+
+def test_no_audit_is_no_sentence_about_repairs(blocks):
+    assert blocks.said([])[1:] == ["With the fault shared 0 audits of 0 decided nothing."]
+
+
+def test_many_scenes_say_which_side_and_where_it_did_not_show(blocks):
+    told = " ".join(blocks.said([audit(40, 1, -1)]))
+    assert "with bias at the predictor's present alone, 'filter' is on the other side" in told
+    assert "behind: filter (bias)" in told
+    told = " ".join(blocks.said([audit(40, 0, 1)]))
+    assert "No reversal" in told
+    assert "ahead: filter (bias)" in told
+    assert "did not decide here: filter (bias): at the predictor's present" in told
+    ties = " ".join(blocks.said([audit(40, 0, 0)]))
+    assert "ahead" not in ties
+    assert "behind" not in ties
