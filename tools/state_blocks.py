@@ -35,7 +35,9 @@ def _effect(effect: Sequence[float]) -> str:
     """Return a difference in percentage points with its interval, bold where it is decided."""
     value, low, high, sign = effect
     said = wording.signed(value, 1)
-    return f"{f'**{said}**' if sign else said} [{wording.signed(low, 1)}, {wording.signed(high, 1)}]"
+    return (
+        f"{f'**{said}**' if sign else said} [{wording.signed(low, 1)}, {wording.signed(high, 1)}]"
+    )
 
 
 def _effects(library: str) -> str:
@@ -92,7 +94,9 @@ def said(found: Sequence[Mapping[str, Any]]) -> list[str]:
     if hidden:
         told.append(f"Of those, a test of one module did not decide here: {'; '.join(hidden)}.")
     undecided = len(found) - len(ahead) - len(behind)
-    told.append(f"With the fault shared {counted(undecided, 'audit')} of {len(found)} decided nothing.")
+    told.append(
+        f"With the fault shared {counted(undecided, 'audit')} of {len(found)} decided nothing."
+    )
     return told
 
 

@@ -1,6 +1,6 @@
 """Error of a sensor against error of the calibration: who is ahead where.
 
-    python experiments/state-errors/map.py [--out FOLDER]     # writes map.json beside itself
+python experiments/state-errors/map.py [--out FOLDER]     # writes map.json beside itself
 """
 
 import argparse
@@ -37,9 +37,7 @@ def main() -> None:
             arm = Arm(variant=variant, faults=found, seed=0)
             rows.append(Row(variant=variant, path=name, seed=0, arm=arm))
     scenes = tuple(each.id for each in system.library(LIBRARY).scenes[:SCENES])
-    study = Study(
-        name="state-map", system=spec, library=LIBRARY, scenes=scenes, rows=tuple(rows)
-    )
+    study = Study(name="state-map", system=spec, library=LIBRARY, scenes=scenes, rows=tuple(rows))
     table = run_study(study, out, 2).outcomes
     arms = compared(REPAIR, BASELINE, cells, table).arms
     effects = decide_paths(arms, rule="unconditional").effects

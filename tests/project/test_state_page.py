@@ -30,7 +30,9 @@ def audit(scenes: int, alone: int, shared: int) -> dict:
 
     success = {"correct": arms(0), "present": arms(alone), "shared": arms(shared)}
     family = decide_paths(success, rule="unconditional")
-    effects = {n: [e.value, *(e.interval or (-100, 100)), e.sign] for n, e in family.effects.items()}
+    effects = {
+        n: [e.value, *(e.interval or (-100, 100)), e.sign] for n, e in family.effects.items()
+    }
     return {"fault": "bias", "repair": "filter", "effects": effects, "turns": dict(family.turns)}
 
 

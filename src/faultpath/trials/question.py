@@ -5,23 +5,21 @@ from these models. Texts are taken where the command line gives them, as in `see
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, TypeVar, cast
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError
 
 from faultpath.core.errors import UserError
 from faultpath.core.misfits import misfit_of
 from faultpath.core.results import Frozen
+from faultpath.trials.texts import LARGEST, names, seeds, several, sizes
 
 Generalise = Literal["scenes", "models"]
 StopWhen = Literal["decided", "all-decided"]
 Rule = Literal["exact", "unconditional"]
-
-LARGEST = 2**63 - 1
-"""The largest seed that the tables hold."""
 
 
 @dataclass(frozen=True)
@@ -35,49 +33,7 @@ class Flag:
     """Heading in the help; by default that of the class which declares the field."""
 
 
-def several(given: object) -> tuple[object, ...]:
-    """Return what may be given by itself, or several of it."""
-    if isinstance(given, Sequence) and not isinstance(given, str):
-        return tuple(cast("Sequence[object]", given))
-    return (given,)
-
-
-def _seeds(given: object) -> object:
-    found = several(given)
-    if isinstance(given, str):
-        parts = [part.strip() for part in given.split(",")]
-        if not all(re.fullmatch(r"-?[0-9]+", part) for part in parts):
-            raise ValueError(f"{given!r:.80} is not a list of whole numbers, for example 0,1,2")
-        found = tuple(int(part) if len(part) < 20 else LARGEST + 1 for part in parts)
-    for seed in found:
-        if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= LARGEST:
-            raise ValueError(f"{seed!r:.80} is not a seed: give whole numbers from 0 to 2^63 - 1")
-    if not found or len(set(found)) < len(found):
-        raise ValueError("give at least one seed, each of them once")
-    return found
-
-
-def _sizes(given: object) -> object:
-    if not isinstance(given, str):
-        return several(given)
-    try:
-        return tuple(float(part) for part in given.split(","))
-    except ValueError:
-        raise ValueError(f"{given!r:.80} is not a list of numbers, for example 0.1,0.2") from None
-
-
-def _names(given: object) -> object:
-    if not isinstance(given, str):
-        return several(given)
-    found = tuple(part.strip() for part in given.split(","))
-    if not all(found):
-        raise ValueError(f"'{given}' holds an empty name: part names by one comma each")
-    if twice := [name for place, name in enumerate(found) if name in found[:place]]:
-        raise ValueError(f"'{given}' names '{twice[0]}' twice: name each once")
-    return found
-
-
-Sizes = Annotated[tuple[float, ...], BeforeValidator(_sizes)]
+Sizes = Annotated[tuple[float, ...], BeforeValidator(sizes)]
 Place = Annotated[
     Path | None,
     BeforeValidator(lambda given: Path(given) if isinstance(given, str) else given),
@@ -128,7 +84,7 @@ class TraceQuestion(Request):
 class CheckQuestion(Request):
     """What is checked."""
 
-    variants: Annotated[tuple[str, ...], BeforeValidator(_names)] = Field(
+    variants: Annotated[tuple[str, ...], BeforeValidator(names)] = Field(
         default=(),
         description="Variants to check: wm-a,wm-a+dcc. Default all, or two of more than 4.",
     )
@@ -152,7 +108,7 @@ class Question(Request):
     repair: str = Field(description="Variant that is meant to help, named likewise.")
     library: Scenes = "held-out"
     scenes: int | None = Field(default=None, description="Run only the first N scenes.")
-    seeds: Annotated[tuple[int, ...], BeforeValidator(_seeds)] = Field(
+    seeds: Annotated[tuple[int, ...], BeforeValidator(seeds)] = Field(
         default=(0,), description="Seeds of the noise, and of trained models where there are any."
     )
 
@@ -237,7 +193,7 @@ class MapQuestion(Running):
     fault: Annotated[str, Flag(panel=Question.panel)] = Field(
         description="Without its size: `calibration`, `gain`, `gain:offset`, `gain,onset=9`."
     )
-    against: Annotated[tuple[str, ...], BeforeValidator(_names)] = Field(
+    against: Annotated[tuple[str, ...], BeforeValidator(names)] = Field(
         description="The two modules whose errors are mapped: reconstruction,predictor."
     )
     up_to: float | None = Field(

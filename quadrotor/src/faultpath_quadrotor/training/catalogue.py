@@ -88,7 +88,9 @@ PREDICTORS = (
 RECONSTRUCTIONS = (
     Entry("gru", _reconstruction, ("wind",), "wind from the history, given calibration", 5),
     Entry("gru+dcc", _reconstruction, ("wind",), "gru fitted with perturbed calibration", 5),
-    Entry("gru+state", _reconstruction, ("wind",), "gru fitted with perturbed motion", 5, seeds=(0,)),
+    Entry(
+        "gru+state", _reconstruction, ("wind",), "gru fitted with perturbed motion", 5, seeds=(0,)
+    ),
     Entry("gru-withheld", _reconstruction, ("wind",), "gru without calibration", 5),
     Entry(
         "gru-trajectory",

@@ -12,7 +12,7 @@ import typer
 
 from faultpath.cli.options import FOUND, Verbs, path, refuse_with
 from faultpath.core.errors import Stopped
-from faultpath.trials.question import LARGEST
+from faultpath.trials.texts import LARGEST
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID

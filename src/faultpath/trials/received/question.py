@@ -5,7 +5,8 @@ from typing import Annotated, ClassVar, Literal, cast
 
 from pydantic import BeforeValidator, Field
 
-from faultpath.trials.question import Asked, Flag, Generalise, Place, Rule, several
+from faultpath.trials.question import Asked, Flag, Generalise, Place, Rule
+from faultpath.trials.texts import several
 
 COLUMNS = (
     "arm",
