@@ -34,10 +34,8 @@ def _read(name: str) -> Any:
 def _effect(effect: Sequence[float]) -> str:
     """Return a difference in percentage points with its interval, bold where it is decided."""
     value, low, high, sign = effect
-    said = wording.signed(value, 1)
-    return (
-        f"{f'**{said}**' if sign else said} [{wording.signed(low, 1)}, {wording.signed(high, 1)}]"
-    )
+    said, ends = wording.signed(value, 1), (wording.signed(end, 1) for end in (low, high))
+    return f"{f'**{said}**' if sign else said} [{', '.join(ends)}]"
 
 
 def _effects(library: str) -> str:
@@ -133,8 +131,8 @@ def _cost() -> str:
     pace = _read("accuracy.json")["step_ms"]
     more = 100.0 * (pace["eskf"] / pace["exact"] - 1.0)
     return (
-        f"A control step of 50 scenes takes {wording.plain(pace['eskf'], 1)} ms with the filter and "
-        f"{wording.plain(pace['exact'], 1)} ms without: {wording.plain(more, 0)} % more."
+        f"A control step of 50 scenes takes {wording.plain(pace['eskf'], 1)} ms with the filter "
+        f"and {wording.plain(pace['exact'], 1)} ms without: {wording.plain(more, 0)} % more."
     )
 
 

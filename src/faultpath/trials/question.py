@@ -15,7 +15,7 @@ from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError
 from faultpath.core.errors import UserError
 from faultpath.core.misfits import misfit_of
 from faultpath.core.results import Frozen
-from faultpath.trials.texts import LARGEST, names, seeds, several, sizes
+from faultpath.trials.texts import LARGEST, read_names, read_seeds, read_sizes, several
 
 Generalise = Literal["scenes", "models"]
 StopWhen = Literal["decided", "all-decided"]
@@ -33,7 +33,7 @@ class Flag:
     """Heading in the help; by default that of the class which declares the field."""
 
 
-Sizes = Annotated[tuple[float, ...], BeforeValidator(sizes)]
+Sizes = Annotated[tuple[float, ...], BeforeValidator(read_sizes)]
 Place = Annotated[
     Path | None,
     BeforeValidator(lambda given: Path(given) if isinstance(given, str) else given),
@@ -84,7 +84,7 @@ class TraceQuestion(Request):
 class CheckQuestion(Request):
     """What is checked."""
 
-    variants: Annotated[tuple[str, ...], BeforeValidator(names)] = Field(
+    variants: Annotated[tuple[str, ...], BeforeValidator(read_names)] = Field(
         default=(),
         description="Variants to check: wm-a,wm-a+dcc. Default all, or two of more than 4.",
     )
@@ -108,7 +108,7 @@ class Question(Request):
     repair: str = Field(description="Variant that is meant to help, named likewise.")
     library: Scenes = "held-out"
     scenes: int | None = Field(default=None, description="Run only the first N scenes.")
-    seeds: Annotated[tuple[int, ...], BeforeValidator(seeds)] = Field(
+    seeds: Annotated[tuple[int, ...], BeforeValidator(read_seeds)] = Field(
         default=(0,), description="Seeds of the noise, and of trained models where there are any."
     )
 
@@ -193,7 +193,7 @@ class MapQuestion(Running):
     fault: Annotated[str, Flag(panel=Question.panel)] = Field(
         description="Without its size: `calibration`, `gain`, `gain:offset`, `gain,onset=9`."
     )
-    against: Annotated[tuple[str, ...], BeforeValidator(names)] = Field(
+    against: Annotated[tuple[str, ...], BeforeValidator(read_names)] = Field(
         description="The two modules whose errors are mapped: reconstruction,predictor."
     )
     up_to: float | None = Field(

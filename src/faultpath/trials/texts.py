@@ -15,7 +15,7 @@ def several(given: object) -> tuple[object, ...]:
     return (given,)
 
 
-def seeds(given: object) -> object:
+def read_seeds(given: object) -> object:
     """Return seeds, from `0,1,2` too; `ValueError` for what are none."""
     found = several(given)
     if isinstance(given, str):
@@ -31,7 +31,7 @@ def seeds(given: object) -> object:
     return found
 
 
-def sizes(given: object) -> object:
+def read_sizes(given: object) -> object:
     """Return numbers, from `0.1,0.2` too; `ValueError` for what are none."""
     if not isinstance(given, str):
         return several(given)
@@ -41,7 +41,7 @@ def sizes(given: object) -> object:
         raise ValueError(f"{given!r:.80} is not a list of numbers, for example 0.1,0.2") from None
 
 
-def names(given: object) -> object:
+def read_names(given: object) -> object:
     """Return names, from `a,b` too; `ValueError` for an empty one or one given twice."""
     if not isinstance(given, str):
         return several(given)

@@ -19,6 +19,7 @@ SIZES: tuple[Size, ...] = ("compatible", "right sign, other size", "other size",
 _HYPHEN_FOR_MINUS = re.compile(r"(?<![\w.)\]])-(?=\d)")
 _SIGNS_IN_TEXT = ((">=", "≥"), ("<=", "≤"), ("->", "→"))
 _DIGITS = {"pp": 1, "percent": 1, "cm": 1, "errors": 0, "seeds": 0}
+_COUNTED = ("errors", "seeds")
 _DIFFERENCES = ("pp", "s", "m")
 _SHARES = {"times": "×", "percent": " %"}
 """Units that are not those of a difference, as written behind a number."""
@@ -36,6 +37,8 @@ def figure(of: ClaimVerdict | Part) -> str:
     if of.estimate is None:
         return ""
     write = wording.signed if of.unit in _DIFFERENCES else wording.plain
+    if of.unit in _COUNTED:
+        return wording.counted(round(of.estimate), of.unit.removesuffix("s"))
     return f"{write(of.estimate, _digits(of.unit))}{behind(of.unit)}"
 
 
