@@ -44,7 +44,7 @@ def _declared(project: Path, *extras: str) -> set[str]:
 
 def test_the_engine_imports_what_is_declared_and_nothing_else(root: Path) -> None:
     files = sorted((root / "src").rglob("*.py"))
-    assert _third_party(files) == _declared(root, "gymnasium", "torch", "ray")
+    assert _third_party(files) == _declared(root, "gymnasium", "torch", "ray", "mcap")
 
 
 def test_the_quadrotor_imports_only_what_it_and_the_engine_declare(root: Path) -> None:
