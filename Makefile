@@ -120,7 +120,7 @@ endef
 # A stamp is written only after everything before it has worked. $(VENV)/incomplete lies there while
 # pip writes, so an environment in which an install was cut short is built again from nothing.
 $(STAMPS)/runtime: PARTS := -e . -e ./quadrotor
-$(STAMPS)/dev: PARTS := -e '.[dev]' -e './quadrotor[mujoco,ulog]'
+$(STAMPS)/dev: PARTS := -e '.[dev]' -e './quadrotor[mujoco,ulog,bags]'
 $(STAMPS)/runtime $(STAMPS)/dev: $(INPUTS)
 	@if [ -e $(VENV)/incomplete ] || ! $(BIN)/python -m pip --version >/dev/null 2>&1; then \
 	  $(CHECK_PYTHON); \

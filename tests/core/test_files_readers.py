@@ -57,6 +57,7 @@ READERS: dict[str, tuple[str, Read]] = {
     "log as text": ("flight.csv", _log),
     "log as a table": ("flight.parquet", _log),
     "log as ULog": ("flight.ulg", _log),
+    "log as a bag": ("flight.mcap", _log),
     "interface": ("toy.yaml", read_interface),
     "study": ("study.yaml", read_study),
     "library of scenes": ("mine.json", _library),
@@ -70,6 +71,7 @@ READERS: dict[str, tuple[str, Read]] = {
     "shard": ("shards/key-digest.parquet", _shard),
 }
 """By what it reads: the name of the file, and the reader."""
+NEEDS = {".ulg": "pyulog", ".mcap": "rosbags"}
 
 
 def _socket(path: Path) -> None:
@@ -106,8 +108,8 @@ def test_what_is_no_file_is_refused_in_one_sentence(
     reader: str, thing: str, tmp_path: Path
 ) -> None:
     name, read = READERS[reader]
-    if name.endswith(".ulg"):
-        pytest.importorskip("pyulog")
+    if needed := NEEDS.get(Path(name).suffix):
+        pytest.importorskip(needed)
     path = tmp_path / name
     path.parent.mkdir(exist_ok=True)
     THINGS[thing](path)

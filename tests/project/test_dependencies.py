@@ -44,16 +44,16 @@ def _declared(project: Path, *extras: str) -> set[str]:
 
 def test_the_engine_imports_what_is_declared_and_nothing_else(root: Path) -> None:
     files = sorted((root / "src").rglob("*.py"))
-    extras = ("gymnasium", "torch", "ray", "search", "pytest")
+    extras = ("gymnasium", "torch", "ray", "search", "pytest", "mcap")
     assert _third_party(files) == _declared(root, *extras)
 
 
 def test_the_quadrotor_imports_only_what_it_and_the_engine_declare(root: Path) -> None:
     files = sorted((root / "quadrotor" / "src").rglob("*.py"))
-    assert _third_party(files) <= _declared(root) | _declared(root / "quadrotor", "ulog")
+    assert _third_party(files) <= _declared(root) | _declared(root / "quadrotor", "ulog", "bags")
 
 
 def test_every_dependency_has_its_line_in_the_design_notes(root: Path) -> None:
     notes = (root / "docs" / "design" / "dependencies.md").read_text(encoding="utf-8").lower()
-    declared = _declared(root, "dev") | _declared(root / "quadrotor", "mujoco")
+    declared = _declared(root, "dev") | _declared(root / "quadrotor", "mujoco", "ulog", "bags")
     assert {name for name in declared if name not in notes} == set()

@@ -17,6 +17,7 @@ from faultpath.cli.app import build
 from faultpath.core.errors import UserError
 
 COLUMNS = flown()
+LISTED = MAP.replace("vx", "'v[0]'")
 
 
 def odd(name: str, value: float) -> Any:
@@ -81,6 +82,21 @@ def test_without_delay_and_filter_nothing_of_a_shared_error_is_left(tmp_path: Pa
 def test_a_file_of_any_kind_holds_the_same_flight(tmp_path: Path, known: Compensation) -> None:
     log = write(tmp_path / "flight.parquet", COLUMNS)
     assert compensation(read_flight(log, read_columns(map_file(tmp_path)))) == known
+
+
+@pytest.mark.parametrize("name", ["flight.csv", "flight.parquet"])
+def test_cells_may_hold_lists(tmp_path: Path, known: Compensation, name: str) -> None:
+    """As text in CSV, with commas or without and in any nesting, and as lists in Parquet."""
+    columns: dict[str, Any] = {"t": COLUMNS["t"], "thrust": COLUMNS["thrust"]}
+    for list_, of in (("q", ("qw", "qx", "qy", "qz")), ("v", ("vx", "vy", "vz"))):
+        columns[list_] = np.stack([COLUMNS[each] for each in of], axis=1).tolist()
+    if name == "flight.csv":
+        columns["q"] = [str([each[:2], each[2:]]) for each in columns["q"]]
+        columns["v"] = [str(each).replace(",", "") for each in columns["v"]]
+    text = MAP.replace("qw, qx, qy, qz", "'q[0]', 'q[1]', 'q[2]', 'q[3]'")
+    text = text.replace("vx, vy, vz", "'v[0]', 'v[1]', 'v[2]'")
+    log = write(tmp_path / name, columns)
+    assert compensation(read_flight(log, read_columns(map_file(tmp_path, text)))) == known
 
 
 def test_other_units_frames_and_orders_hold_the_same_flight(
@@ -165,6 +181,15 @@ def test_only_what_is_decided_is_said(known: Compensation, decided: Any) -> None
         ),
         ({}, MAP.replace("thrust}", "thrust, newton_per_unit: 1e308}"), "newton_per_unit: "),
         ({}, MAP.replace("thrust}", "thrust, newton_per_unit: true}"), "newton_per_unit: "),
+        *(
+            ({"v": lambda c, one=cell: [one, *["[1, 2]"] * (len(c["t"]) - 1)]}, text, says)
+            for cell, text, says in (
+                ("[1]", LISTED, "column 'v' holds lists of 2 and of 1 numbers"),
+                ("[a 1]", LISTED, "column 'v' holds no lists of numbers (could not"),
+                ("[1 2]", LISTED.replace("v[0]", "v[2]"), "none is [2], counted from 0"),
+                ("[1 2]", MAP.replace("vx", "v"), "of a list give one, as v[0]"),
+            )
+        ),
         ({}, f"{MAP}mass_kg: 3", "line 9: key 'mass_kg' appears twice"),
     ],
 )

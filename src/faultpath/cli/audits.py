@@ -257,11 +257,21 @@ def replay(
         bool,
         typer.Option("--signals", help="Keep the recorded signals, and make the report again."),
     ] = False,
+    export: Annotated[
+        Path | None,
+        typer.Option(parser=as_path, help="MCAP file to write the signals to, as for Foxglove."),
+    ] = None,
 ) -> int:
     """Run trials of a finished run again and compare them with the run, to the bit; it runs the
     system that the run names. Exits with 1 where one differs."""
     from faultpath.api.display import SafeConsole
-    from faultpath.api.replaying import chosen_scenes, keep_signals, replay
+    from faultpath.api.replaying import (
+        check_export,
+        chosen_scenes,
+        export_signals,
+        keep_signals,
+        replay,
+    )
     from faultpath.api.runs import RECORD, read_provenance, read_run
     from faultpath.decisions.tables.terminal import STYLES
     from faultpath.decisions.wording import counted
@@ -270,6 +280,8 @@ def replay(
         raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")
     held, _ = read_run(folder)
     scenes = chosen_scenes(held, scene or (), path or ())
+    if export is not None:
+        check_export(export)
     console = SafeConsole()
     found = replay(held, scenes, path or (), lambda said: console.print(said, markup=False))
     unlike = [each for each in found if each.differs]
@@ -290,6 +302,9 @@ def replay(
     if signals and len(unlike) < len(found):
         for written in keep_signals(folder, held, found):
             console.print(f"Written: {written}", markup=False, soft_wrap=True)
+    if export is not None and len(unlike) < len(found):
+        export_signals(export, held, found)
+        console.print(f"Written: {export}", markup=False, soft_wrap=True)
     return FOUND if unlike else 0
 
 

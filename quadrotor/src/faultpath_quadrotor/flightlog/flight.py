@@ -69,6 +69,9 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
     for number, grid in enumerate(grids):
         velocity = np.stack([np.interp(grid, each.time_s, each.values) for each in speed], axis=1)
         velocity *= SPEED_UNITS[columns.velocity.unit] * up
+        if columns.velocity.axes == "body":
+            # Rounding may put the grid's end just beyond the last reading.
+            velocity = attitude(np.clip(grid, *attitude.times[[0, -1]])).apply(velocity)
         middle = 0.5 * (grid[1:] + grid[:-1])
         last = np.clip(np.searchsorted(command.time_s, grid, side="right") - 1, 0, None)
         integral = done[last] + (grid - command.time_s[last]) * command.values[last]

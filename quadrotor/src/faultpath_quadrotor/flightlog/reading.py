@@ -11,20 +11,20 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as csv
 import pyarrow.parquet as pq
-from numpy.typing import NDArray
 from pydantic import Field
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml
 from faultpath.core.results import Frozen
-from faultpath.core.text import one_line, unknown
+from faultpath.core.text import unknown
+from faultpath_quadrotor.flightlog.bags import SUFFIXES, Floats, read_bag, why
 
-Floats: TypeAlias = NDArray[np.float64]
 _LONGEST_S = 1e12
 """A time of more seconds is no time; those since 1970 are a thousandth of it."""
 _LARGEST = 1e9
 """A million metres a second, in the smallest unit."""
+_NO_BRACKETS = str.maketrans("[],", "   ")
 HEAVIEST_KG = 1e6
 Mass: TypeAlias = Annotated[float, Field(ge=1e-6, le=HEAVIEST_KG)]
 Drag: TypeAlias = Annotated[float, Field(ge=1e-9, le=1e6)]
@@ -36,7 +36,10 @@ PX4 = "px4"
 
 
 class TimeColumn(Frozen):
-    """When a row was recorded; ULog files bring a time with every message, and need none."""
+    """When a row was recorded; ULog files bring a time with every message, and need none.
+
+    Of a bag the field of every message that says so; without one, when the bag recorded it.
+    """
 
     column: str
     unit: Literal["s", "ms", "us", "ns"]
@@ -50,10 +53,12 @@ class Attitude(Frozen):
 
 
 class Velocity(Frozen):
-    """Velocity in the world frame."""
+    """Velocity of the vehicle against the world."""
 
     columns: tuple[str, str, str]
     unit: Literal["m/s", "cm/s", "mm/s"] = "m/s"
+    axes: Literal["world", "body"] = "world"
+    """Along whose axes its columns are."""
 
 
 class Thrust(Frozen):
@@ -120,10 +125,13 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
     Raises `UserError` for a file that cannot be read, a column that it does not have or that holds
     no numbers, and times that do not ascend or cannot be of that unit.
     """
-    readers = {".csv": _table, ".parquet": _table, ".ulg": _ulog}
-    reader = readers.get(path.suffix.lower())
+    readers = {".csv": _table, ".parquet": _table, ".ulg": _ulog, **dict.fromkeys(SUFFIXES, _bag)}
+    reader = readers.get(path.suffix.lower(), _bag if path.is_dir() else None)
     if reader is None:
-        raise UserError(f"{path}: is not a .csv, .parquet or .ulg file: convert it to one")
+        raise UserError(
+            f"{path}: is not a .csv, .parquet, .ulg, .mcap, .db3 or .bag file, nor the folder of a "
+            "bag: convert it to one"
+        )
     series: dict[str, Series] = {}
     for name, (time_s, values) in reader(path, columns).items():
         for what, found, most in (("times", time_s, _LONGEST_S), ("values", values, _LARGEST)):
@@ -139,7 +147,7 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
         if (back := np.flatnonzero(np.diff(times) < 0)).size:
             raise UserError(
                 f"{path}: the times of column '{name}' go back at its reading {back[0] + 1}: sort "
-                "the rows, or name the column of time"
+                "the rows, name the column of time, or for a bag leave time out of the map"
             )
         times, first = np.unique(times, return_index=True)
         rate_hz = (len(times) - 1) / max(float(times[-1] - times[0]), 1e-9)
@@ -158,26 +166,59 @@ def _table(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         parquet = path.suffix.lower() == ".parquet"
         table: pa.Table = cast(Any, pq.ParquetFile(data)).read() if parquet else csv.read_csv(data)
     except (OSError, pa.ArrowException) as error:
-        raise UserError(f"{path}: cannot be read ({_why(error)}): give a whole log") from None
+        raise UserError(f"{path}: cannot be read ({why(error)}): give a whole log") from None
     if columns.time is None:
         raise UserError(f"{path}: the map names no time column: add time: {{column: …, unit: s}}")
     found: dict[str, Floats] = {}
     for name in (columns.time.column, *columns.names):
-        if name not in table.column_names:
-            raise UserError(f"{path}: {unknown('column', name, table.column_names)}")
-        if table.column_names.count(name) > 1:
-            raise UserError(f"{path}: two columns are called '{name}': give each a name of its own")
-        kind: Any = table[name].type
+        whole, _, place = name.removesuffix("]").rpartition("[")
+        listed = (
+            name not in table.column_names and place.isdecimal() and whole in table.column_names
+        )
+        of = whole if listed else name
+        if of not in table.column_names:
+            raise UserError(f"{path}: {unknown('column', of, table.column_names)}")
+        if table.column_names.count(of) > 1:
+            raise UserError(f"{path}: two columns are called '{of}': give each a name of its own")
         try:
-            if pa.types.is_boolean(kind):
-                raise pa.ArrowInvalid
-            found[name] = table[name].cast(pa.float64()).to_numpy()
-        except pa.ArrowException:
+            found[name] = _listed(table[of], int(place)) if listed else _plain(table[of])
+        except (pa.ArrowException, ValueError) as error:
             raise UserError(
-                f"{path}: column '{name}' holds {kind} and no numbers: name another, or correct it"
+                f"{path}: column '{of}' holds {error}: name another, or correct it"
             ) from None
     time_s = found[columns.time.column] * TIME_UNITS[columns.time.unit]
     return {name: (time_s, found[name]) for name in columns.names}
+
+
+def _plain(column: Any) -> Floats:
+    try:
+        if pa.types.is_boolean(column.type):
+            raise pa.ArrowInvalid
+        return column.cast(pa.float64()).to_numpy()
+    except pa.ArrowException:
+        raise ValueError(f"{column.type} and no numbers (of a list give one, as v[0])") from None
+
+
+def _listed(column: Any, place: int) -> Floats:
+    """Return a number of each cell, such as `[1.0, 2.0]` or, row after row, `[[1, 0], [0, 1]]`.
+
+    `ValueError` says what is there instead.
+    """
+    cells = [str(cell or "").translate(_NO_BRACKETS).split() for cell in column.to_pylist()]
+    length = max(map(len, cells), default=0)
+    if lengths := {len(cell) for cell in cells} - {0, length}:
+        raise ValueError(f"lists of {length} and of {min(lengths)} numbers")
+    if place >= length:
+        raise ValueError(f"lists of {length} numbers, of which none is [{place}], counted from 0")
+    try:
+        return np.array([cell[place] if cell else "nan" for cell in cells], np.float64)
+    except ValueError as error:
+        raise ValueError(f"no lists of numbers ({error})") from None
+
+
+def _bag(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
+    time = columns.time
+    return read_bag(path, columns.names, time and (time.column, TIME_UNITS[time.unit]))
 
 
 def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
@@ -194,7 +235,7 @@ def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         log = cast(Any, ULog(BytesIO(contents(path)), topics))
     except Exception as error:  # pyulog raises whatever a damaged file leads it into
         raise UserError(
-            f"{path}: cannot be read as a ULog file ({_why(error)}): give a whole log"
+            f"{path}: cannot be read as a ULog file ({why(error)}): give a whole log"
         ) from None
     messages = {each.name: each.data for each in reversed(log.data_list)}  # the first of a name
     found: dict[str, tuple[Floats, Floats]] = {}
@@ -209,8 +250,3 @@ def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         time_s = np.asarray(messages[topic]["timestamp"], dtype=np.float64) * TIME_UNITS["us"]
         found[name] = time_s, np.asarray(messages[topic][field], dtype=np.float64)
     return found
-
-
-def _why(error: Exception) -> str:
-    said = (error.strerror if isinstance(error, OSError) else "") or str(error)
-    return one_line(said) or type(error).__name__

@@ -5,39 +5,54 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import Json, path
+from faultpath.cli.options import Json, path, refuse_with
 from faultpath.core.errors import UserError
 
+ERRORS = "0.1,-0.1"
 EXAMPLE = "flight.ulg --columns px4 --mass 1.5"
 
 
 def command(
-    log: Annotated[Path, typer.Argument(parser=path, help="A .csv, .parquet or .ulg file.")],
-    columns: Annotated[
-        str, typer.Option(help="YAML file that says which columns hold what, or px4.")
+    log: Annotated[
+        Path,
+        typer.Argument(parser=path, help="A .csv, .parquet or .ulg file, or a bag of ROS."),
     ],
+    columns: Annotated[
+        str | None, typer.Option(help="YAML file that says which columns hold what, or px4.")
+    ] = None,
+    propose: Annotated[
+        bool, typer.Option("--propose", help="Write that file for a bag, by its topics' types.")
+    ] = False,
     mass: Annotated[
         float | None, typer.Option(help="Mass of the vehicle, kg, in place of the map's.")
     ] = None,
     errors: Annotated[
-        str, typer.Option(help="Calibration errors: mass (1 + e), thrust (1 - e).")
-    ] = "0.1,-0.1",
+        str | None,
+        typer.Option(help="Calibration errors: mass (1 + e), thrust (1 - e).", show_default=ERRORS),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Folder for compensation.json.")
     ] = None,
     as_json: Json = False,
 ) -> None:
     """Compute from a recorded flight what a calibration error leaves, isolated and shared."""
+    from faultpath_quadrotor.flightlog.reading import HEAVIEST_KG, read_columns
+
+    if mass is not None and not 1e-6 <= mass <= HEAVIEST_KG:
+        raise UserError(f"--mass {mass:g} is not a mass: give kilograms above 0, at most 1e6.")
+    if propose:
+        refuse_with("--propose", errors=errors, out=out, json=as_json or None)
+        _propose(log, Path(columns or "columns.yaml"), mass)
+        return
+    if columns is None:
+        raise UserError("--columns is missing: name the map of the log, or for a bag --propose one")
     from faultpath_quadrotor.flightlog.compensation import compensation
     from faultpath_quadrotor.flightlog.flight import read_flight
-    from faultpath_quadrotor.flightlog.reading import HEAVIEST_KG, read_columns
 
     said = read_columns(columns)
     if mass is not None:
-        if not 1e-6 <= mass <= HEAVIEST_KG:
-            raise UserError(f"--mass {mass:g} is not a mass: give kilograms above 0, at most 1e6.")
         said = said.model_copy(update={"mass_kg": mass})
-    found = compensation(read_flight(log, said), _sizes(errors))
+    found = compensation(read_flight(log, said), _sizes(errors or ERRORS))
 
     from faultpath.trials.store.atomic import make_folder, write_text
     from faultpath_quadrotor.flightlog.words import CAVEAT, sentences, table
@@ -57,6 +72,20 @@ def command(
         console.print(sentence, style="bold" if sentence != CAVEAT else "")
     made = table(found)
     console.print("", drawn(made, one_line=True), *made.notes, sep="\n")
+
+
+def _propose(log: Path, to: Path, mass_kg: float | None) -> None:
+    from faultpath.api.display import SafeConsole
+    from faultpath.trials.store.atomic import check_writable, write_text
+    from faultpath_quadrotor.flightlog.proposing import propose
+
+    check_writable(to)
+    if to.exists():
+        raise UserError(f"{to} is there already: give another file with --columns, or remove it.")
+    text = propose(log, mass_kg)
+    write_text(to, text)
+    comments = [line.removeprefix("# ") for line in text.splitlines() if line.startswith("#")]
+    SafeConsole().print(*comments, f"Written: {to}", sep="\n", markup=False, soft_wrap=True)
 
 
 def _sizes(text: str) -> tuple[float, ...]:
