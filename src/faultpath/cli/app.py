@@ -62,7 +62,7 @@ _PANELS = {
     "Finished runs": (
         Entry("judge", audits.judge, "results.csv --baseline old --repair new"),
         Entry("report", audits.report, "runs/one runs/two --out comparison.html"),
-        Entry("replay", audits.replay, "runs/mine --scene cart/003 --signals"),
+        Entry("replay", replay.replay, "runs/mine --scene cart/003 --signals"),
     ),
 }
 """The engine's verbs, by the heading under which the help shows them."""

@@ -1,0 +1,74 @@
+"""`faultpath replay`: run trials of a finished run again."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from faultpath.cli.options import FOUND
+from faultpath.cli.options import path as as_path
+from faultpath.core.errors import UserError
+
+
+def replay(
+    folder: Annotated[Path, typer.Argument(parser=as_path, help="Folder of a finished audit.")],
+    scene: Annotated[
+        list[str] | None,
+        typer.Option(help="Scene by its id, several times for several; default those shown first."),
+    ] = None,
+    path: Annotated[
+        list[str] | None, typer.Option(help="Path of the fault, such as shared; default all.")
+    ] = None,
+    signals: Annotated[
+        bool,
+        typer.Option("--signals", help="Keep the recorded signals, and make the report again."),
+    ] = False,
+    export: Annotated[
+        Path | None,
+        typer.Option(parser=as_path, help="MCAP file to write the signals to, as for Foxglove."),
+    ] = None,
+) -> int:
+    """Run trials of a finished run again and compare them with the run, to the bit; it runs the
+    system that the run names. Exits with 1 where one differs."""
+    from faultpath.api.display import SafeConsole
+    from faultpath.api.replaying import (
+        check_export,
+        chosen_scenes,
+        export_signals,
+        keep_signals,
+        replay,
+    )
+    from faultpath.api.runs import RECORD, read_provenance, read_run
+    from faultpath.decisions.tables.terminal import STYLES
+    from faultpath.decisions.wording import counted
+
+    if RECORD not in read_provenance(folder).files:
+        raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")
+    held, _ = read_run(folder)
+    scenes = chosen_scenes(held, scene or (), path or ())
+    if export is not None:
+        check_export(export)
+    console = SafeConsole()
+    found = replay(held, scenes, path or (), lambda said: console.print(said, markup=False))
+    unlike = [each for each in found if each.differs]
+    for each in unlike:
+        at = each.address
+        where = f"{at.variant}, {at.path}, seed {at.seed}, {at.scene}"
+        console.print(f"{where}: {each.differs}.", markup=False, style=STYLES["bad"])
+    said = (
+        f"{counted(len(found), 'trial')} in {counted(len(scenes), 'scene')} came out as in the "
+        "run, to the bit."
+    )
+    if unlike:
+        said = (
+            f"{len(unlike)} of {len(found)} trials came out otherwise than in the run: the code, "
+            "the packages or the processor are not those that provenance.json names."
+        )
+    console.print(said, markup=False, style="" if unlike else STYLES["good"])
+    if signals and len(unlike) < len(found):
+        for written in keep_signals(folder, held, found):
+            console.print(f"Written: {written}", markup=False, soft_wrap=True)
+    if export is not None and len(unlike) < len(found):
+        export_signals(export, held, found)
+        console.print(f"Written: {export}", markup=False, soft_wrap=True)
+    return FOUND if unlike else 0
