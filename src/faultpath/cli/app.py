@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 import typer
 
-from faultpath.cli import audits, demo, systems
+from faultpath.cli import audits, demo, replay, systems
 from faultpath.cli.flags import with_system_flags
 from faultpath.cli.options import Verbs
 from faultpath.core.version import __version__

@@ -1,4 +1,4 @@
-"""`faultpath plan`, `audit`, `map`, `search`, `report` and `replay`: audits, and what follows."""
+"""`faultpath plan`, `audit`, `judge`, `map`, `search` and `report`: audits, and what follows."""
 
 import hashlib
 import json
