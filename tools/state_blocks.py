@@ -72,6 +72,17 @@ def said(found: Sequence[Mapping[str, Any]]) -> list[str]:
         )
     if not turned:
         told.append("No reversal between one module and all of them was decided.")
+    moved = [
+        f"{each['repair']} ({each['fault']}, {TITLES[place]})"
+        for each in found
+        for place, turn in each["turns"].items()
+        if turn == "interaction"
+    ]
+    if moved:
+        told.append(
+            "What a repair gains or costs is decided to be another with the fault shared than with "
+            f"the same errors at one module: {'; '.join(moved)}."
+        )
     ahead, behind, hidden = list[str](), list[str](), list[str]()
     for each in found:
         name = f"{each['repair']} ({each['fault']})"
