@@ -8,7 +8,7 @@ from blocks import ROOT, Wrong
 
 from faultpath.decisions import wording
 from faultpath.decisions.phrases import counted
-from faultpath.decisions.tables import Line, Table, line
+from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
 
 PLACE = ROOT / "experiments" / "state-errors"
@@ -21,6 +21,11 @@ TITLES = {
     "reconstruction": "at the reconstruction",
     "camera": "at the camera's frame",
 }
+SIDES = {1: "ahead", -1: "behind", 0: "not decided"}
+TURNS = {
+    "reversal": "The ranking is decided to be the reverse of that",
+    "interaction": "The shared effect is decided to differ from that",
+}
 UNITS = {"position": "m", "velocity": "m/s", "attitude": "deg", "body_rate": "rad/s"}
 
 
@@ -31,11 +36,11 @@ def _read(name: str) -> Any:
     return json.loads(file.read_text("utf-8"))
 
 
-def _effect(effect: Sequence[float]) -> str:
-    """Return a difference in percentage points with its interval, bold where it is decided."""
+def _effect(effect: Sequence[float]) -> Entry:
+    """Return a difference in percentage points with its interval, and whether it is decided."""
     value, low, high, sign = effect
-    said, ends = wording.signed(value, 1), (wording.signed(end, 1) for end in (low, high))
-    return f"{f'**{said}**' if sign else said} [{', '.join(ends)}]"
+    ends = ", ".join(wording.signed(end, 1) for end in (low, high))
+    return Entry(text=f"{wording.signed(value, 1)} [{ends}]", detected=bool(sign))
 
 
 def _effects(library: str) -> str:
@@ -45,7 +50,7 @@ def _effects(library: str) -> str:
     lines: list[Line] = []
     for each in found:
         effects = (_effect(each["effects"][name]) for name in places)
-        lines.append(line(each["fault"], each["repair"], *effects, name=True))
+        lines.append(line(each["fault"], each["repair"], *effects))
     return grid(Table(corner="fault", columns=columns, words=columns, lines=tuple(lines)))
 
 
@@ -55,57 +60,26 @@ def _success(library: str) -> str:
     places = [name for name in TITLES if name in next(iter(found.values()))]
     columns = tuple(TITLES[name] for name in places)
     lines = [
-        line(fault, *(wording.plain(100 * success[name][1], 0) for name in places), name=True)
+        line(fault, *(wording.plain(100 * success[name][1], 0) for name in places))
         for fault, success in found.items()
     ]
     return grid(Table(corner="fault", columns=columns, words=columns, lines=tuple(lines)))
 
 
 def said(found: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Return what was decided, a sentence each; of what was not, only how much it is."""
-    told: list[str] = []
-    turned = [(e, place) for e in found for place, turn in e["turns"].items() if turn == "reversal"]
-    for each, place in turned:
-        told.append(
-            f"Choose by the shared fault: with {each['fault']} {TITLES[place]} alone, "
-            f"'{each['repair']}' is on the other side than with the fault shared."
-        )
-    if not turned:
-        told.append("No reversal between one module and all of them was decided.")
-    moved = [
-        f"{each['repair']} ({each['fault']}, {TITLES[place]})"
-        for each in found
-        for place, turn in each["turns"].items()
-        if turn == "interaction"
-    ]
-    if moved:
-        told.append(
-            "What a repair gains or costs is decided to be another with the fault shared than with "
-            f"the same errors at one module: {'; '.join(moved)}."
-        )
-    ahead, behind, hidden = list[str](), list[str](), list[str]()
+    """Return what was decided: whether a ranking reverses, then each audit in a sentence or two."""
+    turned = sum("reversal" in each["turns"].values() for each in found)
+    lead = "No reversal was decided" if not turned else f"A reversal was decided in {turned}"
+    told = [f"{lead}{' in' if not turned else ' of'} {counted(len(found), 'audit')}."]
     for each in found:
-        name = f"{each['repair']} ({each['fault']})"
-        sign = each["effects"][SHARED][3]
-        if sign:
-            (ahead if sign > 0 else behind).append(name)
-            silent = [
-                TITLES[place]
-                for place, effect in each["effects"].items()
-                if place not in (SHARED, "correct") and not effect[3]
-            ]
-            if silent:
-                hidden.append(f"{name}: {', '.join(silent)}")
-    if ahead:
-        told.append(f"With the fault shared these repairs are ahead: {'; '.join(ahead)}.")
-    if behind:
-        told.append(f"With the fault shared these repairs are behind: {'; '.join(behind)}.")
-    if hidden:
-        told.append(f"Of those, a test of one module did not decide here: {'; '.join(hidden)}.")
-    undecided = len(found) - len(ahead) - len(behind)
-    told.append(
-        f"With the fault shared {counted(undecided, 'audit')} of {len(found)} decided nothing."
-    )
+        sides = {name: SIDES[effect[3]] for name, effect in each["effects"].items()}
+        alone = [f"{sides[place]} {TITLES[place]}" for place in each["turns"]]
+        text = f"{each['repair']}, {each['fault']}: {sides[SHARED]} with the fault shared"
+        text += f"; {wording.series(alone)}." if alone else "."
+        for turn, words in TURNS.items():
+            places = [TITLES[place] for place, of in each["turns"].items() if of == turn]
+            text += f" {words} {wording.series(places)}." if places else ""
+        told.append(text)
     return told
 
 
@@ -121,7 +95,6 @@ def _map() -> str:
         line(
             f"accelerometer {100 * float(scale):+g} %",
             *(_effect(cells[f"{scale},{error}"]["effect"]) for error in errors),
-            name=True,
         )
         for scale in scales
     ]
@@ -132,7 +105,7 @@ def _accuracy() -> str:
     found = _read("accuracy.json")
     columns = tuple(f"{name.replace('_', ' ')}, {unit}" for name, unit in UNITS.items())
     lines = [
-        line(name, *(wording.plain(found[name][each], 3) for each in UNITS), name=True)
+        line(name, *(wording.plain(found[name][each], 3) for each in UNITS))
         for name in ("eskf", "eskf-no-bias", "eskf-cautious")
     ]
     return grid(Table(corner="filter", columns=columns, words=columns, lines=tuple(lines)))
