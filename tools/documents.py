@@ -63,6 +63,7 @@ PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     paper_blocks.pictures,
     paper_blocks.elsewhere,
     fact_blocks.pages,
+    state_blocks.pictures,
 )
 """What makes whole files, by their path."""
 

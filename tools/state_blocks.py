@@ -2,14 +2,17 @@
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from blocks import ROOT, Wrong
+from pictures import IMAGES
 
 from faultpath.decisions import wording
 from faultpath.decisions.phrases import counted
 from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
+from faultpath.report.svg import Svg, covering, tick_label
 
 PLACE = ROOT / "experiments" / "state-errors"
 SHARED = "shared"
@@ -26,6 +29,7 @@ TURNS = {
     "reversal": "The ranking is decided to be the reverse of that",
     "interaction": "The shared effect is decided to differ from that",
 }
+_WIDTH, _LEFT, _TOP, _PITCH = 820.0, 420.0, 30.0, 24.0
 UNITS = {"position": "m", "velocity": "m/s", "attitude": "deg", "body_rate": "rad/s"}
 
 
@@ -83,6 +87,42 @@ def said(found: Sequence[Mapping[str, Any]]) -> list[str]:
     return told
 
 
+def pictures() -> Mapping[Path, str]:
+    """Return the picture of the fresh scenes' audits, by its path."""
+    found = _read("sensors/found.json")
+    rows = [
+        (each, name) for each in found for name in (SHARED, *each["turns"]) if name != "correct"
+    ]
+    ends = [end for each, name in rows for end in each["effects"][name][:3]]
+    told = "; ".join(said(found))
+    svg = Svg(_WIDTH, _TOP + _PITCH * len(rows) + 40, "Repairs under faults of sensors", told)
+    axis = covering(ends, least=10.0).at(_LEFT, _WIDTH - 8)
+    zero, bottom = axis(0.0), _TOP + _PITCH * len(rows)
+    svg.text(zero - 8, 14, "← baseline better", "small baseline", "end")
+    svg.text(zero + 8, 14, "repair better →", "small repair", "start")
+    for tick in axis.ticks(8):
+        svg.line((axis(tick), _TOP - 6), (axis(tick), bottom), "axis" if tick else "zero")
+        svg.text(axis(tick), bottom + 16, tick_label(tick), "small soft", "middle")
+    svg.text((axis.start + axis.end) / 2, bottom + 34, "success, pp", "small soft", "middle")
+    for index, (each, name) in enumerate(rows):
+        y = _TOP + _PITCH * index + 10
+        value, low, high, sign = each["effects"][name]
+        if name == SHARED:
+            svg.text(0, y + 4, f"{each['repair']}, {each['fault']}", "bold")
+        svg.text(
+            _LEFT - 10, y + 4, TITLES[name], "small" if name == SHARED else "small soft", "end"
+        )
+        side = {1: " repair", -1: " baseline", 0: ""}[sign]
+        svg.line((axis(low), y), (axis(high), y), f"range{side}")
+        svg.circle((axis(value), y), 4.5, f"dot{side}" if side else "dot open")
+    return {IMAGES / "state-errors.svg": svg.render(standalone=True) + "\n"}
+
+
+def _picture() -> str:
+    lead = said(_read("sensors/found.json"))[0]
+    return f"![Repairs under faults of sensors. {lead}]({{images}}/state-errors.svg)"
+
+
 def _said(library: str) -> str:
     return "\n".join(f"- {each}" for each in said(_read(f"{library}/found.json")))
 
@@ -127,4 +167,5 @@ KIND: Mapping[str, Callable[..., str]] = {
     "map": _map,
     "accuracy": _accuracy,
     "cost": _cost,
+    "picture": _picture,
 }
