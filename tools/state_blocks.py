@@ -127,6 +127,20 @@ def _said(library: str) -> str:
     return "\n".join(f"- {each}" for each in said(_read(f"{library}/found.json")))
 
 
+def _errors(library: str) -> str:
+    """Return how large the recorded errors are that are delivered to one module."""
+    columns = ("filter", *(f"{name.replace('_', ' ')}, {unit}" for name, unit in UNITS.items()))
+    lines = [
+        line(
+            each["fault"],
+            each["filter"],
+            *(wording.plain(each["rms"][name], 3) for name in UNITS),
+        )
+        for each in _read(f"{library}/errors.json")
+    ]
+    return grid(Table(corner="fault", columns=columns, words=columns, lines=tuple(lines)))
+
+
 def _map() -> str:
     cells = _read("map.json")["cells"]
     scales, errors = (list(dict.fromkeys(n.split(",")[i] for n in cells)) for i in (0, 1))
@@ -164,6 +178,7 @@ KIND: Mapping[str, Callable[..., str]] = {
     "effects": _effects,
     "success": _success,
     "said": _said,
+    "errors": _errors,
     "map": _map,
     "accuracy": _accuracy,
     "cost": _cost,

@@ -19,7 +19,8 @@ from faultpath_quadrotor.evidence.state_errors import TURNING, state_errors
 
 from faultpath.decisions.family import compared, decide_paths
 from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.faults import encode_record, parse_fault, resolve
+from faultpath.faults import Address, encode_record, parse_fault, resolve
+from faultpath.faults.recorded import _decoded
 from faultpath.trials import Arm, OutcomeTable, Row, Study, SystemSpec, load_system
 from faultpath.trials.execution.runner import run_study
 from faultpath.trials.store.atomic import write
@@ -79,8 +80,6 @@ def records(
     design: Design, library: str, scenes: tuple[str, ...], out: Path
 ) -> dict[tuple[str, str], Path]:
     """Return the file of each fault's and filter's errors, made where it is missing."""
-    from faultpath.faults.recorded import _decoded
-
     out.mkdir(parents=True, exist_ok=True)
     wanted = {(f, each) for f, _ in design.audits for each in design.variants(f).values()}
     blocks = [scenes[at : at + BLOCK] for at in range(0, len(scenes), BLOCK)]
@@ -104,8 +103,6 @@ def records(
                 for channel, rows in _decoded(part.read_bytes(), str(part)).items():
                     for (scene, seed), (_, errors) in rows.items():
                         merged[channel, scene, seed] = errors
-            from faultpath.faults import Address
-
             data = encode_record({Address(*key): each for key, each in merged.items()}, TURNING)
             write(whole[fault, filter_], data, out)
     return whole
@@ -137,6 +134,21 @@ def study(design: Design, library: str, scenes: tuple[str, ...], files) -> Study
         scenes=scenes,
         rows=tuple(rows.values()),
     )
+
+
+def sizes(files: dict[tuple[str, str], Path]) -> list[dict]:
+    """Return the root mean square length of the errors that each file delivers, by channel."""
+    found = []
+    for (fault, filter_), path in files.items():
+        rms = {}
+        for channel, rows in _decoded(path.read_bytes(), str(path)).items():
+            errors = np.concatenate([errors for _, errors in rows.values()]).astype(np.float64)
+            if channel in TURNING:  # of a rotation, its angle in degrees
+                traces = errors.reshape(-1, 3, 3).trace(axis1=1, axis2=2)
+                errors = np.degrees(np.arccos(np.clip((traces - 1.0) / 2.0, -1.0, 1.0)))[:, None]
+            rms[channel] = float(np.sqrt(np.mean((errors**2).sum(1))))
+        found.append({"fault": fault, "filter": filter_, "rms": rms})
+    return found
 
 
 def _fault(system, text: str):
@@ -179,6 +191,7 @@ def main() -> None:
     scenes = tuple(scene.id for scene in library.scenes[: asked.scenes])
     out = asked.out / name
     files = records(design, asked.library, scenes, out / "errors")
+    (out / "errors.json").write_text(json.dumps(sizes(files), indent=1) + "\n")
     asks = study(design, asked.library, scenes, files)
     print(len(asks.arms()), "arms", len(scenes), "scenes", flush=True)
 

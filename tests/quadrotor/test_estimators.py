@@ -46,6 +46,10 @@ def test_a_filter_that_ships_flies_with_usual_sensors_and_beside_its_kin():
     assert bits(both[1]) == bits(one[0])
     other, _ = fly(system, "eskf-no-bias/dob-inertial", HELD_OUT[1:2])
     assert bits(other[0]) != bits(one[0])
+    satellite, _ = fly(
+        quadrotor(estimator="eskf", wind="L1", fixes="satellite"), "dob-inertial", HELD_OUT[1:2]
+    )
+    assert bits(satellite[0]) != bits(one[0])
 
 
 def test_errors_of_one_flight_are_delivered_to_one_module_of_another(tmp_path):
