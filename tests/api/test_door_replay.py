@@ -11,7 +11,7 @@ import pytest
 import faultpath
 from faultpath.api.replaying import chosen_scenes, keep_signals, replay
 from faultpath.api.runs import read_run
-from faultpath.cli.audits import replay as command
+from faultpath.cli.replay import replay as command
 from faultpath.core.errors import UserError
 from faultpath.trials.store.mcap import encode_mcap
 from faultpath.trials.store.signals import IN_FORCE, SIGNALS, Signal

@@ -52,9 +52,13 @@ KINDS: tuple[Intervention, ...] = (
 )
 
 
+OF_NO_IMAGE = {"rotate", "recorded"}
+"""They turn vectors of three, and deliver the errors of flights that a file names."""
+
+
 def test_no_kind_is_missing() -> None:
     # Every kind of fault declares it; the union's base does not.
-    assert {each.kind for each in KINDS} == set(INTERVENTIONS)  # pyright: ignore[reportAttributeAccessIssue]
+    assert {each.kind for each in KINDS} | OF_NO_IMAGE == set(INTERVENTIONS)  # pyright: ignore[reportAttributeAccessIssue]
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda each: each.kind)
