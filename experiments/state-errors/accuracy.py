@@ -12,8 +12,9 @@ import torch
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.device import arithmetic
 
-from faultpath.loop import Batch, Observer, Taps
-from faultpath.trials import SystemSpec, load_system
+from faultpath.loop import Batch, Observer
+from faultpath.trials import Arm, SystemSpec, load_system
+from faultpath.trials.attempt import taps_of
 
 FILTERS = ("eskf", "eskf-no-bias", "eskf-cautious")
 PRESENT = "predictor.initial_state"
@@ -22,12 +23,13 @@ PRESENT = "predictor.initial_state"
 class Present(Observer):
     """Keeps what the predictor is told of the state."""
 
+    def __init__(self):
+        self.now = {}
+
     def delivered(self, tap, reading, step, got):
         """See `Observer.delivered`."""
         if tap.consumer == PRESENT:
             self.now[tap.channel] = got
-
-    now: dict
 
 
 def fly(estimator: str, scenes: int) -> tuple[dict[str, np.ndarray], float, int]:
@@ -35,18 +37,8 @@ def fly(estimator: str, scenes: int) -> tuple[dict[str, np.ndarray], float, int]
     options = {"estimator": estimator, "wind": "L3"}
     system = load_system(SystemSpec(name="quadrotor", options=options))
     ids = tuple(each.id for each in system.library("selection").scenes[:scenes])
-    parts, seen = system.variants["gru"], Present()
-    seen.now = {}
-    taps = Taps(
-        system.interface,
-        scenes=ids,
-        dt_s=system.control_dt_s,
-        seed=0,
-        bindings=parts.bindings,
-        consumers=parts.consumers,
-        privileged=parts.privileged,
-        observer=seen,
-    )
+    seen = Present()
+    taps = taps_of(system, Arm(variant="gru"), ids, observer=seen)
     apart = {"position": [], "velocity": [], "attitude": [], "body_rate": []}
     began, steps = time.perf_counter(), 0
     with arithmetic(), torch.inference_mode():

@@ -20,7 +20,7 @@ from faultpath_quadrotor.evidence.state_errors import TURNING, state_errors
 from faultpath.decisions.family import compared, decide_paths
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.faults import Address, encode_record, parse_fault, resolve
-from faultpath.faults.recorded import _decoded
+from faultpath.faults.recorded import decode_record
 from faultpath.trials import Arm, OutcomeTable, Row, Study, SystemSpec, load_system
 from faultpath.trials.execution.runner import run_study
 from faultpath.trials.store.atomic import write
@@ -100,7 +100,7 @@ def records(
         if not whole[fault, filter_].is_file():
             merged = {}
             for part in parts:
-                for channel, rows in _decoded(part.read_bytes(), str(part)).items():
+                for channel, rows in decode_record(part.read_bytes(), str(part)).items():
                     for (scene, seed), (_, errors) in rows.items():
                         merged[channel, scene, seed] = errors
             data = encode_record({Address(*key): each for key, each in merged.items()}, TURNING)
@@ -141,7 +141,7 @@ def sizes(files: dict[tuple[str, str], Path]) -> list[dict]:
     found = []
     for (fault, filter_), path in files.items():
         rms = {}
-        for channel, rows in _decoded(path.read_bytes(), str(path)).items():
+        for channel, rows in decode_record(path.read_bytes(), str(path)).items():
             errors = np.concatenate([errors for _, errors in rows.values()]).astype(np.float64)
             if channel in TURNING:  # of a rotation, its angle in degrees
                 traces = errors.reshape(-1, 3, 3).trace(axis1=1, axis2=2)

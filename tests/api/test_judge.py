@@ -23,6 +23,7 @@ LOSSES = sum(a and not b for a, b in zip(*WON.values(), strict=True))
 
 def judged(results: object, folder: Path, **more: Any) -> Run:
     asked = {"baseline": "old", "repair": "new", "folder": folder, "progress": False} | more
+    # Also what a user may give by mistake.
     return faultpath.judge(results, **asked)  # pyright: ignore[reportArgumentType]
 
 

@@ -93,8 +93,9 @@ def _network(kind):
     """Return a torch module that pulls: as it is, row by row, or with a batch norm."""
     import torch
 
-    torch.manual_seed(0)
-    layers = [torch.nn.Linear(1, 256), torch.nn.Tanh(), torch.nn.Linear(256, 1)]
+    with torch.random.fork_rng(devices=[]):  # layers draw from the global state, which stays
+        torch.manual_seed(0)
+        layers = [torch.nn.Linear(1, 256), torch.nn.Tanh(), torch.nn.Linear(256, 1)]
     if kind == "network with batch norm":
         layers.insert(1, torch.nn.BatchNorm1d(256))
     net = torch.nn.Sequential(*layers)

@@ -127,16 +127,18 @@ def _read(
         data = contents(file)
     except OSError as error:
         raise UserError(f"the record {file} cannot be read: {error.strerror}.") from error
-    found = _decoded(data, file).get(channel, {})
+    found = decode_record(data, file).get(channel, {})
     turning = {turns for turns, _ in found.values()}
     digest = hashlib.sha256(data).hexdigest()[:16]
     return digest, {key: errors for key, (_, errors) in found.items()}, turning == {True}
 
 
 @lru_cache(maxsize=4)
-def _decoded(
+def decode_record(
     data: bytes, file: str
 ) -> Mapping[str, Mapping[tuple[str, int], tuple[bool, NDArray[np.float32]]]]:
+    """Return what `encode_record` wrote: by channel, then by scene and seed, whether errors turn
+    the reading, and the errors `[T, N]`. `UserError`, naming `file`, for what is no record."""
     from faultpath.core.files.parquet import Unreadable, decode
 
     channels: dict[str, dict[tuple[str, int], tuple[bool, NDArray[np.float32]]]] = {}

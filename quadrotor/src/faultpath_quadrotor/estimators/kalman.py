@@ -89,10 +89,6 @@ class Belief:
             covariance[row, row] = variance[row]
         return cls(fix, zero, so3.from_yaw(heading), zero, zero, covariance)
 
-    def moved(self, by: Increment) -> tuple[Tensor, Tensor, Tensor]:
-        """Return position, velocity and attitude after an increment."""
-        return carried(self.position, self.velocity, self.rotation, by)
-
 
 def carried(
     position: Tensor, velocity: Tensor, rotation: Tensor, by: Increment
@@ -124,7 +120,7 @@ class Trust:
 def predicted(belief: Belief, by: Increment, trust: Trust) -> Belief:
     """Return the belief a control interval later, from inertial samples alone."""
     dt, rotation = CONTROL_DT_S, belief.rotation
-    position, velocity, turned = belief.moved(by)
+    position, velocity, turned = carried(belief.position, belief.velocity, rotation, by)
     leans = -so3.compose(rotation, so3.skew(by.gained))
     lever = so3.compose(rotation, by.lever)
     one = torch.zeros_like(leans)

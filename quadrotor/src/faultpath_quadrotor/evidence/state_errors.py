@@ -9,7 +9,9 @@ from typing_extensions import override
 
 from faultpath.core.errors import UserError
 from faultpath.faults import Address, AnyFault, Record, resolve
-from faultpath.loop import Observer, Reading, Tap, Taps
+from faultpath.loop import Observer, Reading, Tap
+from faultpath.trials import Arm
+from faultpath.trials.attempt import taps_of
 from faultpath_quadrotor.estimators import ErrorStateFilter
 from faultpath_quadrotor.estimators.eskf import AT, Filtered
 from faultpath_quadrotor.estimators.protocol import STATE_SOURCES
@@ -50,7 +52,6 @@ def state_errors(
 
     Raises `UserError` for a variant whose state no filter of ours estimates.
     """
-    parts = system.variants[variant]
     filter_ = system.setups[variant].load_estimator(seed, system.options)
     if not isinstance(filter_, ErrorStateFilter):
         raise UserError(
@@ -58,18 +59,9 @@ def state_errors(
             "--estimator eskf"
         )
     seen = _Seen()
-    taps = Taps(
-        system.interface,
-        resolve(faults, system.interface, parts.consumers),
-        scenes=tuple(scenes),
-        dt_s=system.control_dt_s,
-        seed=seed,
-        bindings=parts.bindings,
-        consumers=parts.consumers,
-        privileged=parts.privileged,
-        observer=seen,
-    )
-    outcomes = system.run(variant, scenes, taps, seed)
+    found = resolve(faults, system.interface, system.variants[variant].consumers)
+    arm = Arm(variant=variant, faults=found, seed=seed)
+    outcomes = system.run(variant, scenes, taps_of(system, arm, scenes, observer=seen), seed)
     apart = _apart(filter_, seen.steps)
     ends = [max(1, round(outcome.time_s / system.control_dt_s)) for outcome in outcomes]
     return {

@@ -25,6 +25,7 @@ def proposals(
     `cmaes`.
     """
     try:
+        # The package has annotations and no marker that says so.
         from cmaes import CMA  # pyright: ignore[reportMissingTypeStubs]
     except ModuleNotFoundError:
         raise UserError(
