@@ -93,9 +93,13 @@ def _network(kind):
     """Return a torch module that pulls: as it is, row by row, or with a batch norm."""
     import torch
 
-    with torch.random.fork_rng(devices=[]):  # layers draw from the global state, which stays
-        torch.manual_seed(0)
-        layers = [torch.nn.Linear(1, 256), torch.nn.Tanh(), torch.nn.Linear(256, 1)]
+    layers = [torch.nn.Linear(1, 256), torch.nn.Tanh(), torch.nn.Linear(256, 1)]
+    draw = torch.Generator().manual_seed(0)
+    with torch.no_grad():
+        for layer in (layers[0], layers[2]):
+            most = layer.in_features**-0.5
+            for weights in layer.parameters():
+                weights.uniform_(-most, most, generator=draw)
     if kind == "network with batch norm":
         layers.insert(1, torch.nn.BatchNorm1d(256))
     net = torch.nn.Sequential(*layers)
