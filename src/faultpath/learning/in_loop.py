@@ -81,7 +81,7 @@ def withheld(module: Module, repair: Repair, interface: Interface) -> Module:
         shape = interface.source(channel.sources[0]).shape
         neutral = np.broadcast_to(channel.erasure_default if value is None else value, shape)
         for port in module.ports:
-            names = {ALL, module.name, f"{module.name}.{port.place}"}
+            names = {ALL, module.name, module.consumer(port)}
             if port.channel == fault.channel and names & set(fault.consumers):
                 values[port] = neutral
     if not values:
@@ -97,6 +97,7 @@ class _Withheld(Module):
     def __init__(self, inner: Module, values: Mapping[Port, HostArray]) -> None:
         self.name, self.writes, self.truths = inner.name, inner.writes, inner.truths
         self.reads, self.reads_past = inner.reads - set(values), inner.reads_past - set(values)
+        self.at_read = inner.at_read - set(values)
         self._inner, self._values = inner, values
 
     @override
@@ -121,6 +122,6 @@ class _Withheld(Module):
         for port, value in self._values.items():
             rows = np.array(np.broadcast_to(value, (scenes, *value.shape)), dtype=float)
             given[port] = place(rows, beside, beside.dtype if floating else None)
-        filled = Inputs(inputs.module, inputs.step, given, truths, inputs.running)
+        filled = Inputs(inputs.module, inputs.step, given, truths, inputs.running, inputs.at_read)
         outputs, past = self._inner.step(filled, past)
         return outputs, (scenes, past)

@@ -65,7 +65,7 @@ def _check_ports(
             "one step before: keep one of the two, or give them two places"
         )
     for port in sorted(part.ports):
-        consumer = f"{part.name}.{port.place}"
+        consumer = part.consumer(port)
         declared = interface.channel(port.channel).consumers
         if consumer not in declared:
             raise SystemMistake(
@@ -119,6 +119,6 @@ def interface_of(facts: Path | str | Mapping[str, Any], parts: Iterable[Part]) -
     writers: dict[str, str] = {}
     for part in parts:
         for port in sorted(part.ports):
-            consumers.setdefault(port.channel, {})[f"{part.name}.{port.place}"] = None
+            consumers.setdefault(port.channel, {})[part.consumer(port)] = None
         writers |= dict.fromkeys(part.writes, part.name)
     return read_interface(facts, {name: tuple(found) for name, found in consumers.items()}, writers)

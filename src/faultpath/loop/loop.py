@@ -2,15 +2,16 @@
 
 import math
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol
 
 from faultpath.core.arrays import Array
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import listed
 from faultpath.interface import Interface, Source
-from faultpath.loop.module import Batch, Graph, Inputs, Module, Outputs, Part, State
+from faultpath.loop.module import Batch, Graph, Inputs, Module, Outputs, Part, Port, State
 from faultpath.loop.reading import Reading
 
 _SLACK = 1e-6
@@ -138,6 +139,7 @@ class _Execution:
 
     def _inputs(self, part: Part, step: int, truths: Mapping[str, Any], running: Array) -> Inputs:
         delivered: dict[tuple[str, str], Any] = {}
+        at_read: dict[Port, Callable[[], Any]] = {}
         for port in self._ports[id(part)]:
             source = self._graph.bindings[port.channel]
             reading = self._now[source] if port in part.reads else self._past.get(source)
@@ -147,8 +149,11 @@ class _Execution:
                     f"before, but nobody says what source '{source}' held before the first step: "
                     "return it from the writing module's before()"
                 )
-            consumer = f"{part.name}.{port.place}"
-            delivered[port] = self._taps.deliver(port.channel, consumer, reading, step)
+            tap = port.channel, part.consumer(port)
+            if port in part.at_read:
+                at_read[port] = partial(self._taps.deliver, *tap, reading, step)
+            else:
+                delivered[port] = self._taps.deliver(*tap, reading, step)
         declared = part.truths if isinstance(part, Module) else ()
         shown = {name: truths[name] for name in declared}
-        return Inputs(part.name, step, delivered, shown, running)
+        return Inputs(part.name, step, delivered, shown, running, at_read)

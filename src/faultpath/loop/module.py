@@ -1,7 +1,7 @@
 """The parts of a closed loop: modules that read and write, and the plant under them."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 
@@ -21,7 +21,9 @@ Outputs: TypeAlias = Mapping[str, Any]
 class Port(NamedTuple):
     """A channel and the place in the module where it enters: one tap.
 
-    The same channel at two places is two ports, for a fault may reach one of them alone.
+    The same channel at two places is two ports, for a fault may reach one of them alone. A module
+    that runs others inside it names their places in full, `observer.flux`: they are consumers of
+    their own.
     """
 
     channel: str
@@ -42,6 +44,7 @@ class Inputs(dict[tuple[str, str], Any]):
         delivered: Mapping[tuple[str, str], Any],
         truths: Mapping[str, Any],
         running: Array = None,
+        at_read: Mapping[Port, Callable[[], Any]] | None = None,
     ) -> None:
         super().__init__(delivered)
         self.module = module
@@ -49,10 +52,15 @@ class Inputs(dict[tuple[str, str], Any]):
         """Control step, from 0."""
         self.running = running
         """Which scenes still run, bool `[B]`, for modules that save work; `None`: all."""
+        self.at_read = at_read or {}
+        """What delivers at ports that get nothing until they are looked at."""
         self._truths = truths
 
     def __missing__(self, port: tuple[str, str]) -> Any:
         channel, place = port
+        if deliver := self.at_read.get(Port(channel, place)):
+            self[port] = got = deliver()
+            return got
         raise UndeclaredReader(
             f"module '{self.module}' looked for channel '{channel}' at '{place}', a port that it "
             f"does not declare: add Port('{channel}', '{place}') to its reads"
@@ -90,6 +98,9 @@ class Part(ABC):
     reads_past: frozenset[Port] = frozenset()
     """Ports that get what their source held one step before: this is what closes a cycle. At the
     first step that is what the source's module gives as `before`."""
+    at_read: frozenset[Port] = frozenset()
+    """Those of its ports that get their reading only in steps in which it is looked at; then
+    receipts count what was read and not what was handed over."""
 
     writes: tuple[str, ...] = ()
     """Sources of the interface that it produces at every step; a plant senses its sources."""
@@ -98,6 +109,10 @@ class Part(ABC):
     def ports(self) -> frozenset[Port]:
         """All that it may know."""
         return self.reads | self.reads_past
+
+    def consumer(self, port: Port) -> str:
+        """Return the name `module.place` under which the interface lists a port."""
+        return port.place if "." in port.place else f"{self.name}.{port.place}"
 
 
 class Module(Part):
@@ -207,4 +222,4 @@ class Graph:
 
 def consumers(parts: Iterable[Part]) -> frozenset[str]:
     """Return the names `module.place` under which the interface lists the parts' ports."""
-    return frozenset(f"{part.name}.{port.place}" for part in parts for port in part.ports)
+    return frozenset(part.consumer(port) for part in parts for port in part.ports)

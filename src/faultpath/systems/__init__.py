@@ -4,6 +4,8 @@ from faultpath.systems.composed import ComposedSystem, Parts
 from faultpath.systems.episodes import Episode, Measure
 from faultpath.systems.functions import FunctionPlant
 from faultpath.systems.modules import row_wise, writes
+from faultpath.systems.sharing import Shared, shared_objects
+from faultpath.systems.tapped import tapped
 
 __all__ = [
     "ComposedSystem",
@@ -11,6 +13,9 @@ __all__ = [
     "FunctionPlant",
     "Measure",
     "Parts",
+    "Shared",
     "row_wise",
+    "shared_objects",
+    "tapped",
     "writes",
 ]

@@ -11,13 +11,18 @@ from faultpath.core.arrays import is_array, namespace
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
+from faultpath.systems.tapped import Made
 
 MEMORY = "memory"
 """The argument that is no channel."""
 
 
 def writes(
-    source: str, *, past: str | Sequence[str] = (), before: Any = None
+    source: str,
+    *,
+    past: str | Sequence[str] = (),
+    before: Any = None,
+    of: Callable[[], Any] | None = None,
 ) -> Callable[[Callable[..., Any]], "FunctionModule"]:
     """Make a function a module that writes `source`: `@writes("push")` above its `def`.
 
@@ -25,16 +30,22 @@ def writes(
     `[B, ...]`; what the function returns is what `source` holds. One that has an argument `memory`,
     `None` at the first step, returns `(value, memory)`.
 
+    With `of` the module is made of objects that keep their own state, a set for each scene. The
+    function is called a scene at a time, with the scene's objects first and rows without the batch
+    axis, and only while the scene runs. Where these objects are `faultpath.systems.tapped`, what
+    is read there are ports too.
+
     Args:
         source: What it writes.
         past: Arguments that get the value of the step before.
         before: What `source` holds before the first step, of one scene, for who reads its past.
+        of: Makes the objects of one scene.
 
     Raises:
         SystemMistake: The function takes no names, or has no such argument.
     """
     late = (past,) if isinstance(past, str) else tuple(past)
-    return lambda function: FunctionModule(function, source, late, before, {})
+    return lambda function: FunctionModule(function, source, late, before, {}, of)
 
 
 class FunctionModule(Module):
@@ -47,10 +58,19 @@ class FunctionModule(Module):
         past: Sequence[str],
         before: Any,
         given: dict[str, Any],
+        of: Callable[[], Any] | None,
     ) -> None:
         self.name, self.writes = function.__name__, (source,)
         self._function, self._past, self._before, self._given = function, past, before, given
-        parameters = signature(function).parameters
+        self._of = of
+        parameters = dict(signature(function).parameters)
+        if of is not None:  # the first argument are the objects
+            parameters.pop(next(iter(parameters), ""), None)
+            self.at_read = Made(of).ports
+            if MEMORY in parameters:
+                raise SystemMistake(
+                    f"module '{self.name}' has objects and a memory: let the objects keep it"
+                )
         if odd := [
             each.name
             for each in parameters.values()
@@ -68,12 +88,13 @@ class FunctionModule(Module):
         self._remembers = MEMORY in parameters
         read = {Port(name, name) for name in parameters if name not in (MEMORY, *given)}
         self.reads_past = frozenset(port for port in read if port.channel in past)
-        self.reads = frozenset(read - self.reads_past)
+        self.reads = frozenset(read - self.reads_past) | self.at_read
 
     def given(self, **values: Any) -> "FunctionModule":
         """Return it with other values for some arguments, which it then reads no more."""
         values = self._given | values
-        return FunctionModule(self._function, self.writes[0], self._past, self._before, values)
+        source = self.writes[0]
+        return FunctionModule(self._function, source, self._past, self._before, values, self._of)
 
     def __str__(self) -> str:
         """Return its name and the numbers that it was given."""
@@ -89,8 +110,20 @@ class FunctionModule(Module):
         return {self.writes[0]: np.tile(row, (len(batch.scenes), *[1] * row.ndim))}
 
     @override
+    def begin(self, batch: Batch) -> Memory:
+        return [Made(self._of) for _ in batch.scenes] if self._of else None
+
+    @override
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
-        values = {port.channel: inputs[port] for port in self.ports} | self._given
+        rows = {port.channel: inputs[port] for port in self.ports - self.at_read}
+        if self._of:
+            for i, scene in enumerate(cast("list[Made]", memory)):
+                if inputs.running is None or inputs.running[i]:
+                    row = {name: value[i] for name, value in rows.items()} | self._given
+                    with scene.reading(inputs, i) as objects:
+                        scene.last = np.array(self._function(objects, **row))
+            return {self.writes[0]: np.stack([scene.last for scene in memory])}, memory
+        values = rows | self._given
         if not self._remembers:
             return {self.writes[0]: self._function(**values)}, None
         pair: Any = self._function(**values, memory=memory)

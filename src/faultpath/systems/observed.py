@@ -1,5 +1,6 @@
 """What environments give to observe, made a batch or a hash: arrays, and what holds such."""
 
+import re
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
 from typing import Any, cast
@@ -7,6 +8,8 @@ from typing import Any, cast
 import numpy as np
 
 from faultpath.core.arrays import HostArray
+
+_ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
 def stacked(rows: Sequence[Any]) -> Any:
@@ -22,7 +25,10 @@ def stacked(rows: Sequence[Any]) -> Any:
 
 
 def hashed(*parts: Any) -> str:
-    """Return a hash of arrays, numbers and what holds such, exact to the bit."""
+    """Return a hash of arrays, numbers and what holds such, exact to the bit.
+
+    Of another object, such as somebody's simulator, it counts that it is there.
+    """
 
     def exact(part: Any) -> str:
         if isinstance(part, Mapping):
@@ -33,6 +39,6 @@ def hashed(*parts: Any) -> str:
         if isinstance(part, np.ndarray | np.generic):
             array = cast("HostArray", part)
             return f"{array.dtype}{array.shape}{array.tobytes().hex()}"
-        return repr(part)
+        return _ADDRESS.sub("", repr(part))
 
     return sha256("\n".join(map(exact, parts)).encode()).hexdigest()

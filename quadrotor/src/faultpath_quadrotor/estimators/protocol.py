@@ -46,7 +46,7 @@ def with_estimators(
     for reader in readers:
         for port in reader.ports:
             if port.channel in known or isinstance(reader, Estimator):
-                consumers.setdefault(port.channel, set()).add(f"{reader.name}.{port.place}")
+                consumers.setdefault(port.channel, set()).add(reader.consumer(port))
     channels = [
         each.model_copy(
             update={"consumers": (*each.consumers, *sorted(consumers.pop(each.name, ())))}

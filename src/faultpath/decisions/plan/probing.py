@@ -76,7 +76,7 @@ class _First(Plant):
         self.senses, self.shows = plant.senses, plant.shows
         self.system, self.variant, self.scenes, self.seed = system, variant, scenes, seed
         self.past = {
-            (port.channel, f"{part.name}.{port.place}")
+            (port.channel, part.consumer(port))
             for part in loop.graph.parts
             for port in part.reads_past
         }

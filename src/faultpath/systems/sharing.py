@@ -1,0 +1,152 @@
+"""Finds what the parts of a program share: one object in several, or a number that each keeps."""
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from types import FunctionType, MethodType, ModuleType
+from typing import Any, cast
+
+import numpy as np
+
+from faultpath.core.arrays import HostArray
+from faultpath.core.text import listed
+
+_MOST = 100_000
+"""Objects of one part that are looked at, so that a walk ends."""
+_LEAVES = (str, bytes, bool, int, float, complex, type, ModuleType, type(None), np.generic)
+
+
+@dataclass(frozen=True)
+class Shared:
+    """What several parts read: a candidate for a channel with a consumer a part."""
+
+    what: str
+    """The class of an object, or the value of a number."""
+    places: tuple[str, ...]
+    """Where it is, `observer.par`; at least one in each of two parts."""
+    alias: bool
+    """Whether it is one object; else each part keeps an equal number under one name."""
+    written: tuple[str, ...]
+    """Places of numbers in it that changed while `run` ran."""
+
+    def __str__(self) -> str:
+        """Return a sentence."""
+        said = f"{self.what} {'is one object ' if self.alias else ''}at {listed(self.places)}"
+        return f"{said}; the run wrote {listed(self.written)}" if self.written else said
+
+
+def shared_objects(
+    parts: Mapping[str, Any], run: Callable[[], Any] | None = None
+) -> tuple[Shared, ...]:
+    """Return what several parts of a program share, objects first.
+
+    It follows attributes, keys, items, bound methods and what functions close over; compiled code
+    is not seen. What lies within a shared object is not listed again. A number that two parts keep
+    under one name may be a copy that each took of one source. Zeros, whole numbers and truths are
+    left out.
+
+    Args:
+        parts: The objects that read, by a name for each.
+        run: Makes a step or more; numbers that it changes are named.
+    """
+    walks = [_Walk(part, root) for part, root in parts.items()]
+    reached: dict[int, list[_Walk]] = {}
+    for walk in walks:
+        for key in walk.objects:
+            reached.setdefault(key, []).append(walk)
+    aliases = {key: by for key, by in reached.items() if len(by) > 1}
+    copies: dict[tuple[str, bytes], list[str]] = {}
+    within = {place for walk in walks for place in walk.inside(aliases)}
+    for walk in walks:
+        for place, value in walk.numbers.items():
+            if place not in within and value.any():
+                name = place.rpartition(".")[2]
+                copies.setdefault((name, value.tobytes()), []).append(place)
+    before = {place: value for walk in walks for place, value in walk.numbers.items()}
+    after = before
+    if run is not None:
+        run()
+        again = [_Walk(part, root) for part, root in parts.items()]
+        after = {place: value for walk in again for place, value in walk.numbers.items()}
+    changed = [p for p, v in before.items() if p not in after or v.tobytes() != after[p].tobytes()]
+    found: list[Shared] = []
+    for key, by in aliases.items():
+        if all(walk.objects[key].parent in aliases for walk in by):
+            continue
+        places = tuple(walk.objects[key].place for walk in by)
+        held = tuple(p for p in changed if p == places[0] or p.startswith(f"{places[0]}."))
+        found.append(Shared(type(by[0].objects[key].found).__name__, places, True, held))
+    for places in copies.values():
+        if len({place.partition(".")[0] for place in places}) > 1:
+            said = f"{places[0].rpartition('.')[2]} = {before[places[0]]}"
+            held = tuple(p for p in changed if p in places)
+            found.append(Shared(said, tuple(places), False, held))
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class _Object:
+    found: Any
+    place: str
+    parent: int
+
+
+class _Walk:
+    """What can be reached from one part, by the shortest way."""
+
+    def __init__(self, part: str, root: Any) -> None:
+        self.objects: dict[int, _Object] = {}
+        """By identity: what can be changed, and so matters if it is shared."""
+        self.numbers: dict[str, HostArray] = {}
+        """By place, copied."""
+        seen: set[int] = set()
+        waiting = deque([_Object(root, part, 0)])
+        while waiting and len(seen) < _MOST:
+            each = waiting.popleft()
+            found = each.found
+            if isinstance(found, float | complex | np.floating):
+                self.numbers[each.place] = np.array(found)
+            if isinstance(found, _LEAVES) or id(found) in seen:
+                continue
+            key = id(cast("object", found))
+            seen.add(key)
+            if not isinstance(found, tuple | FunctionType | MethodType):
+                self.objects[key] = each
+            if isinstance(found, np.ndarray):
+                array = cast("HostArray", found)
+                if array.dtype.kind in "fc":
+                    self.numbers[each.place] = array.copy()
+                continue
+            waiting += [_Object(f, f"{each.place}.{n}", key) for n, f in _held(found)]
+
+    def inside(self, shared: Mapping[int, Any]) -> Iterator[str]:
+        """Yield the places of numbers that lie in shared objects."""
+        tops = [each.place for key, each in self.objects.items() if key in shared]
+        for place in self.numbers:
+            if any(place == top or place.startswith(f"{top}.") for top in tops):
+                yield place
+
+
+def _held(found: Any) -> Iterator[tuple[str, Any]]:
+    """Yield what an object holds, by name."""
+    if isinstance(found, MethodType):
+        yield "__self__", found.__self__
+    elif isinstance(found, FunctionType):
+        for name, cell in zip(found.__code__.co_freevars, found.__closure__ or (), strict=True):
+            try:
+                yield name, cell.cell_contents
+            except ValueError:  # not filled yet
+                continue
+    elif isinstance(found, Mapping):
+        for key, value in cast("Mapping[Any, Any]", found).items():
+            yield str(key), value
+    elif isinstance(found, list | tuple | set | frozenset | deque):
+        for index, value in enumerate(cast("list[Any]", found)):
+            yield str(index), value
+    else:
+        yield from getattr(found, "__dict__", {}).items()
+        for kind in type(found).__mro__:
+            slots = kind.__dict__.get("__slots__", ())
+            for name in (slots,) if isinstance(slots, str) else slots:
+                if not name.startswith("__") and hasattr(found, name):
+                    yield name, getattr(found, name)

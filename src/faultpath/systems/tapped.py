@@ -1,0 +1,157 @@
+"""Taps on other people's objects: an attribute or a key is delivered each time it is read."""
+
+from collections.abc import Callable, Generator, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from types import new_class
+from typing import Any, TypeVar, cast
+
+from faultpath.core.errors import SystemMistake
+from faultpath.core.text import unknown
+from faultpath.loop import Inputs, Port
+
+T = TypeVar("T")
+
+_MADE: ContextVar[list["Reads"] | None] = ContextVar("_MADE", default=None)
+"""Collects the stand-ins of the objects that are being made."""
+
+
+class Reads:
+    """What one stand-in reads, and what delivers it at present."""
+
+    def __init__(self, at: str, kind: str, channels: Mapping[str, str]) -> None:
+        self.at, self.kind = at, kind
+        self.ports = {name: Port(channel, f"{at}.{name}") for name, channel in channels.items()}
+        self.own: dict[str, Any] = {}
+        """What its reader wrote itself. From there on that is what it reads, as it would of an
+        object of its own; who stands elsewhere goes on reading what is delivered."""
+        self.inputs: Inputs | None = None
+        self.row = 0
+
+    def read(self, name: str) -> Any:
+        """Return what the reader gets of an attribute or key, one scene's row."""
+        if name in self.own:
+            return self.own[name]
+        if self.inputs is None:
+            raise SystemMistake(
+                f"'{self.at}' read '{name}' of {self.kind} while it was made, before anything is "
+                "delivered, and no fault would reach what it keeps: make it of the object itself, "
+                "and tap the object that keeps the copy"
+            )
+        return self.inputs[self.ports[name]][self.row]
+
+
+class _Keys(dict[Any, Any]):
+    """A stand-in for a mapping. Its own `__iter__` keeps `dict(...)` from copying past the taps."""
+
+    reads: Reads
+
+    def __getitem__(self, key: Any) -> Any:
+        return self.reads.read(key) if key in self.reads.ports else super().__getitem__(key)
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        if key in self.reads.ports:
+            self.reads.own[key] = value
+        super().__setitem__(key, value)
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(list(super().keys()))
+
+    def get(self, key: Any, default: Any = None) -> Any:
+        try:
+            return self[key]
+        except KeyError:
+            return default
+
+    def values(self) -> Any:
+        return [self[key] for key in self]
+
+    def items(self) -> Any:
+        return [(key, self[key]) for key in self]
+
+
+def tapped(what: T, *names: str, at: str, **channels: str) -> T:
+    """Return a stand-in for an object of which some attributes or keys are delivered at each read.
+
+    Each of them is a channel, by default of the same name, with the consumer `at.name`. All else is
+    the object's own and stays shared with it: the stand-in is of a class made from the object's,
+    and has the object's own attributes. What its reader writes into a tapped attribute is that
+    reader's from there on, and no fault reaches it there any more.
+
+    Make stand-ins in the function that `writes(..., of=make)` calls for each scene.
+
+    Args:
+        what: An object with attributes that Python keeps, or a dict.
+        names: Attributes or keys that are channels of the same name.
+        at: Who reads them there.
+        channels: Attribute or key to channel, for other names.
+
+    Raises:
+        SystemMistake: There is no such attribute or key, or the object keeps its attributes where
+            no stand-in can be: in slots, a tuple or compiled code. When it is read: nothing is
+            delivered yet, because the reader is still being made.
+    """
+    kind = cast("type[Any]", type(what))
+    reads = Reads(at, kind.__name__, {name: name for name in names} | channels)
+    keyed = isinstance(what, dict)
+    found = list(cast("dict[Any, Any]", what)) if keyed else dir(what)
+    for name in reads.ports:
+        if name not in found:
+            word = "key" if keyed else "attribute"
+            raise SystemMistake(f"tapped {kind.__name__}: {unknown(word, name, map(str, found))}")
+    if keyed:
+        made: Any = type(kind.__name__, (_Keys,), {"reads": reads})()
+        cast("Any", dict).update(made, what)
+    else:
+        places: dict[str, Any] = {name: _delivered(reads, name) for name in reads.ports}
+        try:
+            stand_in = new_class(kind.__name__, (kind,), exec_body=lambda body: body.update(places))
+            made = cast("Any", object.__new__(stand_in))
+            object.__setattr__(made, "__dict__", vars(what))
+        except TypeError as error:
+            raise SystemMistake(
+                f"tapped {kind.__name__}: it keeps its attributes in slots, a tuple or compiled "
+                "code, where no stand-in can be: tap the object that holds it, or hand the value "
+                "over as an argument of the module"
+            ) from error
+    if (collected := _MADE.get()) is not None:
+        collected.append(reads)
+    return made
+
+
+def _delivered(reads: Reads, name: str) -> property:
+    def write(_: Any, value: Any) -> None:
+        reads.own[name] = value
+
+    return property(lambda _: reads.read(name), write)
+
+
+class Made:
+    """The objects of one scene."""
+
+    def __init__(self, make: Callable[[], Any]) -> None:
+        collected: list[Reads] = []
+        token = _MADE.set(collected)
+        try:
+            self.objects = make()
+        finally:
+            _MADE.reset(token)
+        self.reads = tuple(collected)
+        self.last: Any = None
+        """What the module returned of this scene."""
+
+    @property
+    def ports(self) -> frozenset[Port]:
+        """Where its stand-ins read."""
+        return frozenset(port for each in self.reads for port in each.ports.values())
+
+    @contextmanager
+    def reading(self, inputs: Inputs, row: int) -> Generator[Any]:
+        """Let the stand-ins read what is delivered at a step, and give the objects."""
+        for each in self.reads:
+            each.inputs, each.row = inputs, row
+        try:
+            yield self.objects
+        finally:
+            for each in self.reads:
+                each.inputs = None

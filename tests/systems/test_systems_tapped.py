@@ -1,0 +1,225 @@
+"""Taps on objects that nobody here wrote: a fault reaches who reads, when it reads."""
+
+import copy
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from faultpath import audit
+from faultpath.core.errors import SystemMistake
+from faultpath.faults import parse_fault
+from faultpath.loop import Batch, Inputs, NotDelivered, Port
+from faultpath.systems import ComposedSystem, FunctionPlant, shared_objects, tapped, writes
+from faultpath.trials import Arm
+from faultpath.trials.attempt import Wrong, attempt
+
+
+@dataclass
+class Parameters:
+    """What the parts of a drive share, as they wrote it."""
+
+    flux: float = 0.5
+    resistance: float = 2.0
+
+    def linked(self, current):
+        return self.flux + 0.1 * current
+
+
+class Observer:
+    def __init__(self, par, gain):
+        self.par, self.gain = par, gain
+
+    def estimate(self, current):
+        self.par.flux = self.par.flux + self.gain
+        return self.par.flux
+
+
+class Controller:
+    def __init__(self, par):
+        self.par, self.bias = par, 0.25
+
+    def command(self, current):
+        return self.par.linked(current) * self.bias
+
+
+def delivered(**values):
+    return {Port(name, place): np.array(value) for name, (place, value) in values.items()}
+
+
+def test_what_is_read_is_delivered_and_all_else_stays_shared():
+    par = Parameters()
+
+    def make():
+        return Controller(tapped(par, "flux", at="control"))
+
+    module = writes("voltage", of=make)(lambda control, current: control.command(current))
+    assert module.reads == {Port("flux", "control.flux"), Port("current", "current")}
+    assert module.consumer(Port("flux", "control.flux")) == "control.flux"
+    memory = module.begin(Batch(("a", "b"), 0, 0.1))
+    stand_in = memory[0].objects.par
+    assert isinstance(stand_in, Parameters)
+    par.resistance = 3.0
+    assert stand_in.resistance == 3.0
+    given = delivered(current=("current", [0.0, 1.0]), flux=("control.flux", [1.0, 2.0]))
+    outputs, _ = module.step(Inputs("module", 0, given, {}), memory)
+    assert outputs["voltage"].tolist() == [0.25 * 1.0, 0.25 * 2.1]
+    assert par.flux == 0.5
+
+
+def test_an_ended_scene_is_not_asked_any_more():
+    asked = []
+
+    def count(_, current):
+        asked.append(float(current))
+        return current
+
+    module = writes("seen", of=SimpleNamespace)(count)
+    memory = module.begin(Batch(("a", "b"), 0, 0.1))
+    for step, running in enumerate(([True, True], [False, True])):
+        given = delivered(current=("current", [1.0 + step, 5.0 + step]))
+        inputs = Inputs("module", step, given, {}, np.array(running))
+        outputs, memory = module.step(inputs, memory)
+    assert asked == [1.0, 5.0, 6.0]
+    assert outputs["seen"].tolist() == [1.0, 6.0]
+
+
+def test_a_mapping_is_delivered_however_it_is_read():
+    seen = {}
+
+    def make():
+        return tapped({"mass": 1.0, "arm": 0.2}, "mass", at="control")
+
+    def read(par):
+        seen.update(
+            item=par["mass"],
+            get=par.get("mass"),
+            missing=par.get("span", 7),
+            copied=dict(par),
+            spread={**par},
+            values=list(par.values()),
+        )
+        return par["mass"]
+
+    module = writes("out", of=make)(read)
+    given = {Port("mass", "control.mass"): np.array([4.0])}
+    module.step(Inputs("module", 0, given, {}), module.begin(Batch(("a",), 0, 0.1)))
+    both = {"mass": 4.0, "arm": 0.2}
+    assert seen == {
+        "item": 4.0,
+        "get": 4.0,
+        "missing": 7,
+        "copied": both,
+        "spread": both,
+        "values": [4.0, 0.2],
+    }
+
+
+def test_mistakes_are_told_in_a_sentence():
+    with pytest.raises(SystemMistake, match="unknown attribute 'flax'; did you mean 'flux'"):
+        tapped(Parameters(), "flax", at="control")
+    with pytest.raises(SystemMistake, match="unknown key 'mess'"):
+        tapped({"mass": 1.0}, "mess", at="control")
+    with pytest.raises(SystemMistake, match="slots, a tuple or compiled code"):
+        tapped(1.0 + 2.0j, "real", at="control")
+
+    class Copies:
+        def __init__(self, par):
+            self.mass = par["mass"]
+
+    with pytest.raises(SystemMistake, match="read 'mass' of dict while it was made"):
+        writes("out", of=lambda: Copies(tapped({"mass": 1.0}, "mass", at="a")))(lambda made: 0.0)
+    with pytest.raises(SystemMistake, match="objects and a memory"):
+        writes("out", of=Parameters)(lambda made, memory: (0.0, memory))
+
+
+def drive(gain, late=False):
+    """Two parts that read one parameter object; the observer writes into it if it has a gain."""
+
+    def make():
+        par = Parameters()
+        observer = Observer(tapped(copy.copy(par), "flux", at="observer"), gain)
+        return SimpleNamespace(
+            observer=observer, control=Controller(tapped(par, "flux", at="control")), t=0
+        )
+
+    def regulate(made, current):
+        made.t += 1
+        if late and made.t < 5:
+            return 0.0
+        return made.control.command(current) + made.observer.estimate(current)
+
+    return writes("voltage", of=make)(regulate)
+
+
+def system(**variants):
+    plant = FunctionPlant(
+        lambda rng: {"current": rng.normal(), "flux": 0.5},
+        lambda state, action, rng: state | {"current": 0.5 * state["current"] - 0.1 * action},
+        observes={"current": "current", "flux": "flux"},
+        action="voltage",
+        steps=10,
+        dt_s=0.1,
+        succeeded=lambda episode: abs(float(episode["current"][-1])) < 0.2,
+    )
+    units = {"current": "A", "flux": "Vs", "voltage": "V"}
+    return ComposedSystem("drive", plant, {name: [m] for name, m in variants.items()}, units)
+
+
+def test_parts_inside_one_module_are_consumers_of_their_own():
+    made = system(fixed=drive(0.0), slow=drive(0.0, late=True))
+    assert set(made.interface.channel("flux").consumers) == {"observer.flux", "control.flux"}
+    found = audit(made, baseline="fixed", repair="slow", fault="flux:scale=3", scenes=8)
+    assert [path.name for path in found.record.paths] == [
+        "correct",
+        "control",
+        "observer",
+        "shared",
+    ]
+
+
+def attempted(module, fault):
+    made = system(only=module)
+    faults = parse_fault(fault, made.interface, {}, 0.1).resolved(made.interface)
+    return attempt(made, Arm(variant="only", faults=faults), ("seed/1", "seed/2"))
+
+
+def test_receipts_count_what_was_read():
+    taps = {tap.consumer: tap for tap in attempted(drive(0.0, late=True), "flux:scale=3").taps}
+    assert taps["control.flux"].deliveries == 2 * 6
+    assert taps["control.flux"].faulted_steps == 2 * 6
+
+
+def test_what_a_part_wrote_is_its_own_and_a_later_fault_does_not_pass_for_delivered():
+    taps = {tap.consumer: tap for tap in attempted(drive(0.1), "flux:scale=3").taps}
+    assert taps["observer.flux"].deliveries == 2
+    assert taps["control.flux"].deliveries == 2 * 10
+    late = attempted(drive(0.1), "flux:scale=3,onset=5")
+    assert isinstance(late, Wrong)
+    assert isinstance(late.error, NotDelivered)
+    assert "flux -> observer.flux" in str(late.error)
+
+
+def test_what_parts_share_is_found_and_what_a_run_writes_is_named():
+    par = Parameters()
+    observer, control = Observer(par, 0.1), Controller(par)
+    observer.bias = 0.25
+
+    def closes():
+        return par.resistance
+
+    shared = shared_objects(
+        {"observer": observer, "control": control, "hook": closes},
+        run=lambda: observer.estimate(0.0),
+    )
+    assert [str(each) for each in shared] == [
+        "Parameters is one object at control.par, hook.par, observer.par; "
+        "the run wrote observer.par.flux",
+        "bias = 0.25 at control.bias, observer.bias",
+    ]
+    apart = shared_objects({"a": Observer(Parameters(), 0.0), "b": Controller(Parameters())})
+    assert [(each.what, each.alias) for each in apart] == [
+        ("flux = 0.5", False),
+        ("resistance = 2.0", False),
+    ]
