@@ -69,8 +69,11 @@ def inspect_log(path: Path, model: str, won: Sequence[bool]) -> str:
     """Write a log of Inspect: JSON, or packed as it was and, for `.new.eval`, as it is now."""
     about = {"version": 2, "status": "success", "eval": {"task": "sums", "model": model}}
     if path.suffix == ".json":
-        path.write_text(json.dumps({**about, "samples": samples(won)}))
-        return str(path)
+        folder = path.with_suffix("")
+        folder.mkdir()
+        log = folder / "2026-01-02T03-04-05-00-00_sums_kW3.json"
+        log.write_text(json.dumps({**about, "samples": samples(won)}))
+        return str(folder)
     files = {"header.json": about}
     files |= {f"samples/{each['id']}_epoch_1.json": each for each in samples(won)}
     texts = {name: json.dumps(content).encode() for name, content in files.items()}
@@ -98,8 +101,8 @@ def zstandard(texts: Mapping[str, bytes]) -> bytes:
 
 
 def lm_eval(folder: Path, won: Sequence[bool]) -> str:
-    """Write the samples of lm-eval, under two filters."""
-    folder.mkdir()
+    """Write the samples of lm-eval, under two filters, in a folder of their model's."""
+    (folder / "model").mkdir(parents=True)
     lines = [
         {"doc_id": n, "doc_hash": f"h{n}", "filter": name, "metrics": ["exact_match"], **score}
         for n, each in enumerate(won)
@@ -108,6 +111,6 @@ def lm_eval(folder: Path, won: Sequence[bool]) -> str:
             ("flexible-extract", {"exact_match": 1.0}),
         )
     ]
-    file = folder / "samples_gsm8k_2026-01-02T03-04-05.678901.jsonl"
+    file = folder / "model" / "samples_gsm8k_2026-01-02T03-04-05.678901.jsonl"
     file.write_text("".join(json.dumps(line) + "\n" for line in lines))
     return f"={folder}"

@@ -21,8 +21,8 @@ from faultpath.trials.received import inspect_logs
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import Given, Received, received
 
-_READ = ("eval_info.json", "samples_*.jsonl", "*.eval")
-"""What is looked for in a folder."""
+_READ = ("eval_info.json", "samples_*.jsonl", "*.eval", "????-??-??T*.json")
+"""What is looked for in a folder and those in it; the last are Inspect's logs in JSON."""
 _SAMPLES = re.compile(r"samples_(.+)_\d{4}-\d\d-\d\dT[\d.-]+\.jsonl")
 _OF_SAMPLES = ("doc_id", "target", "filter", "metrics")
 
@@ -65,7 +65,7 @@ def _files(result: str) -> list[Given]:
     place = Path(rest)
     if not place.is_dir():
         return [Given(rest, arm, condition)]
-    inside = sorted({file for pattern in _READ for file in place.glob(pattern)})
+    inside = sorted({file for pattern in _READ for file in place.rglob(pattern)})
     if not inside:
         raise UserError(f"{place} holds none of {', '.join(_READ)}: name the files themselves.")
     return [Given(str(file), arm, condition) for file in inside]
