@@ -54,8 +54,16 @@ class EngineAlone:
                 item.add_marker(pytest.mark.skip(reason="needs faultpath_quadrotor"))
 
     @pytest.hookimpl(wrapper=True)
-    def pytest_runtest_call(self, item: pytest.Item) -> Generator[None, Any, Any]:
+    def pytest_runtest_setup(self) -> Generator[None, Any, Any]:
+        """Skip a test whose fixture imports a missing package."""
+        return (yield from self._skipping())
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_call(self) -> Generator[None, Any, Any]:
         """Skip a test that imports a missing package as it runs."""
+        return (yield from self._skipping())
+
+    def _skipping(self) -> Generator[None, Any, Any]:
         try:
             return (yield)
         except Exception as error:

@@ -89,10 +89,12 @@ def odd(**options: str) -> Odd:
 
 
 def plant(**options: str) -> Plant:
+    pytest.importorskip("torch")
     return Plant(**options)
 
 
 def scribbler(**options: str) -> Scribbler:
+    pytest.importorskip("torch")
     return Scribbler(**options)
 
 
