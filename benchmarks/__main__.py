@@ -1,7 +1,8 @@
 """Measure everything side by side; `tools/documents.py` makes the page of it.
 
 python -m benchmarks [--rounds N] [ROW ...]   rows that are named are shown and not kept
-python -m benchmarks --new                    rows that results.json lacks are added to it
+python -m benchmarks --new [ROW ...]          rows that results.json lacks, or that are named,
+                                              are put among those it has
 """
 
 import argparse
@@ -121,12 +122,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="benchmarks", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("rows", nargs="*", metavar="ROW", help="these rows, and keep nothing")
     parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--new", action="store_true", help="add the rows that were not measured")
+    parser.add_argument("--new", action="store_true", help="keep them beside those that were measured")
     asked = parser.parse_args()
     before = load() if asked.new else None
-    kept = {each.name: each for each in before.records if each.ours} if before else {}
-    rows = [row for row in ROWS if row.name not in kept]
-    chosen = [row for row in rows if not asked.rows or row.name in asked.rows]
+    kept = {each.name: each for each in before.records} if before else {}
+    lacking = [row for row in ROWS if row.name not in kept or kept[row.name].ours is None]
+    named = [row for row in ROWS if row.name in asked.rows]
+    chosen = named if asked.rows else lacking if asked.new else [*ROWS]
     if len(chosen) < len(asked.rows):
         parser.error(f"choose rows from {', '.join(repr(row.name) for row in ROWS)}")
     found = measure(chosen, asked.rounds)
@@ -138,7 +140,7 @@ def main() -> None:
             note = each.note if each.ours is None else "; ".join(filter(None, (each.note, when)))
             kept[each.name] = each.model_copy(update={"note": note})
         found = [kept[row.name] for row in ROWS if row.name in kept]
-    if not asked.rows:
+    if asked.new or not asked.rows:
         save(Results(machine=machine, records=tuple(found)))
 
 

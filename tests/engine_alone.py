@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 OPTIONAL = ("torch", "faultpath_quadrotor", "ray", "playwright")
-QUADROTOR = re.compile(r"quadrotor\b|\b(reproduce|train)\b")
+QUADROTOR = re.compile(r"quadrotor\b(?!-)|\b(reproduce|train)\b")
 """What a test that asks for the quadrotor says in its code or its parameters: where commands and
 processes name it, no import does."""
 
@@ -49,6 +49,7 @@ class EngineAlone:
         for item in items:
             case = getattr(item, "callspec", None)
             said = inspect.getsource(getattr(item, "function", type(item)))
+            said = said[said.find("def ") :]  # the cases of others stand above it
             said += "" if case is None else f"\n{case.id} {list(map(_shown, case.params.values()))}"
             if QUADROTOR.search(said):
                 item.add_marker(pytest.mark.skip(reason="needs faultpath_quadrotor"))

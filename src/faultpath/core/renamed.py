@@ -39,7 +39,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
     },
     "reproduce": {
         "platform": _ONE_PLATFORM,
-        "library": "say `faultpath audit quadrotor --library`",
+        "library": "say `faultpath audit SYSTEM --library`",
     },
     "train": {
         "force": "delete the folder of the model to have it fitted anew",
