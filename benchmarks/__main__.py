@@ -122,7 +122,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="benchmarks", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("rows", nargs="*", metavar="ROW", help="these rows, and keep nothing")
     parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--new", action="store_true", help="keep them beside those that were measured")
+    parser.add_argument("--new", action="store_true", help="keep them with what was measured")
     asked = parser.parse_args()
     before = load() if asked.new else None
     kept = {each.name: each for each in before.records} if before else {}
