@@ -41,11 +41,11 @@ def asks(model: type[Asked]) -> Callable[[_Call], _Call]:
                 default = each.get_default(call_default_factory=True)
             kind = inspect.Parameter.KEYWORD_ONLY
             found.append(inspect.Parameter(name, kind, default=default, annotation=each.annotation))
-            said, more = f"{name}: {each.description}", " " * 12
-            lines.append(textwrap.fill(said, 96, initial_indent=" " * 8, subsequent_indent=more))
+            said, more = f"{name}: {each.description}", " " * 8
+            lines.append(textwrap.fill(said, 96, initial_indent=" " * 4, subsequent_indent=more))
         vars(function)["__signature__"] = signature.replace(parameters=found)
-        help = (function.__doc__ or "").replace("        **given: ...", "\n".join(lines))
-        function.__doc__ = help
+        help = inspect.cleandoc(function.__doc__ or "")  # Python 3.13 takes the indent away itself
+        function.__doc__ = help.replace("    **given: ...", "\n".join(lines))
         return function
 
     return described
