@@ -10,6 +10,8 @@ BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
 INPUTS := pyproject.toml constraints.txt quadrotor/pyproject.toml quadrotor/hatch_build.py $(wildcard quadrotor/src/faultpath_quadrotor/native/source/*)
 BENCH := .venv-bench
+BENCH_JAX := .venv-bench-jax
+PYTHONS := 3.12 3.13
 SOURCES := src quadrotor tests examples benchmarks
 
 # Installing compiles the kernels for whoever asks, and all that is installed here is for the quadrotor too.
@@ -23,7 +25,7 @@ unless_given = $(if $(filter $(1) $(1)=%,$(ARGS)),,$(1) $(2))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup setup-runtime prerequisites audit confirm reproduce train test fuzz statistics bench docs lint format clean distclean
+.PHONY: help setup setup-runtime prerequisites audit confirm reproduce train test test-pythons fuzz statistics bench docs lint format clean distclean
 
 help: ## Show this list
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -53,12 +55,27 @@ train: $(STAMPS)/runtime ## Collect flights and fit every learned model of the q
 # Processes of the tests write no byte code: a file that a test edits twice within a second, to the
 # same length, would go on as it was. What they import is compiled before, torch above all, since
 # compiling it in each process would take most of their time.
-test fuzz: export PYTHONDONTWRITEBYTECODE := 1
+test test-pythons fuzz: export PYTHONDONTWRITEBYTECODE := 1
 test fuzz: $(STAMPS)/compiled
 
 test: $(STAMPS)/dev prerequisites ## Run the tests; more options in ARGS="..."
 	@$(BIN)/python -m compileall -qq src quadrotor
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal $(ARGS)
+
+# torch, and with it the quadrotor, is tested under the Python of .venv alone: the engine is for all of
+# them. What is about the project (documents, wheel, site) and what takes a browser is not asked again.
+test-pythons: ## Run the engine's tests under the other Pythons that are found here
+	@$(FIND_PYTHON); failed=; \
+	for version in $(PYTHONS); do \
+	  python=$$(find_python $$version) || { \
+	    echo "There is no Python $$version here: the engine is not tested under it."; continue; }; \
+	  $(MAKE) --no-print-directory .venv-$$version/ready OTHER=$$python && \
+	  .venv-$$version/bin/python -m compileall -qq src && \
+	  OMP_NUM_THREADS=1 .venv-$$version/bin/python -m pytest -n $(JOBS) --dist worksteal \
+	    --engine-alone --ignore tests/project -m "not browser" -p no:cacheprovider $(ARGS) \
+	    || failed="$$failed $$version"; \
+	done; \
+	[ -z "$$failed" ] || { echo "The engine's tests fail under Python$$failed."; exit 1; }
 
 fuzz: $(STAMPS)/dev ## Try the laws and the command line with random inputs; SEED=7 repeats
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "hypothesis or fuzz" \
@@ -67,7 +84,7 @@ fuzz: $(STAMPS)/dev ## Try the laws and the command line with random inputs; SEE
 statistics: $(STAMPS)/dev ## Simulate what the statistics promise, and write its page: some minutes
 	OMP_NUM_THREADS=1 $(BIN)/python tests/statistics/simulation_page.py docs/statistics-check.md
 
-bench: $(BENCH)/ready $(STAMPS)/dev ## Measure side by side with other software; ARGS="--only plant" for some
+bench: $(BENCH)/ready $(BENCH_JAX)/ready $(STAMPS)/dev ## Measure side by side with other software; ARGS="ROW" for one
 	$(BENCH)/bin/python -m benchmarks $(ARGS)
 	$(BIN)/python tools/documents.py
 
@@ -89,8 +106,8 @@ clean: ## Remove caches and build outputs; keep .venv and results
 	rm -rf .pytest_cache .ruff_cache .import_linter_cache .hypothesis build dist
 	find $(wildcard $(SOURCES)) -name __pycache__ -type d -prune -exec rm -rf {} +
 
-distclean: clean ## Remove .venv and .venv-bench as well
-	rm -rf $(VENV) $(BENCH)
+distclean: clean ## Remove .venv and the other environments as well
+	rm -rf $(VENV) $(wildcard .venv-*)
 
 # The browser tests need a Chromium. Root on a machine with apt gets it; anyone else is told how.
 prerequisites:
@@ -115,6 +132,15 @@ $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
 $(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
   echo "'$(PYTHON)' cannot create virtual environments: on Debian install that part with apt-get install python3-venv"; \
   exit 1; }
+endef
+
+# Says where a Python of a version is, if one runs here: the command of its name, or pyenv's.
+define FIND_PYTHON
+find_python() { \
+  for chosen in "$$PYENV_VERSION" "$$(pyenv latest $$1 2>/dev/null)"; do \
+    PYENV_VERSION=$$chosen python$$1 -c 'import ensurepip, sys, venv; print(sys.executable)' \
+      2>/dev/null && return; \
+  done; return 1; }
 endef
 
 # A stamp is written only after everything before it has worked. $(VENV)/incomplete lies there while
@@ -151,4 +177,22 @@ $(BENCH)/ready: $(INPUTS) benchmarks/requirements.txt
 	@$(BENCH)/bin/python -m pip install --no-compile --disable-pip-version-check --quiet \
 	  -c constraints.txt -r benchmarks/requirements.txt -e . -e './quadrotor[mujoco,ulog]'
 	@rm $(BENCH)/incomplete
+	@touch $@
+
+# jax-mppi asks for a newer Python than torch's build may be for. Without one its row says so.
+$(BENCH_JAX)/ready: benchmarks/requirements-jax.txt
+	@$(FIND_PYTHON); python=$$(for each in $(PYTHONS); do find_python $$each && break; done); \
+	if [ -z "$$python" ]; then echo "There is no Python 3.12 here: jax-mppi is not measured."; exit 0; fi; \
+	echo "Installing jax-mppi into $(BENCH_JAX)"; \
+	rm -rf $(BENCH_JAX) && $$python -m venv $(BENCH_JAX) && \
+	$(BENCH_JAX)/bin/python -m pip install --no-compile --disable-pip-version-check --quiet \
+	  -r benchmarks/requirements-jax.txt && touch $@
+
+# The engine with what its tests need. Not all pins have a build for every Python: they hold for
+# what they are the tested versions of, and the rest is what pip finds.
+.venv-%/ready: pyproject.toml constraints.txt
+	@echo "Installing the engine for Python $* into .venv-$*"
+	@rm -rf .venv-$* && $(OTHER) -m venv .venv-$*
+	@.venv-$*/bin/python -m pip install --disable-pip-version-check --quiet \
+	  -c constraints.txt -e '.[test]'
 	@touch $@

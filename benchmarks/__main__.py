@@ -1,6 +1,8 @@
 """Measure everything side by side; `tools/documents.py` makes the page of it.
 
 python -m benchmarks [--rounds N] [ROW ...]   rows that are named are shown and not kept
+python -m benchmarks --new [ROW ...]          rows that results.json lacks, or that are named,
+                                              are put among those it has
 """
 
 import argparse
@@ -19,8 +21,8 @@ from faultpath_quadrotor import native
 
 import faultpath
 from benchmarks import page
-from benchmarks.results import ROOT, Machine, Record, Results, record, save
-from benchmarks.rows import ROWS, SIDES, Row
+from benchmarks.results import ROOT, Machine, Record, Results, load, record, save
+from benchmarks.rows import ELSEWHERE, ROWS, SIDES, Row
 from faultpath.trials.execution.provenance import checkout, processor
 
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
@@ -31,16 +33,23 @@ class NotMeasured(Exception):
     """A side that could not be built, or that gives other numbers than ours."""
 
 
-def timed(side: str, loops: int) -> tuple[float, int]:
+def timed(side: str, loops: int) -> tuple[float, int, str]:
     """Time one side with pyperf in processes of its own, on the last processor.
 
-    Return units of work a second, and the calls that make a value, for the next round; `loops` 0
-    lets pyperf find them.
+    Return units of work a second, the calls that make a value, for the next round, and the side's
+    note; `loops` 0 lets pyperf find them.
     """
     where, environment = SIDES[side]
     with tempfile.TemporaryDirectory() as folder:
-        found = Path(folder) / "found.json"
-        command = [sys.executable, "-m", "benchmarks.side", where, "--processes=1", "--values=3"]
+        found, python = Path(folder) / "found.json", sys.executable
+        if side in ELSEWHERE:
+            python, problem = str(ROOT / ELSEWHERE[side]), str(Path(folder) / "problem.npz")
+            if not os.access(python, os.X_OK):
+                raise NotMeasured(f"{side} needs a newer Python, which `make bench` did not find")
+            write = [sys.executable, "-m", "benchmarks.peers.problem", problem]
+            subprocess.run(write, cwd=ROOT, check=True)
+            environment = {**environment, "FAULTPATH_PROBLEM": problem}
+        command = [python, "-m", "benchmarks.side", where, "--processes=1", "--values=3"]
         command += ["--warmups=1", "--min-time=0.1", f"--loops={loops}", f"--output={found}"]
         command += ["--quiet", "--copy-env", f"--affinity={max(os.sched_getaffinity(0))}"]
         done = subprocess.run(
@@ -54,37 +63,41 @@ def timed(side: str, loops: int) -> tuple[float, int]:
             said = [line for line in done.stderr.splitlines() if not line.startswith("ERROR:")]
             raise NotMeasured(f"{side}: {said[-1] if said else 'no message'}")
         bench = pyperf.Benchmark.load(str(found))
-    amount = float(bench.get_metadata()["amount"])
-    return amount / bench.median(), bench.get_total_loops() // bench.get_nvalue()
+    said = bench.get_metadata()
+    loops = bench.get_total_loops() // bench.get_nvalue()
+    return float(said["amount"]) / bench.median(), loops, said.get("note", "")
 
 
 def measure(rows: Sequence[Row], rounds: int) -> list[Record]:
     """Let the sides of some rows take turns and return the records."""
     sides = dict.fromkeys(side for row in rows for side in (row.ours, row.peer) if side)
     rates: dict[str, list[float]] = {side: [] for side in sides}
-    loops, missing = dict.fromkeys(sides, 0), dict[str, str]()
+    loops, missing, notes = dict.fromkeys(sides, 0), dict[str, str](), dict[str, str]()
     for number in range(rounds):
         for side in sides:
             if side in missing:
                 continue
             try:
-                rate, loops[side] = timed(side, loops[side])
+                rate, loops[side], notes[side] = timed(side, loops[side])
             except NotMeasured as reason:
                 missing[side] = f"Not measured: {reason}"
                 continue
             rates[side].append(rate)
             print(f"round {number + 1}, {side}: {page.number(rate)} /s", flush=True)
-    return [_record(row, rates, missing) for row in rows]
+    return [_record(row, rates, missing, notes) for row in rows]
 
 
-def _record(row: Row, rates: dict[str, list[float]], missing: dict[str, str]) -> Record:
+def _record(
+    row: Row, rates: dict[str, list[float]], missing: dict[str, str], notes: dict[str, str]
+) -> Record:
     for side in (row.ours, row.peer):
         if side in missing:
             return Record(name=row.name, unit=row.unit, target=row.target, note=missing[side])
     ours, peer = (rates.get(side, []) for side in (row.ours, row.peer))
     if row.unit == "ms":
         ours, peer = ([1e3 / rate for rate in side] for side in (ours, peer))
-    return record(row.name, row.unit, ours, peer, row.peer, row.target)
+    found = record(row.name, row.unit, ours, peer, row.peer, row.target)
+    return found.model_copy(update={"note": notes.get(row.peer, "")})
 
 
 def describe() -> Machine:
@@ -109,14 +122,26 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="benchmarks", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("rows", nargs="*", metavar="ROW", help="these rows, and keep nothing")
     parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--new", action="store_true", help="keep them with what was measured")
     asked = parser.parse_args()
-    chosen = [row for row in ROWS if not asked.rows or row.name in asked.rows]
+    before = load() if asked.new else None
+    kept = {each.name: each for each in before.records} if before else {}
+    lacking = [row for row in ROWS if row.name not in kept or kept[row.name].ours is None]
+    named = [row for row in ROWS if row.name in asked.rows]
+    chosen = named if asked.rows else lacking if asked.new else [*ROWS]
     if len(chosen) < len(asked.rows):
         parser.error(f"choose rows from {', '.join(repr(row.name) for row in ROWS)}")
     found = measure(chosen, asked.rounds)
     print("\n".join(map(page.told, found)))
-    if not asked.rows:
-        save(Results(machine=describe(), records=tuple(found)))
+    machine = describe()
+    if before is not None:
+        machine, when = before.machine, f"measured on {machine.date}"
+        for each in found:
+            note = each.note if each.ours is None else "; ".join(filter(None, (each.note, when)))
+            kept[each.name] = each.model_copy(update={"note": note})
+        found = [kept[row.name] for row in ROWS if row.name in kept]
+    if asked.new or not asked.rows:
+        save(Results(machine=machine, records=tuple(found)))
 
 
 if __name__ == "__main__":

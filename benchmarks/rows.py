@@ -7,6 +7,7 @@ from faultpath_quadrotor.native import library
 
 from benchmarks.results import Target
 
+_XLA = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 _PORTABLE = {library.VARIABLE: library.PORTABLE}
 
 SIDES: Mapping[str, tuple[str, Mapping[str, str]]] = {
@@ -16,6 +17,7 @@ SIDES: Mapping[str, tuple[str, Mapping[str, str]]] = {
     "fused replan": ("benchmarks.planning:replan", {}),
     "portable replan": ("benchmarks.planning:replan", _PORTABLE),
     "pytorch_mppi": ("benchmarks.peers.pytorch_mppi_side:command", {}),
+    "jax-mppi": ("benchmarks.peers.jax_mppi_side:command", {"XLA_FLAGS": _XLA}),
     "one vehicle": ("benchmarks.planning:one_vehicle", {}),
     "plant": ("benchmarks.physics:plant", {}),
     "portable plant": ("benchmarks.physics:plant", _PORTABLE),
@@ -27,6 +29,8 @@ SIDES: Mapping[str, tuple[str, Mapping[str, str]]] = {
     "scipy.stats.bootstrap": ("benchmarks.peers.scipy_side:percentile", {}),
 }
 """What builds each side, as `module:function`, and its environment."""
+ELSEWHERE = {"jax-mppi": ".venv-bench-jax/bin/python"}
+"""Pythons of the sides that need one of their own; they get the problem as a file."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,7 @@ ROWS = (
     Row("Fused rollout, portable", "replans/s", "fused rollout", "portable"),
     Row("Fused rollout, torch.mm", "replans/s", "fused rollout", "torch.mm", _ratio(0.75)),
     Row("Fused replan, pytorch_mppi", "replans/s", "fused replan", "pytorch_mppi", _ratio(5.0)),
+    Row("Fused replan, jax-mppi", "replans/s", "fused replan", "jax-mppi"),
     Row("Portable replan, pytorch_mppi", "replans/s", "portable replan", "pytorch_mppi"),
     Row("One vehicle, depth image encoded and queried", "ms", "one vehicle", target=_at_most(5.0)),
     Row("Full plant, RotorPy", _STEPS, "plant", "RotorPy"),

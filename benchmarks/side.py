@@ -6,6 +6,7 @@ python -m benchmarks.side MODULE:FUNCTION [pyperf's options]
 import importlib
 import sys
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +21,8 @@ class Side:
     work: Callable[[], object]
     amount: float = 1.0
     """Units of work in one call; a rate is this over the seconds of a call."""
+    note: str = ""
+    """What runs it, where that is not what runs the others."""
 
 
 def check_same(found: Any, ours: Any, tolerance: float) -> None:
@@ -27,6 +30,16 @@ def check_same(found: Any, ours: Any, tolerance: float) -> None:
     apart = float(np.max(np.abs(np.asarray(found) - np.asarray(ours))))
     if not apart <= tolerance:
         sys.exit(f"its numbers differ from ours by {apart:.3g}")
+
+
+def one_thread() -> AbstractContextManager[object]:
+    """Hold torch to one thread and no gradients, where the side's environment has torch."""
+    try:
+        import torch
+    except ModuleNotFoundError:
+        return nullcontext()
+    torch.set_num_threads(1)
+    return torch.inference_mode()
 
 
 def main() -> None:
@@ -41,13 +54,12 @@ def main() -> None:
     if not args.worker:  # the parent only starts workers
         runner.bench_func(args.side, lambda: None)
         return
-    import torch
-
-    torch.set_num_threads(1)
     module, _, function = args.side.partition(":")
-    with torch.inference_mode():
+    with one_thread():
         side: Side = getattr(importlib.import_module(module), function)()
         runner.metadata["amount"] = side.amount
+        if side.note:
+            runner.metadata["note"] = side.note
         runner.bench_func(args.side, side.work)
 
 

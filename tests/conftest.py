@@ -5,6 +5,7 @@ import signal
 from collections.abc import Iterator
 
 import pytest
+from engine_alone import EngineAlone
 from hypothesis import settings
 
 settings.register_profile("fixed", derandomize=True, database=None, deadline=None)
@@ -21,6 +22,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--fuzz-seed", default="1", help="Seed of the fuzz tests, a number or `random`."
     )
+    parser.addoption(
+        "--engine-alone", action="store_true", help="Leave out what needs torch or the quadrotor."
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("--engine-alone"):
+        config.pluginmanager.register(EngineAlone(), "engine-alone")
 
 
 @pytest.fixture

@@ -135,11 +135,11 @@ def actions() -> tuple[Tensor, Tensor, Tensor, Tensor]:
 
 
 _GOAL = torch.tensor(planning.GOAL_M)
-_WEIGHTS = CostWeights()
+WEIGHTS = CostWeights()
 
 
 def cost(state: Tensor) -> Tensor:
     """Return the distance to the goal and the penalty on speed of states `[..., 50]`."""
     away = torch.linalg.vector_norm(state[..., POSITION] - _GOAL, dim=-1)
     speed = torch.linalg.vector_norm(state[..., VELOCITY], dim=-1)
-    return away + _WEIGHTS.speed * (speed - _WEIGHTS.v_max_mps).clamp_min(0).square()
+    return away + WEIGHTS.speed * (speed - WEIGHTS.v_max_mps).clamp_min(0).square()

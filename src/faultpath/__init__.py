@@ -65,7 +65,11 @@ _HOMES = {
 
 def __getattr__(name: str) -> object:
     if name not in _HOMES:
-        raise AttributeError(f"module 'faultpath' has no attribute {name!r}")
+        from faultpath.core.renamed import of_module
+
+        moved = of_module(f"faultpath.{name}")
+        hint = f": {moved}" if moved else ""
+        raise AttributeError(f"module 'faultpath' has no attribute {name!r}{hint}")
     import random
 
     drawn = random.getstate()

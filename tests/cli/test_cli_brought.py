@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from cli_runs import ROOT, audit, faultpath
+from faultpath_quadrotor.plant import module
 
 from faultpath.api.runs import open_run
 from faultpath.core.errors import Notice
@@ -21,7 +22,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.lend
 def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 3)
+    monkeypatch.setattr(module, "CONTROL_STEPS", 3)
     shutil.copy(PARTS, tmp_path / "mine.py")
 
 

@@ -104,11 +104,12 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_no_verb_is_left_out() -> None:
+    """Those that the quadrotor brings are among them."""
     assert set(OPTIONS) - {"demo"} == set(RIGHT)  # the demo only takes a folder, and seconds
 
 
 @pytest.mark.usefixtures("_here")
-@pytest.mark.parametrize("verb", RIGHT)
+@pytest.mark.parametrize("verb", [verb for verb in RIGHT if verb in OPTIONS])
 def test_junk_in_the_place_of_a_word(verb: str, fuzz_seed: int) -> None:
     rng = random.Random(f"{fuzz_seed} {verb}")
     for _ in range(12):

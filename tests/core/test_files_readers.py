@@ -8,9 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from faultpath_quadrotor.flightlog.flight import read_flight
-from faultpath_quadrotor.flightlog.reading import read_columns
-from faultpath_quadrotor.paper.run import read_results
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
@@ -25,7 +22,16 @@ from faultpath.trials.store.folder import RunFolder, read_manifest, read_outcome
 Read = Callable[[Path], object]
 
 
+def _columns(path: Path) -> object:
+    from faultpath_quadrotor.flightlog.reading import read_columns
+
+    return read_columns(str(path))
+
+
 def _log(path: Path) -> object:
+    from faultpath_quadrotor.flightlog.flight import read_flight
+    from faultpath_quadrotor.flightlog.reading import read_columns
+
     return read_flight(path, read_columns("px4").model_copy(update={"mass_kg": 1.0}))
 
 
@@ -47,13 +53,19 @@ def _evidence(path: Path) -> object:
     return read_evidence(path)
 
 
+def _reproduction(path: Path) -> object:
+    from faultpath_quadrotor.paper.run import read_results
+
+    return read_results(path.parent)
+
+
 def _shard(path: Path) -> object:
     folder = RunFolder(path.parents[1])
     return folder.load_shard(path.name.partition("-")[0], (), lambda said: None)
 
 
 READERS: dict[str, tuple[str, Read]] = {
-    "columns of a log": ("map.yaml", lambda path: read_columns(str(path))),
+    "columns of a log": ("map.yaml", _columns),
     "log as text": ("flight.csv", _log),
     "log as a table": ("flight.parquet", _log),
     "log as ULog": ("flight.ulg", _log),
@@ -67,7 +79,7 @@ READERS: dict[str, tuple[str, Read]] = {
     "any file of a run": ("record.json", read_regular),
     "outcomes": ("outcomes.parquet", read_outcomes),
     "evidence": ("evidence.parquet", _evidence),
-    "reproduction": ("reproduction.json", lambda path: read_results(path.parent)),
+    "reproduction": ("reproduction.json", _reproduction),
     "shard": ("shards/key-digest.parquet", _shard),
 }
 """By what it reads: the name of the file, and the reader."""

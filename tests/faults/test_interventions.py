@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import torch
+from libraries import LIBRARIES
 
 from faultpath.core.streams import generator
 from faultpath.faults import (
@@ -31,7 +31,6 @@ from faultpath.interface import Channel
 
 SCENES = ("a", "b")
 DT_S = 0.05
-LIBRARIES = pytest.mark.parametrize("to", [np.asarray, torch.asarray], ids=["numpy", "torch"])
 
 
 def play(

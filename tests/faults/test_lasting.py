@@ -4,13 +4,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-import torch
+from libraries import LIBRARIES
 
 from faultpath.faults import Bias, Draws, Fault, Moment, Noise, Scale, Sequence
 
 SCENES = tuple(f"scene-{i}" for i in range(4000))
 DT_S = 0.05
-LIBRARIES = pytest.mark.parametrize("to", [np.asarray, torch.asarray], ids=["numpy", "torch"])
 
 
 def biases(bias: Bias, steps: int, draws: Draws, to: Any = np.asarray) -> np.ndarray[Any, Any]:

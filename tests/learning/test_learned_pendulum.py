@@ -40,6 +40,7 @@ print([len(shipped.modules(name, 0)) for name in shipped.variants])
 @pytest.mark.slow
 def test_it_runs_from_an_empty_folder_and_its_fits_are_matched_and_audited(tmp_path: Path) -> None:
     """One process for all of it: half of the time goes into loading torch and Gymnasium."""
+    pytest.importorskip("torch")
     done = subprocess.run(
         [sys.executable, "-c", FIT_AND_AUDIT, str(EXAMPLE)],
         cwd=tmp_path,

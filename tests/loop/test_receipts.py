@@ -6,14 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-import torch
+from libraries import LIBRARIES, to_torch
 from tap_toys import make
 
 from faultpath.faults import Fault, Scale
 from faultpath.loop import FaultedElsewhere, NotDelivered, Reading, Taps
 from faultpath.loop.receipts import check_delivered
 
-LIBRARIES = pytest.mark.parametrize("to", [np.asarray, torch.asarray], ids=["numpy", "torch"])
 LATE = Fault(
     channel="mass",
     intervention=Scale(factor=2.0),
@@ -66,7 +65,7 @@ def test_a_nan_that_stays_is_not_altered(to: Any) -> None:
 
 
 @LIBRARIES
-@pytest.mark.parametrize("mask_to", [np.asarray, torch.asarray])
+@pytest.mark.parametrize("mask_to", [np.asarray, to_torch])
 def test_only_running_scenes_count(to: Any, mask_to: Any) -> None:
     taps = make([LATE.model_copy(update={"onset_step": 1, "duration_steps": None})])
     run(taps, to, range(3))

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from libraries import to_torch
 from tap_toys import INTERVENTIONS, make, play
 
 from faultpath.faults import Coupled, Delay, Fault, Intervention, Noise, Offset, Scale, Sequence
@@ -32,7 +32,7 @@ def fault(intervention: Intervention, window: dict[str, Any], *consumers: str) -
 @WINDOWS
 def test_torch_gives_the_bits_of_numpy(intervention: Intervention, window: dict[str, Any]) -> None:
     faulted = fault(intervention, window)
-    on_torch = play([faulted], SCENES, to=torch.asarray)
+    on_torch = play([faulted], SCENES, to=to_torch)
     assert on_torch.tobytes() == play([faulted], SCENES).tobytes()
 
 
@@ -42,10 +42,10 @@ def test_a_scene_does_not_depend_on_its_neighbours(
     intervention: Intervention, window: dict[str, Any]
 ) -> None:
     faulted = fault(intervention, window)
-    block = play([faulted], SCENES, to=torch.asarray)
+    block = play([faulted], SCENES, to=to_torch)
     for order in (("c", "a", "d", "b"), ("b", "d"), ("c",)):
         rows = [SCENES.index(scene) for scene in order]
-        some = play([faulted], order, to=torch.asarray)
+        some = play([faulted], order, to=to_torch)
         assert some.tobytes() == np.ascontiguousarray(block[:, rows]).tobytes()
 
 
@@ -75,6 +75,8 @@ def test_outside_the_window_the_reading_is_untouched(intervention: Intervention)
 @WINDOWS
 def test_nothing_waits_for_a_device(intervention: Intervention, window: dict[str, Any]) -> None:
     """A meta tensor has no numbers: reading one back to the host raises."""
+    import torch
+
     taps = make([fault(intervention, window)], SCENES)
     taps.set_active(torch.ones(4, dtype=torch.bool, device="meta"))
     for step in range(16):

@@ -2,11 +2,12 @@
 
 import re
 from contextlib import nullcontext
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
-import torch
+from libraries import LIBRARIES, to_torch
 from tap_toys import make
 
 from faultpath.faults import Fault, Freeze, Scale
@@ -43,7 +44,7 @@ def test_a_consumer_cannot_write_into_what_it_gets(faults: tuple[Fault, ...]) ->
 
 
 @CLEAN_OR_NULL
-@pytest.mark.parametrize("to", [np.array, torch.tensor])
+@LIBRARIES
 def test_a_second_delivery_is_the_first_one_with_a_null_fault_and_without(
     faults: tuple[Fault, ...], to: Any
 ) -> None:
@@ -64,25 +65,25 @@ def test_a_second_delivery_is_the_first_one_with_a_null_fault_and_without(
         (np.zeros(3), "the reading has 3 rows for 2 scenes"),
         (np.zeros(()), "the reading has no rows for 2 scenes"),
         (np.zeros((2, 3)), "the reading of one scene has the shape [3], but source 'scale' is"),
-        (torch.zeros(2, 1), "the reading of one scene has the shape [1]"),
+        (partial(to_torch, np.zeros((2, 1))), "the reading of one scene has the shape [1]"),
         ([1.0, 2.0], "the reading's value is a list"),
         (1.0, "the reading's value is a float"),
         (None, "the reading's value is a NoneType"),
         (np.array(["a", "b"]), "the reading is of <U1; a source gives real numbers"),
         (np.array([None, 1.0]), "the reading is of object"),
         (np.array([1j, 1.0]), "the reading is of complex128"),
-        (torch.tensor([1j, 1.0]), "the reading is of torch.complex64"),
+        (partial(to_torch, [1j, 1.0]), "the reading is of torch.complex64"),
     ],
 )
 def test_the_first_reading_is_as_declared_faulted_or_not(
     faults: tuple[Fault, ...], value: Any, sentence: str
 ) -> None:
     with pytest.raises(MalformedReading, match=re.escape(sentence)):
-        deliver(make(faults), value)
+        deliver(make(faults), value() if callable(value) else value)
 
 
 @CLEAN_OR_NULL
-@pytest.mark.parametrize("to", [np.array, torch.tensor])
+@LIBRARIES
 @pytest.mark.parametrize("lost", [np.nan, np.inf])
 def test_the_first_reading_is_finite(faults: tuple[Fault, ...], to: Any, lost: float) -> None:
     with pytest.raises(NotFinite, match=r"in 1 of 2 scenes, 'b' for one"):
@@ -104,10 +105,14 @@ def test_a_step_before_the_first_is_refused() -> None:
 
 
 class TestGuard:
-    @pytest.mark.parametrize("mode", [nullcontext, torch.inference_mode])
+    @pytest.mark.parametrize("inference", [False, True])
     @ANY_FAULT
-    def test_a_consumer_that_writes_is_named(self, mode: Any, faults: tuple[Fault, ...]) -> None:
-        with mode():
+    def test_a_consumer_that_writes_is_named(
+        self, inference: bool, faults: tuple[Fault, ...]
+    ) -> None:
+        import torch
+
+        with torch.inference_mode() if inference else nullcontext():
             taps = make(faults, guard=True)
             for step in range(3):
                 deliver(taps, torch.ones(2), step, "predictor.dynamics")
@@ -117,9 +122,11 @@ class TestGuard:
             with pytest.raises(WrittenTo, match=re.escape("tap mass -> observer.model: the cons")):
                 taps.verify(2)
 
-    @pytest.mark.parametrize("mode", [nullcontext, torch.inference_mode])
-    def test_a_plant_may_write_into_its_own(self, mode: Any) -> None:
-        with mode():
+    @pytest.mark.parametrize("inference", [False, True])
+    def test_a_plant_may_write_into_its_own(self, inference: bool) -> None:
+        import torch
+
+        with torch.inference_mode() if inference else nullcontext():
             taps, plant = make(guard=True), torch.ones(2)
             for step in range(3):
                 assert torch.equal(deliver(taps, plant, step), plant)

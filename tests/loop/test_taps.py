@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import torch
+from libraries import to_torch
 from tap_toys import make
 
 from faultpath.core.errors import UserError
@@ -21,7 +21,7 @@ def mass(step: int, value: Any = None, source: str = "scale") -> Reading:
 
 def test_without_a_fault_the_consumer_gets_the_very_tensor() -> None:
     taps = make([SCALE])
-    value = torch.tensor([1.0, 3.0])
+    value = to_torch([1.0, 3.0])
     assert taps.deliver("mass", "predictor.dynamics", mass(0, value), 0) is value
 
 

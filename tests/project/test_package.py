@@ -37,7 +37,8 @@ def test_version_is_the_same_everywhere(declared: dict[str, Any], root: Path) ->
 
 def test_constraints_pin_one_public_version_each(pins: list[Requirement]) -> None:
     names = [canonicalize_name(pin.name) for pin in pins]
-    assert names == sorted(set(names))
+    assert names == sorted(names)
+    assert len({(pin.name, str(pin.marker)) for pin in pins}) == len(pins)
     for pin in pins:
         (specifier,) = pin.specifier
         assert specifier.operator == "=="

@@ -8,10 +8,10 @@ import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, sync_playwright
 
 from faultpath.decisions.decide import decide
 from faultpath.decisions.model import FaultedTap, Path
@@ -22,6 +22,9 @@ from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantSho
 from faultpath.trials.declared import FloorPlan, Pillar, Prism
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.tables import TrialAddress
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 TOPOLOGIES = ("clutter", "corridors", "doorways", "intersections", "rooms")
 BASELINE, REPAIR = "gru", "gru-dcc"
@@ -118,13 +121,15 @@ def interface() -> Interface:
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
+def browser() -> Iterator["Browser"]:
     """A Chromium without a network; skipped only where there is none and `CI` is not set."""
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     if chromium is None:
         if os.environ.get("CI"):
             pytest.fail("there is no Chromium, and CI must run the browser tests")
         pytest.skip("there is no Chromium on this machine")
+    from playwright.sync_api import sync_playwright
+
     with sync_playwright() as playwright:
         running = playwright.chromium.launch(executable_path=chromium, args=list(ARGUMENTS))
         yield running

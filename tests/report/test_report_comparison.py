@@ -4,14 +4,17 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from playwright.sync_api import Browser
 
 from faultpath.decisions.model import Path as FaultPath
 from faultpath.report.compared import Compared, differing, titles, together
 from faultpath.report.comparison import effects, facts_table, headline, page, sentences
 from faultpath.report.inputs import ReportInput
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 NASTY = '<script>alert("x")</script> & 100 % of _it_ \u202e'
 Given = tuple[Compared, ...]
@@ -51,7 +54,7 @@ def test_detected_here_and_not_there_is_no_difference(two: Given) -> None:
 
 
 def test_sizes_of_one_fault_are_drawn_over_the_size_and_decided_as_one_family(
-    one_seed: ReportInput, browser: Browser, tmp_path: Path
+    one_seed: ReportInput, browser: "Browser", tmp_path: Path
 ) -> None:
     sizes = (-0.1, 0.1, 0.2)
     apart = [run(one_seed, i, fault=f"calibration={s}") for i, s in enumerate(sizes, 1)]

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import torch
 from toy_study import SCENES, UNITS, study
 from toy_system import CONSUMERS, STEPS, ToySystem
 
@@ -63,6 +62,8 @@ class Scribbler(ToySystem):
 
     def run(self, variant, scenes, taps, seed):
         outcomes = super().run(variant, scenes, taps, seed)
+        import torch
+
         mass = Reading(torch.ones(len(scenes)), "mass", STEPS)
         got = taps.deliver("mass", CONSUMERS[0], mass, STEPS)
         if self._options["odd"] == "writes":
@@ -75,6 +76,8 @@ class Plant(ToySystem):
 
     def run(self, variant, scenes, taps, seed):
         outcomes = super().run(variant, scenes, taps, seed)
+        import torch
+
         state = torch.ones(len(scenes))
         kept = taps.deliver("mass", CONSUMERS[0], Reading(state, "mass", STEPS), STEPS)
         state += 1.0
@@ -86,10 +89,12 @@ def odd(**options: str) -> Odd:
 
 
 def plant(**options: str) -> Plant:
+    pytest.importorskip("torch")
     return Plant(**options)
 
 
 def scribbler(**options: str) -> Scribbler:
+    pytest.importorskip("torch")
     return Scribbler(**options)
 
 

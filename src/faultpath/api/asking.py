@@ -12,6 +12,8 @@ from typing import Any, TypeVar
 
 from faultpath.api.display import Display, Show, display
 from faultpath.api.systems import Chosen, choose
+from faultpath.core.errors import UserError
+from faultpath.core.renamed import of_option
 from faultpath.trials import Library, OutcomeTable, Study, System, library_of
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import Failure, RunResult, run_study
@@ -39,11 +41,11 @@ def asks(model: type[Asked]) -> Callable[[_Call], _Call]:
                 default = each.get_default(call_default_factory=True)
             kind = inspect.Parameter.KEYWORD_ONLY
             found.append(inspect.Parameter(name, kind, default=default, annotation=each.annotation))
-            said, more = f"{name}: {each.description}", " " * 12
-            lines.append(textwrap.fill(said, 96, initial_indent=" " * 8, subsequent_indent=more))
+            said, more = f"{name}: {each.description}", " " * 8
+            lines.append(textwrap.fill(said, 96, initial_indent=" " * 4, subsequent_indent=more))
         vars(function)["__signature__"] = signature.replace(parameters=found)
-        help = (function.__doc__ or "").replace("        **given: ...", "\n".join(lines))
-        function.__doc__ = help
+        help = inspect.cleandoc(function.__doc__ or "")  # Python 3.13 takes the indent away itself
+        function.__doc__ = help.replace("    **given: ...", "\n".join(lines))
         return function
 
     return described
@@ -61,6 +63,8 @@ def begin(
     `UserError` for what does not fit, named as its caller names it, for a library that does not
     exist, and as `choose`.
     """
+    for gone in filter(None, (of_option(call, name) for name in given)):
+        raise UserError(f"{gone}.")
     asked = ask(model, given, isinstance(progress, Display) and progress.is_command)
     how = vars(asked)
     executor = how.get("executor", "local")

@@ -14,6 +14,7 @@ from pydantic import BaseModel
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable, read_table
 from faultpath.core.files.plain import Misread, model_of
+from faultpath.core.renamed import tells_renames
 from faultpath.decisions.gate import Answer, Ask, found, holds_when_shared
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import faulted_taps
@@ -60,6 +61,7 @@ class FinishedRun:
         return f"<{type(self).__name__} in {self.folder}: {self.headline}>"
 
 
+@tells_renames
 class Run(FinishedRun):
     """A finished audit: what was decided, from which trials, and where its files are.
 
@@ -67,7 +69,7 @@ class Run(FinishedRun):
     """
 
     record: DecisionRecord
-    """What was decided: `verdict.headline` in a sentence, `effects` in numbers."""
+    """What was decided: `headline` in a sentence, `effects` in numbers."""
 
     def __init__(self, folder: Path, held: ReportInput, trials: pa.Table) -> None:
         super().__init__(folder, held.record, held.provenance)

@@ -21,6 +21,7 @@ from faultpath.core.misfits import misfit_of
 LONGEST = 1_000_000
 """Bytes of a YAML file."""
 _DEEPEST = 12
+_TOO_DEEP = "is nested too deeply; a file of this kind has few levels"
 _DIGITS = 19
 _TYPE = "tag:yaml.org,2002:"
 _Safe: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C it is four times as fast
@@ -132,6 +133,8 @@ def read_yaml(data: bytes) -> Document:
     except yaml.MarkedYAMLError as error:
         said = " ".join(" ".join(filter(None, (error.context, error.problem))).split())
         line = None if error.problem_mark is None else error.problem_mark.line + 1
+        if "nesting depth" in said:  # newer parsers keep a limit of their own
+            raise Misread(_TOO_DEEP, line) from None
         raise Misread(f"is not plain YAML ({said}); correct it", line) from None
     except yaml.YAMLError as error:
         said = " ".join(str(error).split())
@@ -180,7 +183,7 @@ def _check_events(events: Iterator[Any]) -> None:
         line = event.start_mark.line + 1
         depth += isinstance(event, CollectionStartEvent) - isinstance(event, CollectionEndEvent)
         if depth > _DEEPEST:
-            raise Misread("is nested too deeply; a file of this kind has few levels", line)
+            raise Misread(_TOO_DEEP, line)
         if isinstance(event, AliasEvent):
             raise Misread("aliases are not read; write it out", line)
         if isinstance(event, NodeEvent) and (tag := getattr(event, "tag", None)) is not None:

@@ -1,0 +1,39 @@
+"""The planning problem in a file, for a peer whose Python is one that torch has no build for.
+
+python -m benchmarks.peers.problem FILE.npz
+"""
+
+import sys
+
+import numpy as np
+import torch
+
+from benchmarks import planning
+from benchmarks.peers import rows
+
+
+def main() -> None:
+    """Write weights, constants, state, actions, and what must come out for some candidates."""
+    model = rows.RowsModel()
+    given = {name: each.numpy() for name, each in model.state_dict().items()}
+    actions = dict(zip(("centre", "sigma", "low", "high"), rows.actions(), strict=True))
+    given |= {name: each.numpy() for name, each in actions.items()}
+    candidates = planning.commands()[:, :, 0, : planning.CHECKED].permute(0, 2, 1)
+    shape = (3, planning.HORIZON, planning.CHECKED)
+    np.savez(
+        sys.argv[1],
+        initial=rows.initial().numpy(),
+        candidates=candidates.numpy(),
+        positions=np.reshape(planning.positions(), shape),
+        sizes=(planning.CANDIDATES, planning.HORIZON),
+        motion=(model.gain, model.weight_n, rows.KEEP, rows.MEAN, rows.CONTROL_DT_S),
+        bounds=(rows.anchored.LINEAR_BOUND_MPS2, rows.anchored.ANGULAR_BOUND_RADPS2),
+        goal=planning.GOAL_M,
+        speed=(rows.WEIGHTS.speed, rows.WEIGHTS.v_max_mps),
+        **given,
+    )
+
+
+if __name__ == "__main__":
+    with torch.inference_mode():
+        main()
