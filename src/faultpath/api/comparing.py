@@ -86,5 +86,5 @@ def compare(runs: Sequence[str | PathLike[str] | Run]) -> Comparison:
         if run.folder.resolve() in places:
             raise UserError(f"{run.folder} is given twice: give each run once.")
         places.add(run.folder.resolve())
-        found.append(Compared(number, str(run.folder), run.record, run.provenance))
+        found.append(Compared(number, str(run.folder), run.record, run.provenance, run.held))
     return Comparison(together(found))

@@ -71,7 +71,8 @@ class Run(FinishedRun):
 
     def __init__(self, folder: Path, held: ReportInput, trials: pa.Table) -> None:
         super().__init__(folder, held.record, held.provenance)
-        self._held = held
+        self.held = held
+        """All that its pages are made from."""
         self._trials = trials
 
     @property
@@ -108,7 +109,7 @@ class Run(FinishedRun):
 
         They go into `folder`, by default that of the run. `UserError` where it cannot be written.
         """
-        return write_report(self._held, self.folder if folder is None else Path(folder))
+        return write_report(self.held, self.folder if folder is None else Path(folder))
 
     def _repr_markdown_(self) -> str:
         return markdown_table(self.record)

@@ -43,6 +43,14 @@ def plan(
     out: Annotated[Path, typer.Option(parser=as_path, help="Study file to write.")] = Path(
         "study.yaml"
     ),
+    dependent_failures: Annotated[
+        Path | None,
+        typer.Option(
+            "--dependent-failures",
+            parser=as_path,
+            help="Write the table of dependent failures to this .csv file too.",
+        ),
+    ] = None,
     as_json: Json = False,
     **given: Any,
 ) -> None:
@@ -50,22 +58,28 @@ def plan(
     write them as a study file for `faultpath audit --study`."""
     from faultpath.api.before import plan
     from faultpath.api.display import SafeConsole
-    from faultpath.trials.store.atomic import check_writable
+    from faultpath.trials.store.atomic import check_writable, write_text
 
-    check_writable(out)
+    for each in filter(None, (out, dependent_failures)):
+        check_writable(each)
     if out.exists():
         raise UserError(f"{out} is there already: give another file with --out, or remove it.")
     found = plan(system, **given, progress=display())
     written = found.write(out)
 
+    from faultpath.decisions.tables.csv import csv_text
     from faultpath.decisions.tables.terminal import drawn
+    from faultpath.report.dependent import in_short, of_plan
     from faultpath.report.plan import tables
 
+    if dependent_failures is not None:
+        dependent = of_plan(found.plan)
+        write_text(dependent_failures, csv_text(dependent) if dependent else "")
     if as_json:
         typer.echo(found.plan.model_dump_json(indent=2))
         return
     console = SafeConsole()
-    for table in tables(found.plan):
+    for table in filter(None, (*tables(found.plan), in_short(found.plan))):
         console.print(drawn(table))
         for note in table.notes:
             console.print(note, markup=False)
