@@ -71,7 +71,7 @@ def _salib() -> tuple[Any, Any]:
         from SALib.sample import sobol as sampling  # pyright: ignore
     except ModuleNotFoundError as error:
         raise UserError(
-            f"a sensitivity analysis needs the package {error.name!r}, which is not installed: "
+            f"a sensitivity analysis needs the package {str(error.name).partition('.')[0]!r}, which is not installed: "
             f"{extra('sensitivity')}"
         ) from None
     return cast(Any, sampling).sample, cast(Any, analysis).analyze
