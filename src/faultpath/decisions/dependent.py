@@ -94,13 +94,14 @@ def dependent_groups(interface: Interface, variants: Sequence[Wired]) -> tuple[G
             ways.append(Way(path=SHARED, taps=taps, passed_on=tuple(every)))
         channels = tuple(dict.fromkeys(channel for channel, _ in taps))
         fault, _ = expected((), name, sources, channels)
+        named = channels if sources[0].correlation_group is None else (name,)
         found.append(
             Group(
                 name=name,
                 sources=tuple(each.name for each in sources),
                 coupling=_coupling(sources, len(places), bool(every)),
                 ways=tuple(ways),
-                fault=fault or JOINED.join(f"{channel}:scale={_SIZE}" for channel in channels),
+                fault=fault or JOINED.join(f"{each}:scale={_SIZE}" for each in named),
             )
         )
     return tuple(found)
