@@ -70,8 +70,9 @@ def _salib() -> tuple[Any, Any]:
         from SALib.analyze import sobol as analysis  # pyright: ignore
         from SALib.sample import sobol as sampling  # pyright: ignore
     except ModuleNotFoundError as error:
+        name = str(error.name).partition(".")[0]
         raise UserError(
-            f"a sensitivity analysis needs the package {str(error.name).partition('.')[0]!r}, which is not installed: "
+            f"a sensitivity analysis needs the package {name!r}, which is not installed: "
             f"{extra('sensitivity')}"
         ) from None
     return cast(Any, sampling).sample, cast(Any, analysis).analyze
