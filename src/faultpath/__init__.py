@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from faultpath.api.mapping import reversal_map
     from faultpath.api.runs import Run, open_run
     from faultpath.api.searching import search
+    from faultpath.api.sensitivity import sensitivity
     from faultpath.api.systems import load_system
     from faultpath.core.errors import Stopped, UserError
     from faultpath.core.streams import generator
@@ -40,6 +41,7 @@ __all__ = [
     "plan",
     "reversal_map",
     "search",
+    "sensitivity",
     "trace",
 ]
 
@@ -59,6 +61,7 @@ _HOMES = {
     "plan": "faultpath.api.before",
     "reversal_map": "faultpath.api.mapping",
     "search": "faultpath.api.searching",
+    "sensitivity": "faultpath.api.sensitivity",
     "trace": "faultpath.api.before",
 }
 

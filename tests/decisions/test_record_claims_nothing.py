@@ -223,12 +223,13 @@ def check(made: DecisionRecord) -> None:
             assert made.scenes < made.scenes_needed or f"{effect.adjusted_p_value:.3f}" in short
         for who, side in SIDES:
             assert claimed(short, who) == (effects.get(effect.path, 0) == side)
-    for item in made.break_even:
-        ends = {effects.get(CORRECT, 0), effects.get(item.path, 0)} - {0}
+    frequencies = [(item, CORRECT, item.path) for item in made.break_even]
+    for item, *at in (*frequencies, *((b, b.path, SHARED) for b in made.break_even_beta)):
+        ends = {effects.get(path, 0) for path in at} - {0}
         for who, sign in ((REPAIR, 1), (BASELINE, -1)):
             assert not claimed(item.words, who) or sign in ends
         shown = wording.break_even(item.result)
-        part = " is ahead where the fault is " in item.words
+        part = " is ahead where " in item.words
         assert (shown == "any") == (not item.words or part), (shown, item.words)
         assert item.result.level >= 0.95 - 1e-12
     if made.question.primary not in {e.path for e in made.effects}:

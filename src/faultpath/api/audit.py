@@ -42,6 +42,7 @@ from faultpath.trials.store.atomic import write_file, write_text
 from faultpath.trials.store.folder import keyed, read_regular, seal
 from faultpath.trials.store.signals import SIGNALS, Signal, decode_signals, encode_signals
 from faultpath.trials.store.tables import TrialAddress
+from faultpath.trials.varied import SensitivityQuestion
 from faultpath.trials.work.executor import Progress
 
 _LONGEST_NAME = 180
@@ -125,7 +126,7 @@ def audits(
     return tuple(runs)
 
 
-def run_folder(asked: Running, chosen: Chosen, named: Sequence[str]) -> Path:
+def run_folder(asked: Running | SensitivityQuestion, chosen: Chosen, named: Sequence[str]) -> Path:
     """Return the folder of a run.
 
     Without a folder of the caller's it is named after everything that makes it another study,

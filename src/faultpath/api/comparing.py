@@ -8,8 +8,9 @@ from pathlib import Path
 
 from faultpath.api.runs import RECORD, Run, open_run
 from faultpath.core.errors import UserError
+from faultpath.decisions.tables.csv import csv_text
 from faultpath.report.compared import Compared, differing, together
-from faultpath.report.comparison import headline, page, sentences
+from faultpath.report.comparison import dependent_failures, headline, page, sentences
 from faultpath.trials.store.atomic import write_text
 from faultpath.trials.store.folder import read_regular
 
@@ -32,6 +33,21 @@ class Comparison:
         `UserError` where it cannot be written.
         """
         write_text(Path(path), page(self.runs))
+        return Path(path)
+
+    def dependent_failures(self, path: str | PathLike[str]) -> Path:
+        """Write what the audits show together of failures that have one cause, as CSV.
+
+        `UserError` where it cannot be written, where audits are of other systems or variants, and
+        where no two places depend on each other.
+        """
+        found = dependent_failures(self.runs)
+        if found is None:
+            raise UserError(
+                "there is no table of dependent failures: give audits of one system and the same "
+                "variants, of which several places have a source in common."
+            )
+        write_text(Path(path), csv_text(found))
         return Path(path)
 
     def as_json(self) -> dict[str, object]:
@@ -86,5 +102,5 @@ def compare(runs: Sequence[str | PathLike[str] | Run]) -> Comparison:
         if run.folder.resolve() in places:
             raise UserError(f"{run.folder} is given twice: give each run once.")
         places.add(run.folder.resolve())
-        found.append(Compared(number, str(run.folder), run.record, run.provenance))
+        found.append(Compared(number, str(run.folder), run.record, run.provenance, run.held))
     return Comparison(together(found))

@@ -30,14 +30,18 @@ from faultpath.trials.store.tables import decode_outcomes, decode_traces
 if TYPE_CHECKING:
     from faultpath.decisions.map.model import MapRecord
     from faultpath.decisions.search.model import SearchRecord
+    from faultpath.decisions.sensitivity.model import SensitivityRecord
 
 RECORD, SYSTEM, MAP, SEARCH = "record.json", "system.json", "map.json", "search.json"
+SENSITIVITY = "sensitivity.json"
 MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES)
 """The files of an audit's folder that its pages are made from, and checked against."""
 MAP_MADE_FROM = (MAP, OUTCOMES)
 """Those of a map's."""
 SEARCH_MADE_FROM = (SEARCH, OUTCOMES)
 """Those of a search's; its confirming audit has a folder of its own."""
+SENSITIVITY_MADE_FROM = (SENSITIVITY, OUTCOMES)
+"""Those of a sensitivity analysis."""
 
 _Model = TypeVar("_Model", bound=BaseModel)
 
@@ -73,7 +77,8 @@ class Run(FinishedRun):
 
     def __init__(self, folder: Path, held: ReportInput, trials: pa.Table) -> None:
         super().__init__(folder, held.record, held.provenance)
-        self._held = held
+        self.held = held
+        """All that its pages are made from."""
         self._trials = trials
 
     @property
@@ -110,7 +115,7 @@ class Run(FinishedRun):
 
         They go into `folder`, by default that of the run. `UserError` where it cannot be written.
         """
-        return write_report(self._held, self.folder if folder is None else Path(folder))
+        return write_report(self.held, self.folder if folder is None else Path(folder))
 
     def _repr_markdown_(self) -> str:
         return markdown_table(self.record)
@@ -144,8 +149,23 @@ class SearchRun(FinishedRun):
         return write_search(self.record, self.provenance, place)
 
 
-def open_run(folder: str | PathLike[str]) -> "Run | MapRun | SearchRun | Any":
-    """Open the folder of a finished audit, map or search, one's own or anybody's.
+class SensitivityRun(FinishedRun):
+    """A finished sensitivity analysis: what was decided, and where its files are."""
+
+    record: "SensitivityRecord"
+    """`headline` and `sentences` in words; `indices` in numbers, a group each."""
+
+    def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
+        """Write report.html, sensitivity.svg, sensitivity.csv and table.md; return their paths."""
+        from faultpath.report.sensitivity import write_sensitivity
+
+        place = self.folder if folder is None else Path(folder)
+        return write_sensitivity(self.record, self.provenance, place)
+
+
+def open_run(folder: str | PathLike[str]) -> "Run | MapRun | SearchRun | SensitivityRun | Any":
+    """Open the folder of a finished audit, map, search or sensitivity analysis, one's own or
+    anybody's.
 
     It is taken for data: no code that it names is run, and every file is compared with its digest.
     What an installed distribution leaves behind is opened by it: an entry point in the group
@@ -157,15 +177,17 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | SearchRun | Any":
     for name, made_from, kind in (
         (MAP, MAP_MADE_FROM, MapRun),
         (SEARCH, SEARCH_MADE_FROM, SearchRun),
+        (SENSITIVITY, SENSITIVITY_MADE_FROM, SensitivityRun),
     ):
         if name not in provenance.files:
             continue
         from faultpath.decisions.map.model import MapRecord
         from faultpath.decisions.search.model import SearchRecord
+        from faultpath.decisions.sensitivity.model import SensitivityRecord
 
         held = unseal(place, provenance.files, made_from)
-        model = MapRecord if kind is MapRun else SearchRecord
-        record = parsed(held[name], place / name, model)
+        models = {MapRun: MapRecord, SearchRun: SearchRecord, SensitivityRun: SensitivityRecord}
+        record = parsed(held[name], place / name, models[kind])
         if (provenance.files[OUTCOMES], provenance.library_hash) != (
             provenance.outcomes_sha256,
             record.question.library_hash,

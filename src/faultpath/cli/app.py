@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 import typer
 
-from faultpath.cli import audits, demo, replay, systems
+from faultpath.cli import audits, demo, designs, replay, systems
 from faultpath.cli.flags import with_system_flags
 from faultpath.cli.options import Verbs
 from faultpath.core.version import __version__
@@ -47,14 +47,21 @@ _PANELS = {
         Entry("audit", audits.audit, f"{_ASKED}=0.6 --library carts", of_a_system=True),
         Entry(
             "map",
-            audits.reversal_map,
+            designs.reversal_map,
             f"{_ASKED} --against controller,observer --up-to 0.4 --library carts",
             of_a_system=True,
         ),
         Entry(
             "search",
-            audits.search,
+            designs.search,
             f"{_TOY} --baseline calibrated --repair blind --within examples/toy_bounds.yaml "
+            "--library carts",
+            of_a_system=True,
+        ),
+        Entry(
+            "sensitivity",
+            designs.sensitivity,
+            f"{_TOY} --variant calibrated --fault gain:scale=1.4 --fault velocity:offset=0.2 "
             "--library carts",
             of_a_system=True,
         ),

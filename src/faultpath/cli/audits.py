@@ -1,8 +1,8 @@
-"""`faultpath plan`, `audit`, `judge`, `map`, `search` and `report`: audits, and what follows."""
+"""`faultpath plan`, `audit`, `judge` and `report`: audits, and what follows."""
 
 import hashlib
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,29 +10,29 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.gates import FailIf, Gate, Junit, Summary
-from faultpath.cli.options import FOUND, Json, SystemName, display
+from faultpath.cli.options import Json, SystemName, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
-from faultpath.trials.question import (
-    AuditQuestion,
-    MapQuestion,
-    PlanQuestion,
-    Question,
-    Running,
-    SearchQuestion,
-)
+from faultpath.trials.question import AuditQuestion, PlanQuestion, Question, Running
 from faultpath.trials.received.question import JudgeQuestion
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
-    from faultpath.api.runs import FinishedRun, Run
+    from faultpath.api.runs import Run
 
 Details = Annotated[
     bool,
     typer.Option(
         "--details", help="Print every sentence of the record too, and what would change it."
+    ),
+]
+
+DependentFailures = Annotated[
+    Path | None,
+    typer.Option(
+        "--dependent-failures",
+        parser=as_path,
+        help="Write the table of dependent failures to this .csv file too.",
     ),
 ]
 
@@ -43,6 +43,7 @@ def plan(
     out: Annotated[Path, typer.Option(parser=as_path, help="Study file to write.")] = Path(
         "study.yaml"
     ),
+    dependent_failures: DependentFailures = None,
     as_json: Json = False,
     **given: Any,
 ) -> None:
@@ -50,22 +51,28 @@ def plan(
     write them as a study file for `faultpath audit --study`."""
     from faultpath.api.before import plan
     from faultpath.api.display import SafeConsole
-    from faultpath.trials.store.atomic import check_writable
+    from faultpath.trials.store.atomic import check_writable, write_text
 
-    check_writable(out)
+    for each in filter(None, (out, dependent_failures)):
+        check_writable(each)
     if out.exists():
         raise UserError(f"{out} is there already: give another file with --out, or remove it.")
     found = plan(system, **given, progress=display())
     written = found.write(out)
 
+    from faultpath.decisions.tables.csv import csv_text
     from faultpath.decisions.tables.terminal import drawn
+    from faultpath.report.dependent import in_short, of_plan
     from faultpath.report.plan import tables
 
+    if dependent_failures is not None:
+        dependent = of_plan(found.plan)
+        write_text(dependent_failures, csv_text(dependent) if dependent else "")
     if as_json:
         typer.echo(found.plan.model_dump_json(indent=2))
         return
     console = SafeConsole()
-    for table in tables(found.plan):
+    for table in filter(None, (*tables(found.plan), in_short(found.plan))):
         console.print(drawn(table))
         for note in table.notes:
             console.print(note, markup=False)
@@ -161,45 +168,6 @@ def judge(
     return _print((run,), as_json, gate, True, details)
 
 
-@takes(MapQuestion)
-def reversal_map(system: SystemName, as_json: Json = False, **given: Any) -> int:
-    """Map the success difference over the error at one module and that at another: where repair
-    or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
-    from faultpath.api.mapping import reversal_map
-
-    run = reversal_map(system, **given, progress=display(as_json))
-
-    from faultpath.report.map import shown
-
-    return _tell(run, shown, as_json)
-
-
-@takes(SearchQuestion)
-def search(system: SystemName, as_json: Json = False, **given: Any) -> int:
-    """Look within bounds for the fault that hurts those most who choose the repair by an isolated
-    audit: half of the scenes find it, and an audit of it in the other half decides."""
-    from faultpath.api.searching import search
-
-    run = search(system, **given, progress=display(as_json))
-
-    from faultpath.report.search import shown
-
-    return _tell(run, shown, as_json)
-
-
-def _tell(run: "FinishedRun", shown: "Callable[[Any], RenderableType]", as_json: bool) -> int:
-    """Print the record of a map or a search; return the status."""
-    from faultpath.api.display import SafeConsole
-
-    if as_json:
-        typer.echo(run.record.model_dump_json(indent=1))
-    else:
-        console = SafeConsole()
-        console.print(shown(run.record))
-        console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
-    return FOUND if run.record.failed else 0
-
-
 def report(
     folders: Annotated[
         list[Path],
@@ -212,15 +180,15 @@ def report(
         Path | None,
         typer.Option(parser=as_path, help="Write the comparison to this .html file too."),
     ] = None,
+    dependent_failures: DependentFailures = None,
     as_json: Json = False,
 ) -> None:
     """Write the pages of a finished run again, or compare several audits; runs no code from any
     of them."""
     if len(folders) == 1:
-        if out is not None:
-            raise UserError(
-                "--out takes the page of a comparison: give two or more finished audits."
-            )
+        if out is not None or dependent_failures is not None:
+            what = "--dependent-failures takes the table" if out is None else "--out takes the page"
+            raise UserError(f"{what} of a comparison: give two or more finished audits.")
         if as_json:
             raise UserError("--json prints a comparison: record.json holds the record of a run.")
         from faultpath.api.runs import open_run
@@ -235,6 +203,8 @@ def report(
 
     compared = compare(folders)
     page = None if out is None else compared.report(out)
+    if dependent_failures is not None:
+        compared.dependent_failures(dependent_failures)
     if as_json:
         typer.echo(json.dumps(compared.as_json(), indent=1))
         return

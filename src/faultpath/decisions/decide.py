@@ -63,9 +63,13 @@ def decide(
         effects=tuple(effects.values()),
         changes=tuple(_change(asked, path, family) for path in family.changes),
         break_even=tuple(
-            _break_even(asked, family, effects[CORRECT], effects[path])
+            _break_even(asked, path, family, (effects[CORRECT], effects[path]), phrases.FREQUENCY)
             for path in effects
             if path not in (CORRECT, AS_RUN, *untested)
+        ),
+        break_even_beta=tuple(
+            _break_even(asked, path, family, (effects[path], effects[SHARED]), phrases.BETA)
+            for path in family.changes
         ),
         scenes=found.scenes,
         scenes_needed=family.scenes_needed,
@@ -265,22 +269,26 @@ def _change(asked: Question, path: str, family: Family) -> Change:
     )
 
 
-def _break_even(asked: Question, family: Family, correct: Effect, faulty: Effect) -> PathBreakEven:
-    ends = family.effects[CORRECT], family.effects[faulty.path]
-    level = 1.0 - min(end.decision.critical_p for end in ends if end.decision)
-    found = break_even(*ends, level=level)
+def _break_even(
+    asked: Question, path: str, family: Family, ends: tuple[Effect, Effect], said: phrases.Shares
+) -> PathBreakEven:
+    """Return where baseline and repair are even between the effects at two ends of a share."""
+    none, all_ = ends
+    tested = family.effects[none.path], family.effects[all_.path]
+    level = 1.0 - min(end.decision.critical_p for end in tested if end.decision)
+    found = break_even(*tested, level=level)
     # What a table and a picture show is borne out by the effect at an end, and reaches it.
     kept: list[Region] = []
     for each in found.regions:
-        low = each.low > 0.0 or (correct.leads and each.sign == correct.sign)
-        high = each.high < 1.0 or (faulty.leads and each.sign == faulty.sign)
+        low = each.low > 0.0 or (none.leads and each.sign == none.sign)
+        high = each.high < 1.0 or (all_.leads and each.sign == all_.sign)
         inner = each.low > 0.0 and each.high < 1.0
         shown = wording.last(each.high) > 0 and wording.first(each.low) < 100
         if low and high and shown and not inner:
             kept.append(each)
     return PathBreakEven(
-        path=faulty.path,
+        path=path,
         result=only(found, kept),
-        curve=mixture_curve(*ends, level=level),
-        words=phrases.frequency(asked, found.regions, correct, faulty),
+        curve=mixture_curve(*tested, level=level),
+        words=phrases.shares(asked, found.regions, none, all_, said),
     )

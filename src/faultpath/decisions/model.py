@@ -159,13 +159,14 @@ class Effect(Result):
 
 
 class PathBreakEven(Result):
-    """The fault frequencies at which neither arm is decided to be ahead, on one path."""
+    """The shares at which neither arm is decided to be ahead, on one path: of episodes with the
+    fault, or of the module's faults that are common cause (beta)."""
 
     path: str
     result: BreakEven
     curve: tuple[tuple[float, float, float, float], ...]
-    """`(p, expected difference, low, high)` in fractions and percentage points. The band touches 0
-    exactly where p is in the set of `result`."""
+    """`(share, expected difference, low, high)` in fractions and percentage points. The band
+    touches 0 exactly where the share is in the set of `result`."""
     words: str
     """What may be said of it, without the path; empty where no end has an effect that leads."""
 
@@ -215,6 +216,10 @@ class DecisionRecord(Result):
     effects: tuple[Effect, ...]
     changes: tuple[Change, ...]
     break_even: tuple[PathBreakEven, ...]
+    """Over the frequency of the fault, each path but that of correct inputs."""
+    break_even_beta: tuple[PathBreakEven, ...] = ()
+    """Over the beta factor, each isolated path: of the faults of that module, the share that
+    strikes all modules at once."""
     scenes: int
     """Scenes that are compared, those with a void pair left out."""
     scenes_needed: int

@@ -1,6 +1,7 @@
 """What is said of a record, sentence by sentence, from what was decided and nothing else."""
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from faultpath.decisions.model import Change, DecisionRecord, Effect
 from faultpath.decisions.question import Question
@@ -146,31 +147,54 @@ def change(record: DecisionRecord, of: Change) -> str:
     return f"{'Nothing is decided' if record.few else 'No change is detected'} {between}."
 
 
-def frequency(
-    question: Question, regions: tuple[Region, ...], correct: Effect, faulty: Effect
-) -> str:
-    """Return who is decided to be ahead at which fault frequencies; empty for nobody anywhere.
+class Shares(NamedTuple):
+    """How a share between two effects is called."""
 
-    A region counts where it reaches an end (no fault, or the fault in every episode) at which the
-    family detects an effect on the same side, away from floor and ceiling: so no sentence
-    contradicts that on the path.
+    every: str
+    many: str
+    """Where it is large, with what is not decided."""
+    few: str
+
+
+FREQUENCY = Shares(
+    "at every frequency",
+    "where the fault is frequent; how rare it may be is not decided",
+    "where the fault is rare; how frequent it may be is not decided",
+)
+"""The share of episodes with the fault."""
+BETA = Shares(
+    "at every beta",
+    "where most of its faults are common cause; how few may be is not decided",
+    "where few of its faults are common cause; how many may be is not decided",
+)
+"""The beta factor: of the faults of a module, the share that strikes all modules at once."""
+
+
+def shares(
+    question: Question, regions: tuple[Region, ...], none: Effect, all_: Effect, said: Shares
+) -> str:
+    """Return who is decided to be ahead at which shares; empty for nobody anywhere.
+
+    A region counts where it reaches an end (a share of none, or of all) at which the family
+    detects an effect on the same side, away from floor and ceiling: so no sentence contradicts
+    that on the path.
     """
-    said: list[str] = []
+    told: list[str] = []
     for region in regions:
-        low = region.low <= 0.0 and correct.leads and region.sign == correct.sign
-        high = region.high >= 1.0 and faulty.leads and region.sign == faulty.sign
+        low = region.low <= 0.0 and none.leads and region.sign == none.sign
+        high = region.high >= 1.0 and all_.leads and region.sign == all_.sign
         ahead = f"{question.repair if region.sign > 0 else question.baseline} is ahead"
         if low and high:
-            return f"{ahead} at every frequency"
+            return f"{ahead} {said.every}"
         if high and region.low <= 0.0:
-            said.append(f"{ahead} where the fault is frequent; how rare it may be is not decided")
+            told.append(f"{ahead} {said.many}")
         elif low and region.high >= 1.0:
-            said.append(f"{ahead} where the fault is rare; how frequent it may be is not decided")
+            told.append(f"{ahead} {said.few}")
         elif high and first(region.low) < 100:
-            said.append(f"{ahead} from {first(region.low)} % on")
+            told.append(f"{ahead} from {first(region.low)} % on")
         elif low and last(region.high) > 0:
-            said.append(f"{ahead} up to {last(region.high)} %")
-    return ", ".join(said)
+            told.append(f"{ahead} up to {last(region.high)} %")
+    return ", ".join(told)
 
 
 def hardly_acted(record: DecisionRecord) -> Iterator[str]:

@@ -12,6 +12,7 @@ from faultpath.decisions import wording
 from faultpath.decisions.family import ALPHA, CORRECT, SHARED, alpha_shares
 from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.decisions.question import Question
+from faultpath.report.inputs import ReportInput
 from faultpath.statistics.decisions import holm
 from faultpath.statistics.estimate import RULES, Sign
 from faultpath.trials.provenance import RunProvenance
@@ -30,6 +31,8 @@ class Compared:
     folder: str
     record: DecisionRecord
     provenance: RunProvenance
+    held: ReportInput | None = None
+    """All that its pages are made from."""
     family: Mapping[str, tuple[Sign, float]] | None = None
     """Of a sweep over sizes: for each path the side that is decided over all of them together, and
     the adjusted p. `None` where every audit stands by itself."""

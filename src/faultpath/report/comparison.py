@@ -1,6 +1,7 @@
 """Audits side by side, as a table, on the terminal, and as one page that needs no network."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from markupsafe import Markup
 from rich.console import Group, RenderableType
@@ -22,6 +23,7 @@ from faultpath.report.compared import (
     swept,
     titles,
 )
+from faultpath.report.dependent import of_runs
 from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
 from faultpath.report.svg import tick_label
@@ -161,6 +163,20 @@ def shown(runs: Sequence[Compared]) -> RenderableType:
     return Group(*parts, Text(""), *map(Text, sentences(runs)))
 
 
+def dependent_failures(runs: Sequence[Compared]) -> Table | None:
+    """Return what audits of the same variants show together of failures that have one cause.
+
+    Every effect is as its own audit decided it, or all sizes of a sweep together.
+    """
+    held = [
+        replace(run.held, record=run.record.model_copy(update={"effects": effects}))
+        for run in runs
+        if run.held is not None
+        for effects in [tuple(filter(None, (run.effect(p.name) for p in run.record.paths)))]
+    ]
+    return of_runs(held, [str(run.number) for run in runs]) if len(held) == len(runs) else None
+
+
 def page(runs: Sequence[Compared]) -> str:
     """Return the comparison as one page."""
     found = differing(runs)
@@ -172,6 +188,7 @@ def page(runs: Sequence[Compared]) -> str:
         for path, title in titles(runs).items()
     }
     axis = shared_axis(list(panels.values()))
+    dependent = dependent_failures(runs)
     return render(
         "comparison.html.j2",
         ("tokens.css", "svg.css", "page.css"),
@@ -184,5 +201,7 @@ def page(runs: Sequence[Compared]) -> str:
         facts=Markup(html(facts_table(runs, found))) if found else "",
         same=same(runs),
         sizes=swept(runs),
+        dependent=Markup(html(dependent, "words")) if dependent else "",
+        dependent_notes=dependent.notes if dependent else (),
         w=wording,
     )

@@ -101,29 +101,32 @@ def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
     svg.circle((plot(e.value), y), 4.5, "dot" + side if side else "dot open")
 
 
-def frequency_panels(record: DecisionRecord) -> list[tuple[str, str]]:
-    """Return the expected success difference over the frequency of the fault, a picture a path,
-    each with what is decided.
+def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[str, str]]:
+    """Return the expected success difference over the frequency of the fault, or over the beta
+    factor, a picture a path, each with what is decided.
 
-    The band is the interval at each frequency, at the level that the family leaves. The thick line
-    on zero is the set of frequencies at which neither arm is decided to be ahead, the ring the
-    estimate of the crossing. The curve has the colour of an arm where a sentence names that arm.
+    The band is the interval at each share, at the level that the family leaves. The thick line on
+    zero is the set of shares at which neither arm is decided to be ahead, the ring the estimate of
+    the crossing. The curve has the colour of an arm where a sentence names that arm.
     """
     titles = {path.name: path.title for path in record.paths}
-    with_curve = [path for path in record.break_even if path.curve]
+    shares = record.break_even_beta if beta else record.break_even
+    noun = "beta" if beta else "frequency"
+    over = "faults that are common cause" if beta else "episodes with the fault"
+    with_curve = [path for path in shares if path.curve]
     vertical = covering(
         (v for path in with_curve for _, *ends in path.curve for v in ends), 0.06, 10
     )
     panels: list[tuple[str, str]] = []
     for path in with_curve:
         title, found = titles.get(path.path, path.path), path.result
-        words = f"{path.words or 'No frequency is decided'}."
-        svg = Svg(290, 248, f"{title}: expected success difference against fault frequency", words)
+        words = f"{path.words or f'No {noun} is decided'}."
+        svg = Svg(290, 248, f"{title}: expected success difference, share of {over}", words)
         svg.text(0, 14, title, "head", room=285)
         svg.text(0, 32, "expected difference in success, pp", "small soft")
         x, y = Axis(0.0, 100.0, 34, 280), vertical.at(208, 42)
         draw_axes(svg, x, y, 5, (0, 25, 50, 75, 100))
-        svg.text(x(50), y.start + 34, "share of episodes with the fault, %", "small soft", "middle")
+        svg.text(x(50), y.start + 34, f"share of {over}, %", "small soft", "middle")
         upper = [(x(100 * p), y(high)) for p, _, _, high in path.curve]
         lower = [(x(100 * p), y(low)) for p, _, low, _ in path.curve]
         svg.polygon([*upper, *reversed(lower)], "fan")
@@ -138,7 +141,7 @@ def frequency_panels(record: DecisionRecord) -> list[tuple[str, str]]:
             svg.line((x(100 * low), y(0)), (x(100 * high), y(0)), "star-range")
         if found.p_star is not None and found.regions:
             at = wording.break_even(found)
-            tip = "no frequency is decided" if at == "any" else f"not decided at {at}"
+            tip = f"no {noun} is decided" if at == "any" else f"not decided at {at}"
             svg.circle((x(100 * found.p_star), y(0)), 5, "star", tip)
         if y(0) - y.end > _ROOM:
             svg.text(x.start + 6, y.end + 12, "repair better", "small repair halo")

@@ -12,16 +12,21 @@ from faultpath.statistics.estimate import Estimate
 
 _ARMS = ("baseline", "repair")
 DIFFERENCE = ("difference", "interval", "won")
-SHOWN = (*_ARMS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even")
+SHOWN = (*_ARMS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even", "beta")
 ALL = (
     *(*_ARMS, *DIFFERENCE, "p", "mcnemar", "holm", "decided"),
-    *("power", "scenes", "void", "break-even"),
+    *("power", "scenes", "void", "break-even", "beta"),
+)
+_BETA = (
+    " Break-even beta: the same of the beta factor, the share of the module's faults that strike "
+    "all modules at once."
 )
 
 
 def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str]:
     """Return all that a record says of a path, by the name of the quantity."""
     found = {b.path: wording.break_even(b.result) for b in record.break_even}
+    betas = {b.path: wording.break_even(b.result) for b in record.break_even_beta}
     beside, power = effect.mcnemar_p_value, effect.minimum_detectable_pp
     return {
         "baseline": wording.plain(effect.baseline_percent),
@@ -41,6 +46,7 @@ def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str
         "scenes": str(effect.scenes),
         "void": Entry(text=str(effect.void_pairs), tone="bad" if effect.void_pairs else ""),
         "break-even": found.get(effect.path, MISSING),
+        "beta": betas.get(effect.path, MISSING),
     }
 
 
@@ -62,9 +68,11 @@ def _labels(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
         "scenes": "Scenes",
         "void": "Void pairs",
         "break-even": "Break-even, %",
+        "beta": "Break-even beta, %",
     }
     there = {
         "power": record.stopped is None,
+        "beta": bool(record.break_even_beta),
         "mcnemar": any(effect.mcnemar_p_value is not None for effect in effects),
     }
     return {name: labels[name] for name in names if there.get(name, True)}
@@ -136,7 +144,8 @@ def whole_table(record: DecisionRecord) -> Table:
         f"Difference: success of {asked.repair} minus success of {asked.baseline}. Won:lost: "
         f"scenes in which only {asked.repair} or only {asked.baseline} succeeds. Void pairs count "
         "for neither side. Break-even: the fault frequencies at which neither is decided to be "
-        "ahead, with the estimate in front; any: none is decided from which on one of them is.",
+        "ahead, with the estimate in front; any: none is decided from which on one of them is."
+        + (_BETA if record.break_even_beta else ""),
         f"Primary contrast: {asked.primary}. {ruled}{corrected} Intervals and tests speak of "
         f"{record.estimand}.",
         *not_standing(record),

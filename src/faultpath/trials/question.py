@@ -97,29 +97,8 @@ class CheckQuestion(Request):
     )
 
 
-class Question(Request):
-    """Two variants of a system, compared in scenes."""
-
-    panel: ClassVar[str] = "What is compared"
-
-    baseline: str = Field(
-        description="Variant to compare with; for the quadrotor also your file.py:factory."
-    )
-    repair: str = Field(description="Variant that is meant to help, named likewise.")
-    library: Scenes = "held-out"
-    scenes: int | None = Field(default=None, description="Run only the first N scenes.")
-    seeds: Annotated[tuple[int, ...], BeforeValidator(read_seeds)] = Field(
-        default=(0,), description="Seeds of the noise, and of trained models where there are any."
-    )
-
-    def audit_of(self, fault: str) -> "AuditQuestion":
-        """Return the audit of the same variants and scenes under a fault."""
-        same = {name: getattr(self, name) for name in Question.model_fields}
-        return AuditQuestion(fault=fault, **same)
-
-
-class Running(Question):
-    """The same, with where and how it runs."""
+class Placed(Asked):
+    """Where and how trials run."""
 
     panel: ClassVar[str] = "How it runs"
 
@@ -142,6 +121,31 @@ class Running(Question):
         description="Seconds that a block of scenes may take; default what the system says, else "
         "3600.",
     )
+
+
+class Question(Request):
+    """Two variants of a system, compared in scenes."""
+
+    panel: ClassVar[str] = "What is compared"
+
+    baseline: str = Field(
+        description="Variant to compare with; for the quadrotor also your file.py:factory."
+    )
+    repair: str = Field(description="Variant that is meant to help, named likewise.")
+    library: Scenes = "held-out"
+    scenes: int | None = Field(default=None, description="Run only the first N scenes.")
+    seeds: Annotated[tuple[int, ...], BeforeValidator(read_seeds)] = Field(
+        default=(0,), description="Seeds of the noise, and of trained models where there are any."
+    )
+
+    def audit_of(self, fault: str) -> "AuditQuestion":
+        """Return the audit of the same variants and scenes under a fault."""
+        same = {name: getattr(self, name) for name in Question.model_fields}
+        return AuditQuestion(fault=fault, **same)
+
+
+class Running(Placed, Question):
+    """The same, with where and how it runs."""
 
 
 class AuditQuestion(Running):

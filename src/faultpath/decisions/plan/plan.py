@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
+from faultpath.decisions.dependent import Group, dependent_groups
 from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_modules
 from faultpath.decisions.plan.probing import command_responses
 from faultpath.decisions.plan.sources import Candidate, candidates
@@ -34,6 +35,8 @@ class Plan(Result):
     """Scenes of the probe; 0 where there was none."""
     trials: tuple[int, ...]
     """Of each audit."""
+    dependent: tuple[Group, ...] = ()
+    """Consumers that have one cause of failure in common, none of them with evidence yet."""
 
 
 def make_plan(
@@ -91,6 +94,7 @@ def make_plan(
     why[first.name] = "first by rank" if first is order[0] else "first with an expected error"
     named = [each for each in order if each.fault and each.name in why]
     named.sort(key=lambda each: each is not first)
+    sized = {each.name: each.fault for each in order if each.fault}
     return Plan(
         study=StudyFile(
             system=spec.name,
@@ -116,6 +120,10 @@ def make_plan(
         unplanned={c.name: why[c.name] for c in order if c.name in why and not c.fault},
         probed=probed,
         trials=tuple(len(laid[c.name].study.arms()) * len(scenes) for c in named),
+        dependent=tuple(
+            each.model_copy(update={"fault": sized[each.name]}) if each.name in sized else each
+            for each in dependent_groups(system.interface, variants)
+        ),
     )
 
 

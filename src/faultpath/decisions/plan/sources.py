@@ -1,6 +1,7 @@
 """Uncertain sources, who reads them in the variants compared, and how large their errors are."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
+from typing import Protocol
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
@@ -9,6 +10,20 @@ from faultpath.interface import Interface, Provenance, Source
 from faultpath.trials import System, Variant
 
 _UNCERTAIN = (Provenance.MEASURED, Provenance.ESTIMATED, Provenance.RECONSTRUCTED)
+
+
+class Wired(Protocol):
+    """A variant as far as its wiring goes: of a system, or kept with a run."""
+
+    @property
+    def consumers(self) -> Collection[str]:
+        """The taps that it reads."""
+        ...
+
+    @property
+    def bindings(self) -> Mapping[str, str]:
+        """Channel to source, where it is not the channel's first source."""
+        ...
 
 
 class Candidate(Frozen, allow_inf_nan=False):
@@ -51,7 +66,7 @@ def candidates(
     for name, sources in members.items():
         every = [c for each in sources for c in _channels(system.interface, variants, each.name)]
         channels = tuple(dict.fromkeys(every))
-        fault, unsized = _expected(system, name, sources, channels)
+        fault, unsized = expected(system.fault_presets, name, sources, channels)
         names = tuple(each.name for each in sources)
         found.append(_candidate(system, variants, name, names, channels, fault, unsized))
     for text in given:
@@ -67,7 +82,7 @@ def candidates(
     return tuple(found)
 
 
-def bound(variant: Variant, interface: Interface, channel: str) -> str:
+def bound(variant: Wired, interface: Interface, channel: str) -> str:
     """Return the source that feeds a channel in a variant."""
     return variant.bindings.get(channel, interface.channel(channel).sources[0])
 
@@ -135,8 +150,8 @@ def _candidate(
     )
 
 
-def _expected(
-    system: System, name: str, sources: Sequence[Source], channels: Sequence[str]
+def expected(
+    presets: Collection[str], name: str, sources: Sequence[Source], channels: Sequence[str]
 ) -> tuple[str, str]:
     """Return a fault as large as the uncertainty declared, or why there is none.
 
@@ -155,7 +170,7 @@ def _expected(
     ((relative, size),) = sizes
     if size == 0.0:
         return "", "declares that it has no error"
-    if together and relative and name in system.fault_presets:
+    if together and relative and name in presets:
         return f"{name}=+{size:g}", ""
     target = name if together else channels[0]
     return (f"{target}:scale={1.0 + size:g}" if relative else f"{target}:offset={size:g}"), ""

@@ -1,0 +1,66 @@
+"""`faultpath.sensitivity`: draw the errors that are declared, and see which of them matters."""
+
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from faultpath.api.asking import Job, asks, begin
+from faultpath.api.audit import run_folder
+from faultpath.api.display import Display
+from faultpath.api.runs import SENSITIVITY, SENSITIVITY_MADE_FROM, SensitivityRun
+from faultpath.api.systems import executor_of
+from faultpath.decisions.sensitivity.decide import conclude
+from faultpath.decisions.sensitivity.study import plan_sensitivity
+from faultpath.trials import System
+from faultpath.trials.store.atomic import write_text
+from faultpath.trials.varied import SensitivityQuestion
+
+
+@asks(SensitivityQuestion)
+def sensitivity(
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
+) -> SensitivityRun:
+    """Tell which declared uncertainty moves what a variant achieves: Sobol indices of groups.
+
+    One arm is one draw of all errors, each at all who read its source.
+
+    Args:
+        system: As for `audit`.
+        progress: As for `audit`.
+        **given: ...
+
+    The same call resumes, and ends with the same bytes.
+
+    Raises:
+        UserError: What was asked cannot be done; the sentence says why, and what to do.
+        Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
+    """
+    asked, chosen, library, display = begin(
+        "sensitivity", SensitivityQuestion, system, given, progress
+    )
+    plan = plan_sensitivity(chosen.system, chosen.spec, asked, library)
+    named = [
+        plan.study.name,
+        asked.metric or "success",
+        *asked.fault,
+        f"{asked.points}-points-seed-{asked.design_seed}",
+        Path(asked.library).stem,
+    ]
+    place = run_folder(asked, chosen, named)
+    trials = len(plan.study.arms()) * len(plan.study.scenes)
+    display.say(
+        f"{asked.points} points of {len(plan.question.groups)} groups of sources: "
+        f"{trials} trials at most."
+    )
+    with executor_of(chosen.system, chosen.workers, chosen.executor) as executor:
+        job = Job(place, executor, display, {"time_limit_s": asked.time_limit_s})
+        with display.progress("Running") as show:
+            result = job.run(plan.study, chosen.system, show)
+        values, scenes = plan.values(result.outcomes)
+        failed = len(result.outcomes.failed())
+        record = conclude(plan.question, values, scenes, failed, result.findings)
+        write_text(place / SENSITIVITY, record.model_dump_json(indent=1) + "\n", place)
+        provenance = job.finish(result, chosen.system, SENSITIVITY_MADE_FROM)
+    run = SensitivityRun(place, record, provenance)
+    run.report()
+    return run

@@ -1,0 +1,68 @@
+"""`faultpath map`, `search` and `sensitivity`: many faults of one system."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from faultpath.cli.flags import takes
+from faultpath.cli.options import FOUND, Json, SystemName, display
+from faultpath.trials.question import MapQuestion, SearchQuestion
+from faultpath.trials.varied import SensitivityQuestion
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from faultpath.api.runs import FinishedRun
+
+
+@takes(MapQuestion)
+def reversal_map(system: SystemName, as_json: Json = False, **given: Any) -> int:
+    """Map the success difference over the error at one module and that at another: where repair
+    or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
+    from faultpath.api.mapping import reversal_map
+
+    run = reversal_map(system, **given, progress=display(as_json))
+
+    from faultpath.report.map import shown
+
+    return _tell(run, shown, as_json)
+
+
+@takes(SearchQuestion)
+def search(system: SystemName, as_json: Json = False, **given: Any) -> int:
+    """Look within bounds for the fault that hurts those most who choose the repair by an isolated
+    audit: half of the scenes find it, and an audit of it in the other half decides."""
+    from faultpath.api.searching import search
+
+    run = search(system, **given, progress=display(as_json))
+
+    from faultpath.report.search import shown
+
+    return _tell(run, shown, as_json)
+
+
+@takes(SensitivityQuestion)
+def sensitivity(system: SystemName, as_json: Json = False, **given: Any) -> int:
+    """Tell which source is worth improving: Sobol indices of a metric over errors that are drawn
+    as the interface declares them, with sources of one correlation group moved together."""
+    from faultpath.api.sensitivity import sensitivity
+
+    run = sensitivity(system, **given, progress=display(as_json))
+
+    from faultpath.report.sensitivity import shown
+
+    return _tell(run, shown, as_json)
+
+
+def _tell(run: "FinishedRun", shown: "Callable[[Any], RenderableType]", as_json: bool) -> int:
+    """Print the record of a map, a search or a sensitivity analysis; return the status."""
+    from faultpath.api.display import SafeConsole
+
+    if as_json:
+        typer.echo(run.record.model_dump_json(indent=1))
+    else:
+        console = SafeConsole()
+        console.print(shown(run.record))
+        console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
+    return FOUND if run.record.failed else 0

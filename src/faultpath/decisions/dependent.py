@@ -1,0 +1,198 @@
+"""Failures that depend on each other: groups of consumers with one source, and what was flown.
+
+The words are those of ISO 26262-1 and -9: an error of the source is the initiator, the coupling
+factor is why it reaches several elements. What reaches them by the source itself is a common cause
+failure, what reaches them through the output of another one a cascading failure. Nothing here
+claims that elements are independent, or free from interference.
+"""
+
+import shlex
+from collections.abc import Collection, Iterable, Sequence
+
+from faultpath.core.results import Frozen
+from faultpath.decisions.joined import JOINED
+from faultpath.decisions.model import SHARED, DecisionRecord, Effect
+from faultpath.decisions.plan.sources import Wired, bound, expected
+from faultpath.decisions.plan.study import StudyFile
+from faultpath.decisions.question import Question
+from faultpath.decisions.wording import reservation, with_interval
+from faultpath.interface import Interface, Provenance, Source, module_of
+
+_NOT_DEPLOYED = (Provenance.PRIVILEGED, Provenance.INTERNAL)
+_SIZE = "SIZE"
+"""Stands in a command for what no declaration gives."""
+
+Taps = tuple[tuple[str, str], ...]
+"""Channels, each with a place that reads it."""
+
+
+class Evidence(Frozen):
+    """What one audit has shown on one path."""
+
+    run: str
+    """Its folder; empty for the only one."""
+    fault: str
+    said: str
+    """What its family decided."""
+    difference: str
+    """The effect with its interval, percentage points."""
+    detected: bool
+    missed: Taps
+    """Taps of the group that its fault did not reach on this path."""
+
+
+class Way(Frozen):
+    """One way in which an error of the group's source acts: at one module, or at all of them."""
+
+    path: str
+    taps: Taps
+    passed_on: tuple[str, ...]
+    """Places that get it through what these modules make, and what is made of that in turn."""
+    evidence: tuple[Evidence, ...] = ()
+
+
+class Group(Frozen):
+    """Consumers whose failures one source, or several that err by one cause, may bring about."""
+
+    name: str
+    """Of the source, or of the correlation group."""
+    sources: tuple[str, ...]
+    coupling: str
+    ways: tuple[Way, ...]
+    fault: str
+    """As large as the expected error, or with `SIZE` where none is declared."""
+
+    @property
+    def modules(self) -> tuple[str, ...]:
+        """Those that read it."""
+        return tuple(way.path for way in self.ways if way.path != SHARED)
+
+
+def dependent_groups(interface: Interface, variants: Sequence[Wired]) -> tuple[Group, ...]:
+    """Return the groups of two consumers or more, in the order of declaration.
+
+    Every source counts that exists at deployment, whatever error it declares; a consumer counts
+    that reads it in one of the variants, directly or through reconstructions.
+    """
+    members: dict[str, list[Source]] = {}
+    for source in interface.sources:
+        if source.provenance not in _NOT_DEPLOYED:
+            members.setdefault(source.correlation_group or source.name, []).append(source)
+    found: list[Group] = []
+    for name, sources in members.items():
+        taps = _readers(interface, variants, [each.name for each in sources])
+        alone: dict[str, list[tuple[str, str]]] = {}
+        for channel, consumer in taps:
+            alone.setdefault(module_of(consumer), []).append((channel, consumer))
+        passed_on = {module: _passed_on(interface, variants, module) for module in alone}
+        every = dict.fromkeys(place for module in alone for place in passed_on[module])
+        places = {consumer for _, consumer in taps}
+        if len(places | set(every)) < 2:
+            continue
+        ways = [Way(path=m, taps=tuple(alone[m]), passed_on=passed_on[m]) for m in alone]
+        if len(alone) > 1:
+            ways.append(Way(path=SHARED, taps=taps, passed_on=tuple(every)))
+        channels = tuple(dict.fromkeys(channel for channel, _ in taps))
+        fault, _ = expected((), name, sources, channels)
+        named = channels if sources[0].correlation_group is None else (name,)
+        found.append(
+            Group(
+                name=name,
+                sources=tuple(each.name for each in sources),
+                coupling=_coupling(sources, len(places), bool(every)),
+                ways=tuple(ways),
+                fault=fault or JOINED.join(f"{each}:scale={_SIZE}" for each in named),
+            )
+        )
+    return tuple(found)
+
+
+def _readers(interface: Interface, variants: Sequence[Wired], sources: Collection[str]) -> Taps:
+    return tuple(
+        (channel.name, consumer)
+        for channel in interface.channels
+        for consumer in channel.consumers
+        if any(
+            consumer in variant.consumers and bound(variant, interface, channel.name) in sources
+            for variant in variants
+        )
+    )
+
+
+def _passed_on(interface: Interface, variants: Sequence[Wired], module: str) -> tuple[str, ...]:
+    """Return the places that read what a module makes, and what is made of that, recursively."""
+    reached, waiting = dict[str, None](), [module]
+    for maker in waiting:  # grows while it is gone through
+        made = interface.reconstructs.get(maker, ())
+        for _, consumer in _readers(interface, variants, made):
+            reached[consumer] = None
+            if module_of(consumer) not in waiting:
+                waiting.append(module_of(consumer))
+    return tuple(reached)
+
+
+def _coupling(sources: Sequence[Source], places: int, passed_on: bool) -> str:
+    one = "one source" if len(sources) == 1 else f"one cause of {len(sources)} sources"
+    direct = f"{one}, read at {places} place{'s' if places > 1 else ''}"
+    return f"{direct}; outputs made of it" if passed_on else direct
+
+
+def with_evidence(
+    groups: Sequence[Group], audits: Iterable[tuple[str, DecisionRecord]]
+) -> tuple[Group, ...]:
+    """Return the groups with what `audits`, each with its name, show of them.
+
+    An audit counts for a group where its fault acts on channels of that group and on no other. A
+    tap counts as reached where receipts show a fault in force.
+    """
+    told = [(name, record, {f.channel for f in record.question.faults}) for name, record in audits]
+
+    def shown(group: Group) -> Group:
+        channels = {channel for way in group.ways for channel, _ in way.taps}
+        about = [(name, record) for name, record, acts in told if acts and acts <= channels]
+        ways = [
+            way.model_copy(
+                update={
+                    "evidence": tuple(
+                        found for each in about if (found := _evidence(way, *each)) is not None
+                    )
+                }
+            )
+            for way in group.ways
+        ]
+        return group.model_copy(update={"ways": tuple(ways)})
+
+    return tuple(map(shown, groups))
+
+
+def _evidence(way: Way, run: str, record: DecisionRecord) -> Evidence | None:
+    path = next((each for each in record.paths if each.name == way.path), None)
+    if path is None:
+        return None
+    faulted = {(tap.channel, tap.consumer) for tap in (*path.faulted, *path.baseline_faulted)}
+    effect = next((each for each in record.effects if each.path == way.path), None)
+    return Evidence(
+        run=run,
+        fault=record.question.fault,
+        said=_said(record, effect),
+        difference="" if effect is None else with_interval(effect.success),
+        detected=effect is not None and effect.detected,
+        missed=tuple(tap for tap in way.taps if tap not in faulted),
+    )
+
+
+def _said(record: DecisionRecord, effect: Effect | None) -> str:
+    if effect is None:
+        return "flown, no pair of trials left"
+    aside = reservation(effect)
+    if effect.sign == 0:
+        return f"flown, nothing decided{f' ({aside})' if aside else ''}"
+    return f"{record.winner(effect.sign)} succeeds more often{f' ({aside})' if aside else ''}"
+
+
+def command(asked: Question | StudyFile, fault: str) -> str:
+    """Return the command that flies the arms of a fault: each module alone, and shared."""
+    parts = ["faultpath", "audit", asked.system, "--baseline", asked.baseline]
+    parts += ["--repair", asked.repair, "--fault", fault, "--library", asked.library]
+    parts += [part for key, value in asked.options.items() for part in ("--set", f"{key}={value}")]
+    return shlex.join(parts)

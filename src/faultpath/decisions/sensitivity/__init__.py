@@ -1,0 +1,1 @@
+"""Which declared uncertainty moves what a variant achieves: design, indices, record."""

@@ -1,0 +1,127 @@
+"""From the values of a design to the record, and what is said of it."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from faultpath.decisions.sensitivity.model import (
+    Index,
+    Indices,
+    SensitivityQuestion,
+    SensitivityRecord,
+)
+from faultpath.decisions.wording import capital, counted, plain, series
+from faultpath.statistics.estimate import ALPHA
+from faultpath.statistics.inputs import Floats
+from faultpath.statistics.sobol import indices
+
+
+def conclude(
+    question: SensitivityQuestion,
+    values: Floats,
+    scenes: int,
+    failed: int = 0,
+    findings: Sequence[str] = (),
+) -> SensitivityRecord:
+    """Return the record of `values` `[rows of the design]`, a mean over `scenes` each."""
+    names = [each.name for each in question.groups]
+    level = 1.0 - ALPHA / (2 * len(names))  # two indices a group
+    found = indices(values, len(names), level, question.design_seed)
+    every: tuple[Indices, ...] = ()
+    if found is not None:
+        firsts = zip(found.first.tolist(), found.first_width.tolist(), strict=True)
+        totals = zip(found.total.tolist(), found.total_width.tolist(), strict=True)
+        every = tuple(
+            Indices(group=name, first=_index(*first), total=_index(*total))
+            for name, first, total in zip(names, firsts, totals, strict=True)
+        )
+    record = SensitivityRecord(
+        question=question,
+        values=tuple(values.tolist()),
+        scenes=scenes,
+        indices=every,
+        level=level,
+        failed=failed,
+        findings=tuple(findings),
+    )
+    said = {"headline": headline(record), "sentences": tuple(sentences(record))}
+    return record.model_copy(update=said)
+
+
+def _index(value: float, width: float) -> Index:
+    return Index(value=value, low=value - width, high=value + width)
+
+
+def foremost(record: SensitivityRecord) -> str:
+    """Return the group whose first-order index is decided to be the largest; empty for none."""
+    for each in record.indices:
+        others = [other.first.high for other in record.indices if other is not each]
+        if each.first.counts and each.first.low > max(others):
+            return each.group
+    return ""
+
+
+def headline(record: SensitivityRecord) -> str:
+    """Return which source is worth improving first, as far as that is decided."""
+    asked = record.question
+    if not record.indices:
+        return (
+            f"{capital(asked.said)} hardly varies with these errors: there is nothing to explain."
+        )
+    if first := foremost(record):
+        return f"{first} is worth improving first: alone it explains more than any other source."
+    alone = [each.group for each in record.indices if each.first.counts]
+    if len(alone) == 1:
+        return f"{alone[0]} explains a share by itself; whether it is the largest is not decided."
+    if alone:
+        return f"{series(alone)} each explain a share; which explains most is not decided."
+    if matter := [each.group for each in record.indices if each.total.counts]:
+        return f"{series(matter)} matter, but no share of one alone is decided."
+    return "Nothing is decided: of no source is it shown that its error matters."
+
+
+def sentences(record: SensitivityRecord) -> Iterator[str]:
+    """Say which indices leave out zero, whose order is decided, and what is taken for granted."""
+    asked = record.question
+    for each in record.indices:
+        told: list[str] = []
+        if each.first.counts:
+            told.append(f"alone it explains {_percent(each.first)} of the variance")
+        if each.total.counts:
+            told.append(f"with all that it does together with others {_percent(each.total)}")
+        if each.total.counts and each.total.low > each.first.high:
+            told.append("part of it acts only together with others")
+        if told:
+            yield f"{each.group}: {'; '.join(told)}."
+    for kind, said in (("first", "alone"), ("total", "with others")):
+        ordered = [
+            f"{one.group} more than {other.group}"
+            for one in record.indices
+            for other in record.indices
+            if getattr(one, kind).counts and getattr(one, kind).low > getattr(other, kind).high
+        ]
+        if ordered:
+            yield f"Decided of what they explain {said}: {series(ordered)}."
+    if record.indices and (open_ := [e.group for e in record.indices if not e.total.counts]):
+        yield f"Of {series(open_)} nothing is shown; that is no proof that it does not matter."
+    drawn = np.array(record.values).reshape(-1, len(asked.groups) + 2)[:, [0, -1]]
+    yield (
+        f"Under these errors {asked.said} is {plain(float(drawn.mean()), 2)} {asked.unit} on "
+        f"average, with a standard deviation of {plain(float(drawn.std()), 2)}."
+    )
+    yield (
+        "Errors of different groups are taken to be independent; sources of one correlation group "
+        "err together, by one cause. What groups have in common is not modelled."
+    )
+    yield (
+        f"All of it holds for the {counted(record.scenes, 'scene')} that were run and for errors "
+        f"as large as declared; the {2 * len(asked.groups)} intervals hold at once in about "
+        f"{100 * (1 - ALPHA):g} % of such designs."
+    )
+    if asked.left_out:
+        yield f"No error is declared of {series(asked.left_out)}: read without error throughout."
+
+
+def _percent(index: Index) -> str:
+    ends = f"[{plain(100 * index.low, 0)}, {plain(100 * index.high, 0)}]"
+    return f"{plain(100 * index.value, 0)} % {ends}"

@@ -1,0 +1,91 @@
+"""The question and the record of a sensitivity analysis."""
+
+from typing import Literal
+
+from faultpath.core.results import Frozen, Result
+from faultpath.interface import Uncertainty
+
+_NOTHING = 0.005
+"""Of the variance."""
+
+
+class Part(Frozen, allow_inf_nan=False):
+    """A source of a group, and how large its error is."""
+
+    source: str
+    channels: tuple[str, ...]
+    """Those that it feeds in the variant."""
+    error: Uncertainty
+
+
+class Uncertain(Frozen):
+    """Sources that err together: those of one correlation group, or one alone."""
+
+    name: str
+    parts: tuple[Part, ...]
+    numbers: int
+    """Drawn for an error: 1 where all have one cause, or one for each component of a vector."""
+
+
+class SensitivityQuestion(Frozen, allow_inf_nan=False):
+    """What was varied, as the record keeps it."""
+
+    system: str
+    options: dict[str, str]
+    variant: str
+    groups: tuple[Uncertain, ...]
+    left_out: tuple[str, ...]
+    """Sources that the variant reads and that declare no error."""
+    metric: str
+    """Empty for success."""
+    said: str
+    """What is explained, in words."""
+    unit: str
+    points: int
+    design_seed: int
+    library: str
+    library_hash: str
+    n_scenes: int
+    seeds: tuple[int, ...]
+
+
+class Index(Frozen):
+    """A share of the variance, with the interval that holds for all indices at once."""
+
+    value: float
+    low: float
+    high: float
+
+    @property
+    def counts(self) -> bool:
+        """Whether it is decided to be more than what reads as 0 %."""
+        return self.low > _NOTHING
+
+
+class Indices(Result):
+    """What a group contributes."""
+
+    group: str
+    first: Index
+    """Of the group alone."""
+    total: Index
+    """Of the group alone, and with others."""
+
+
+class SensitivityRecord(Result, allow_inf_nan=False):
+    """A sensitivity analysis; written as `sensitivity.json`."""
+
+    format: Literal[1] = 1
+    question: SensitivityQuestion
+    values: tuple[float, ...]
+    """What came out at each row of the design: the mean over scenes and seeds."""
+    scenes: int
+    """In which every trial of the design ran to its end."""
+    indices: tuple[Indices, ...]
+    """In the order of the question; empty where nothing varies."""
+    level: float
+    """Of each interval, such that all of them hold at once in about 95 % of analyses."""
+    failed: int
+    headline: str = ""
+    sentences: tuple[str, ...] = ()
+    findings: tuple[str, ...] = ()

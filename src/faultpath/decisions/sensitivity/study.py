@@ -1,0 +1,214 @@
+"""Which errors are drawn, and the trials under them: one row of the design is one arm."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.special import ndtri
+
+from faultpath.core.errors import UserError
+from faultpath.core.text import listed, unknown
+from faultpath.decisions.plan.sources import bound
+from faultpath.decisions.planning import scenes_of
+from faultpath.decisions.sensitivity.model import Part, SensitivityQuestion, Uncertain
+from faultpath.faults import Fault, FaultText
+from faultpath.faults.values import Offset, Scale
+from faultpath.interface import Provenance, Source, Uncertainty
+from faultpath.statistics.inputs import Floats
+from faultpath.statistics.sobol import design
+from faultpath.trials import (
+    Arm,
+    Library,
+    Outcome,
+    OutcomeTable,
+    Row,
+    Status,
+    Study,
+    System,
+    SystemSpec,
+    Variant,
+)
+from faultpath.trials.varied import SensitivityQuestion as Asked
+
+_MOST_COMPONENTS = 16
+"""Of a vector whose components err each by itself."""
+_EDGE = 1e-9
+"""Normal errors stop about six standard deviations out."""
+
+
+@dataclass(frozen=True)
+class SensitivityPlan:
+    """A question, and its trials."""
+
+    question: SensitivityQuestion
+    study: Study = field(repr=False)
+
+    def values(self, table: OutcomeTable) -> tuple[Floats, int]:
+        """Return the mean of what is explained at each row of the design, and how many scenes
+        it is over: those in which all trials are sound.
+
+        `UserError` where no scene is left.
+        """
+        asked = self.question
+        found: list[list[list[float]]] = []
+        for path in dict.fromkeys(row.path for row in self.study.rows):
+            arms = [table.arm(asked.variant, path, seed) for seed in asked.seeds]
+            found.append([[_value(row.outcome, asked.metric) for row in arm] for arm in arms])
+        every = np.array(found).mean(axis=1)  # rows of the design by scenes
+        sound = np.isfinite(every).all(axis=0)
+        if not sound.any():
+            raise UserError(
+                f"no scene is left in which every trial has {asked.said}: see what failed, or "
+                "leave --metric out."
+            )
+        return every[:, sound].mean(axis=1), int(sound.sum())
+
+
+def _value(outcome: Outcome, metric: str) -> float:
+    if outcome.failed:
+        return np.nan
+    if metric:
+        value = outcome.metrics.get(metric)
+        return np.nan if value is None else value
+    return 100.0 * (outcome.status is Status.SUCCESS)
+
+
+def plan_sensitivity(
+    system: System, spec: SystemSpec, asked: Asked, library: Library
+) -> SensitivityPlan:
+    """Lay out the design. `UserError` for anything that cannot be run or means nothing."""
+    if asked.variant not in system.variants:
+        raise UserError(f"{system.name}: {unknown('variant', asked.variant, system.variants)}")
+    if asked.metric and asked.metric not in system.metrics:
+        raise UserError(f"{system.name}: {unknown('metric', asked.metric, system.metrics)}")
+    variant = system.variants[asked.variant]
+    groups, left_out = uncertain(system, variant, asked.fault)
+    if len(groups) < 2:
+        names = listed(each.name for each in groups)
+        raise UserError(
+            f"{system.name}: two groups of sources that err are the least to compare, and "
+            f"{asked.variant} has {names}; {listed(left_out)} declare no error: declare it in the "
+            "interface, or give the largest error with --fault."
+        )
+    scenes = scenes_of(library, asked.scenes)
+    rows = design([each.numbers for each in groups], asked.points, asked.design_seed)
+    arms = [
+        Row(
+            variant=asked.variant,
+            path=f"row {number}",
+            seed=seed,
+            arm=Arm(variant=asked.variant, faults=faults, seed=seed),
+        )
+        for number, drawn in enumerate(rows)
+        for faults in [tuple(faults_at(system, variant, groups, drawn))]
+        for seed in asked.seeds
+    ]
+    metric = system.metrics[asked.metric] if asked.metric else None
+    question = SensitivityQuestion(
+        system=spec.name,
+        options=spec.options,
+        variant=asked.variant,
+        groups=groups,
+        left_out=left_out,
+        metric=asked.metric,
+        said=metric.said(asked.metric) if metric else "success",
+        unit=metric.unit if metric else "%",
+        points=asked.points,
+        design_seed=asked.design_seed,
+        library=library.name,
+        library_hash=library.content_hash,
+        n_scenes=len(scenes),
+        seeds=asked.seeds,
+    )
+    study = Study(
+        name=f"{spec.name}-sensitivity-{asked.variant}",
+        system=spec,
+        library=asked.library,
+        scenes=scenes,
+        rows=tuple(arms),
+    )
+    return SensitivityPlan(question, study)
+
+
+def uncertain(
+    system: System, variant: Variant, given: Sequence[str]
+) -> tuple[tuple[Uncertain, ...], tuple[str, ...]]:
+    """Return the groups of sources that err, and the sources read that declare no error.
+
+    A fault `given` takes the place of what its channel's source, or its group, declares: its size
+    is the largest error, of either sign. `UserError` for one that says something else.
+    """
+    interface = system.interface
+    members: dict[str, list[tuple[Source, tuple[str, ...]]]] = {}
+    for source in interface.sources:
+        channels = tuple(
+            channel.name
+            for channel in interface.channels
+            if bound(variant, interface, channel.name) == source.name
+            and variant.consumers.intersection(channel.consumers)
+        )
+        if channels and source.provenance not in (Provenance.INTERNAL, Provenance.PRIVILEGED):
+            name = source.correlation_group or source.name
+            members.setdefault(name, []).append((source, channels))
+    sizes = dict(_given(text) for text in given)
+    unread = {*sizes}
+    groups, left_out = list[Uncertain](), list[str]()
+    for name, sources in members.items():
+        parts: list[Part] = []
+        for source, channels in sources:
+            named = [each for each in (*channels, source.name, name) if each in sizes]
+            unread -= {*named}
+            error = sizes[named[0]] if named else source.uncertainty
+            if error is not None and error.expected_std > 0.0:
+                parts.append(Part(source=source.name, channels=channels, error=error))
+            elif error is None:
+                left_out.append(source.name)
+        if parts:
+            shape = sources[0][0].shape
+            alone = len(sources) == 1 and len(shape) == 1 and shape[0] <= _MOST_COMPONENTS
+            groups.append(
+                Uncertain(name=name, parts=tuple(parts), numbers=shape[0] if alone else 1)
+            )
+    if unread:
+        known = [
+            each for sources in members.values() for _, channels in sources for each in channels
+        ]
+        raise UserError(f"--fault: {unknown('channel', min(unread), [*known, *members])}")
+    return tuple(groups), tuple(left_out)
+
+
+def _given(text: str) -> tuple[str, Uncertainty]:
+    asked = FaultText.read(text)
+    try:
+        (size,) = map(float, asked.sizes)
+        if asked.kind not in ("scale", "offset") or asked.consumers or asked.options:
+            raise ValueError
+        relative = asked.kind == "scale"
+        half_range = abs(size - 1.0) if relative else abs(size)
+        return asked.name, Uncertainty(half_range=half_range, relative=relative)
+    except ValueError:
+        raise UserError(
+            f"--fault {text}: give the largest error of a source, as `gain:scale=1.1` for a tenth "
+            "of either sign, or `velocity:offset=0.1` in its unit."
+        ) from None
+
+
+def faults_at(
+    system: System, variant: Variant, groups: Sequence[Uncertain], drawn: Floats
+) -> Iterator[Fault]:
+    """Yield the faults at a point of the unit cube, each at all who read its source."""
+    left = iter(drawn.tolist())
+    for group in groups:
+        shares = np.array([next(left) for _ in range(group.numbers)])
+        for part in group.parts:
+            error = part.error
+            if error.half_range is not None:
+                sizes = (2.0 * shares - 1.0) * error.half_range
+            else:
+                sizes = ndtri(np.clip(shares, _EDGE, 1.0 - _EDGE)) * error.expected_std
+            numbers = tuple(float(each) for each in sizes + (1.0 if error.relative else 0.0))
+            value = numbers if group.numbers > 1 else numbers[0]
+            act = Scale(factor=value) if error.relative else Offset(by=value)
+            for channel in part.channels:
+                fault = Fault(channel=channel, intervention=act)
+                yield from fault.resolved(system.interface, variant.consumers)

@@ -1,0 +1,123 @@
+"""The dependent-failure table: groups with one cause, what was flown of each, what is left open."""
+
+from collections.abc import Sequence
+
+from faultpath.decisions.dependent import (
+    Evidence,
+    Group,
+    Taps,
+    Way,
+    command,
+    dependent_groups,
+    with_evidence,
+)
+from faultpath.decisions.model import SHARED
+from faultpath.decisions.plan.plan import Plan
+from faultpath.decisions.plan.study import StudyFile
+from faultpath.decisions.question import Question
+from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
+from faultpath.report.inputs import ReportInput
+
+DEPENDENT = "dependent-failures.csv"
+NO_EVIDENCE = "no evidence"
+_COLUMNS = ("Read at", "Reaches further", "Kind", "Evidence", "Difference, pp", "To fly")
+_NOTES = (
+    "Terms of ISO 26262-1 and -9: the dependent failure initiator is an error of the source, the "
+    "coupling factor why it reaches several places. What a source brings about at several modules "
+    "is a common cause failure; what goes on through the output of a module, a cascading one.",
+    "This is evidence for an analysis of dependent failures: which faults of sources that the "
+    "interface declares were flown in simulation, and what they decide about these two variants. "
+    "It is no such analysis itself, and shows neither independence nor freedom from interference: "
+    "an effect that is not decided is not absent, and coupling that no interface declares (power, "
+    "clocks, buses, shared code, the environment) is not seen. No compliance with ISO 26262 or "
+    "IEC 61508 follows.",
+    "An audit counts for a group where its fault acts on that group alone. No evidence: none that "
+    "is shown here has this arm.",
+)
+
+
+def of_runs(runs: Sequence[ReportInput], names: Sequence[str] = ()) -> Table | None:
+    """Return the table of audits of the same variants, by the interface of the first of them.
+
+    `None` where no two places depend on each other, and for audits of other systems or variants.
+    """
+    first = runs[0]
+    for run in runs[1:]:
+        others = (run.record.question.system, run.interface, run.variants)
+        if others != (first.record.question.system, first.interface, first.variants):
+            return None
+    groups = dependent_groups(first.interface, first.variants)
+    named = zip(names or [""] * len(runs), (run.record for run in runs), strict=True)
+    return _table(with_evidence(groups, named), first.record.question)
+
+
+def of_plan(plan: Plan) -> Table | None:
+    """Return the table before any flight: nothing has evidence."""
+    return _table(plan.dependent, plan.study)
+
+
+def in_short(plan: Plan) -> Table | None:
+    """Return a line for each group of a plan, for a terminal."""
+    columns = ("modules", "kind", "evidence")
+    lines = tuple(
+        line(each.name, "\n".join(each.modules), _kind(each.ways[-1]), NO_EVIDENCE)
+        for each in plan.dependent
+    )
+    title, corner = "Dependent failures by source", "source"
+    found = Table(title=title, corner=corner, columns=columns, words=columns, lines=lines)
+    return found if lines else None
+
+
+def _table(groups: Sequence[Group], asked: Question | StudyFile) -> Table | None:
+    if not groups:
+        return None
+    lines: list[Line] = []
+    for group in groups:
+        fly = command(asked, group.fault)
+        lines.append(line(f"{group.name}: {group.coupling}"))
+        for way in group.ways:
+            for each in way.evidence or (None,):
+                lines.append(_line(way, each, fly))
+                fly = fly if lines[-1].entries[-1].text != fly else "the same audit"
+    return Table(
+        name="dependent-failures",
+        title="Dependent failures",
+        corner="Fault at",
+        columns=_COLUMNS,
+        words=tuple(each for each in _COLUMNS if each != "Difference, pp"),
+        lines=tuple(lines),
+        notes=_NOTES,
+    )
+
+
+def _line(way: Way, found: Evidence | None, fly: str) -> Line:
+    label = "all of them (shared)" if way.path == SHARED else f"{way.path} alone"
+    kind = _kind(way)
+    places = ", ".join(dict.fromkeys(consumer for _, consumer in way.taps))
+    further = ", ".join(way.passed_on) or MISSING
+    if found is None:
+        return line(label, places, further, kind, NO_EVIDENCE, MISSING, fly)
+    said = f"{found.run}: {found.said}" if found.run else found.said
+    missed = f"not reached: {_by_channel(found.missed)}" if found.missed else ""
+    return line(
+        label,
+        places,
+        further,
+        kind,
+        Entry(text=said, aside="; ".join(filter(None, (found.fault, missed)))),
+        Entry(text=found.difference or MISSING, detected=found.detected),
+        fly if found.missed else MISSING,
+    )
+
+
+def _kind(way: Way) -> str:
+    if way.path == SHARED:
+        return "common cause and cascading" if way.passed_on else "common cause"
+    return "cascading" if way.passed_on else "single"
+
+
+def _by_channel(taps: Taps) -> str:
+    of: dict[str, list[str]] = {}
+    for channel, consumer in taps:
+        of.setdefault(channel, []).append(consumer)
+    return ", ".join(f"{channel} at {' and '.join(places)}" for channel, places in of.items())
