@@ -8,7 +8,7 @@ from faultpath_quadrotor.plant import PlantState, TorchPlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.scenes.library import load_library
-from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
+from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import (
     COLLISION_RADIUS_M,
@@ -16,6 +16,7 @@ from faultpath_quadrotor.vehicle import (
     VehicleParameters,
     draw,
 )
+from flights import hall
 from kernel_sets import COMPILED, FUSED, PORTABLE
 from torch import Tensor
 
@@ -133,21 +134,8 @@ def beside(gap_m: float, thing: str) -> Scene:
     away = 1.0 + COLLISION_RADIUS_M + gap_m
     box = Box(centre_m=(away, 0.0, 1.0), half_extents_m=(1.0, 1.0, 1.0), yaw_rad=0.0)
     pillar = Cylinder(centre_m=(0.0, away), radius_m=1.0, low_m=0.0, high_m=2.0)
-    return Scene(
-        id="test/000",
-        index=0,
-        library="test",
-        topology="clutter",
-        obstacles=True,
-        occluded=False,
-        bounds=Bounds(low_m=(-4.0, -4.0, 0.0), high_m=(4.0, 4.0, 5.0)),
-        boxes=(box,) if thing == "box" else (),
-        cylinders=(pillar,) if thing == "pillar" else (),
-        start_m=(0.0, 0.0, 3.5),
-        goal_m=(0.0, 3.0, 4.0),
-        start_yaw_rad=0.3,
-        vehicle=VehicleParameters(drag_kgps=(1e-9,) * 3),
-    )
+    things, falls = [box if thing == "box" else pillar], VehicleParameters(drag_kgps=(1e-9,) * 3)
+    return hall(0, (0.0, 0.0, 3.5), (0.0, 3.0, 4.0), things, (8.0, 8.0, 5.0), falls)
 
 
 @pytest.mark.parametrize("isa", COMPILED)
