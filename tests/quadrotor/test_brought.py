@@ -21,9 +21,12 @@ PREDICTOR, EXACT, WIND, PLANNER, BLIND = (
 )
 
 
+STEPS = 6
+pytestmark = pytest.mark.usefixtures("short")
+
+
 @pytest.fixture(autouse=True)
-def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 6)
+def _path(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "path", list(sys.path))
 
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import torch
 from faultpath_quadrotor.evidence import recording
 from faultpath_quadrotor.evidence.quantities import measure
 from faultpath_quadrotor.evidence.table import Measurement, Recording
@@ -10,8 +9,6 @@ from faultpath_quadrotor.scenes.library import Library, as_text
 from flights import hall
 
 from faultpath.core.errors import UserError
-
-torch.set_num_threads(1)
 
 
 @pytest.fixture(scope="module")

@@ -18,8 +18,6 @@ from faultpath_quadrotor.training.windows import HISTORY, cut, places
 
 from faultpath.core.errors import UserError
 
-torch.set_num_threads(1)
-
 RECORDING = Recording(library="selection", variant="true-parameter", options={"wind": "L3"})
 SHARED, AT_RECONSTRUCTION, AT_PREDICTOR = (
     f"calibration=+0.1{where}" for where in ("", "@reconstruction", "@predictor")

@@ -2,7 +2,6 @@
 
 import pytest
 import torch
-from faultpath_quadrotor import so3
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
     KinematicIntegrator,
@@ -10,8 +9,8 @@ from faultpath_quadrotor.predictors import (
     UnanchoredPredictor,
 )
 from faultpath_quadrotor.predictors.rollout import rollout
-from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS
+from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
+from test_native_rollout import commands_of, inputs_of
 
 SCENES = 5
 KINDS = [AnchoredPredictor, UnanchoredPredictor]
@@ -34,41 +33,6 @@ def predictor(kind, seed=0, lively=True, **options):
     return kind(network(kind, seed, lively), **options)
 
 
-def inputs(scenes=SCENES, seed=0):
-    draw = torch.Generator().manual_seed(seed)
-
-    def column(low, high):
-        return low + (high - low) * torch.rand(scenes, 1, generator=draw)
-
-    def three(spread):
-        return spread * torch.randn(3, scenes, 1, generator=draw)
-
-    state = State(three(2.0), three(2.0), so3.exp(three(0.3)), three(1.0))
-    calibrated = [
-        (channel, place)
-        for place in ("trim", "dynamics", "features")
-        for channel in ("mass", "thrust_scale")
-    ]
-    return PredictorInputs(
-        state,
-        {read: column(0.7, 1.4) for read in calibrated}
-        | {
-            ("mass", "wind_map"): column(0.7, 1.4),
-            ("wind", "wind_map"): three(5.0),
-            ("mass", "normalise_thrust"): column(0.7, 1.4),
-            ("history_code", "latent"): torch.randn(32, scenes, 1, generator=draw).tanh(),
-        },
-    )
-
-
-def commands(scenes=SCENES, candidates=512, horizon=20, seed=1):
-    drawn = torch.randn(
-        horizon, 4, scenes, candidates, generator=torch.Generator().manual_seed(seed)
-    )
-    drawn[:, 0] = GRAVITY_MPS2 * (1 + 0.2 * drawn[:, 0])
-    return drawn
-
-
 @pytest.mark.parametrize(
     ("kind", "published"), [(AnchoredPredictor, 17e3), (UnanchoredPredictor, 35e3)]
 )
@@ -81,9 +45,11 @@ def test_models_have_the_papers_size(kind, published):
 def test_a_zero_residual_leaves_the_kinematic_integrator_exactly(wind):
     anchored = predictor(AnchoredPredictor, lively=False, wind=wind)
     plain = rollout(
-        KinematicIntegrator(wind=wind, drag_kgps=NOMINAL_DRAG_KGPS), inputs(), commands()
+        KinematicIntegrator(wind=wind, drag_kgps=NOMINAL_DRAG_KGPS),
+        inputs_of(SCENES),
+        commands_of(SCENES, 512),
     )
-    rolled = rollout(anchored, inputs(), commands())
+    rolled = rollout(anchored, inputs_of(SCENES), commands_of(SCENES, 512))
     assert torch.equal(rolled.positions, plain.positions)
     assert torch.equal(rolled.velocities, plain.velocities)
     assert torch.equal(rolled.final.rotation, plain.final.rotation)
@@ -92,7 +58,7 @@ def test_a_zero_residual_leaves_the_kinematic_integrator_exactly(wind):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_scene_does_not_depend_on_the_scenes_beside_it(kind):
-    model, given, drawn = predictor(kind), inputs(), commands()
+    model, given, drawn = predictor(kind), inputs_of(SCENES), commands_of(SCENES, 512)
     together = rollout(model, given, drawn)
     for scenes in ([2], [4, 1, 0]):
         alone = rollout(model, given.take(scenes), drawn[:, :, scenes].contiguous())
@@ -100,14 +66,14 @@ def test_a_scene_does_not_depend_on_the_scenes_beside_it(kind):
 
 
 def _moved(model, given, read):
-    plain = rollout(model, given, commands()).positions
+    plain = rollout(model, given, commands_of(SCENES, 512)).positions
     other = PredictorInputs(given.state, given.delivered | {read: -1.1 * given[read]})
-    return not torch.equal(rollout(model, other, commands()).positions, plain)
+    return not torch.equal(rollout(model, other, commands_of(SCENES, 512)).positions, plain)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_declared_place_matters_and_no_other(kind):
-    model, given = predictor(kind), inputs()
+    model, given = predictor(kind), inputs_of(SCENES)
     for read in given.delivered:
         matters = read[1] in model.reads and read[1] != "trim"
         assert _moved(model, given, read) == matters, read

@@ -17,7 +17,7 @@ from faultpath_quadrotor.vehicle import (
     draw,
 )
 from flights import hall
-from kernel_sets import COMPILED, FUSED, PORTABLE
+from kernel_sets import FUSED
 from torch import Tensor
 
 F64 = torch.float64
@@ -50,10 +50,9 @@ def flown(isa: str, seed: int = 0, lanes: Tensor = EVERYONE) -> Tensor:
     return torch.cat(parts)
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 @pytest.mark.parametrize("seed", [0, 100, 200])
 def test_the_compiled_plant_is_the_portable_one(isa: str, seed: int) -> None:
-    torch.testing.assert_close(flown(isa, seed), flown(PORTABLE, seed), rtol=0, atol=1e-11)
+    torch.testing.assert_close(flown(isa, seed), flown(native.PORTABLE, seed), rtol=0, atol=1e-11)
 
 
 def test_fused_sets_give_the_same_bits() -> None:
@@ -61,14 +60,12 @@ def test_fused_sets_give_the_same_bits() -> None:
     assert all(torch.equal(first, other) for other in others)
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 def test_neighbours_and_the_number_of_lanes_change_no_bit(isa: str) -> None:
     together = flown(isa)
     for lanes in ([36], [3, 0, 11], list(range(9, 29))):
         assert torch.equal(flown(isa, lanes=torch.tensor(lanes)), together[:, lanes])
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:
     with native.using(isa):
         for vehicle in (Vehicle.nominal(4, torch.float32), Vehicle.nominal((2, 3))):
@@ -119,10 +116,9 @@ COMMANDS = tumbling(64, 22)
 @pytest.fixture(scope="module")
 def theirs() -> World:
     """Trials of the portable path."""
-    return worlds(PORTABLE, SCENES, COMMANDS, "L2")
+    return worlds(native.PORTABLE, SCENES, COMMANDS, "L2")
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 def test_trials_end_at_the_same_moment(isa: str, theirs: World) -> None:
     crashed = theirs.progress.crashed[: len(SCENES)].sum()
     assert 5 < crashed < len(SCENES) - 5, "some end, some fly on"
@@ -138,7 +134,6 @@ def beside(gap_m: float, thing: str) -> Scene:
     return hall(0, (0.0, 0.0, 3.5), (0.0, 3.0, 4.0), things, (8.0, 8.0, 5.0), falls)
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 def test_a_micrometre_decides_between_a_graze_and_a_crash(isa: str) -> None:
     gaps = (1e-6, -1e-6)
     scenes = [beside(gap, thing) for thing in ("box", "pillar") for gap in gaps]
@@ -152,4 +147,4 @@ def test_a_micrometre_decides_between_a_graze_and_a_crash(isa: str) -> None:
     late, early, later, earlier = hits.time_s[:4].tolist()
     assert early < late - 0.1
     assert earlier < later - 0.1
-    assert_same_trials(world, worlds(PORTABLE, scenes, falling))
+    assert_same_trials(world, worlds(native.PORTABLE, scenes, falling))

@@ -7,11 +7,6 @@ from faultpath_quadrotor.predictors.network import GatedCell, draw_weights
 from faultpath_quadrotor.predictors.recurrent import recur
 
 
-@pytest.fixture(params=native.available())
-def kernels(request: pytest.FixtureRequest) -> native.Kernels:
-    return native.load(request.param)
-
-
 def cell_and_sequence(inputs: int, columns: int) -> tuple[GatedCell, torch.Tensor]:
     stream = torch.Generator().manual_seed(inputs)
     cell = GatedCell(inputs, 32)
@@ -19,18 +14,15 @@ def cell_and_sequence(inputs: int, columns: int) -> tuple[GatedCell, torch.Tenso
     return cell, 2 * torch.randn(12, inputs, columns, generator=stream)
 
 
-def compiled(kernels: native.Kernels, cell: GatedCell, sequence: torch.Tensor) -> torch.Tensor:
-    given, kept = ((layer.weight, layer.bias) for layer in (cell.from_input, cell.from_latent))
-    return recur(kernels, given, kept, sequence)
-
-
 @pytest.mark.parametrize("inputs", [19, 22, 32])
-def test_the_last_latent_is_the_portable_one(kernels: native.Kernels, inputs: int) -> None:
+def test_the_last_latent_is_the_portable_one(isa: str, inputs: int) -> None:
     cell, sequence = cell_and_sequence(inputs, columns=5)
     with torch.enable_grad():  # the way by which training goes
         portable = cell.last(sequence).detach()
     assert portable.std() > 0.1
-    torch.testing.assert_close(compiled(kernels, cell, sequence), portable, rtol=1e-5, atol=1e-5)
+    given, kept = ((layer.weight, layer.bias) for layer in (cell.from_input, cell.from_latent))
+    compiled = recur(native.load(isa), given, kept, sequence)
+    torch.testing.assert_close(compiled, portable, rtol=1e-5, atol=1e-5)
 
 
 def test_training_differentiates_through_the_unit() -> None:

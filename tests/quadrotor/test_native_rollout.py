@@ -90,11 +90,6 @@ def assert_close(ours: Rollout, theirs: Rollout) -> None:
 NAMES = ["dki", "dki-drag", "dki-still", "wm-a", "wm-a-wind", "wm-u"]
 
 
-@pytest.fixture(params=native.available())
-def isa(request: pytest.FixtureRequest) -> str:
-    return request.param
-
-
 def compiled(isa: str, model: Predictor) -> Roll:
     with native.using(isa):
         return rolling(model)

@@ -28,24 +28,6 @@ def delivered(seed, velocity=None, mass=1.0, scale=1.0, map_mass=None):
     }
 
 
-def test_it_reads_what_it_declares_and_nothing_else():
-    seen = set()
-
-    class Watched(dict):
-        def __getitem__(self, read):
-            seen.add(read)
-            return super().__getitem__(read)
-
-    observer = DisturbanceObserver(drag_kgps=NOMINAL_DRAG_KGPS)
-    observer.update(observer.begin(Watched(delivered(1))), Watched(delivered(2)))
-    assert seen == observer.reads == set(delivered(1))
-    assert observer.consumers() == {
-        "reconstruction.velocity_difference",
-        "reconstruction.nominal_model",
-        "reconstruction.wind_map",
-    }
-
-
 @pytest.mark.parametrize(("mass", "scale"), [(1.0, 1.0), (1.1, 0.9), (0.9, 1.1)])
 def test_unfiltered_estimate_recombines_to_the_observed_acceleration(mass, scale):
     """a_0 + B w_raw = a_obs whatever the calibration (paper, Eq. 2)."""

@@ -14,9 +14,9 @@ from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import STEPS_PER_CONTROL, draw
-from flights import STEPS, quadrotor
 from flights import bits as outcome_bits
 from flights import fly as fly_trials
+from flights import quadrotor
 from torch import Tensor
 
 pytest.importorskip("mujoco")
@@ -101,10 +101,8 @@ def test_trials_end_alike_on_both_and_are_told_apart() -> None:
     assert set(worlds[0].initial_hashes).isdisjoint(worlds[1].initial_hashes)
 
 
-def test_an_audit_s_trials_are_their_own_and_of_their_plant(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
+@pytest.mark.usefixtures("short")
+def test_an_audit_s_trials_are_their_own_and_of_their_plant() -> None:
     scenes = [scene.id for scene in SCENES[:4]]
     system, other = (quadrotor(wind="L3", plant=plant) for plant in (f"{EXAMPLE}:create", "torch"))
     whole, alone, torch_s = (

@@ -15,8 +15,6 @@ from faultpath_quadrotor.training.reconstruction_task import _calibration, _hist
 from faultpath_quadrotor.training.trajectories import record_flights
 from faultpath_quadrotor.training.windows import HISTORY, Windows, cut, places
 
-torch.set_num_threads(1)
-
 
 def parts(inputs: PredictorInputs, row: int) -> dict[str, torch.Tensor]:
     """All that a predictor is told of one vehicle, by name."""

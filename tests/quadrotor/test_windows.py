@@ -8,8 +8,6 @@ from faultpath_quadrotor.training.collection import collect
 from faultpath_quadrotor.training.windows import Windows, starts, windows_of
 from faultpath_quadrotor.vehicle import CONTROL_DT_S
 
-torch.set_num_threads(1)
-
 
 @pytest.fixture(scope="module")
 def pools(tmp_path_factory):
