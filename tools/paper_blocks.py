@@ -86,8 +86,6 @@ def _besides() -> Table:
     lines: list[Line] = []
     for name, words in BESIDES.items():
         run = blocks.load(name)
-        if run is None:
-            continue
         record, asked = run.record, run.record.question
         place = words.format(
             scenes=record.scenes, library=asked.library, seeds=wording.seeds(asked.seeds)
@@ -146,14 +144,11 @@ def _origin() -> str:
 
 def _run_again() -> str:
     """Say how many trials a reference run has repeated, and how many came out alike."""
-    again = REFERENCE / AGAIN
-    if not again.is_dir():
-        return ""
     paths = {CORRECT: CORRECT, SHARED: _FAULT, _MODULE: f"{_FAULT}@{_MODULE}"}
     setting = Setting(wind="L3")
     here = {
         (row.variant, f"{setting}: {paths[row.path]}", row.seed, row.outcome.scene): row.outcome
-        for row in read_outcomes(again / FILES[2]).rows
+        for row in read_outcomes(REFERENCE / AGAIN / FILES[2]).rows
         if row.path in paths
     }
     there = {
