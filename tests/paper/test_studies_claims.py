@@ -18,23 +18,10 @@ from faultpath.trials import OutcomeTable, Status
 Answers = dict[str, ClaimVerdict]
 
 
-def by_id(claims: tuple[ClaimVerdict, ...]) -> Answers:
-    return {claim.id: claim for claim in claims}
-
-
-@pytest.fixture(scope="module")
-def published_run() -> Results:
-    return whole()
-
-
-@pytest.fixture(scope="module")
-def answers(published_run: Results) -> Answers:
-    return by_id(evaluate(published_run))
-
-
 @pytest.fixture(scope="module")
 def mirror() -> Answers:
-    return by_id(evaluate(whole(mirrored, power=-1.0, slower_s=-1.4)))
+    found = evaluate(whole(mirrored, power=-1.0, slower_s=-1.4))
+    return {claim.id: claim for claim in found}
 
 
 def test_every_published_claim_has_statements_and_nothing_else_has() -> None:
