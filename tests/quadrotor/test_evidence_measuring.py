@@ -8,8 +8,6 @@ from faultpath_quadrotor.evidence.table import Measurement, Recording
 from faultpath_quadrotor.scenes.library import Library, as_text
 from flights import hall
 
-from faultpath.core.errors import UserError
-
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory) -> str:
@@ -92,23 +90,3 @@ def test_a_second_call_does_nothing_and_more_scenes_keep_what_is_there(whole, li
     few = measure(one, 1, tmp_path).values(one[0])
     both = table.values(one[0])
     assert np.array_equal(few.values, both.values[: len(few)])
-
-
-@pytest.mark.parametrize(
-    ("change", "count", "says"),
-    [
-        ({"library": "nowhere"}, None, "nowhere"),
-        ({"variant": "wm-x"}, None, "'wm-x'"),
-        ({"options": {"wind": "L9"}}, None, "L9"),
-        ({}, 3, "1 to 2"),
-        ({}, 0, "1 to 2"),
-    ],
-)
-def test_a_recording_that_cannot_be_flown_is_refused_and_leaves_nothing(
-    library, change, count, says, tmp_path
-):
-    first = asked(library)[0]
-    wrong = first.model_copy(update={"recording": first.recording.model_copy(update=change)})
-    with pytest.raises(UserError, match=says):
-        measure([wrong], count, tmp_path / "new")
-    assert not (tmp_path / "new").exists()

@@ -10,7 +10,6 @@ from faultpath_quadrotor.evidence.table import (
     read_evidence,
     write_evidence,
 )
-from pydantic import ValidationError
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
@@ -30,13 +29,6 @@ def found(count=30, seed=0) -> Measured:
         steps=12 + 5 * (np.arange(count) % 10),
         values=values.astype(np.float64),
     )
-
-
-def test_an_unknown_quantity_or_field_is_refused():
-    with pytest.raises(ValidationError):
-        asked(quantity="beauty")
-    with pytest.raises(ValidationError):
-        asked(colour="red")
 
 
 def test_a_table_comes_back_as_it_went_with_the_same_bytes(tmp_path):
@@ -63,8 +55,3 @@ def test_a_missing_or_damaged_table_is_the_user_s_to_see(tmp_path):
     (tmp_path / "odd.parquet").write_bytes(b"odd")
     with pytest.raises(UserError, match="damaged"):
         read_evidence(tmp_path / "odd.parquet")
-
-
-def test_columns_of_different_windows_are_refused():
-    with pytest.raises(ValueError, match="same windows"):
-        Measured(("a",), np.array([12, 13]), np.array([0.1]))

@@ -20,7 +20,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.parquet import read_table
 from faultpath.trials.store import atomic
-from faultpath_quadrotor.training.provenance import Provenance, read_provenance
+from faultpath_quadrotor.training.provenance import read_provenance
 from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, Flights
 from faultpath_quadrotor.vehicle import VehicleParameters
 
@@ -51,16 +51,9 @@ class FlightData:
         return cls(
             name=name,
             values=np.stack([table.column(name).to_numpy() for name in COMPONENTS]),
-            steps=steps_of(episodes),
+            steps=flights.column("steps").to_numpy().astype(np.int64),
             vehicles={name: _vehicle(flights, name) for name in VehicleParameters.model_fields},
         )
-
-
-@dataclass(frozen=True)
-class Pool(FlightData):
-    """A pool in memory."""
-
-    provenance: Provenance
 
 
 def episodes_path(path: Path) -> Path:
@@ -97,11 +90,6 @@ def encode_episodes(episodes: Sequence[int], flights: Flights) -> bytes:
     return _write([pa.table(columns)])
 
 
-def join(parts: Iterable[bytes]) -> bytes:
-    """Return one Parquet file with each part's rows as a row group, in their order."""
-    return _write(read_table(part) for part in parts)
-
-
 def write_flights(stem: Path, episodes: Sequence[int], flights: Flights) -> None:
     """Write a batch as `<stem>.episodes` and `<stem>.rows`; the rows are written last."""
     atomic.write(Path(f"{stem}.episodes"), encode_episodes(episodes, flights))
@@ -109,27 +97,24 @@ def write_flights(stem: Path, episodes: Sequence[int], flights: Flights) -> None
 
 
 def join_flights(stems: Sequence[Path]) -> tuple[bytes, bytes]:
-    """Return the rows and the episodes of batches that `write_flights` wrote."""
+    """Return the rows and the episodes of batches that `write_flights` wrote.
+
+    Each batch is a row group of the two Parquet files.
+    """
     return (
-        join(contents(f"{stem}.rows") for stem in stems),
-        join(contents(f"{stem}.episodes") for stem in stems),
+        _write(read_table(contents(f"{stem}.rows")) for stem in stems),
+        _write(read_table(contents(f"{stem}.episodes")) for stem in stems),
     )
 
 
-def read_pool(path: Path) -> Pool:
+def read_pool(path: Path) -> FlightData:
     """Read a pool; `UserError` when it is missing, unfinished or damaged."""
     provenance = read_provenance(path)
     if provenance is None:
         raise UserError(f"there is no finished pool at {path}: collect it first.")
     rows = _read(path, provenance.rows_sha256)
     episodes = _read(episodes_path(path), provenance.episodes_sha256)
-    flown = FlightData.decode(provenance.pool, rows, episodes)
-    return Pool(**vars(flown), provenance=provenance)
-
-
-def steps_of(episodes: bytes) -> np.ndarray:
-    """Return the control steps of each episode in an encoded episode table, [E]."""
-    return read_table(episodes).column("steps").to_numpy().astype(np.int64)
+    return FlightData.decode(provenance.pool, rows, episodes)
 
 
 def _read(path: Path, sha256: str) -> bytes:

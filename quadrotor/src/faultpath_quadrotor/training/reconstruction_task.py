@@ -14,7 +14,6 @@ from torch import LongTensor, Tensor, nn
 from torch.nn import functional
 from typing_extensions import override
 
-from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.learning.model_card import Schedule
 from faultpath_quadrotor.platform import PLATFORM
@@ -95,10 +94,6 @@ class ReconstructionTask(ModelTask):
     """
 
     def __init__(self, name: str, seed: int, data_folder: Path) -> None:
-        if name not in MODELS:
-            raise UserError(
-                f"there is no wind reconstruction '{name}' to fit; choose from {', '.join(MODELS)}."
-            )
         self.name = name
         self.seed = seed
         self.platform = PLATFORM.weights_hash(name)
