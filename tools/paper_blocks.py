@@ -110,14 +110,6 @@ def _counts() -> str:
     )
 
 
-def _ledger() -> str:
-    return grid(by_kind(load()[0].ledger))
-
-
-def _sizes() -> str:
-    return grid(by_subject(load()[0].ledger))
-
-
 def _apart() -> str:
     return "\n".join(
         f"- **{verdict}.** {markdown(decisive)}." for verdict, decisive in apart(load()[0].ledger)
@@ -165,8 +157,8 @@ def _run_again() -> str:
 
 KIND: dict[str, Callable[..., str]] = {
     "counts": _counts,
-    "ledger": _ledger,
-    "sizes": _sizes,
+    "ledger": lambda: grid(by_kind(load()[0].ledger)),
+    "sizes": lambda: grid(by_subject(load()[0].ledger)),
     "apart": _apart,
     "facts": fact_blocks.in_short,
     "origin": _origin,
