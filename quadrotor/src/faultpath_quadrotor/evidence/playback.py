@@ -167,10 +167,6 @@ class Present:
         return predicted.rollouts[0].positions[:, : self.count, :, 0]
 
 
-def _same(codes: Tensor) -> Tensor:
-    return codes
-
-
 def at_present(
     windows: Windows,
     predictor: Predictor | None,
@@ -178,7 +174,7 @@ def at_present(
     bindings: Mapping[str, str],
     faults: Iterable[AnyFault] = (),
     seed: int = 0,
-    exchange: Exchange = _same,
+    exchange: Exchange = lambda codes: codes,
 ) -> Present:
     """Step a variant's modules through the history of windows, up to the present.
 

@@ -9,7 +9,6 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -30,15 +29,13 @@ Quantity: TypeAlias = Literal[
     "wind-term-error",
 ]
 
-QUANTITIES: Mapping[Quantity, str] = MappingProxyType(
-    {
-        "position-error": "m",
-        "position-response": "m",
-        "shuffle-response": "m",
-        "acceleration-error": "m/s^2",
-        "wind-term-error": "m/s^2",
-    }
-)
+QUANTITIES: Mapping[Quantity, str] = {
+    "position-error": "m",
+    "position-response": "m",
+    "shuffle-response": "m",
+    "acceleration-error": "m/s^2",
+    "wind-term-error": "m/s^2",
+}
 """Unit of each quantity. `docs/design/evidence.md` gives their formulas."""
 
 
