@@ -13,8 +13,8 @@ from faultpath_quadrotor.evidence.table import Measurement, Recording
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
 from faultpath_quadrotor.training.flight import fly
-from faultpath_quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath_quadrotor.training.windows import HISTORY, cut, places
+from flights import in_memory
 
 from faultpath.core.errors import UserError
 
@@ -27,10 +27,7 @@ SHARED, AT_RECONSTRUCTION, AT_PREDICTOR = (
 @pytest.fixture(scope="module")
 def recorded() -> Recorded:
     """Windows of five windy collection flights in place of closed-loop ones."""
-    flights, episodes = fly("wind", range(5), 0), range(5)
-    flown = FlightData.decode(
-        "test", encode_rows(episodes, flights), encode_episodes(episodes, flights)
-    )
+    flown = in_memory(fly("wind", range(5), 0))
     place = places(flown, STRIDE)
     scenes = tuple(f"scene/{episode}" for episode in place[:, 0])
     return Recorded(cut(flown, STRIDE), scenes, place[:, 2] + HISTORY)

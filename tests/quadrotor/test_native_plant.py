@@ -1,6 +1,5 @@
 """The compiled plant flies as the portable one does, and its contact checks end the same trials."""
 
-import numpy as np
 import pytest
 import torch
 from faultpath_quadrotor import native, so3
@@ -14,10 +13,10 @@ from faultpath_quadrotor.vehicle import (
     COLLISION_RADIUS_M,
     MOTOR_THRUST_MAX_N,
     VehicleParameters,
-    draw,
 )
 from flights import hall
 from kernel_sets import FUSED
+from test_plant import drawn_vehicles
 from torch import Tensor
 
 F64 = torch.float64
@@ -40,7 +39,7 @@ def wild(seed: int) -> tuple[PlantState, Tensor, Tensor]:
 
 def flown(isa: str, seed: int = 0, lanes: Tensor = EVERYONE) -> Tensor:
     """All that the plant carries after one control step, `[22, n]`."""
-    vehicle = Vehicle.stack([draw(np.random.default_rng(seed + i)) for i in range(LANES)])
+    vehicle = drawn_vehicles(LANES, seed)
     start, command, winds = wild(seed)
     with native.using(isa):
         plant = TorchPlant(vehicle.take(lanes))
