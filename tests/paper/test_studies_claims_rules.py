@@ -59,6 +59,7 @@ def found(
 @pytest.mark.parametrize(
     ("rule", "difference", "answer"),
     [
+        # A difference is detected when interval and test agree.
         (ABOVE, found(UP, 0.01), "confirmed"),
         (ABOVE, found(DOWN, 0.01), "refuted"),
         (ABOVE, found(OPEN, 0.3), "undecided"),
@@ -69,17 +70,7 @@ def found(
         (BELOW, found(DOWN, 0.01), "confirmed"),
         (BELOW, found(UP, 0.01), "refuted"),
         (BELOW, found((-5.0, 0.0), 0.01), "undecided"),
-    ],
-)
-def test_a_difference_is_detected_when_interval_and_test_agree(
-    rule: Rule, difference: Contrast, answer: str
-) -> None:
-    assert rule.judge(difference).answer == answer
-
-
-@pytest.mark.parametrize(
-    ("rule", "difference", "answer"),
-    [
+        # Not detecting counts only where something would have been seen.
         (NO_LOSS, found(OPEN, 0.3), "confirmed"),
         (NO_LOSS, found(DOWN, 0.01), "refuted"),
         (NO_LOSS, found((-15.0, 1.0), 0.04), "confirmed"),
@@ -93,27 +84,7 @@ def test_a_difference_is_detected_when_interval_and_test_agree(
         (NO_LOSS, found(OPEN, 0.3, mde=None), "undecided"),
         (NO_LOSS, found(DOWN), "refuted"),
         (NO_LOSS, found(None, 0.3), "undecided"),
-    ],
-)
-def test_not_detecting_counts_only_where_something_would_have_been_seen(
-    rule: Rule, difference: Contrast, answer: str
-) -> None:
-    assert rule.judge(difference).answer == answer
-
-
-def test_of_several_seeds_the_interval_detects_and_the_test_may_fail_to() -> None:
-    """As the paper has it: the sign test decides of an absence alone."""
-    several = replace(found(UP, 0.3), n_seeds=3)
-    vars(several)["least"] = 8.0
-    assert ABOVE.judge(several).answer == "confirmed"
-    assert BELOW.judge(several).answer == "refuted"
-    assert NO_GAIN.judge(several).answer == "confirmed"
-    assert bounded(Bound(10, 1), seen=True).judge(several).answer == "confirmed"
-
-
-@pytest.mark.parametrize(
-    ("rule", "difference", "answer"),
-    [
+        # A threshold is met by the estimate, and missed by the whole interval.
         (at_least(10), found(UP), "confirmed"),
         (at_least(10.1), found(UP), "undecided"),
         (at_least(15), found(UP), "undecided"),
@@ -136,10 +107,20 @@ def test_of_several_seeds_the_interval_detects_and_the_test_may_fail_to() -> Non
         (within(-1, 1), found(None), "undecided"),
     ],
 )
-def test_a_threshold_is_met_by_the_estimate_and_missed_by_the_whole_interval(
+def test_a_rule_answers_by_value_interval_and_test(
     rule: Rule, difference: Contrast, answer: str
 ) -> None:
     assert rule.judge(difference).answer == answer
+
+
+def test_of_several_seeds_the_interval_detects_and_the_test_may_fail_to() -> None:
+    """As the paper has it: the sign test decides of an absence alone."""
+    several = replace(found(UP, 0.3), n_seeds=3)
+    vars(several)["least"] = 8.0
+    assert ABOVE.judge(several).answer == "confirmed"
+    assert BELOW.judge(several).answer == "refuted"
+    assert NO_GAIN.judge(several).answer == "confirmed"
+    assert bounded(Bound(10, 1), seen=True).judge(several).answer == "confirmed"
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,9 @@
 from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.answers import Sweep
 from faultpath_quadrotor.paper.cells import Cell
-from faultpath_quadrotor.paper.pages import PAGES, figure_3, table_3, table_4, table_6
+from faultpath_quadrotor.paper.pages import figure_3, table_3, table_4, table_6
 from faultpath_quadrotor.training import trajectories
 from toy_runs import (
-    EMPTY,
-    MEASUREMENTS,
     SCENES,
     calibrated,
     line,
@@ -155,18 +153,6 @@ def test_table_6_averages_the_medians_of_the_seeds() -> None:
     first = measured([m for m in table_6.PAGE.measurements if m.seed == 0], value)
     table = tables(page("table-6"), run(won(calibrated), evidence=first))["table-6a"]
     assert texts(line(table, "GRU")) == ["1.00"] * 4
-
-
-def test_notes_say_what_was_flown_and_measured() -> None:
-    results = run(won(calibrated), evidence=measured(MEASUREMENTS, lambda m: 0.1))
-    built = {k: v for each in PAGES for k, v in tables(each, results).items()}
-    assert built["table-4"].notes[0] == "20 scenes of the held-out library, seeds 0, 1, 2."
-    assert any(
-        note.endswith("220 windows of 20 scenes of the held-out library, seeds 0, 1, 2.")
-        for note in built["table-6a"].notes
-    )
-    (nothing,) = {table.notes[0] for table in tables(page("table-4"), EMPTY).values()}
-    assert nothing == "No trial of this table was run."
 
 
 def test_table_6_tests_the_negative_offset() -> None:

@@ -5,7 +5,7 @@ import torch
 from faultpath_quadrotor.evidence.inputs import Subject
 from faultpath_quadrotor.evidence.playback import at_present
 from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
-from faultpath_quadrotor.predictors import PredictorInputs
+from faultpath_quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath_quadrotor.predictors import module as prediction
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import windows as replay
@@ -83,7 +83,8 @@ def test_a_fit_rolls_out_what_the_modules_do(name, windows, told):
 @pytest.mark.parametrize("name", ["gru", "gru-withheld"])
 def test_a_fit_gives_a_reconstruction_the_history_that_it_remembers(name, windows):
     model = RECONSTRUCTIONS[name].load(name, 0)
+    nobodys = KinematicIntegrator(wind=True, drag_kgps=(0.0, 0.0, 0.0))  # it only reads the wind
     with torch.inference_mode():
-        played = at_present(windows, None, model, {"wind": "reconstructed_wind"}).wind()
+        played = at_present(windows, nobodys, model, {"wind": "reconstructed_wind"}).wind()
         supplied = _calibration(windows) if model.network.calibrated else None
         assert torch.equal(model.network.estimate(*_history(windows), supplied), played)

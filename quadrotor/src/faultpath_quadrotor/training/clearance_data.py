@@ -136,9 +136,8 @@ def collect(
     return path
 
 
-def read(folder: Path, recipe: Recipe | None = None) -> Samples:
+def read(folder: Path, recipe: Recipe) -> Samples:
     """Return the data set that `collect` made below `folder`; `UserError` when it is not whole."""
-    recipe = recipe or Recipe()
     library = load_library(recipe.library)
     path = provenance_path(folder)
     if not path.exists() or _read_provenance(path) != _provenance(recipe, library):
