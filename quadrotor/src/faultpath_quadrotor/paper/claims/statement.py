@@ -152,19 +152,20 @@ def beside(paper: Printed | None) -> dict[str, Any]:
     return {} if paper is None else {"paper": paper.value, "paper_interval": paper.interval}
 
 
+_FIRST_WINS = ("refuted", "undecided", "confirmed")
+
+
 def verdict(claim: PublishedClaim, statements: Statements, results: Results) -> ClaimVerdict:
     """Answer a claim: confirmed when every part is, refuted when any is.
 
     Its numbers are those of the first part that has the answer of the whole.
     """
     parts = tuple(answered(statement, results) for statement in statements)
-    answers = {part.answer for part in parts}
-    answer = next(each for each in ("refuted", "undecided", "confirmed") if each in answers)
-    deciding = next(part for part in parts if part.answer == answer)
+    deciding = min(parts, key=lambda part: _FIRST_WINS.index(part.answer))
     return ClaimVerdict(
         id=claim.id,
         kind=claim.kind,
-        verdict=answer,
+        verdict=deciding.answer,
         estimate=deciding.estimate,
         interval=deciding.interval,
         mde=deciding.mde,

@@ -47,7 +47,7 @@ def share(cells: Sequence[Cell], end: bool) -> Quantity:
         own = [of_seed(cell) for cell in cells]
         every = joint(results, *((cell, cell) for cell in own))
         ends = np.stack([pairs.first.success[:, 0] == end for pairs in every])
-        return decisive(success_rate(ends.all(axis=0), results.resamples(every[0])))
+        return decisive(success_rate(np.all(ends, axis=0), results.resamples(every[0])))
 
     return found
 
