@@ -48,7 +48,7 @@ def run(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None) -> P
     flown = fly(asked, folder)
     evidence = measure_all(asked, folder, 0, lambda done, total: None)
     results = asked.results(flown.outcomes, evidence)
-    save(folder, flown, results, evidence, conclude(asked, results))
+    save(folder, flown, results, conclude(asked, results))
     return folder
 
 

@@ -58,17 +58,20 @@ def measured(
     )
 
 
+NOTHING = EvidenceTable({})
+
+
 def run(
     ends: Ends,
     cells: Iterable[Cell] = CELLS,
-    evidence: EvidenceTable | None = None,
+    evidence: EvidenceTable = NOTHING,
     scenes: Iterable[int] = range(SCENES),
 ) -> Results:
     """Return what a run of some cells leaves."""
     return Results(trials(cells, ends, scenes), evidence, "toy")
 
 
-EMPTY = Results(OutcomeTable(()), None, "toy")
+EMPTY = Results(OutcomeTable(()), NOTHING, "toy")
 
 
 @dataclass(frozen=True)

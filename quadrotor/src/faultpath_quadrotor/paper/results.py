@@ -28,7 +28,7 @@ class Results:
     """A run of studies: its outcome table, and what was measured on recorded windows."""
 
     outcomes: OutcomeTable
-    evidence: EvidenceTable | None
+    evidence: EvidenceTable
     library_hash: str
     """Names the bootstrap's stream, so that intervals do not depend on where they are made."""
 
@@ -96,9 +96,9 @@ class Results:
 
     def measured(self, measurement: Measurement) -> Measured:
         """Return the values of a measurement; `NotRun` when it was not made."""
-        if self.evidence is not None and measurement in self.evidence:
-            return self.evidence.values(measurement)
-        raise NotRun(f"{measurement.quantity} of {measurement.subject}")
+        if measurement not in self.evidence:
+            raise NotRun(f"{measurement.quantity} of {measurement.subject}")
+        return self.evidence.values(measurement)
 
     def resamples(self, pairs: Pairs) -> Resamples:
         """Return the scene resamples that every contrast over so many scenes shares."""
