@@ -5,18 +5,7 @@ from faultpath_quadrotor.paper.answers import Sweep
 from faultpath_quadrotor.paper.cells import Cell
 from faultpath_quadrotor.paper.pages import figure_3, table_3, table_4, table_6
 from faultpath_quadrotor.training import trajectories
-from toy_runs import (
-    SCENES,
-    calibrated,
-    line,
-    measured,
-    page,
-    papers,
-    run,
-    tables,
-    texts,
-    won,
-)
+from toy_runs import SCENES, calibrated, line, measured, page, papers, run, tables, texts, won
 
 from faultpath.trials import Status
 

@@ -11,11 +11,7 @@ from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import (
-    COLLISION_RADIUS_M,
-    MOTOR_THRUST_MAX_N,
-    VehicleParameters,
-)
+from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M, MOTOR_THRUST_MAX_N, VehicleParameters
 from flights import hall
 from kernel_sets import FUSED
 from test_plant import drawn_vehicles

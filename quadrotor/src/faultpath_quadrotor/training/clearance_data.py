@@ -99,10 +99,7 @@ class Samples:
 
 
 def collect(
-    folder: Path,
-    recipe: Recipe | None = None,
-    workers: int = 2,
-    progress: Progress | None = None,
+    folder: Path, recipe: Recipe | None = None, workers: int = 2, progress: Progress | None = None
 ) -> Path:
     """Make the data set below `folder` and return its provenance file.
 

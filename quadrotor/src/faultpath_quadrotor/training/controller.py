@@ -102,10 +102,7 @@ class Course:
 
     @classmethod
     def draw(
-        cls,
-        stream: np.random.Generator,
-        settings: ControllerSettings,
-        perturbation: Perturbation,
+        cls, stream: np.random.Generator, settings: ControllerSettings, perturbation: Perturbation
     ) -> Course:
         """Return the course of one episode, without batch axes."""
         count = settings.waypoints

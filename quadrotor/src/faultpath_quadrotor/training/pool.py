@@ -79,10 +79,7 @@ def encode_rows(episodes: Sequence[int], flights: Flights) -> bytes:
 
 def encode_episodes(episodes: Sequence[int], flights: Flights) -> bytes:
     """Return the lengths and vehicles of a batch as a Parquet file."""
-    columns = {
-        "episode": np.asarray(episodes, np.int32),
-        "steps": flights.steps.astype(np.int16),
-    }
+    columns = {"episode": np.asarray(episodes, np.int32), "steps": flights.steps.astype(np.int16)}
     for name in VehicleParameters.model_fields:
         values = np.array([getattr(vehicle, name) for vehicle in flights.vehicles])
         axes = _columns(name, values.ndim == 2)
