@@ -158,11 +158,8 @@ def _join(path: Path, recipe: Recipe, stems: Sequence[Path]) -> None:
 
 
 def _batches(asked: Recipe) -> list[Batch]:
-    members = [
-        range(first, min(first + BATCH, asked.episodes))
-        for first in range(0, asked.episodes, BATCH)
-    ]
+    every = range(asked.episodes)
+    parts = (every[first : first + BATCH] for first in every[::BATCH])
     return [
-        Batch(f"{m.start:06d}+{len(m)}", m, partial(fly, asked.pool, m, asked.seed))
-        for m in members
+        Batch(f"{m.start:06d}+{len(m)}", m, partial(fly, asked.pool, m, asked.seed)) for m in parts
     ]

@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -141,19 +142,12 @@ def _columns(name: str, by_axis: bool) -> list[str]:
 
 def _write(tables: Iterable[pa.Table]) -> bytes:
     """Row groups as they come; splitting floats by byte lets zstd find what they share."""
-    sink = pa.BufferOutputStream()
-    writer = None
-    for table in tables:
-        if writer is None:
-            floats = [f.name for f in table.schema if pa.types.is_floating(f.type)]
-            writer = pq.ParquetWriter(
-                sink,
-                table.schema,
-                compression="zstd",
-                use_dictionary=False,
-                column_encoding=dict.fromkeys(floats, "BYTE_STREAM_SPLIT"),
-            )
-        writer.write_table(table)
-    if writer is not None:
-        writer.close()
+    sink, others = pa.BufferOutputStream(), iter(tables)
+    first = next(others)
+    floats = [field.name for field in first.schema if pa.types.is_floating(field.type)]
+    split = dict.fromkeys(floats, "BYTE_STREAM_SPLIT")
+    given = {"compression": "zstd", "use_dictionary": False, "column_encoding": split}
+    with pq.ParquetWriter(sink, first.schema, **given) as writer:
+        for table in chain((first,), others):
+            writer.write_table(table)
     return sink.getvalue().to_pybytes()
