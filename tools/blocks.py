@@ -255,7 +255,6 @@ PARTS: dict[str, tuple[str, str]] = {
     "verdict": ("Verdict", ".masthead, #verdict > *"),
     "interface": ("What the fault strikes", "[aria-labelledby=interface] > *"),
     "effects": ("Effects of the repair", "[aria-labelledby=effects] figure"),
-    "frequency": ("Difference against fault frequency", "[aria-labelledby=frequency] > *"),
     "flights": ("Some flights", "[aria-labelledby=flights] > *"),
 }
 """What may be pictured: its name in words, and where in the page it is."""
