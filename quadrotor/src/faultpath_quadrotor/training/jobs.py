@@ -111,7 +111,6 @@ def run_jobs(
     nothing can be fitted at all.
     """
     executor = local(workers)
-    check_pools(jobs, data)
     make_folder(out)
     order = sorted(jobs, key=lambda job: -job.entry.cost)
     running: dict[str, Moment | None] = {}
