@@ -22,7 +22,6 @@ from typing import Any
 
 import blocks
 import carry_blocks
-import fact_blocks
 import map_blocks
 import model_blocks
 import paper_blocks
@@ -62,7 +61,7 @@ PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     map_blocks.pictures,
     paper_blocks.pictures,
     paper_blocks.elsewhere,
-    fact_blocks.pages,
+    paper_blocks.fact_page,
     state_blocks.pictures,
 )
 """What makes whole files, by their path."""
