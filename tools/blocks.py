@@ -3,7 +3,7 @@
 import re
 import shlex
 import shutil
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from functools import cache
 from io import StringIO
@@ -12,11 +12,11 @@ from typing import Any, TypeVar
 
 from flown_code import ROOT, flown_by
 from pydantic import BaseModel, ValidationError
-from rich.console import Console
+from rich.console import Console, RenderableType
 
 from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord
-from faultpath.decisions.tables import Entry, Table, line
+from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.markdown import grid
 from faultpath.report.tables import DIFFERENCE, by_quantity
 from faultpath.report.terminal import decision
@@ -25,8 +25,6 @@ from faultpath.statistics.estimate import IN_FORCE
 from faultpath.trials.provenance import RunProvenance
 
 REFERENCE = ROOT / "docs" / "reference"
-
-
 TAKE_AGAIN = "take the run again"
 M = TypeVar("M", bound=BaseModel)
 
@@ -61,33 +59,21 @@ def parsed(path: Path, model: type[M], again: str) -> M:
         raise Wrong(f"{path} is {reason}: {again}") from None
 
 
-def copied(files: Iterable[str], folder: Path, target: Path) -> None:
-    """Copy files of a finished run; `Wrong` where it has not got them all.
-
-    A mapping gives each the name that it gets.
-    """
-    names = files if isinstance(files, Mapping) else {file: file for file in files}
-    absent = [file for file in names if not (folder / file).is_file()]
-    if absent:
+def copied(files: Collection[str], folder: Path, target: Path) -> None:
+    """Copy files of a finished run; `Wrong` where it has not got them all."""
+    if absent := [file for file in files if not (folder / file).is_file()]:
         raise Wrong(f"{folder} holds no finished run: it has no {', '.join(absent)}")
     target.mkdir(parents=True, exist_ok=True)
-    for file, name in names.items():
-        shutil.copyfile(folder / file, target / name)
+    for file in files:
+        shutil.copyfile(folder / file, target / file)
 
 
 @cache
-def load(name: str) -> Run | None:
-    """Return a reference run, `None` where there is none; `Wrong` for a damaged one."""
+def load(name: str) -> Run:
+    """Return a reference run; `Wrong` for a damaged one, and where there is none."""
     folder = REFERENCE / name
-    if not (folder / "record.json").is_file():
-        return None
     record = parsed(folder / "record.json", DecisionRecord, TAKE_AGAIN)
     return Run(name, record, parsed(folder / "provenance.json", RunProvenance, TAKE_AGAIN))
-
-
-def missing(name: str) -> str:
-    """Return what a block says while its reference run is not there."""
-    return f"*The reference run `docs/reference/{name}` has not been made yet.*"
 
 
 def table(run: Run) -> str:
@@ -167,10 +153,15 @@ def contrast(run: Run) -> str:
 
 def terminal(run: Run) -> str:
     """Return what the command line prints of the record, and by which code the run was flown."""
+    return "\n\n".join([printed(decision(run.record)), flown(run)])
+
+
+def printed(shown: RenderableType) -> str:
+    """Return what a terminal of 100 columns shows."""
     console = Console(file=StringIO(), width=100, record=True, color_system=None)
-    console.print(decision(run.record))
+    console.print(shown)
     lines = (line.rstrip() for line in console.export_text().splitlines())
-    return "\n\n".join([fence("text", "\n".join(lines).strip("\n")), flown(run)])
+    return fence("text", "\n".join(lines).strip("\n"))
 
 
 def command(run: Run, *words: str) -> str:
@@ -204,23 +195,22 @@ def origin(run: Run) -> str:
 
 
 def times(*names: str) -> str:
-    """Return how long runs took, one a row; those that are not there have a line below."""
-    runs = [run for name in names if (run := load(name))]
+    """Return how long runs took, one a row."""
+    runs = [load(name) for name in names]
     lines = tuple(
         line(
             str(run.record.question.n_scenes),
-            *(Entry(text=str(len(run.record.question.seeds))), Entry(text=str(run.trials))),
-            Entry(text=duration(run)),
-            Entry(text=run.provenance.processor.replace("(R)", "")),
-            Entry(text=str(run.provenance.workers)),
+            str(len(run.record.question.seeds)),
+            str(run.trials),
+            duration(run),
+            run.provenance.processor.replace("(R)", ""),
+            str(run.provenance.workers),
         )
         for run in runs
     )
     heads = ("Seeds", "Trials", "Time", "Processor", "Workers")
     table = Table(corner="Scenes", columns=heads, words=("Processor",), lines=lines)
-    by = " ".join(dict.fromkeys(map(flown, runs)))
-    absent = [missing(name) for name in names if load(name) is None]
-    return "\n\n".join([*([grid(table), by] if runs else []), *absent])
+    return "\n\n".join([grid(table), " ".join(dict.fromkeys(map(flown, runs)))])
 
 
 def duration(run: Run) -> str:
@@ -265,30 +255,22 @@ PARTS: dict[str, tuple[str, str]] = {
     "verdict": ("Verdict", ".masthead, #verdict > *"),
     "interface": ("What the fault strikes", "[aria-labelledby=interface] > *"),
     "effects": ("Effects of the repair", "[aria-labelledby=effects] figure"),
-    "frequency": ("Difference against fault frequency", "[aria-labelledby=frequency] > *"),
     "flights": ("Some flights", "[aria-labelledby=flights] > *"),
 }
 """What may be pictured: its name in words, and where in the page it is."""
 
 
-def _about(fill: Callable[..., str], *, first: bool = False) -> Callable[..., str]:
-    def filled(name: str, *arguments: str) -> str:
-        run = load(name)
-        if run is None:
-            return missing(name) if first else ""
-        return fill(run, *arguments)
-
-    return filled
+def about(
+    load: Callable[[str], Any], *fills: Callable[..., str]
+) -> Iterator[tuple[str, Callable[..., str]]]:
+    """Yield what fills blocks about a run that is loaded by its name, each with its kind."""
+    for fill in fills:
+        kind = fill.__name__.strip("_")
+        yield kind, lambda name, *words, fill=fill: fill(load(name), *words)
 
 
 KINDS: dict[str, Callable[..., str]] = {
-    "table": _about(table, first=True),
-    "headline": _about(headline),
-    "contrast": _about(contrast),
-    "terminal": _about(terminal),
-    "command": _about(command),
-    "origin": _about(origin),
-    "picture": _about(picture),
+    **dict(about(load, table, headline, contrast, terminal, command, origin, picture)),
     "times": times,
     "code": code,
     "template": template,

@@ -1,12 +1,11 @@
 """What the page about the carry-over of verdicts shows of its study."""
 
 import sys
-from collections.abc import Callable
 from functools import cache
 from itertools import product
 from pathlib import Path
 
-from blocks import REFERENCE, ROOT, TAKE_AGAIN, copied, missing, parsed
+from blocks import REFERENCE, ROOT, TAKE_AGAIN, about, copied, parsed
 from flown_code import flown_by
 
 from faultpath.decisions import wording
@@ -26,10 +25,9 @@ MARKS = {1: "repair", -1: "baseline", 0: "·"}
 
 
 @cache
-def load(name: str) -> Flown | None:
-    """Return what a study left, `None` where there is none; `Wrong` for a damaged file."""
-    path = REFERENCE / name / CELLS
-    return parsed(path, Flown, TAKE_AGAIN) if path.is_file() else None
+def load(name: str) -> Flown:
+    """Return what a study left; `Wrong` for a damaged file, and where there is none."""
+    return parsed(REFERENCE / name / CELLS, Flown, TAKE_AGAIN)
 
 
 def take(name: str, folder: Path) -> None:
@@ -38,11 +36,11 @@ def take(name: str, folder: Path) -> None:
     load.cache_clear()
 
 
-def _said(flown: Flown, name: str) -> str:
+def _said(flown: Flown) -> str:
     return "\n".join(f"- {each}" for each in sentences(flown))
 
 
-def _matrix(flown: Flown, name: str) -> str:
+def _matrix(flown: Flown) -> str:
     """Return a table a question and path: planner, estimator and plant down, the rest across."""
     parts: list[str] = []
     means = {(q.repair, q.baseline, reach): mean for q, reach, mean in overall(flown)}
@@ -85,7 +83,7 @@ def _shown(mean: Mean | None) -> str:
     return f"{wording.signed(mean.value_pp)} {ends}"
 
 
-def _factors(flown: Flown, name: str) -> str:
+def _factors(flown: Flown) -> str:
     lines: list[Line] = []
     every = moves(flown)
     for question, reach, _ in questions(flown):
@@ -107,7 +105,8 @@ def _factors(flown: Flown, name: str) -> str:
     return grid(Table(columns=columns, lines=tuple(lines), corner="Pairs of cells"))
 
 
-def _cost(flown: Flown, name: str) -> str:
+def _cost(name: str) -> str:
+    flown = load(name)
     origin = parsed(REFERENCE / name / "provenance.json", RunProvenance, TAKE_AGAIN)
     timed = sum(each.trials for each in flown.rounds)
     spent = sum(each.seconds for each in flown.rounds) / 60
@@ -126,21 +125,5 @@ def _cost(flown: Flown, name: str) -> str:
     )
 
 
-def _about(fill: Callable[[Flown, str], str]) -> Callable[[str], str]:
-    def filled(name: str) -> str:
-        flown = load(name)
-        return missing(name) if flown is None else fill(flown, name)
-
-    return filled
-
-
-KIND = {
-    part: _about(fill)
-    for part, fill in (
-        ("said", _said),
-        ("matrix", _matrix),
-        ("factors", _factors),
-        ("cost", _cost),
-    )
-}
+KIND = {**dict(about(load, _said, _matrix, _factors)), "cost": _cost}
 """What fills the blocks of docs/carry-over.md."""

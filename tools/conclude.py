@@ -2,7 +2,9 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import map_blocks
 from blocks import REFERENCE, ROOT
@@ -14,6 +16,10 @@ from paper_blocks import PLACE, RUN
 
 from faultpath.api.runs import MAP, RECORD, SYSTEM, TRACES, as_text
 from faultpath.decisions.decide import decide
+from faultpath.decisions.map.decide import conclude as map_decided
+from faultpath.decisions.map.lattice import UNITS
+from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.study import plan_map
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.model import Path as FaultPath
 from faultpath.decisions.question import Question
@@ -21,9 +27,11 @@ from faultpath.decisions.tables import Table
 from faultpath.faults import parse_fault
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
-from faultpath.trials import SystemSpec, load_system, system_shown
+from faultpath.report.map import table_markdown
+from faultpath.trials import System, SystemSpec, library_of, load_system, system_shown
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store.folder import read_outcomes, seal
+from faultpath.trials.question import MapQuestion
+from faultpath.trials.store.folder import OUTCOMES, read_outcomes, seal
 from faultpath.trials.store.signals import SIGNALS, decode_signals
 from faultpath.trials.store.tables import decode_traces
 
@@ -35,7 +43,7 @@ def conclude_all(tell: Callable[[str], None]) -> None:
         record = audit(folder)
         tell(f"{folder.name}: {before['headline']}\n    now: {record.headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
-        tell(f"{folder.name}: {map_blocks.conclude(folder).headline}")
+        tell(f"{folder.name}: {reversal_map(folder).headline}")
     for line in paper(RUN, PLACE):
         tell(f"the paper: {line}")
 
@@ -44,8 +52,7 @@ def audit(folder: Path) -> DecisionRecord:
     """Decide a stored audit anew and write its record and pages."""
     before = json.loads((folder / "record.json").read_bytes())
     asked = Question.model_validate(before["question"])
-    place = str(ROOT / asked.system) if ".py:" in asked.system else asked.system
-    system = load_system(SystemSpec(name=place, options=asked.options))
+    _, system = _system(asked)
     fault = parse_fault(asked.fault, system.interface, system.fault_presets, system.control_dt_s)
     asked = asked.model_copy(
         update={
@@ -81,6 +88,39 @@ def audit(folder: Path) -> DecisionRecord:
     return record
 
 
+def reversal_map(folder: Path) -> MapRecord:
+    """Decide a reference map anew from its trials; write its record and table."""
+    before = map_blocks.load(folder.name).record
+    asked = before.question
+    spec, system = _system(asked)
+    request = MapQuestion(
+        baseline=asked.baseline,
+        repair=asked.repair,
+        fault=asked.fault,
+        against=asked.against,
+        up_to=asked.up_to,
+        points=asked.points,
+        mean=asked.means,
+        spread=asked.spreads,
+        correlation=asked.correlation,
+        scenes=asked.n_scenes,
+        seeds=asked.seeds,
+    )
+    plan = plan_map(system, spec, request, library_of(system, asked.library))
+    points = [
+        (round(x / asked.up_to * UNITS), round(y / asked.up_to * UNITS))
+        for x, y in (each.errors for each in before.points)
+    ]
+    record = map_decided(
+        replace(plan, question=asked), points, read_outcomes(folder / OUTCOMES), before.findings
+    )
+    (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
+    (folder / "table.md").write_text(table_markdown(record), "utf-8")
+    _reseal(folder, map_blocks.load(folder.name).provenance)
+    map_blocks.load.cache_clear()
+    return record
+
+
 def paper(folder: Path, target: Path) -> list[str]:
     """Conclude a reproduction; return what its claims were answered and now are."""
     results, old = read_results(folder)
@@ -101,6 +141,12 @@ def paper(folder: Path, target: Path) -> list[str]:
         for claim in found.ledger.claims
         if claim.verdict != answers.get(claim.id)
     ] or ["No claim changed its answer."]
+
+
+def _system(asked: Any) -> tuple[SystemSpec, System]:
+    place = str(ROOT / asked.system) if ".py:" in asked.system else asked.system
+    spec = SystemSpec(name=place, options=asked.options)
+    return spec, load_system(spec)
 
 
 def _reseal(folder: Path, origin: RunProvenance) -> RunProvenance:

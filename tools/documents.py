@@ -22,7 +22,6 @@ from typing import Any
 
 import blocks
 import carry_blocks
-import fact_blocks
 import map_blocks
 import model_blocks
 import paper_blocks
@@ -62,7 +61,7 @@ PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     map_blocks.pictures,
     paper_blocks.pictures,
     paper_blocks.elsewhere,
-    fact_blocks.pages,
+    paper_blocks.fact_page,
     state_blocks.pictures,
 )
 """What makes whole files, by their path."""
@@ -149,7 +148,7 @@ def pictures() -> list[tuple[str, str]]:
     """Return the run and part of every picture that documents show and that a run is there for."""
     texts = [path.read_text("utf-8") for path in documents()]
     names = [m["name"].split(":") for text in texts for m in BLOCK.finditer(text)]
-    return sorted({(n[1], n[2]) for n in names if n[0] == "picture" and load(n[1])})
+    return sorted({(n[1], n[2]) for n in names if n[0] == "picture"})
 
 
 def take(what: str) -> None:
@@ -165,8 +164,8 @@ def take(what: str) -> None:
         return
     heard = (SIGNALS,) if (Path(folder) / SIGNALS).is_file() else ()
     copied((*TAKEN, *heard), Path(folder), REFERENCE / name)
-    run = load(name)
-    if run is not None and run.provenance.dirty:
+    load.cache_clear()
+    if load(name).provenance.dirty:
         print(f"{name} was made with uncommitted changes, and the documents will say so.")
 
 

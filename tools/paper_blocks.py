@@ -5,7 +5,6 @@ from functools import cache
 from pathlib import Path
 
 import blocks
-import fact_blocks
 from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed
 from faultpath_quadrotor.paper.answers import RUN, Reproduction
 from faultpath_quadrotor.paper.cells import SYSTEM, Setting
@@ -18,6 +17,7 @@ from faultpath_quadrotor.paper.central import (
     of_run,
     state,
 )
+from faultpath_quadrotor.paper.facts import SECTIONS, STANDINGS, counted, facts, listed
 from faultpath_quadrotor.paper.report.page import sweep_plot
 from faultpath_quadrotor.paper.report.short import apart, by_kind, by_subject
 from flown_code import flown_by
@@ -32,6 +32,7 @@ from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import read_outcomes
 
 PLACE = REFERENCE / "paper"
+FACTS = PLACE / "facts.md"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")
 """What of a run is shipped with the package: the claims are evaluated from it."""
 PAGES = ("reproduction.html", "tables.md", "ledger.md")
@@ -86,8 +87,6 @@ def _besides() -> Table:
     lines: list[Line] = []
     for name, words in BESIDES.items():
         run = blocks.load(name)
-        if run is None:
-            continue
         record, asked = run.record, run.record.question
         place = words.format(
             scenes=record.scenes, library=asked.library, seeds=wording.seeds(asked.seeds)
@@ -110,14 +109,6 @@ def _counts() -> str:
         f"{ledger.scenes} scenes of `{ledger.library}`, seeds "
         f"{', '.join(map(str, ledger.seeds))} ({found.trials:,} trials)."
     )
-
-
-def _ledger() -> str:
-    return grid(by_kind(load()[0].ledger))
-
-
-def _sizes() -> str:
-    return grid(by_subject(load()[0].ledger))
 
 
 def _apart() -> str:
@@ -146,14 +137,11 @@ def _origin() -> str:
 
 def _run_again() -> str:
     """Say how many trials a reference run has repeated, and how many came out alike."""
-    again = REFERENCE / AGAIN
-    if not again.is_dir():
-        return ""
     paths = {CORRECT: CORRECT, SHARED: _FAULT, _MODULE: f"{_FAULT}@{_MODULE}"}
     setting = Setting(wind="L3")
     here = {
         (row.variant, f"{setting}: {paths[row.path]}", row.seed, row.outcome.scene): row.outcome
-        for row in read_outcomes(again / FILES[2]).rows
+        for row in read_outcomes(REFERENCE / AGAIN / FILES[2]).rows
         if row.path in paths
     }
     there = {
@@ -168,12 +156,47 @@ def _run_again() -> str:
     )
 
 
+def fact_page() -> Mapping[Path, str]:
+    """Return the page with every fact, by its path."""
+    words = ", ".join(
+        f"{sum(fact.state == state for fact in facts())} {state}" for state in STANDINGS
+    )
+    parts = [
+        "# What the paper states, fact by fact",
+        f"{len(facts())} facts: {words}. *As written*: what the paper says. *Our reading*: the "
+        "paper is silent there, or can be read in several ways. *Otherwise*: something else. "
+        "Places are files of `quadrotor/src/faultpath_quadrotor`, or of `src` from `faultpath/` "
+        "on, each with a name in the file. Made from `paper/paper/facts.yaml` by `make docs`.",
+    ]
+    for section, title in SECTIONS.items():
+        parts += [f"## {title}", grid(listed(section))]
+    return {FACTS: "\n\n".join(parts) + "\n"}
+
+
+def _facts() -> str:
+    """Return the counts by section, and every fact that is otherwise with its reason."""
+    every = facts()
+    apart = [fact for fact in every if fact.state == "otherwise"]
+    said = [
+        f"- **{fact.number}.** *The paper:* {markdown(fact.fact)} *Here:* {markdown(fact.ours)}"
+        for fact in apart
+    ]
+    where = f"{{reference}}/{FACTS.relative_to(REFERENCE)}"
+    return "\n\n".join(
+        [
+            grid(counted()),
+            f"Otherwise ([all {len(every)} facts]({where}), with their places in the code):",
+            "\n".join(said),
+        ]
+    )
+
+
 KIND: dict[str, Callable[..., str]] = {
     "counts": _counts,
-    "ledger": _ledger,
-    "sizes": _sizes,
+    "ledger": lambda: grid(by_kind(load()[0].ledger)),
+    "sizes": lambda: grid(by_subject(load()[0].ledger)),
     "apart": _apart,
-    "facts": fact_blocks.in_short,
+    "facts": _facts,
     "origin": _origin,
     "picture": _picture,
 }

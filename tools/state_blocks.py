@@ -132,9 +132,7 @@ def _errors(library: str) -> str:
     columns = ("filter", *(f"{name.replace('_', ' ')}, {unit}" for name, unit in UNITS.items()))
     lines = [
         line(
-            each["fault"],
-            each["filter"],
-            *(wording.plain(each["rms"][name], 3) for name in UNITS),
+            each["fault"], each["filter"], *(wording.plain(each["rms"][name], 3) for name in UNITS)
         )
         for each in _read(f"{library}/errors.json")
     ]

@@ -1,7 +1,6 @@
 """The claims over whole runs: as published, mirrored, in part, and not at all."""
 
 import pytest
-from faultpath_quadrotor.evidence.table import EvidenceTable
 from faultpath_quadrotor.paper.answers import ClaimVerdict
 from faultpath_quadrotor.paper.cells import Cell, published_claims
 from faultpath_quadrotor.paper.claims import STATEMENTS, evaluate, ledger
@@ -11,30 +10,17 @@ from faultpath_quadrotor.paper.pages import table_1, table_4
 from faultpath_quadrotor.paper.quantities.differences import together
 from faultpath_quadrotor.paper.results import Results
 from study_toys import SCENES, as_published, mirrored, whole, without
-from toy_runs import EMPTY, trials
+from toy_runs import EMPTY, NOTHING, trials
 
 from faultpath.trials import OutcomeTable, Status
 
 Answers = dict[str, ClaimVerdict]
 
 
-def by_id(claims: tuple[ClaimVerdict, ...]) -> Answers:
-    return {claim.id: claim for claim in claims}
-
-
-@pytest.fixture(scope="module")
-def published_run() -> Results:
-    return whole()
-
-
-@pytest.fixture(scope="module")
-def answers(published_run: Results) -> Answers:
-    return by_id(evaluate(published_run))
-
-
 @pytest.fixture(scope="module")
 def mirror() -> Answers:
-    return by_id(evaluate(whole(mirrored, power=-1.0, slower_s=-1.4)))
+    found = evaluate(whole(mirrored, power=-1.0, slower_s=-1.4))
+    return {claim.id: claim for claim in found}
 
 
 def test_every_published_claim_has_statements_and_nothing_else_has() -> None:
@@ -52,7 +38,7 @@ def test_an_empty_run_leaves_every_claim_undecided() -> None:
 def test_a_run_of_some_pages_answers_what_it_is_about(published_run: Results) -> None:
     cells = set(table_4.PAGE.cells)
     rows = [row for row in published_run.outcomes.rows if row.path in {c.path for c in cells}]
-    some = Results(OutcomeTable(tuple(rows)), EvidenceTable({}), "toy")
+    some = Results(OutcomeTable(tuple(rows)), NOTHING, "toy")
     found = ledger(some, "toy", "hash", SCENES, (0, 1, 2), only_run=True)
     assert {"C23", "C26"} <= {claim.id for claim in found.claims}
     assert not {"C01", "C05"} & {claim.id for claim in found.claims}
@@ -89,7 +75,7 @@ def test_a_reversal_in_two_of_three_seeds_is_none_in_every_seed() -> None:
         turned = seed == 2 and cell.variant == "gru+dcc"
         return mirrored(cell, seed, scene) if turned else as_published(cell, seed, scene)
 
-    run = Results(trials(table_4.PAGE.cells, ends, range(SCENES)), None, "toy")
+    run = Results(trials(table_4.PAGE.cells, ends, range(SCENES)), NOTHING, "toy")
     seeds = STATEMENTS["C26"][1].part(run)
     assert (seeds.answer, seeds.estimate) == ("refuted", 2)
 
@@ -106,7 +92,7 @@ def test_a_void_trial_leaves_its_scene_out_of_all_that_is_joined(published_run: 
         lost = cell == table_4.cell("gru", "shared") and seed == 1 and scene in (0, 60)
         return Status.FAILED if lost else as_published(cell, seed, scene)
 
-    run = Results(trials(table_4.PAGE.cells, ends, range(SCENES)), None, "toy")
+    run = Results(trials(table_4.PAGE.cells, ends, range(SCENES)), NOTHING, "toy")
     statement = STATEMENTS["C26"][0]
     assert isinstance(statement, TurnsDown)
     for found in together(run, statement.before, statement.after):

@@ -10,7 +10,7 @@ from faultpath_quadrotor.paper.claims.rules import Bound
 from faultpath_quadrotor.paper.pages.table_5 import REPAIRS
 from faultpath_quadrotor.paper.quantities.crossing import crossing, greater_effect
 from faultpath_quadrotor.paper.results import Results
-from toy_runs import trials
+from toy_runs import NOTHING, trials
 
 from faultpath.statistics.contrast import percentile_interval
 from faultpath.statistics.resamples import Resamples
@@ -30,7 +30,7 @@ def flown(costs: int, gains: int, scenes: int = SCENES) -> Results:
         won = scene < 20 + (change if repair else 0)
         return Status.SUCCESS if won else Status.CRASH
 
-    return Results(trials(REPAIR, ends, range(scenes)), None, "toy")
+    return Results(trials(REPAIR, ends, range(scenes)), NOTHING, "toy")
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import pytest
-from faultpath_quadrotor.evidence.table import EvidenceTable
 from faultpath_quadrotor.paper import flights
 from faultpath_quadrotor.paper.answers import Reproduction
 from faultpath_quadrotor.paper.cells import HELD_OUT, PAPER, QUICK, Cell, Profile, calibration
@@ -11,13 +10,12 @@ from faultpath_quadrotor.paper.entries import Group, centimetres, success
 from faultpath_quadrotor.paper.flights import Flown
 from faultpath_quadrotor.paper.page import Page, Row, TableSpec
 from faultpath_quadrotor.paper.pages import PAGES, table_1, table_2
-from faultpath_quadrotor.paper.results import Results
 from faultpath_quadrotor.paper.run import Plan, conclude, measure_all, plan, read_results, save
 
 from faultpath.api.asking import Job
 from faultpath.api.display import Display
 from faultpath.core.errors import UserError
-from faultpath.trials.work.executor import Here, Progress
+from faultpath.trials.work.executor import Here
 
 SILENT = Display(command=("faultpath", "reproduce"))
 TINY = Profile("tiny", scenes=2, seeds=(0,))
@@ -50,7 +48,7 @@ def run(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None) -> P
     flown = fly(asked, folder)
     evidence = measure_all(asked, folder, 0, lambda done, total: None)
     results = asked.results(flown.outcomes, evidence)
-    save(folder, flown, results, evidence, conclude(asked, results))
+    save(folder, flown, results, conclude(asked, results))
     return folder
 
 
@@ -77,20 +75,6 @@ def test_the_faulty_cell_is_faulted_and_pairs_with_the_nominal_one(run: Path) ->
         for cell in (NOMINAL, FAULTY)
     }
     assert faulted == {NOMINAL: {False}, FAULTY: {True}}
-
-
-def test_a_run_without_measurements_says_which_is_missing(run: Path) -> None:
-    results, _ = read_results(run)
-    blind = Results(results.outcomes, EvidenceTable({}), results.library_hash)
-    with pytest.raises(Exception, match="position-error of wm-a"):
-        blind.measured(ERROR)
-
-
-def test_progress_reaches_the_end(tmp_path: Path, selection_held_out: None) -> None:
-    seen: list[Progress] = []
-    one = Plan((TWO,), Profile("one", 1, (0,)))
-    flights.fly(one.legs(), tmp_path, Job(tmp_path, Here(), SILENT).run, seen.append)
-    assert (seen[-1].done, seen[-1].total) == (1, 1)
 
 
 def test_a_profile_takes_its_seeds_and_joins_cells_that_share_trials() -> None:

@@ -3,10 +3,8 @@
 import pytest
 from faultpath_quadrotor.paper.answers import ClaimVerdict
 from faultpath_quadrotor.paper.cells import Printed
-from faultpath_quadrotor.paper.claims import STATEMENTS, evaluate
+from faultpath_quadrotor.paper.claims import STATEMENTS
 from faultpath_quadrotor.paper.claims.statement import size
-from faultpath_quadrotor.paper.results import Results
-from study_toys import whole
 
 EXACT, MEASURED = Printed(10.0), Printed(10.0, (4.0, 16.0))
 UNPRINTED = {
@@ -64,16 +62,6 @@ def test_a_ratio_has_its_sides_about_1_and_a_share_has_none() -> None:
     assert size(60.0, (50.0, 70.0), 100, Printed(80.0), None) == "other size"
 
 
-@pytest.fixture(scope="module")
-def published_run() -> Results:
-    return whole()
-
-
-@pytest.fixture(scope="module")
-def answers(published_run: Results) -> tuple[ClaimVerdict, ...]:
-    return evaluate(published_run)
-
-
 def test_every_figure_that_the_paper_prints_is_carried() -> None:
     without = {
         (claim, at)
@@ -85,12 +73,12 @@ def test_every_figure_that_the_paper_prints_is_carried() -> None:
 
 
 def test_where_the_papers_figures_come_true_sizes_are_compatible(
-    answers: tuple[ClaimVerdict, ...],
+    answers: dict[str, ClaimVerdict],
 ) -> None:
     """The toy's windows are noisier than its intervals in two medians; all else is as printed."""
     others = [
         (claim.id, at)
-        for claim in answers
+        for claim in answers.values()
         for at, part in enumerate(claim.parts)
         if part.paper is not None and part.size != "compatible"
     ]

@@ -3,22 +3,9 @@
 from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.answers import Sweep
 from faultpath_quadrotor.paper.cells import Cell
-from faultpath_quadrotor.paper.pages import PAGES, figure_3, table_3, table_4, table_6
+from faultpath_quadrotor.paper.pages import figure_3, table_3, table_4, table_6
 from faultpath_quadrotor.training import trajectories
-from toy_runs import (
-    EMPTY,
-    MEASUREMENTS,
-    SCENES,
-    calibrated,
-    line,
-    measured,
-    page,
-    papers,
-    run,
-    tables,
-    texts,
-    won,
-)
+from toy_runs import SCENES, calibrated, line, measured, page, papers, run, tables, texts, won
 
 from faultpath.trials import Status
 
@@ -80,6 +67,11 @@ def test_table_2_has_means_over_seeds_and_detected_differences() -> None:
     assert texts(counts) == ["13:0/13:0/13:0", "1:0/1:0/1:0", "13:0/13:0/13:0"]
     assert papers(counts)[0] == "51:0/51:1/49:1"
     assert texts(line(table, "Success (%)")) == ["10", "70", "10"]
+    ends, score = (
+        texts(line(table, label, below=heading))[1] for label in ("95 % interval", "Score interval")
+    )
+    assert ends == "[0.0, 15.0]"  # of one scene in twenty; the score's holds what none showed
+    assert score.startswith("[−")
 
 
 def test_figure_3_has_a_point_with_its_interval_for_each_error() -> None:
@@ -127,16 +119,6 @@ def test_the_observer_flies_once_and_is_compared_with_each_trained_seed() -> Non
     assert (dob.fixed, dob.seeds, results.pairs(dob, dob).seeds) == (True, (0,), (0,))
 
 
-def test_both_intervals_stand_in_a_table_and_the_papers_comes_first() -> None:
-    table = tables(page("table-2"), run(won(calibrated)))["table-2"]
-    heading = "WM-A+DCC minus WM-A (pp)"
-    ends, score = (
-        texts(line(table, label, below=heading))[1] for label in ("95 % interval", "Score interval")
-    )
-    assert ends == "[0.0, 15.0]"  # of one scene in twenty; the score's holds what none showed
-    assert score.startswith("[−")
-
-
 def test_table_5_gives_the_break_even_frequency_or_says_that_there_is_none() -> None:
     table = tables(page("table-5"), run(won(_reconstructed)))["table-5"]
     alone = texts(line(table, "GRU: reconstruction only"))
@@ -160,18 +142,6 @@ def test_table_6_averages_the_medians_of_the_seeds() -> None:
     first = measured([m for m in table_6.PAGE.measurements if m.seed == 0], value)
     table = tables(page("table-6"), run(won(calibrated), evidence=first))["table-6a"]
     assert texts(line(table, "GRU")) == ["1.00"] * 4
-
-
-def test_notes_say_what_was_flown_and_measured() -> None:
-    results = run(won(calibrated), evidence=measured(MEASUREMENTS, lambda m: 0.1))
-    built = {k: v for each in PAGES for k, v in tables(each, results).items()}
-    assert built["table-4"].notes[0] == "20 scenes of the held-out library, seeds 0, 1, 2."
-    assert any(
-        note.endswith("220 windows of 20 scenes of the held-out library, seeds 0, 1, 2.")
-        for note in built["table-6a"].notes
-    )
-    (nothing,) = {table.notes[0] for table in tables(page("table-4"), EMPTY).values()}
-    assert nothing == "No trial of this table was run."
 
 
 def test_table_6_tests_the_negative_offset() -> None:

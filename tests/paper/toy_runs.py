@@ -58,17 +58,20 @@ def measured(
     )
 
 
+NOTHING = EvidenceTable({})
+
+
 def run(
     ends: Ends,
     cells: Iterable[Cell] = CELLS,
-    evidence: EvidenceTable | None = None,
+    evidence: EvidenceTable = NOTHING,
     scenes: Iterable[int] = range(SCENES),
 ) -> Results:
     """Return what a run of some cells leaves."""
     return Results(trials(cells, ends, scenes), evidence, "toy")
 
 
-EMPTY = Results(OutcomeTable(()), None, "toy")
+EMPTY = Results(OutcomeTable(()), NOTHING, "toy")
 
 
 @dataclass(frozen=True)
@@ -83,9 +86,9 @@ class Watched(Results):
         # Keywords are passed on as they come, so their types are those of the method itself.
         return super().pairs(first, second, **named)
 
-    def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:
-        self.cells.append(of_seed(cell, seed))
-        return super().counts(cell, seed)
+    def first(self, cell: Cell) -> list[Outcome]:
+        self.cells.append(of_seed(cell))
+        return super().first(cell)
 
     def measured(self, measurement: Measurement) -> Measured:
         self.measurements.append(measurement)

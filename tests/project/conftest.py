@@ -10,6 +10,7 @@ from subprocess import CompletedProcess
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path += [str(ROOT), str(ROOT / "tools")]
 
 Run = Callable[..., CompletedProcess[str]]
 

@@ -1,13 +1,8 @@
 """The study of where verdicts carry over: what is said comes from decisions, and it resumes."""
 
-import sys
-from pathlib import Path
-
+import carry_blocks
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
-import carry_blocks
 import study
 from carry_design import Cell, Design, Flown
 from carry_verdicts import lead, moves, overall, sentences, settled, sign

@@ -2,24 +2,17 @@
 
 import json
 import shutil
-import sys
 from pathlib import Path
 
-import pytest
+import conclude
 
 from faultpath.api.runs import open_run
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 
 
-def test_a_run_decided_anew_is_still_enough_for_report(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, root: Path
-) -> None:
+def test_a_run_decided_anew_is_still_enough_for_report(tmp_path: Path) -> None:
     """Digests are those of what was written anew, and trials and traces stay as they are."""
-    monkeypatch.syspath_prepend(str(root / "tools"))
-    sys.modules.pop("conclude", None)
-    import conclude
-
     toy = Path(shutil.copytree(REFERENCE / "toy", tmp_path / "toy"))
     traces = (toy / "traces.parquet").read_bytes()
     record = json.loads((toy / "record.json").read_bytes())

@@ -1,8 +1,8 @@
 """Documents say by which code a reference run was flown, and whether that has changed since."""
 
-import sys
 from pathlib import Path
 
+import flown_code
 import pytest
 
 from faultpath.trials.provenance import RunProvenance
@@ -12,17 +12,7 @@ TOY = "examples/toy.py:create"
 
 
 @pytest.fixture(scope="module")
-def flown_code():
-    sys.path.insert(0, str(ROOT / "tools"))
-    try:
-        import flown_code
-    finally:
-        sys.path.remove(str(ROOT / "tools"))
-    return flown_code
-
-
-@pytest.fixture(scope="module")
-def made(flown_code) -> RunProvenance:
+def made() -> RunProvenance:
     """A run of the toy by the code that is here."""
     stored = ROOT / "docs" / "reference" / "toy" / "provenance.json"
     here = flown_code._state(TOY, ())
@@ -39,7 +29,7 @@ def made(flown_code) -> RunProvenance:
     )
 
 
-def test_a_run_by_the_code_that_is_here_says_so(flown_code, made: RunProvenance) -> None:
+def test_a_run_by_the_code_that_is_here_says_so(made: RunProvenance) -> None:
     said = flown_code.flown_by(made, TOY, {})
     assert said == "Flown by commit `0123456789ab`; nothing that flew has changed since."
 
@@ -56,7 +46,5 @@ def other(digests: dict[str, str]) -> dict[str, str]:
         (lambda made: {"sources": {}}, "before runs kept digests of what flies: by older code"),
     ],
 )
-def test_what_else_is_to_be_known_is_said(
-    flown_code, made: RunProvenance, change, says: str
-) -> None:
+def test_what_else_is_to_be_known_is_said(made: RunProvenance, change, says: str) -> None:
     assert says in flown_code.flown_by(made.model_copy(update=change(made)), TOY, {})

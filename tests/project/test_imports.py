@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable
-from pathlib import Path
 from subprocess import CompletedProcess
 from textwrap import dedent
 
@@ -13,21 +12,14 @@ Run = Callable[..., CompletedProcess[str]]
 HEAVY = ["mujoco", "pyarrow", "scipy", "torch"]
 
 
-def _engine_modules(root: Path) -> list[str]:
-    source = root / "src"
-    names = (path.relative_to(source).with_suffix("").parts for path in source.rglob("*.py"))
-    modules = (".".join(parts).removesuffix(".__init__") for parts in names)
-    return sorted(name for name in modules if not name.endswith("__main__"))
-
-
-def test_no_module_of_the_engine_loads_torch_when_imported(root: Path, run: Run) -> None:
+def test_no_module_of_the_engine_loads_torch_when_imported(run: Run) -> None:
     code = """
     import importlib, json, sys
     for name in json.loads(sys.argv[1]):
         importlib.import_module(name)
         assert "torch" not in sys.modules, f"{name} loads torch"
     """
-    done = run("-c", dedent(code), json.dumps(_engine_modules(root)))
+    done = run("-c", dedent(code), json.dumps(sorted(grimp.build_graph("faultpath").modules)))
     assert done.returncode == 0, done.stderr
 
 

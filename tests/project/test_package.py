@@ -1,4 +1,4 @@
-"""The package's declarations agree with each other."""
+"""The package's declarations agree with each other, and tests with theirs."""
 
 import importlib.metadata
 import re
@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
+from hypothesis import settings
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
@@ -82,3 +84,22 @@ def test_what_is_to_be_installed_exists(declared: dict[str, Any], root: Path) ->
     assert {"torch", "ray"} <= named
     assert named <= extras
     assert {"torch", "gymnasium"} <= set(_EXTRAS) <= extras
+
+
+def test_the_citation_is_that_of_the_readme(declared: dict[str, Any], root: Path) -> None:
+    cited = yaml.safe_load((root / "CITATION.cff").read_text("utf-8"))
+    project = declared["project"]
+    assert (cited["title"], cited["version"]) == (project["name"], project["version"])
+    assert cited["license"] == project["license"]
+    paper = cited["preferred-citation"]
+    authors = [f"{a['family-names']}, {a['given-names']}" for a in paper["authors"]]
+    readme = (root / "README.md").read_text("utf-8")
+    assert f"author = {{{' and '.join(authors)}}}" in readme
+    assert f"title  = {{{paper['title']}}}" in readme
+
+
+def test_hypothesis_draws_the_same_examples_every_time(request: pytest.FixtureRequest) -> None:
+    exploring = request.config.getoption("--hypothesis-profile") == "explore"
+    assert settings.default.derandomize is not exploring
+    assert settings.get_profile("fixed").derandomize
+    assert settings.get_profile("fixed").database is None

@@ -1,13 +1,10 @@
 """Pictures of documents: light or dark as their reader has it, and no label reaches out of them."""
 
 import re
-import sys
-from collections.abc import Iterator, Mapping
 from pathlib import Path
-from types import ModuleType
 from xml.etree import ElementTree
 
-import pytest
+import pictures
 
 from faultpath import open_run
 from faultpath.report.map_pictures import correlation_picture, map_picture
@@ -16,16 +13,6 @@ from faultpath.report.svg import text_width
 ROOT = Path(__file__).resolve().parents[2]
 SVG = "{http://www.w3.org/2000/svg}"
 DARK = "@media screen and (prefers-color-scheme: dark)"
-
-
-@pytest.fixture
-def tools(monkeypatch: pytest.MonkeyPatch) -> Iterator[Mapping[str, ModuleType]]:
-    for place in (ROOT, ROOT / "tools"):
-        monkeypatch.syspath_prepend(str(place))
-    import pictures
-
-    yield {"pictures": pictures}
-    sys.modules.pop("pictures", None)
 
 
 def drawn() -> dict[str, str]:
@@ -50,7 +37,7 @@ def test_labels_fit_and_colours_follow_the_reader() -> None:
             assert at + (1 - share) * long <= left + width + 1, f"{name}: {words}"
 
 
-def test_a_drawing_of_a_page_stands_alone_under_its_title(tools: Mapping[str, ModuleType]) -> None:
+def test_a_drawing_of_a_page_stands_alone_under_its_title() -> None:
     page = (ROOT / "docs" / "reference" / "toy" / "report.html").read_text("utf-8")
     drawing = re.search(r"<svg.*?</svg>", page, re.DOTALL)
     assert drawing is not None
@@ -61,13 +48,13 @@ def test_a_drawing_of_a_page_stands_alone_under_its_title(tools: Mapping[str, Mo
 
     own = heads(drawing[0])
     assert len(own) == 1
-    text = tools["pictures"].standing(drawing[0])
+    text = pictures.standing(drawing[0])
     assert heads(text) == own  # another one above it would say the same again
     without = drawing[0].replace('class="head"', 'class="bold"')
     title = ElementTree.fromstring(without).findtext(f"{SVG}title")
-    assert heads(tools["pictures"].standing(without)) == [title]
+    assert heads(pictures.standing(without)) == [title]
     assert DARK in text
-    both = tools["pictures"].twice((20.0, 10.0), "data:light", "data:dark")
+    both = pictures.twice((20.0, 10.0), "data:light", "data:dark")
     assert [each.get("href") for each in ElementTree.fromstring(both).iter(f"{SVG}image")] == [
         "data:light",
         "data:dark",

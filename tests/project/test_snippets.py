@@ -13,7 +13,6 @@ notes are about the past and are left alone.
 import doctest
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -33,44 +32,29 @@ OF_ALL_SCENES = re.compile(r"faultpath audit (?!.*--(scenes|study)\b)")
 LOOSELY = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
-@dataclass(frozen=True)
-class Block:
-    """A fenced block: its text and the number of its first line in the document."""
-
-    body: str
-    line: int
-
-
-@dataclass(frozen=True)
-class Command:
-    """One command of a console session and the output that the document shows for it."""
-
-    line: str
-    output: str
-
-
-def blocks(text: str, language: str) -> Iterator[Block]:
+def blocks(text: str, language: str) -> Iterator[tuple[str, int]]:
+    """Yield the text of each fenced block, and how many lines of the document are above it."""
     for match in FENCE.finditer(text):
         if match["info"].split() == [language]:
-            yield Block(match["body"], text.count("\n", 0, match.start("body")) + 1)
+            yield match["body"], text.count("\n", 0, match.start("body"))
 
 
 def program(text: str) -> str:
     """The Python blocks as one program, each line where it stands in the document."""
     lines = [""] * (text.count("\n") + 1)
-    for block in blocks(text, "python"):
-        body = block.body.splitlines()
-        lines[block.line - 1 : block.line - 1 + len(body)] = body
+    for block, above in blocks(text, "python"):
+        body = block.splitlines()
+        lines[above : above + len(body)] = body
     return "\n".join(lines).rstrip()
 
 
-def session(text: str) -> Iterator[Command]:
-    """The console blocks as commands; a backslash at a line's end joins it with the next."""
-    for block in blocks(text, "console"):
-        body = block.body.replace("\\\n", "")
-        for part in re.split(r"^\$ ", body, flags=re.MULTILINE)[1:]:
+def session(text: str) -> Iterator[tuple[str, str]]:
+    """The console blocks as commands with the output that is shown for each; a backslash at a
+    line's end joins it with the next."""
+    for block, _ in blocks(text, "console"):
+        for part in re.split(r"^\$ ", block.replace("\\\n", ""), flags=re.MULTILINE)[1:]:
             line, _, output = part.partition("\n")
-            yield Command(line.strip(), output)
+            yield line.strip(), output
 
 
 @pytest.fixture(scope="session")
@@ -93,12 +77,12 @@ def test_python_of_a_document_runs(document: Path, workspace: Path, run: Run) ->
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
 def test_console_of_a_document_runs(document: Path, run: Run) -> None:
     checker = doctest.OutputChecker()
-    for command in session(document.read_text(encoding="utf-8")):
-        if not RUNNABLE.match(command.line):
+    for line, output in session(document.read_text(encoding="utf-8")):
+        if not RUNNABLE.match(line):
             continue
-        brief = OF_ALL_SCENES.match(command.line) and not command.output.strip()
-        done = run(command.line + " --scenes 8" * bool(brief), shell=True)
-        assert done.returncode == 0, f"$ {command.line}\n{done.stdout}{done.stderr}"
-        if command.output.strip():
-            shown = checker.check_output(command.output, done.stdout, LOOSELY)
-            assert shown, f"$ {command.line}\n{done.stdout}\nis not\n{command.output}"
+        brief = OF_ALL_SCENES.match(line) and not output.strip()
+        done = run(line + " --scenes 8" * bool(brief), shell=True)
+        assert done.returncode == 0, f"$ {line}\n{done.stdout}{done.stderr}"
+        if output.strip():
+            shown = checker.check_output(output, done.stdout, LOOSELY)
+            assert shown, f"$ {line}\n{done.stdout}\nis not\n{output}"

@@ -1,24 +1,10 @@
 """The page about sensors' faults says what was decided, and nothing of what was not."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+import state_blocks as blocks
 
 from faultpath.decisions.family import decide_paths
-
-ROOT = Path(__file__).resolve().parents[2]
-
-
-@pytest.fixture(scope="module")
-def blocks():
-    sys.path.insert(0, str(ROOT / "tools"))
-    try:
-        import state_blocks
-    finally:
-        sys.path.remove(str(ROOT / "tools"))
-    return state_blocks
 
 
 def audit(scenes: int, alone: int, shared: int) -> dict:
@@ -37,7 +23,7 @@ def audit(scenes: int, alone: int, shared: int) -> dict:
 
 
 @pytest.mark.parametrize("scenes", [1, 2, 4])
-def test_few_scenes_decide_nothing(blocks, scenes):
+def test_few_scenes_decide_nothing(scenes):
     told = blocks.said([audit(scenes, 1, -1), audit(scenes, 0, 0)])
     open_ = (
         "filter, bias: not decided with the fault shared; not decided at the predictor's present."
@@ -45,11 +31,11 @@ def test_few_scenes_decide_nothing(blocks, scenes):
     assert told == ["No reversal was decided in 2 audits.", open_, open_]
 
 
-def test_no_audit_is_no_sentence_about_repairs(blocks):
+def test_no_audit_is_no_sentence_about_repairs():
     assert blocks.said([]) == ["No reversal was decided in 0 audits."]
 
 
-def test_many_scenes_say_which_side_and_where_it_did_not_show(blocks):
+def test_many_scenes_say_which_side_and_where_it_did_not_show():
     lead, told = blocks.said([audit(40, 1, -1)])
     assert lead == "A reversal was decided in 1 of 1 audit."
     assert "behind with the fault shared; ahead at the predictor's present." in told

@@ -1,4 +1,4 @@
-"""A model small enough to fit in milliseconds, with a corruption as DCC has one."""
+"""A model small enough to fit in milliseconds."""
 
 import os
 import signal
@@ -17,9 +17,8 @@ from faultpath.core.streams import generator
 from faultpath.learning.model_card import Schedule
 
 
-def draw(purpose: str, seed: int, *shape: int, step: int = 0) -> Tensor:
-    numbers = generator(purpose, "toy", seed, step).standard_normal(shape)
-    return torch.from_numpy(numbers).float()
+def draw(purpose: str, seed: int, *shape: int) -> Tensor:
+    return torch.from_numpy(generator(purpose, "toy", seed).standard_normal(shape)).float()
 
 
 class Net(nn.Module):
@@ -36,15 +35,14 @@ class Net(nn.Module):
 
 
 class Toy(ModelTask):
-    """Regression of a sum; `magnitude` scales the corruption that each epoch draws."""
+    """Regression of a sum."""
 
-    count, order_key = 150, "toy order"
+    count, order_key, name = 150, "toy order", "toy"
 
-    def __init__(self, seed: int = 0, magnitude: float | None = None, **schedule: Any) -> None:
-        self.name = "toy" if magnitude is None else "toy+dcc"
+    def __init__(self, seed: int = 0, **schedule: Any) -> None:
         self.seed = seed
         self.schedule = Schedule(**{"epochs": 4, "batch_size": 32} | schedule)
-        self.magnitude = magnitude
+        self.magnitude = 0.0
         self.stop_at: tuple[int, int] | None = None
         """Epoch and minibatch at which Ctrl-C comes."""
         self.poisoned: int | None = None
@@ -57,23 +55,19 @@ class Toy(ModelTask):
     def load(self) -> None:
         self._input = draw("toy/input", 0, 3, 200)
         self._target = self._input.sum(0, keepdim=True)
-        self._seen = self._input
 
     def module(self) -> nn.Module:
         return Net(self.seed)
 
     def begin_epoch(self, epoch: int) -> None:
         self._epoch, self._batch = epoch, 0
-        if self.magnitude is not None:
-            noise = draw("toy/corruption", self.seed, 3, 200, step=epoch)
-            self._seen = self._input * (1 + self.magnitude * noise)
 
     def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
         if torch.is_grad_enabled() and (self._epoch, self._batch) == self.stop_at:
             raise KeyboardInterrupt
         time.sleep(self.pause_s)
         self._batch += 1
-        error = functional.mse_loss(module(self._seen[:, index]), self._target[:, index])
+        error = functional.mse_loss(module(self._input[:, index]), self._target[:, index])
         poisoned = self.poisoned is not None and self._epoch >= self.poisoned
         return self.weight * error * (torch.nan if poisoned else 1.0)
 
@@ -86,7 +80,7 @@ class Toy(ModelTask):
         return {
             "description": "a toy",
             "data_sha256": {"toy": self.data_sha256},
-            "magnitude": self.magnitude or 0.0,
+            "magnitude": self.magnitude,
         }
 
 

@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 from faultpath_quadrotor.scenes.library import Library, as_text
-from faultpath_quadrotor.scenes.scene import Bounds, Box, Scene, Topology
+from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene, Topology
 from faultpath_quadrotor.system import Quadrotor
+from faultpath_quadrotor.training.pool import FlightData, encode_episodes, encode_rows
+from faultpath_quadrotor.training.recorded import Flights
 from faultpath_quadrotor.vehicle import VehicleParameters
 
 from faultpath.core.arrays import Array
@@ -125,24 +127,35 @@ def trace(outcome: Outcome) -> np.ndarray:
     return outcome.trace
 
 
+Point = tuple[float, float, float]
+
+
+def in_memory(flights: Flights) -> FlightData:
+    """Return recorded flights as they come back from their files."""
+    every = range(len(flights.steps))
+    return FlightData.decode("test", encode_rows(every, flights), encode_episodes(every, flights))
+
+
 def hall(
     index: int,
-    start: tuple[float, float, float],
-    goal: tuple[float, float, float],
-    boxes: tuple[Box, ...] = (),
+    start: Point = (-3.0, 0.0, 1.0),
+    goal: Point = (3.0, 0.0, 1.0),
+    things: Sequence[Box | Cylinder] = (),
+    size: Point = (10.0, 6.0, 3.0),
     vehicle: VehicleParameters | None = None,
 ) -> Scene:
-    """Return a scene of an empty hall, 10 x 6 x 3 m, with the nominal vehicle."""
+    """Return a scene of a hall around the origin, with the nominal vehicle."""
+    (x, y, z), boxes = size, tuple(each for each in things if isinstance(each, Box))
     return Scene(
         id=f"halls/{index:03d}",
         index=index,
         library="halls",
         topology=Topology.CLUTTER,
-        obstacles=bool(boxes),
+        obstacles=bool(things),
         occluded=False,
-        bounds=Bounds(low_m=(-5.0, -3.0, 0.0), high_m=(5.0, 3.0, 3.0)),
+        bounds=Bounds(low_m=(-x / 2, -y / 2, 0.0), high_m=(x / 2, y / 2, z)),
         boxes=boxes,
-        cylinders=(),
+        cylinders=tuple(each for each in things if isinstance(each, Cylinder)),
         start_m=start,
         goal_m=goal,
         start_yaw_rad=0.0,

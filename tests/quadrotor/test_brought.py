@@ -6,8 +6,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
-from faultpath_quadrotor.native.lending import PortableNotice, tell_portable
-from flights import HELD_OUT, bits, fly, quadrotor
+from flights import bits, fly, quadrotor
 
 from faultpath.api.systems import with_parts
 from faultpath.core.errors import UserError
@@ -21,9 +20,12 @@ PREDICTOR, EXACT, WIND, PLANNER, BLIND = (
 )
 
 
+STEPS = 6
+pytestmark = pytest.mark.usefixtures("short")
+
+
 @pytest.fixture(autouse=True)
-def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 6)
+def _path(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "path", list(sys.path))
 
 
@@ -79,13 +81,6 @@ def test_a_reconstruction_supplies_its_wind_and_a_planner_plans():
     (planned,), _ = fly(system, f"{PLANNER}/dob")
     (shipped,), _ = fly(system, "dob")
     assert planned.planner_noise_hash == shipped.planner_noise_hash
-
-
-def test_a_subclass_flies_the_portable_path_and_says_so():
-    tell_portable.cache_clear()
-    system = quadrotor(predictor=PREDICTOR)
-    with pytest.warns(PortableNotice, match="Heavy"):
-        fly(system, PREDICTOR, HELD_OUT[:1])
 
 
 @pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.lending.PortableNotice")

@@ -1,14 +1,31 @@
-"""The clearance model: bounded, blind to its batch, and encoded once a capture."""
+"""The clearance model, bounded and blind to its batch; its data and its fitting."""
 
 import copy
+from dataclasses import fields
+from pathlib import Path
 
 import pytest
 import torch
 from faultpath_quadrotor import native
 from faultpath_quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH
 from faultpath_quadrotor.perception.clearance import ClearanceModel
-from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
+from faultpath_quadrotor.perception.labels import (
+    HIGHEST_M,
+    LOWEST_M,
+    between_pixels,
+    visible_distance,
+)
 from faultpath_quadrotor.perception.seen import DepthClearance, PerceptionSettings, in_view, near
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.training import clearance_data
+from faultpath_quadrotor.training.clearance_data import Recipe, Samples
+from faultpath_quadrotor.training.clearance_task import (
+    VALIDATION_FROM,
+    ClearanceTask,
+    censored_loss,
+)
+
+from faultpath.core.errors import UserError
 
 POINTS = 96
 
@@ -81,3 +98,83 @@ def test_what_no_pixel_can_show_has_little_clearance_and_what_one_shows_keeps_it
     assert (found[capped] == UNSEEN_M).all()
     assert torch.equal(found[~capped], free[~capped]), "less is kept, inside and outside the view"
     assert (found[shown] > UNSEEN_M).any()
+
+
+SMALL = Recipe(images=1, in_view=16, near_surface=16, around=8)
+
+
+@pytest.fixture(scope="module")
+def collected(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("data")
+    clearance_data.collect(folder, SMALL, workers=0)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def samples(collected: Path) -> Samples:
+    return clearance_data.read(collected, SMALL)
+
+
+def test_labels_are_those_of_the_stored_images(samples: Samples):
+    assert len(samples) == 100
+    assert samples.points.shape == (100, 3, SMALL.points)
+    for i in (0, 37, 99):
+        label = visible_distance(samples.depth_m()[i], samples.points[i]).float()
+        assert torch.equal(label, samples.clearance[i])
+    assert between_pixels(samples.points.movedim(1, 0)).float().mean() > 0.4
+    assert 0.2 < (samples.clearance < 0).float().mean() < 0.5
+
+
+def test_a_scenes_samples_depend_on_the_recipe_and_the_scene_alone(samples: Samples):
+    scene = load_library("training")[42]
+    again = clearance_data.draw(SMALL, scene)
+    kept = samples.take((samples.scene == 42).nonzero()[:, 0])
+    other = clearance_data.draw(SMALL.model_copy(update={"seed": 1}), scene)
+    for field in fields(Samples):
+        assert torch.equal(getattr(kept, field.name), getattr(again, field.name)), field.name
+    assert not torch.equal(other.points, again.points)
+
+
+def test_a_killed_collection_goes_on_and_ends_with_the_same_bytes(collected: Path):
+    path = clearance_data.provenance_path(collected)
+    shards = sorted(path.with_suffix("").glob("*/*.safetensors"))
+    before = {shard: shard.read_bytes() for shard in shards}
+    made = shards[10].stat().st_mtime_ns
+    path.unlink()
+    shards[3].unlink()
+    told: list[tuple[int, int]] = []
+    clearance_data.collect(collected, SMALL, 0, lambda done, total: told.append((done, total)))
+    assert told == [(99, 100), (100, 100)], "only what is missing is made"
+    assert shards[10].stat().st_mtime_ns == made
+    assert {shard: shard.read_bytes() for shard in shards} == before
+
+
+def test_another_recipe_and_missing_data_are_refused(collected: Path, tmp_path: Path):
+    with pytest.raises(UserError, match="another recipe"):
+        clearance_data.collect(collected, SMALL.model_copy(update={"seed": 9}))
+    with pytest.raises(UserError, match="collect it first"):
+        clearance_data.read(tmp_path, SMALL)
+
+
+@pytest.fixture(scope="module")
+def task(samples: Samples) -> ClearanceTask:
+    made = ClearanceTask(0, Path(), SMALL)
+    made.use(samples)
+    return made
+
+
+def test_validation_scenes_are_never_trained_on(task: ClearanceTask):
+    assert task._training.scene.max() < VALIDATION_FROM <= task._validation.scene.min()
+    assert task.count + len(task._validation) == 100
+    topologies = [load_library("training")[i].topology for i in task._validation.scene.unique()]
+    assert len(set(topologies)) == 5
+
+
+def test_beyond_a_bound_that_the_truth_is_at_an_estimate_costs_nothing():
+    truth = torch.tensor([HIGHEST_M, LOWEST_M, 0.5])
+    right = torch.tensor([HIGHEST_M + 1, LOWEST_M - 1, 0.5])
+    assert censored_loss(right, truth) == 0
+    for i, wrong in enumerate((0.9, -0.2, 1.5)):
+        changed = right.clone()
+        changed[i] = wrong
+        assert censored_loss(changed, truth) > 0

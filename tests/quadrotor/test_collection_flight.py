@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
-import torch
 from faultpath_quadrotor.platform import FlightSettings
 from faultpath_quadrotor.training import flight
 from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS
 from faultpath_quadrotor.vehicle import COLLECTIVE_MAX_N, CONTROL_RATE_HZ, RATE_LIMIT_RADPS
 
-torch.set_num_threads(1)
 COUNT = 192
 
 

@@ -21,6 +21,8 @@ from faultpath.core import arrays
 from faultpath.core.errors import UserError
 from faultpath.faults import resolve
 from faultpath.loop import Batch, Observer, Query, Reading, Tap, Taps
+from faultpath.trials import Arm
+from faultpath.trials.attempt import taps_of
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
 UNANCHORED = {"clearance": "depth", "wind": "L1"}
@@ -75,18 +77,9 @@ def _wired(
     scenes: Sequence[str],
     observer: Observer | None = None,
 ) -> Taps:
-    parts = built.variants[variant]
-    return Taps(
-        built.interface,
-        resolve([fault(text, built) for text in texts], built.interface, parts.consumers),
-        scenes=tuple(scenes),
-        dt_s=built.control_dt_s,
-        seed=0,
-        bindings=parts.bindings,
-        consumers=parts.consumers,
-        privileged=parts.privileged,
-        observer=observer,
-    )
+    consumers = built.variants[variant].consumers
+    faults = resolve([fault(text, built) for text in texts], built.interface, consumers)
+    return taps_of(built, Arm(variant=variant, faults=faults), scenes, observer=observer)
 
 
 @pytest.mark.parametrize(("options", "variant", "texts"), FLIGHTS, ids=["gru", "wm-u", "dob"])

@@ -14,9 +14,8 @@ STILL = {"attitude": np.eye(3)}
 FILTER = f"{Path(__file__).parents[2] / 'examples' / 'own_filter.py'}:create"
 
 
-@pytest.fixture(autouse=True)
-def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 30)
+STEPS = 30
+pytestmark = pytest.mark.usefixtures("short")
 
 
 def test_filters_estimate_the_state_and_feed_every_reader():

@@ -1,17 +1,19 @@
-"""Recording and measuring end to end: stored once, resumed to the same bytes."""
+"""Recording and measuring end to end: stored once, resumed to the same bytes, read back."""
 
 import numpy as np
 import pytest
-import torch
 from faultpath_quadrotor.evidence import recording
 from faultpath_quadrotor.evidence.quantities import measure
-from faultpath_quadrotor.evidence.table import Measurement, Recording
+from faultpath_quadrotor.evidence.table import (
+    Measurement,
+    Recording,
+    read_evidence,
+    write_evidence,
+)
 from faultpath_quadrotor.scenes.library import Library, as_text
 from flights import hall
 
 from faultpath.core.errors import UserError
-
-torch.set_num_threads(1)
 
 
 @pytest.fixture(scope="module")
@@ -97,21 +99,25 @@ def test_a_second_call_does_nothing_and_more_scenes_keep_what_is_there(whole, li
     assert np.array_equal(few.values, both.values[: len(few)])
 
 
-@pytest.mark.parametrize(
-    ("change", "count", "says"),
-    [
-        ({"library": "nowhere"}, None, "nowhere"),
-        ({"variant": "wm-x"}, None, "'wm-x'"),
-        ({"options": {"wind": "L9"}}, None, "L9"),
-        ({}, 3, "1 to 2"),
-        ({}, 0, "1 to 2"),
-    ],
-)
-def test_a_recording_that_cannot_be_flown_is_refused_and_leaves_nothing(
-    library, change, count, says, tmp_path
-):
-    first = asked(library)[0]
-    wrong = first.model_copy(update={"recording": first.recording.model_copy(update=change)})
-    with pytest.raises(UserError, match=says):
-        measure([wrong], count, tmp_path / "new")
-    assert not (tmp_path / "new").exists()
+def test_a_table_comes_back_as_it_went_with_the_same_bytes(whole, library, tmp_path):
+    _, table = whole
+    path = tmp_path / "evidence.parquet"
+    write_evidence(path, table)
+    back = read_evidence(path)
+    assert list(back) == list(table)
+    for measurement in table:
+        one, two = table.values(measurement), back.values(measurement)
+        assert one.same_windows(two)
+        assert np.array_equal(one.values, two.values)
+    write_evidence(tmp_path / "again.parquet", back)
+    assert (tmp_path / "again.parquet").read_bytes() == path.read_bytes()
+    with pytest.raises(KeyError):
+        back.values(asked(library)[0].model_copy(update={"seed": 2}))
+
+
+def test_a_missing_or_damaged_table_is_the_user_s_to_see(tmp_path):
+    with pytest.raises(UserError, match="cannot read"):
+        read_evidence(tmp_path / "none.parquet")
+    (tmp_path / "odd.parquet").write_bytes(b"odd")
+    with pytest.raises(UserError, match="damaged"):
+        read_evidence(tmp_path / "odd.parquet")

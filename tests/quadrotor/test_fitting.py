@@ -1,15 +1,24 @@
-"""One model: what its weights depend on, and what survives a process that stops."""
+"""One model: what its weights depend on, what survives a stop, and what is read of it."""
 
 import itertools
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
 import torch
-from faultpath_quadrotor.checkpoint import ModelCard
+from faultpath_quadrotor import checkpoint
+from faultpath_quadrotor.checkpoint import (
+    ModelCard,
+    checkpoint_path,
+    load_checkpoint,
+    ship,
+    shipped_folder,
+)
 from faultpath_quadrotor.training.fitting import fit, journal_path
 from fitting_toys import Net, Toy
 from safetensors.torch import load_file
 
+from faultpath.core.errors import UserError
 from faultpath.learning.loop import Diverged
 from faultpath.learning.model_card import Schedule
 from faultpath.learning.model_card import read_card as read
@@ -93,14 +102,6 @@ def test_a_stop_at_any_write_loses_no_bits(
     assert survived == 6  # four epochs, weights, card
 
 
-def test_zero_corruption_is_no_corruption(reference: bytes, tmp_path: Path) -> None:
-    """Initial weights and minibatch order are those of the baseline, to the bit."""
-    assert _fit(Toy(magnitude=0.0), tmp_path) == reference
-    plain, dcc = (read_card(fit(Toy(magnitude=m), tmp_path)) for m in (None, 0.2))
-    assert plain.initial_sha256 == dcc.initial_sha256
-    assert plain.weights_sha256 != dcc.weights_sha256
-
-
 def test_the_seed_decides_the_weights(reference: bytes, tmp_path: Path) -> None:
     assert _fit(Toy(), tmp_path) == reference
     assert _fit(Toy(seed=1), tmp_path) != reference
@@ -162,3 +163,40 @@ def test_a_loss_that_is_no_number_stops_with_the_last_good_state(tmp_path: Path)
     (tmp_path / "shorter.safetensors").write_bytes(shorter)
     for name, value in load_file(tmp_path / "shorter.safetensors").items():
         assert torch.equal(kept[f"model.{name}"], value)
+
+
+@pytest.fixture
+def fitted(tmp_path: Path) -> Path:
+    return fit(Toy(), tmp_path / "fitted", notice=_silent)
+
+
+def test_a_loaded_model_is_the_fitted_one(fitted: Path) -> None:
+    task, module = Toy(), Net(seed=7)
+    card = load_checkpoint(module, fitted)
+    assert card == read_card(fitted)
+    task.load()
+    module.eval()
+    assert task.validate(module) == card.final
+
+
+def test_a_missing_checkpoint_is_named_with_the_command_that_makes_it() -> None:
+    with pytest.raises(UserError, match=r"'wm-q' with seed 7 in ") as stop:
+        checkpoint_path("wm-q", 7)
+    assert "`faultpath train quadrotor wm-q --seed 7 --ship`" in str(stop.value)
+
+
+def test_shipping_puts_a_checkpoint_where_the_package_finds_it(
+    fitted: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path / "package")
+    ship(fitted)
+    found = checkpoint_path("toy", 0)
+    assert found.parent == tmp_path / "package"
+    assert load_checkpoint(Net(3), found) == read_card(fitted)
+
+
+def test_every_shipped_checkpoint_is_the_one_of_its_card() -> None:
+    for path in sorted(shipped_folder().glob("*.safetensors")):
+        card = read_card(path)
+        assert card.stem == path.stem
+        assert sha256(path.read_bytes()).hexdigest() == card.weights_sha256

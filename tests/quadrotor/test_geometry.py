@@ -7,29 +7,9 @@ import pytest
 import torch
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import load_library
-from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
-from faultpath_quadrotor.vehicle import VehicleParameters
+from faultpath_quadrotor.scenes.scene import Cylinder, Scene
+from flights import hall
 from scipy.spatial import cKDTree
-
-BOUNDS = Bounds(low_m=(-4.0, -3.0, 0.0), high_m=(4.0, 3.0, 3.0))
-
-
-def scene_of(*things: Box | Cylinder, bounds: Bounds = BOUNDS) -> Scene:
-    return Scene(
-        id="test/000",
-        index=0,
-        library="test",
-        topology="clutter",
-        obstacles=True,
-        occluded=False,
-        bounds=bounds,
-        boxes=tuple(thing for thing in things if isinstance(thing, Box)),
-        cylinders=tuple(thing for thing in things if isinstance(thing, Cylinder)),
-        start_m=(-3.0, 0.0, 1.0),
-        goal_m=(3.0, 0.0, 1.0),
-        start_yaw_rad=0.0,
-        vehicle=VehicleParameters(),
-    )
 
 
 def at(scene: Scene, *points: tuple[float, float, float]) -> list[float]:
@@ -46,10 +26,10 @@ def spread(scenes: list[Scene], count: int, margin: float = 0.5) -> torch.Tensor
 
 
 def test_a_pillar_is_round_and_a_short_one_has_a_top():
-    scene = scene_of(
+    pillars = [
         Cylinder(centre_m=(1.0, 0.0), radius_m=0.3, low_m=0.0, high_m=3.0),
         Cylinder(centre_m=(-1.0, 0.0), radius_m=0.3, low_m=0.0, high_m=1.0),
-    )
+    ]
     points = [
         (1.3, 0.4, 1.0),
         (1.0, 0.1, 0.05),
@@ -57,12 +37,14 @@ def test_a_pillar_is_round_and_a_short_one_has_a_top():
         (-1.0, 0.6, 1.4),
         (-1.0, 0.0, 0.9),
     ]
-    assert at(scene, *points) == pytest.approx([0.2, -0.2, 0.4, 0.5, -0.1], abs=1e-12)
+    assert at(hall(0, things=pillars), *points) == pytest.approx(
+        [0.2, -0.2, 0.4, 0.5, -0.1], abs=1e-12
+    )
 
 
 def test_the_arena_is_free_inside_and_solid_outside():
-    points = [(0.0, 0.0, 1.0), (3.9, 0.0, 1.5), (0.0, 0.0, -0.2), (4.3, 3.4, 1.5), (9.0, 0.0, 1.5)]
-    assert at(scene_of(), *points) == pytest.approx([1.0, 0.1, -0.2, -0.5, -5.0], abs=1e-12)
+    points = [(0.0, 0.0, 1.0), (4.9, 0.0, 1.5), (0.0, 0.0, -0.2), (5.3, 3.4, 1.5), (10.0, 0.0, 1.5)]
+    assert at(hall(0), *points) == pytest.approx([1.0, 0.1, -0.2, -0.5, -5.0], abs=1e-12)
 
 
 def surface(scene: Scene, spacing: float) -> np.ndarray:

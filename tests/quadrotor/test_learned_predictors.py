@@ -2,97 +2,41 @@
 
 import pytest
 import torch
-from faultpath_quadrotor import so3
-from faultpath_quadrotor.predictors import (
-    AnchoredPredictor,
-    KinematicIntegrator,
-    PredictorInputs,
-    UnanchoredPredictor,
-)
+from faultpath_quadrotor.predictors import AnchoredPredictor, KinematicIntegrator, PredictorInputs
 from faultpath_quadrotor.predictors.rollout import rollout
-from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS
+from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
+from test_native_rollout import commands_of, inputs_of, predictor
 
 SCENES = 5
-KINDS = [AnchoredPredictor, UnanchoredPredictor]
+NAMES = ["wm-a-wind", "wm-u"]
 
 
-def network(kind, seed=0, lively=True):
-    """Return a network with drawn weights; `lively` ones have a last layer that is not zero."""
-    generator = torch.Generator().manual_seed(seed)
-    built = kind.build_network()
-    built.initialise(generator)
-    if lively:
-        with torch.no_grad():
-            built.last.weight.normal_(0, 0.2, generator=generator)
-    return built
-
-
-def predictor(kind, seed=0, lively=True, **options):
-    if kind is AnchoredPredictor:
-        options = {"wind": True, "drag_kgps": NOMINAL_DRAG_KGPS, **options}
-    return kind(network(kind, seed, lively), **options)
-
-
-def inputs(scenes=SCENES, seed=0):
-    draw = torch.Generator().manual_seed(seed)
-
-    def column(low, high):
-        return low + (high - low) * torch.rand(scenes, 1, generator=draw)
-
-    def three(spread):
-        return spread * torch.randn(3, scenes, 1, generator=draw)
-
-    state = State(three(2.0), three(2.0), so3.exp(three(0.3)), three(1.0))
-    calibrated = [
-        (channel, place)
-        for place in ("trim", "dynamics", "features")
-        for channel in ("mass", "thrust_scale")
-    ]
-    return PredictorInputs(
-        state,
-        {read: column(0.7, 1.4) for read in calibrated}
-        | {
-            ("mass", "wind_map"): column(0.7, 1.4),
-            ("wind", "wind_map"): three(5.0),
-            ("mass", "normalise_thrust"): column(0.7, 1.4),
-            ("history_code", "latent"): torch.randn(32, scenes, 1, generator=draw).tanh(),
-        },
-    )
-
-
-def commands(scenes=SCENES, candidates=512, horizon=20, seed=1):
-    drawn = torch.randn(
-        horizon, 4, scenes, candidates, generator=torch.Generator().manual_seed(seed)
-    )
-    drawn[:, 0] = GRAVITY_MPS2 * (1 + 0.2 * drawn[:, 0])
-    return drawn
-
-
-@pytest.mark.parametrize(
-    ("kind", "published"), [(AnchoredPredictor, 17e3), (UnanchoredPredictor, 35e3)]
-)
-def test_models_have_the_papers_size(kind, published):
-    count = sum(weights.numel() for weights in network(kind).parameters())
+@pytest.mark.parametrize(("name", "published"), [("wm-a-wind", 17e3), ("wm-u", 35e3)])
+def test_models_have_the_papers_size(name, published):
+    count = sum(weights.numel() for weights in predictor(name).network.parameters())
     assert abs(count - published) < 0.1 * published
 
 
 @pytest.mark.parametrize("wind", [True, False])
 def test_a_zero_residual_leaves_the_kinematic_integrator_exactly(wind):
-    anchored = predictor(AnchoredPredictor, lively=False, wind=wind)
+    network = AnchoredPredictor.build_network()
+    network.initialise(torch.Generator().manual_seed(0))
+    anchored = AnchoredPredictor(network, wind, NOMINAL_DRAG_KGPS)
     plain = rollout(
-        KinematicIntegrator(wind=wind, drag_kgps=NOMINAL_DRAG_KGPS), inputs(), commands()
+        KinematicIntegrator(wind=wind, drag_kgps=NOMINAL_DRAG_KGPS),
+        inputs_of(SCENES),
+        commands_of(SCENES, 512),
     )
-    rolled = rollout(anchored, inputs(), commands())
+    rolled = rollout(anchored, inputs_of(SCENES), commands_of(SCENES, 512))
     assert torch.equal(rolled.positions, plain.positions)
     assert torch.equal(rolled.velocities, plain.velocities)
     assert torch.equal(rolled.final.rotation, plain.final.rotation)
     assert torch.equal(rolled.final.rate, plain.final.rate)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_scene_does_not_depend_on_the_scenes_beside_it(kind):
-    model, given, drawn = predictor(kind), inputs(), commands()
+@pytest.mark.parametrize("name", NAMES)
+def test_a_scene_does_not_depend_on_the_scenes_beside_it(name):
+    model, given, drawn = predictor(name), inputs_of(SCENES), commands_of(SCENES, 512)
     together = rollout(model, given, drawn)
     for scenes in ([2], [4, 1, 0]):
         alone = rollout(model, given.take(scenes), drawn[:, :, scenes].contiguous())
@@ -100,14 +44,14 @@ def test_a_scene_does_not_depend_on_the_scenes_beside_it(kind):
 
 
 def _moved(model, given, read):
-    plain = rollout(model, given, commands()).positions
+    plain = rollout(model, given, commands_of(SCENES, 512)).positions
     other = PredictorInputs(given.state, given.delivered | {read: -1.1 * given[read]})
-    return not torch.equal(rollout(model, other, commands()).positions, plain)
+    return not torch.equal(rollout(model, other, commands_of(SCENES, 512)).positions, plain)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_every_declared_place_matters_and_no_other(kind):
-    model, given = predictor(kind), inputs()
+@pytest.mark.parametrize("name", NAMES)
+def test_every_declared_place_matters_and_no_other(name):
+    model, given = predictor(name), inputs_of(SCENES)
     for read in given.delivered:
         matters = read[1] in model.reads and read[1] != "trim"
         assert _moved(model, given, read) == matters, read

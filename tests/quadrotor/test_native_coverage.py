@@ -1,6 +1,7 @@
 """A kernel stands for exactly what it repeats; anything else flies as it is, and that is said."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from types import MethodType
 
 import pytest
@@ -43,24 +44,27 @@ def believed(of: Predictor) -> Rollout:
     return rolling(of)(inputs_of(), commands_of())
 
 
-class Anchored(AnchoredPredictor):
+def moved(ahead: State) -> State:
+    return replace(ahead, position=ahead.position + SHIFT_M)
+
+
+class Moved:
     def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
         ahead, memory = super().step(state, command, memory)
-        return State(ahead.position + SHIFT_M, ahead.velocity, ahead.rotation, ahead.rate), memory
+        return moved(ahead), memory
 
 
-class Kinematic(KinematicIntegrator):
-    def __init__(self) -> None:
-        super().__init__(drag_kgps=NOMINAL_DRAG_KGPS)
+class Anchored(Moved, AnchoredPredictor):
+    pass
 
-    def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
-        ahead, memory = super().step(state, command, memory)
-        return State(ahead.position + SHIFT_M, ahead.velocity, ahead.rotation, ahead.rate), memory
+
+class Kinematic(Moved, KinematicIntegrator):
+    pass
 
 
 def shifted(self: Predictor, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
     ahead, memory = type(self).step(self, state, command, memory)
-    return State(ahead.position + SHIFT_M, ahead.velocity, ahead.rotation, ahead.rate), memory
+    return moved(ahead), memory
 
 
 def anchored_on(network: LatentNetwork) -> AnchoredPredictor:
@@ -76,8 +80,7 @@ def replaced_step() -> Predictor:
 def own_kinematics() -> Predictor:
     class Integrator(KinematicIntegrator):
         def advance(self, *given: object, **named: object) -> State:
-            ahead = super().advance(*given, **named)
-            return State(ahead.position + SHIFT_M, ahead.velocity, ahead.rotation, ahead.rate)
+            return moved(super().advance(*given, **named))
 
     model = predictor("wm-a-wind")
     assert isinstance(model, AnchoredPredictor)
@@ -87,7 +90,7 @@ def own_kinematics() -> Predictor:
 
 OWN: dict[str, Callable[[], Predictor]] = {
     "anchored": lambda: Anchored(predictor("wm-a").network, True, NOMINAL_DRAG_KGPS),
-    "kinematic": Kinematic,
+    "kinematic": lambda: Kinematic(drag_kgps=NOMINAL_DRAG_KGPS),
     "a step of its own on the instance": replaced_step,
     "kinematics of its own": own_kinematics,
 }

@@ -24,11 +24,6 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-@pytest.fixture(params=native.available())
-def isa(request: pytest.FixtureRequest) -> str:
-    return request.param
-
-
 def under(isa: str, of: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
     """Return what a call gives with one set of kernels, or on the portable path."""
     with native.using(isa):

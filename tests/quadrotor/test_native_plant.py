@@ -1,4 +1,4 @@
-"""The compiled plant flies as the portable one does, and its contact checks end the same trials."""
+"""The compiled plant, contact checks and distance field are the portable ones."""
 
 import numpy as np
 import pytest
@@ -7,16 +7,14 @@ from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.plant import PlantState, TorchPlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.plant.world import World
+from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
-from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
+from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import (
-    COLLISION_RADIUS_M,
-    MOTOR_THRUST_MAX_N,
-    VehicleParameters,
-    draw,
-)
-from kernel_sets import COMPILED, FUSED, PORTABLE
+from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M, MOTOR_THRUST_MAX_N, VehicleParameters
+from flights import hall
+from kernel_sets import FUSED
+from test_plant import drawn_vehicles
 from torch import Tensor
 
 F64 = torch.float64
@@ -39,7 +37,7 @@ def wild(seed: int) -> tuple[PlantState, Tensor, Tensor]:
 
 def flown(isa: str, seed: int = 0, lanes: Tensor = EVERYONE) -> Tensor:
     """All that the plant carries after one control step, `[22, n]`."""
-    vehicle = Vehicle.stack([draw(np.random.default_rng(seed + i)) for i in range(LANES)])
+    vehicle = drawn_vehicles(LANES, seed)
     start, command, winds = wild(seed)
     with native.using(isa):
         plant = TorchPlant(vehicle.take(lanes))
@@ -49,10 +47,9 @@ def flown(isa: str, seed: int = 0, lanes: Tensor = EVERYONE) -> Tensor:
     return torch.cat(parts)
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 @pytest.mark.parametrize("seed", [0, 100, 200])
 def test_the_compiled_plant_is_the_portable_one(isa: str, seed: int) -> None:
-    torch.testing.assert_close(flown(isa, seed), flown(PORTABLE, seed), rtol=0, atol=1e-11)
+    torch.testing.assert_close(flown(isa, seed), flown(native.PORTABLE, seed), rtol=0, atol=1e-11)
 
 
 def test_fused_sets_give_the_same_bits() -> None:
@@ -60,14 +57,12 @@ def test_fused_sets_give_the_same_bits() -> None:
     assert all(torch.equal(first, other) for other in others)
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 def test_neighbours_and_the_number_of_lanes_change_no_bit(isa: str) -> None:
     together = flown(isa)
     for lanes in ([36], [3, 0, 11], list(range(9, 29))):
         assert torch.equal(flown(isa, lanes=torch.tensor(lanes)), together[:, lanes])
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:
     with native.using(isa):
         for vehicle in (Vehicle.nominal(4, torch.float32), Vehicle.nominal((2, 3))):
@@ -118,10 +113,9 @@ COMMANDS = tumbling(64, 22)
 @pytest.fixture(scope="module")
 def theirs() -> World:
     """Trials of the portable path."""
-    return worlds(PORTABLE, SCENES, COMMANDS, "L2")
+    return worlds(native.PORTABLE, SCENES, COMMANDS, "L2")
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 def test_trials_end_at_the_same_moment(isa: str, theirs: World) -> None:
     crashed = theirs.progress.crashed[: len(SCENES)].sum()
     assert 5 < crashed < len(SCENES) - 5, "some end, some fly on"
@@ -133,24 +127,10 @@ def beside(gap_m: float, thing: str) -> Scene:
     away = 1.0 + COLLISION_RADIUS_M + gap_m
     box = Box(centre_m=(away, 0.0, 1.0), half_extents_m=(1.0, 1.0, 1.0), yaw_rad=0.0)
     pillar = Cylinder(centre_m=(0.0, away), radius_m=1.0, low_m=0.0, high_m=2.0)
-    return Scene(
-        id="test/000",
-        index=0,
-        library="test",
-        topology="clutter",
-        obstacles=True,
-        occluded=False,
-        bounds=Bounds(low_m=(-4.0, -4.0, 0.0), high_m=(4.0, 4.0, 5.0)),
-        boxes=(box,) if thing == "box" else (),
-        cylinders=(pillar,) if thing == "pillar" else (),
-        start_m=(0.0, 0.0, 3.5),
-        goal_m=(0.0, 3.0, 4.0),
-        start_yaw_rad=0.3,
-        vehicle=VehicleParameters(drag_kgps=(1e-9,) * 3),
-    )
+    things, falls = [box if thing == "box" else pillar], VehicleParameters(drag_kgps=(1e-9,) * 3)
+    return hall(0, (0.0, 0.0, 3.5), (0.0, 3.0, 4.0), things, (8.0, 8.0, 5.0), falls)
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 def test_a_micrometre_decides_between_a_graze_and_a_crash(isa: str) -> None:
     gaps = (1e-6, -1e-6)
     scenes = [beside(gap, thing) for thing in ("box", "pillar") for gap in gaps]
@@ -164,4 +144,36 @@ def test_a_micrometre_decides_between_a_graze_and_a_crash(isa: str) -> None:
     late, early, later, earlier = hits.time_s[:4].tolist()
     assert early < late - 0.1
     assert earlier < later - 0.1
-    assert_same_trials(world, worlds(PORTABLE, scenes, falling))
+    assert_same_trials(world, worlds(native.PORTABLE, scenes, falling))
+
+
+FEW = list(load_library("selection").scenes[:6])
+
+
+def scattered(count: int) -> Tensor:
+    """Points inside, outside and on lattice points of the scenes' arenas, `[3, B, N]`."""
+    draws = np.random.default_rng(3)
+    low = np.array([scene.bounds.low_m for scene in FEW]).T[:, :, None]
+    high = np.array([scene.bounds.high_m for scene in FEW]).T[:, :, None]
+    points = draws.uniform(low - 2, high + 2, (3, len(FEW), count))
+    points[..., ::7] = points[..., ::7].round(1)
+    return torch.from_numpy(points).float()
+
+
+def asked(isa: str, points: Tensor, rows: list[int] | None = None) -> Tensor:
+    with native.using(isa):
+        field = DistanceField.bake(FEW)
+        return (field if rows is None else field.select(rows)).query(points)
+
+
+@pytest.mark.parametrize("count", [3, 512, 1031])
+def test_distances_have_the_bits_of_the_portable_path(isa: str, count: int) -> None:
+    points = scattered(count)
+    assert torch.equal(asked(isa, points), asked(native.PORTABLE, points))
+
+
+def test_a_point_s_distance_does_not_depend_on_its_neighbours(isa: str) -> None:
+    points = scattered(100)
+    together = asked(isa, points)
+    for some in (slice(0, 1), slice(5, 22), slice(83, 100)):
+        assert torch.equal(asked(isa, points[..., some]), together[..., some])

@@ -11,7 +11,7 @@ from faultpath_quadrotor.perception.render import DepthRenderer
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State
-from kernel_sets import COMPILED, FUSED, PORTABLE
+from kernel_sets import FUSED
 from test_perception_render import flown
 
 SCENES = [*load_library("selection").scenes[:40], *load_library("training").scenes[:40]]
@@ -29,7 +29,6 @@ def drawn(isa: str, scenes: list[Scene], state: State, free_space: bool = False)
         return DepthRenderer(scenes, free_space).render(state)
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 @pytest.mark.parametrize("level", [True, False])
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_images_are_those_of_the_portable_path_silhouettes_included(
@@ -38,7 +37,7 @@ def test_images_are_those_of_the_portable_path_silhouettes_included(
     state = flown(SCENES, seed)
     if level:
         state = replace(state, rotation=mounted(state.rotation))
-    ours, theirs = (drawn(name, SCENES, state) for name in (isa, PORTABLE))
+    ours, theirs = (drawn(name, SCENES, state) for name in (isa, native.PORTABLE))
     assert ours.shape == (len(SCENES), HEIGHT, WIDTH)
     torch.testing.assert_close(ours, theirs, rtol=0, atol=ROUNDING_M)
     least = 0.999 if roots_are_exact() else 0.99
@@ -51,7 +50,6 @@ def test_fused_sets_draw_the_same_bits() -> None:
     assert all(torch.equal(first, other) for other in others)
 
 
-@pytest.mark.parametrize("isa", COMPILED)
 def test_a_scene_s_image_does_not_depend_on_its_neighbours(isa: str) -> None:
     state = flown(SCENES)
     together = drawn(isa, SCENES, state)

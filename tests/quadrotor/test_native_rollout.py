@@ -1,4 +1,4 @@
-"""The compiled horizon loop is the portable one: same weights, same numbers to rounding."""
+"""The compiled horizon loop and recurrent unit are the portable ones, to rounding."""
 
 import pytest
 import torch
@@ -10,6 +10,8 @@ from faultpath_quadrotor.predictors import (
     PredictorInputs,
     UnanchoredPredictor,
 )
+from faultpath_quadrotor.predictors.network import GatedCell, draw_weights
+from faultpath_quadrotor.predictors.recurrent import recur
 from faultpath_quadrotor.predictors.rollout import Roll, Rollout, rolling, rollout
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
@@ -90,11 +92,6 @@ def assert_close(ours: Rollout, theirs: Rollout) -> None:
 NAMES = ["dki", "dki-drag", "dki-still", "wm-a", "wm-a-wind", "wm-u"]
 
 
-@pytest.fixture(params=native.available())
-def isa(request: pytest.FixtureRequest) -> str:
-    return request.param
-
-
 def compiled(isa: str, model: Predictor) -> Roll:
     with native.using(isa):
         return rolling(model)
@@ -129,3 +126,28 @@ def test_sets_that_fuse_agree_to_the_bit(name: str) -> None:
     for other in others:
         assert torch.equal(first.positions, other.positions)
         assert torch.equal(first.final.rate, other.final.rate)
+
+
+def cell_and_sequence(inputs: int, columns: int) -> tuple[GatedCell, torch.Tensor]:
+    stream = torch.Generator().manual_seed(inputs)
+    cell = GatedCell(inputs, 32)
+    draw_weights(cell, stream)
+    return cell, 2 * torch.randn(12, inputs, columns, generator=stream)
+
+
+@pytest.mark.parametrize("inputs", [19, 22, 32])
+def test_the_last_latent_is_the_portable_one(isa: str, inputs: int) -> None:
+    cell, sequence = cell_and_sequence(inputs, columns=5)
+    with torch.enable_grad():  # the way by which training goes
+        portable = cell.last(sequence).detach()
+    assert portable.std() > 0.1
+    given, kept = ((layer.weight, layer.bias) for layer in (cell.from_input, cell.from_latent))
+    compiled = recur(native.load(isa), given, kept, sequence)
+    torch.testing.assert_close(compiled, portable, rtol=1e-5, atol=1e-5)
+
+
+def test_training_differentiates_through_the_unit() -> None:
+    cell, sequence = cell_and_sequence(4, columns=3)
+    cell.last(sequence).sum().backward()
+    assert cell.from_latent.weight.grad is not None
+    assert cell.from_latent.weight.grad.abs().sum() > 0

@@ -10,38 +10,13 @@ from faultpath_quadrotor.perception.camera import RANGE_M, rays
 from faultpath_quadrotor.perception.render import DepthRenderer
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import load_library
-from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
+from faultpath_quadrotor.scenes.scene import Box, Scene
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import VehicleParameters
-
-BOUNDS = Bounds(low_m=(-4.0, -3.0, 0.0), high_m=(4.0, 3.0, 3.0))
-
-
-def scene_of(*things: Box | Cylinder) -> Scene:
-    return Scene(
-        id="test/000",
-        index=0,
-        library="test",
-        topology="clutter",
-        obstacles=True,
-        occluded=False,
-        bounds=BOUNDS,
-        boxes=tuple(thing for thing in things if isinstance(thing, Box)),
-        cylinders=tuple(thing for thing in things if isinstance(thing, Cylinder)),
-        start_m=(-3.0, 0.0, 1.0),
-        goal_m=(3.0, 0.0, 1.0),
-        start_yaw_rad=0.0,
-        vehicle=VehicleParameters(),
-    )
+from flights import hall
 
 
 def posed(position: torch.Tensor, rotation: torch.Tensor) -> State:
     return State(position, torch.zeros_like(position), rotation, torch.zeros_like(position))
-
-
-def at(*position: float, yaw: float = 0.0) -> State:
-    place = torch.tensor(position, dtype=torch.float64)[:, None]
-    return State.hover(place, torch.tensor([yaw], dtype=torch.float64))
 
 
 def flown(scenes: list[Scene], seed: int = 0) -> State:
@@ -107,11 +82,10 @@ def test_boxes_look_the_same_to_mujocos_rays():
     )
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    state = at(-1.2, 0.1, 1.3)
-    tilted = so3.compose(state.rotation, so3.exp(torch.tensor([[0.2], [0.1], [0.3]]).double()))
-    state = posed(state.position, tilted)
-    depth = DepthRenderer([scene_of(*boxes)]).render(state)[0].double().flatten().numpy()
-    empty = DepthRenderer([scene_of()]).render(state)[0].double().flatten().numpy()
+    place, tilt = torch.tensor([[-1.2, 0.1, 1.3], [0.2, 0.1, 0.3]]).double()[..., None]
+    state = posed(place, so3.exp(tilt))
+    depth = DepthRenderer([hall(0, things=boxes)]).render(state)[0].double().flatten().numpy()
+    empty = DepthRenderer([hall(0)]).render(state)[0].double().flatten().numpy()
 
     seen = rays().flatten(1)
     length = seen.norm(dim=0).numpy()

@@ -13,8 +13,9 @@ from torch import Tensor
 F64 = torch.float64
 
 
-def drawn_vehicles(count: int) -> Vehicle:
-    return Vehicle.stack([draw(np.random.default_rng(seed)) for seed in range(count)])
+def drawn_vehicles(count: int, first: int = 0) -> Vehicle:
+    seeds = range(first, first + count)
+    return Vehicle.stack([draw(np.random.default_rng(seed)) for seed in seeds])
 
 
 def hovering(count: int) -> State:

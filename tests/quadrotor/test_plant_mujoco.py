@@ -6,17 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from faultpath_quadrotor import so3
 from faultpath_quadrotor.plant import Plant, PlantState, TorchPlant
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.scenes.library import load_library
-from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import STEPS_PER_CONTROL, draw
-from flights import STEPS, quadrotor
+from faultpath_quadrotor.vehicle import STEPS_PER_CONTROL
 from flights import bits as outcome_bits
 from flights import fly as fly_trials
+from flights import quadrotor
+from test_plant import drawn_vehicles, moving
 from torch import Tensor
 
 pytest.importorskip("mujoco")
@@ -30,21 +28,11 @@ PARTS = ("position", "velocity", "rotation", "rate")
 TOLERANCE = {"position": 2e-4, "velocity": 4e-4, "rotation": 1e-4, "rate": 4e-4}
 
 
-def vehicles() -> Vehicle:
-    return Vehicle.stack([draw(np.random.default_rng(seed)) for seed in range(LANES)])
-
-
-def moving() -> State:
-    stream = torch.Generator().manual_seed(17)
-    position, velocity, turn, rate = torch.randn(4, 3, LANES, dtype=F64, generator=stream)
-    return State(position, 2 * velocity, so3.exp(turn), rate)
-
-
 def manoeuvres() -> Tensor:
     """Commands of each control step, `[CONTROLS, 4, LANES]`, some beyond what motors can give."""
     stream = torch.Generator().manual_seed(18)
     drawn = torch.rand(CONTROLS, 4, LANES, dtype=F64, generator=stream)
-    hover = vehicles().hover_command()[0]
+    hover = drawn_vehicles(LANES).hover_command()[0]
     thrust = hover * (0.3 + 1.5 * drawn[:, :1])
     spread = torch.tensor([3.5, 3.5, 2.0], dtype=F64)[:, None]
     return torch.cat((thrust, (2 * drawn[:, 1:] - 1) * spread), dim=1)
@@ -67,7 +55,7 @@ def fly(plant: Plant, now: PlantState, commands: Tensor, winds: Tensor) -> Plant
 
 @pytest.mark.parametrize("kind", ["constant", "varying"])
 def test_both_plants_fly_the_same_trajectories(kind: str) -> None:
-    vehicle, start = vehicles(), moving()
+    vehicle, start = drawn_vehicles(LANES), moving(LANES, 17)
     theirs, ours = (
         fly(plant, plant.start(start), manoeuvres(), blowing(kind))
         for plant in (TorchPlant(vehicle), MujocoPlant(vehicle))
@@ -101,10 +89,8 @@ def test_trials_end_alike_on_both_and_are_told_apart() -> None:
     assert set(worlds[0].initial_hashes).isdisjoint(worlds[1].initial_hashes)
 
 
-def test_an_audit_s_trials_are_their_own_and_of_their_plant(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
+@pytest.mark.usefixtures("short")
+def test_an_audit_s_trials_are_their_own_and_of_their_plant() -> None:
     scenes = [scene.id for scene in SCENES[:4]]
     system, other = (quadrotor(wind="L3", plant=plant) for plant in (f"{EXAMPLE}:create", "torch"))
     whole, alone, torch_s = (

@@ -1,10 +1,13 @@
-"""The platform is one value: weights belong to it by a hash, and it decides what flies."""
+"""The platform is one value to which weights belong; what a user chooses is what is built."""
 
 import json
 
 import pytest
-from faultpath_quadrotor import models
+from faultpath_quadrotor import choices, models
 from faultpath_quadrotor.checkpoint import shipped_folder
+from faultpath_quadrotor.choices import QuadrotorChoices
+from faultpath_quadrotor.options import QuadrotorOptions
+from faultpath_quadrotor.planners import SamplerSettings
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.platform import PLATFORM, Platform
 
@@ -34,3 +37,19 @@ def test_weights_of_another_platform_are_refused(monkeypatch):
     monkeypatch.setattr(models, "PLATFORM", Platform(drag_kgps=(0.3, 0.3, 0.3)))
     with pytest.raises(UserError, match=r"wm-a-0 .* another platform .* fit them again"):
         models.predictor("wm-a", 0)
+
+
+def test_the_predictors_on_offer_are_those_that_load():
+    assert tuple(models.PREDICTORS) == choices.PREDICTORS
+
+
+def test_the_default_number_of_candidates_is_the_frozen_one():
+    assert QuadrotorChoices().candidates == SamplerSettings().candidates
+
+
+def test_free_space_has_true_clearance_unless_it_is_chosen():
+    parse = QuadrotorOptions.parse
+    assert parse().clearance == "depth"
+    assert parse(environment="free-space").clearance == "true"
+    assert parse(environment="free-space", clearance="depth").clearance == "depth"
+    assert parse(candidates="1024", wind="L2") == QuadrotorOptions(candidates=1024, wind="L2")

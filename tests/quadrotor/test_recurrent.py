@@ -55,20 +55,6 @@ def winds(module, readings):
     return estimates
 
 
-@pytest.mark.parametrize(("calibrated", "reads"), [(True, HISTORY | HEAD), (False, HISTORY)])
-def test_it_reads_what_it_declares_and_nothing_else(calibrated, reads):
-    seen = set()
-
-    class Watched(dict):
-        def __getitem__(self, read):
-            seen.add(read)
-            return super().__getitem__(read)
-
-    module = RecurrentReconstruction(network(calibrated))
-    winds(module, [Watched(delivered) for delivered in flight(3)])
-    assert seen == module.reads == reads
-
-
 @pytest.mark.parametrize("steps", [1, 2, 5, 14])
 def test_a_lane_does_not_depend_on_the_lanes_beside_it(steps):
     """Bit for bit: alone among copies of itself, moved, and in a batch of another size."""

@@ -98,11 +98,6 @@ def test_loss_reads_no_future_state_command_or_wind():
     assert loss(made) == loss(changed)
 
 
-def test_unknown_model_is_a_users_mistake():
-    with pytest.raises(UserError, match="no wind reconstruction 'gur'"):
-        ReconstructionTask("gur", 0, Path("nowhere"))
-
-
 def corrupted(faults, consumers=(HEAD,), seed=0, count=COUNT):
     few = windows(count=count)
     readings = {"mass": few.mass_kg, "thrust_scale": few.thrust_scale}

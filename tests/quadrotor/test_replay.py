@@ -5,17 +5,15 @@ import torch
 from faultpath_quadrotor.evidence.inputs import Subject
 from faultpath_quadrotor.evidence.playback import at_present
 from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
-from faultpath_quadrotor.predictors import PredictorInputs
+from faultpath_quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath_quadrotor.predictors import module as prediction
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import windows as replay
 from faultpath_quadrotor.training.flight import fly
-from faultpath_quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath_quadrotor.training.reconstruction_task import _calibration, _history
 from faultpath_quadrotor.training.trajectories import record_flights
 from faultpath_quadrotor.training.windows import HISTORY, Windows, cut, places
-
-torch.set_num_threads(1)
+from flights import in_memory
 
 
 def parts(inputs: PredictorInputs, row: int) -> dict[str, torch.Tensor]:
@@ -50,25 +48,16 @@ def told(monkeypatch) -> list[PredictorInputs]:
 @pytest.fixture(scope="module")
 def windows() -> Windows:
     """As many windows of collected flights as fill whole vectors."""
-    flown = FlightData.decode(
-        "test",
-        encode_rows(range(16), flights := fly("wind", range(16), 0)),
-        encode_episodes(range(16), flights),
-    )
-    found = cut(flown)
-    return found.take(torch.arange(32))
+    return cut(in_memory(fly("wind", range(16), 0))).take(torch.arange(32))
 
 
 @pytest.mark.parametrize("variant", ["wm-a-wind/gru", "wm-u", "true-parameter/true-wind"])
 def test_a_window_tells_the_predictor_what_the_flight_did(variant, told):
     system = Quadrotor.parse(wind="L3", environment="free-space", clearance="true")
     scene = system.library("selection").scenes[0].id
-    flights = record_flights(system, variant, (scene,), 0)
+    pool = in_memory(record_flights(system, variant, (scene,), 0))
     flown = tuple(told)
     told.clear()
-    pool = FlightData.decode(
-        "x", encode_rows(range(1), flights), encode_episodes(range(1), flights)
-    )
     windows, presents = cut(pool, stride=2), places(pool, stride=2)[:, 2] + HISTORY
     with torch.inference_mode():
         Subject.load(system, variant, 0).at_present(windows, (), "recording")
@@ -94,7 +83,8 @@ def test_a_fit_rolls_out_what_the_modules_do(name, windows, told):
 @pytest.mark.parametrize("name", ["gru", "gru-withheld"])
 def test_a_fit_gives_a_reconstruction_the_history_that_it_remembers(name, windows):
     model = RECONSTRUCTIONS[name].load(name, 0)
+    nobodys = KinematicIntegrator(wind=True, drag_kgps=(0.0, 0.0, 0.0))  # it only reads the wind
     with torch.inference_mode():
-        played = at_present(windows, None, model, {"wind": "reconstructed_wind"}).wind()
+        played = at_present(windows, nobodys, model, {"wind": "reconstructed_wind"}).wind()
         supplied = _calibration(windows) if model.network.calibrated else None
         assert torch.equal(model.network.estimate(*_history(windows), supplied), played)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 from faultpath_quadrotor import native, system
-from flights import HELD_OUT, STEPS, bits, fault, fly, hall, quadrotor, with_halls
+from flights import HELD_OUT, bits, fault, fly, hall, quadrotor, with_halls
 
 from faultpath.faults import AnyFault
 
@@ -20,9 +20,7 @@ def _path(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
 
 
-@pytest.fixture(autouse=True)
-def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
+pytestmark = pytest.mark.usefixtures("short")
 
 
 FAULTS = (
@@ -40,10 +38,8 @@ def faults() -> tuple[AnyFault, ...]:
 
 
 @pytest.fixture(scope="module")
-def whole(_path, faults) -> dict[str, tuple[object, ...]]:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
-        outcomes, _ = fly(quadrotor(**STRONG_WIND), "dob", HELD_OUT, faults, seed=3)
+def whole(_path, short, faults) -> dict[str, tuple[object, ...]]:
+    outcomes, _ = fly(quadrotor(**STRONG_WIND), "dob", HELD_OUT, faults, seed=3)
     return {outcome.scene: bits(outcome) for outcome in outcomes}
 
 

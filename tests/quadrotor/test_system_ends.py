@@ -16,9 +16,7 @@ FALL = "action:erase=0/0/0/0@vehicle"
 TABLE = Box(centre_m=(0.0, 0.0, 0.5), half_extents_m=(0.5, 0.5, 0.5))
 
 
-@pytest.fixture(autouse=True)
-def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
+pytestmark = pytest.mark.usefixtures("short")
 
 
 def _end(tmp_path: Path, text: str | None, *args, **options: str) -> Outcome:

@@ -19,16 +19,12 @@ ALTERED_BY_CALIBRATION = {
 }
 
 
-@pytest.fixture(autouse=True)
-def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
+pytestmark = pytest.mark.usefixtures("short")
 
 
 @pytest.fixture(scope="module")
-def plain() -> Outcome:
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
-        return fly(quadrotor(wind="L2"))[0][0]
+def plain(short) -> Outcome:
+    return fly(quadrotor(wind="L2"))[0][0]
 
 
 def _altered(receipts: Receipts) -> set[tuple[str, str]]:

@@ -12,21 +12,9 @@ from flights import HELD_OUT, fault, fly, quadrotor
 
 STEPS = 5
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
-VARIANTS = ("zero-wind", "gru", "gru+dcc", "dob", "wm-a", "wm-u", "dki-drag/gru")
 
 
-@pytest.fixture(autouse=True)
-def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
-
-
-@pytest.mark.parametrize("name", VARIANTS)
-def test_every_variant_reads_what_it_declares_and_needs_no_privilege(name):
-    system = quadrotor(**LEARNED)
-    assert system.variants[name].privileged == frozenset()
-    _, taps = fly(system, name)
-    assert {consumer for _, consumer in taps.log} == system.variants[name].consumers
-    assert all(tap.deliveries == STEPS for tap in taps.receipts().taps)
+pytestmark = pytest.mark.usefixtures("short")
 
 
 def test_an_arms_seed_chooses_the_training_of_what_its_variant_names():

@@ -14,17 +14,13 @@ from faultpath.trials.attempt import taps_of
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
 FLOWN = [
-    (LEARNED, "gru"),
-    (LEARNED, "wm-u"),
-    (LEARNED, "dki-drag/gru+dcc"),
-    ({}, "dob"),
+    *((LEARNED, each) for each in ("zero-wind", "gru", "dob", "wm-a", "wm-u", "dki-drag/gru+dcc")),
+    *(({}, variant) for variant in ("zero-wind", "dob")),
     ({"predictor": "true-parameter"}, "true-wind"),
 ]
 
 
-@pytest.fixture(autouse=True)
-def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
+pytestmark = pytest.mark.usefixtures("short")
 
 
 @pytest.fixture(scope="module")
@@ -59,6 +55,8 @@ def test_what_flies_reads_every_port_and_commands_late(options, variant):
     assert (len(instants), instants[-1].step) == (STEPS + 1, STEPS)
     reads = recording.reads.values()
     assert {each.consumer for each in reads} == set(system.variants[variant].consumers)
+    assert all(tap.deliveries == STEPS for tap in taps.receipts().taps)
+    assert (system.variants[variant].privileged == set()) == (options is LEARNED)
     taught = {each.consumer for each in reads if each.channel == "action"}
     late = {each.consumer for each in reads if each.valid_step < each.step}
     assert late == taught - {"vehicle.actuators"}

@@ -8,7 +8,7 @@ import pytest
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import clearance_data, flight, trajectories
-from faultpath_quadrotor.training.pool import encode_episodes, encode_rows, write_flights
+from faultpath_quadrotor.training.pool import write_flights
 
 from faultpath.trials.code import read_code
 from faultpath.trials.imports import Root
@@ -24,8 +24,7 @@ def _closed_loop(folder: Path) -> None:
     system = Quadrotor.parse(wind="L1", clearance="true", environment="free-space")
     scene = system.library("selection").scenes[0].id
     flights = trajectories.record_flights(system, "wm-a-wind/true-wind", (scene,), 0)
-    encode_episodes(range(1), flights)
-    encode_rows(range(1), flights)
+    write_flights(folder / "batch", range(1), flights)
 
 
 def _images(folder: Path) -> None:

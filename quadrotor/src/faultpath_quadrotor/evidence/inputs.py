@@ -57,24 +57,10 @@ class Subject:
 
     @classmethod
     def load(cls, system: Quadrotor, name: str, seed: int) -> Subject:
-        """Load a variant; `UserError` for an unknown one, or where a checkpoint is missing."""
-        found = system.setups
-        if name not in found:
-            raise UserError(
-                f"the quadrotor has no variant {name!r} to measure: choose from {', '.join(found)}"
-            )
-        return cls(
-            system,
-            system.variants[name],
-            seed,
-            found[name].load_predictor(seed),
-            found[name].load_reconstruction(seed),
-        )
-
-    def check(self, faults: Sequence[str]) -> None:
-        """Raise the `UserError` that `at_present` would raise about these faults on any windows."""
-        for found in self._parse(faults):
-            self._taps("any", found)
+        """Load a variant; `UserError` where a checkpoint is missing."""
+        found = system.setups[name]
+        models = found.load_predictor(seed), found.load_reconstruction(seed)
+        return cls(system, system.variants[name], seed, *models)
 
     def at_present(self, windows: Windows, faults: Sequence[str], recording: str) -> Present:
         """Return what the variant makes of windows of the recording of that name.
@@ -123,20 +109,6 @@ class Subject:
                 )
         return by_window, by_recording
 
-    def _taps(self, scene: str, faults: Sequence[AnyFault], *codes: int) -> Taps:
-        source = self.system.interface.channel(CODE[0]).sources[0]
-        interface = self.system.interface.shaped({source: codes} if codes else {})
-        return Taps(
-            interface,
-            resolve(faults, interface, self.variant.consumers),
-            scenes=(scene,),
-            dt_s=self.system.control_dt_s,
-            seed=self.seed,
-            bindings=self.variant.bindings,
-            consumers=self.variant.consumers,
-            privileged=self.variant.privileged,
-        )
-
     def _exchanged(self, recording: str, faults: Sequence[AnyFault], codes: Tensor) -> Tensor:
         """Return history codes `[W, 32]` as delivered.
 
@@ -144,7 +116,18 @@ class Subject:
         and so exchanges the codes of windows: each is one that the predictor meets in flight, but
         of another history.
         """
-        taps = self._taps(recording, faults, *codes.shape)
+        source = self.system.interface.channel(CODE[0]).sources[0]
+        interface = self.system.interface.shaped({source: tuple(codes.shape)})
+        taps = Taps(
+            interface,
+            resolve(faults, interface, self.variant.consumers),
+            scenes=(recording,),
+            dt_s=self.system.control_dt_s,
+            seed=self.seed,
+            bindings=self.variant.bindings,
+            consumers=self.variant.consumers,
+            privileged=self.variant.privileged,
+        )
         reading = Reading(codes[None], taps.bindings[CODE[0]], 0)
         delivered = taps.deliver(*CODE, reading, 0)
         taps.verify(last_step=0)

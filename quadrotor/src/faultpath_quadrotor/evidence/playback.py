@@ -32,7 +32,7 @@ from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.lanes import Chunk
 from faultpath_quadrotor.plant.module import ACTION
-from faultpath_quadrotor.predictors import KinematicIntegrator, Predictor
+from faultpath_quadrotor.predictors import Predictor
 from faultpath_quadrotor.predictors.rollout import Candidates, Predicted
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.state import padded_lanes
@@ -167,18 +167,14 @@ class Present:
         return predicted.rollouts[0].positions[:, : self.count, :, 0]
 
 
-def _same(codes: Tensor) -> Tensor:
-    return codes
-
-
 def at_present(
     windows: Windows,
-    predictor: Predictor | None,
+    predictor: Predictor,
     reconstruction: Reconstruction | None,
     bindings: Mapping[str, str],
     faults: Iterable[AnyFault] = (),
     seed: int = 0,
-    exchange: Exchange = _same,
+    exchange: Exchange = lambda codes: codes,
 ) -> Present:
     """Step a variant's modules through the history of windows, up to the present.
 
@@ -186,7 +182,7 @@ def at_present(
 
     Args:
         windows: Some windows, W.
-        predictor: Whose rollouts may be asked for; `None` where only the wind is.
+        predictor: Whose rollouts may be asked for.
         reconstruction: What estimates the wind, if anything does.
         bindings: Channel to source, where it is not the channel's first.
         faults: What acts on windows one by one.
@@ -199,9 +195,7 @@ def at_present(
     lanes = padded_lanes(len(windows))
     wide = windows.take(lanes)
     interface = quadrotor_interface().shaped({"predicted_motion": (6, HORIZON, 1)})
-    # Where there is no predictor, one that reads the wind stands there; nobody asks it to predict.
-    nobodys = KinematicIntegrator(wind=True, drag_kgps=(0.0, 0.0, 0.0))
-    models = modelled(predictor or nobodys, reconstruction, CPU)
+    models = modelled(predictor, reconstruction, CPU)
     parts = graph(interface, Playback(wide), [*models, Executed(wide)], bindings)
     present = consumers(parts.parts)
     taps = Taps(

@@ -9,7 +9,6 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from faultpath.core.errors import UserError
 from faultpath.trials.store import atomic
 from faultpath.trials.store.atomic import locked, make_folder
 from faultpath_quadrotor.device import arithmetic
@@ -20,7 +19,6 @@ from faultpath_quadrotor.evidence.table import (
     EvidenceTable,
     Measured,
     Measurement,
-    Progress,
     Quantity,
     read_evidence,
     write_evidence,
@@ -28,53 +26,24 @@ from faultpath_quadrotor.evidence.table import (
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
-from faultpath_quadrotor.training.parts import Part, make_missing
+from faultpath_quadrotor.training.parts import Part, Progress, make_missing
 from faultpath_quadrotor.training.provenance import code_of
 from faultpath_quadrotor.training.windows import HISTORY, Windows
 
-Drag = Sequence[float]
-"""By body axis, kg/s."""
-
-
-def check(measurement: Measurement) -> None:
-    """Raise `UserError` where the measurement does not fit the system, before anything flies."""
-    subject = _subject(measurement)
-    subject.check(measurement.faults)
-    if measurement.quantity == "shuffle-response" and "history" not in subject.predictor.reads:
-        raise UserError(
-            f"the predictor of {measurement.subject!r} reads no history that could be shuffled: "
-            "measure a learned one"
-        )
-    analytic = measurement.quantity in ("acceleration-error", "wind-term-error")
-    if analytic and not {"dynamics", "wind_map"} <= subject.predictor.reads:
-        raise UserError(
-            f"the predictor of {measurement.subject!r} has no analytic dynamics with a wind input, "
-            f"so {measurement.quantity} does not exist for it: measure a variant with a wind input"
-        )
-
 
 @torch.inference_mode()
-def measured(measurement: Measurement, recorded: Recorded) -> Measured:
-    """Measure on every window what `check` has let pass.
+def measured(asked: Measurement, recorded: Recorded) -> Measured:
+    """Measure on every window.
 
     A window's number does not depend on the windows beside it, to the bit, unless a fault on the
     history code exchanges them.
     """
-    values = of_windows(_subject(measurement), measurement, recorded.windows)
+    values = _QUANTITIES[asked.quantity](_subject(asked), asked, recorded.windows)
     return Measured(recorded.scenes, recorded.steps, values.double().numpy())
-
-
-def of_windows(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    """Return what is asked of a variant, whichever its models are, on each window, `[W]`."""
-    return _QUANTITIES[asked.quantity](subject, asked, windows)
 
 
 def _subject(asked: Measurement) -> Subject:
     return Subject.load(quadrotor(asked.recording), asked.subject, asked.seed)
-
-
-def _drag_kgps(subject: Subject) -> Drag:
-    return PLATFORM.drag_kgps
 
 
 def _present(subject: Subject, asked: Measurement, windows: Windows) -> Present:
@@ -105,17 +74,13 @@ def _shuffle_response(subject: Subject, asked: Measurement, windows: Windows) ->
 def _acceleration_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
     present = _present(subject, asked, windows)
     told = {channel: present[channel, "predictor.dynamics"] for channel in windows.calibration}
-    drag = _drag_kgps(subject)
     believed = replace(windows, mass_kg=told["mass"], thrust_scale=told["thrust_scale"])
-    return (
-        (_nominal(believed, drag) - _nominal(windows, drag))
-        + _wind_term_difference(present, windows, drag)
-    ).norm(dim=0)
+    nominal = _nominal(believed) - _nominal(windows)
+    return (nominal + _wind_term_difference(present, windows)).norm(dim=0)
 
 
 def _wind_term_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    present = _present(subject, asked, windows)
-    return _wind_term_difference(present, windows, _drag_kgps(subject)).norm(dim=0)
+    return _wind_term_difference(_present(subject, asked, windows), windows).norm(dim=0)
 
 
 _QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]] = {
@@ -127,7 +92,7 @@ _QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]
 }
 
 
-def _nominal(windows: Windows, drag_kgps: Drag) -> Tensor:
+def _nominal(windows: Windows) -> Tensor:
     """Return a_0 at the present, as the observer explains it, `[3, W]`, m/s^2.
 
     Paper, Section "Calibration-Dependent Compensation": what the observer takes out of an
@@ -140,12 +105,12 @@ def _nominal(windows: Windows, drag_kgps: Drag) -> Tensor:
         ("mass", "nominal_model"): windows.mass_kg,
         ("thrust_scale", "nominal_model"): windows.thrust_scale,
     }
-    return DisturbanceObserver(drag_kgps).nominal(delivered)
+    return DisturbanceObserver(PLATFORM.drag_kgps).nominal(delivered)
 
 
-def _wind_term_difference(present: Present, windows: Windows, drag_kgps: Drag) -> Tensor:
+def _wind_term_difference(present: Present, windows: Windows) -> Tensor:
     def term(map_mass_kg: Tensor, wind_mps: Tensor) -> Tensor:
-        force = LinearDrag(drag_kgps).force(windows.rotation[:, :, HISTORY], wind_mps)
+        force = LinearDrag(PLATFORM.drag_kgps).force(windows.rotation[:, :, HISTORY], wind_mps)
         return force / map_mass_kg
 
     believed = term(present["mass", "predictor.wind_map"], present.wind())
@@ -170,13 +135,8 @@ def measure(
         folder: Where recordings and measurements are kept, so that the next call goes on.
         workers: Processes; 0: everything is done in this one.
         progress: Is told how far it is.
-
-    Raises:
-        UserError: A library, variant, option or fault does not exist or does not fit.
     """
     asked = tuple(dict.fromkeys(measurements))
-    for measurement in asked:
-        check(measurement)
     recordings = dict.fromkeys(measurement.recording for measurement in asked)
     flown = {recording: blocks(recording, scenes) for recording in recordings}
     # One recording after the other: a worker keeps the windows of the one that it is at.

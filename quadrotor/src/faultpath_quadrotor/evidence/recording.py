@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.errors import UserError
 from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.code import system_code
 from faultpath_quadrotor.evidence.table import Recording
@@ -60,14 +59,13 @@ class Recorded:
     """Control step of each window's present, `[W]`."""
 
 
-def spec(recording: Recording) -> SystemSpec:
-    """Return how the system that a recording is flown with is named."""
+def _spec(recording: Recording) -> SystemSpec:
     return SystemSpec(name=Quadrotor.name, options=dict(recording.options))
 
 
 def quadrotor(recording: Recording) -> Quadrotor:
-    """Return the system that a recording is flown with; `UserError` for a wrong option."""
-    system = load_system(spec(recording))
+    """Return the system that a recording is flown with."""
+    system = load_system(_spec(recording))
     assert isinstance(system, Quadrotor)
     return system
 
@@ -75,32 +73,21 @@ def quadrotor(recording: Recording) -> Quadrotor:
 def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
     """Return the blocks of the first `count` scenes of the recording's library, `None`: of all.
 
-    The stem is a hash of everything that decides the flights. `UserError` for an unknown library,
-    variant or option, or for more scenes than there are.
+    The stem is a hash of everything that decides the flights.
     """
     system = quadrotor(recording)
     library = system.library(recording.library)
-    if recording.variant not in system.variants:
-        raise UserError(
-            f"the quadrotor has no variant {recording.variant!r} to record flights with: choose "
-            f"from {', '.join(system.variants)}"
-        )
-    scenes = tuple(scene.id for scene in library.scenes)
-    if count is not None and not 1 <= count <= len(scenes):
-        raise UserError(
-            f"{count} scenes of library {recording.library!r} cannot be recorded: ask for 1 to "
-            f"{len(scenes)}"
-        )
+    scenes = tuple(scene.id for scene in library.scenes[:count])
     decisive = (
-        system_code(system, spec(recording)).state.digest,
+        system_code(system, _spec(recording)).state.digest,
         library.content_hash,
         recording.variant,
         recording.seed,
         code_of("training.trajectories", "training.pool"),
     )
     found: list[Block] = []
-    for first in range(0, len(scenes[:count]), BLOCK):
-        part = scenes[:count][first : first + BLOCK]
+    for first in range(0, len(scenes), BLOCK):
+        part = scenes[first : first + BLOCK]
         content = repr((*decisive, first, part))
         stem = hashlib.sha256(content.encode()).hexdigest()[:24]
         found.append(Block(recording, first, part, stem))
@@ -108,20 +95,10 @@ def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
 
 
 def recorded(blocks: Sequence[Block], folder: Path) -> Recorded:
-    """Read stored blocks of one recording and cut their windows.
-
-    `UserError` when no flight is as long as a window.
-    """
-    recording = blocks[0].recording
-    flown = FlightData.decode(
-        recording.name, *join_flights([folder / block.stem for block in blocks])
-    )
+    """Read stored blocks of one recording and cut their windows."""
+    files = join_flights([folder / block.stem for block in blocks])
+    flown = FlightData.decode(blocks[0].recording.name, *files)
     place = places(flown, STRIDE)
-    if not len(place):
-        raise UserError(
-            f"no flight of the recording {recording.name} is as long as a window: record more "
-            "scenes"
-        )
     scenes = [scene for block in blocks for scene in block.scenes]
     return Recorded(
         cut(flown, STRIDE),

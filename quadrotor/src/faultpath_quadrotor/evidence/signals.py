@@ -1,17 +1,15 @@
 """What a recorded flight of the quadrotor adds to its readings: errors, predictions and thrust."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 import torch
-from torch import Tensor
 
 from faultpath.systems.checks.recording import Recording, Trial, Values, added, trials
 from faultpath.trials.attempt import Done
 from faultpath.trials.store.signals import Signal
 from faultpath_quadrotor.device import arithmetic
-from faultpath_quadrotor.lanes import Chunk
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.system import Quadrotor
@@ -35,19 +33,14 @@ def quadrotor_signals(
     ahead = _predicted(recording)
     found: list[tuple[Signal, ...]] = []
     for trial in trials(recording, done, system.control_dt_s):
-        thrust = trial.got("action", "vehicle.actuators")[:, :1]
-        named = [_signal("commanded thrust", "commanded thrust", "N", thrust)]
-        named += _errors(trial)
+        thrust = trial.got("action", "vehicle.actuators")[:, :1].astype(np.float32)
+        named = [Signal("commanded thrust", "commanded thrust", "N", thrust), *_errors(trial)]
         for horizon, positions in ahead.items():
             said = f"position predicted {horizon * system.control_dt_s:g} s before"
             values = trial.rows(positions).astype(np.float32)
             named.append(Signal(said, "position", "m", values, ("east", "north", "up")))
         found.append(tuple(named))
     return found
-
-
-def _signal(name: str, topic: str, unit: str, values: Values) -> Signal:
-    return Signal(name, topic, unit, values.astype(np.float32))
 
 
 def _errors(trial: Trial) -> list[Signal]:
@@ -86,16 +79,12 @@ def _errors(trial: Trial) -> list[Signal]:
                 for name, error in errors.items()
             },
         )
-    norms = [
-        _signal(
-            f"{name} acceleration error",
-            "acceleration error",
-            "m/s^2",
-            np.linalg.norm(error, axis=1, keepdims=True),
-        )
+    sizes = {
+        name: np.linalg.norm(error, axis=1, keepdims=True).astype(np.float32)
         for name, error in pairs.items()
-    ]
-    return [*norms, *along]
+    }
+    said = "acceleration error"
+    return [*(Signal(f"{n} {said}", said, "m/s^2", size) for n, size in sizes.items()), *along]
 
 
 @arithmetic()
@@ -116,20 +105,15 @@ def _predicted(recording: Recording) -> Mapping[int, Mapping[int, Values]]:
         if step + horizon not in flown:
             continue
         actions = np.stack([flown[step + h] for h in range(horizon)])
-        asked = replace(request, commands=_commands(actions, request.parts, request.commands))
+        every = torch.from_numpy(actions).movedim(-1, 1).to(request.commands[0])
+        commands = tuple(
+            every[:, :, list(part.scenes)][..., None].expand(-1, -1, -1, _CANDIDATES).contiguous()
+            for part in request.parts
+        )
+        asked = replace(request, commands=commands)
         positions = np.full((len(actions[0]), 3), np.nan)
         answer = query.answer(asked)
         for part, rollout in zip(answer.parts, answer.rollouts, strict=True):
             positions[list(part.scenes)] = rollout.positions[:, :, -1, 0].T.double().numpy()
         found[step + horizon] = positions
     return {horizon: found} if found else {}
-
-
-def _commands(
-    actions: Values, parts: Sequence[Chunk], like: Sequence[Tensor]
-) -> tuple[Tensor, ...]:
-    every = torch.from_numpy(actions).movedim(-1, 1).to(like[0])
-    return tuple(
-        every[:, :, list(part.scenes)][..., None].expand(-1, -1, -1, _CANDIDATES).contiguous()
-        for part in parts
-    )

@@ -38,11 +38,7 @@ class _Seen(Observer):
 
 
 def state_errors(
-    system: Quadrotor,
-    variant: str,
-    scenes: Sequence[str],
-    seed: int,
-    faults: Sequence[AnyFault],
+    system: Quadrotor, variant: str, scenes: Sequence[str], seed: int, faults: Sequence[AnyFault]
 ) -> Record:
     """Fly scenes under faults of the sensors, and return the errors of the filter by channel.
 

@@ -1,15 +1,14 @@
 """Evidence measured on recorded windows: what was asked, what was found, and its table as Parquet,
 one row a window of a measurement.
 
-No tensors and no simulator here: `measuring` measures, and everybody else reads the table.
+No tensors and no simulator here: `quantities` measures, and everybody else reads the table.
 """
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -30,15 +29,13 @@ Quantity: TypeAlias = Literal[
     "wind-term-error",
 ]
 
-QUANTITIES: Mapping[Quantity, str] = MappingProxyType(
-    {
-        "position-error": "m",
-        "position-response": "m",
-        "shuffle-response": "m",
-        "acceleration-error": "m/s^2",
-        "wind-term-error": "m/s^2",
-    }
-)
+QUANTITIES: Mapping[Quantity, str] = {
+    "position-error": "m",
+    "position-response": "m",
+    "shuffle-response": "m",
+    "acceleration-error": "m/s^2",
+    "wind-term-error": "m/s^2",
+}
 """Unit of each quantity. `docs/design/evidence.md` gives their formulas."""
 
 
@@ -91,10 +88,6 @@ class Measurement(Frozen):
         return hash(self.key())
 
 
-Progress: TypeAlias = Callable[[float, float], None]
-"""Called with the work done and all of it, in flights; a measurement counts as a part of one."""
-
-
 @dataclass(frozen=True, eq=False)
 class Measured:
     """One measurement: its W windows in the order of their scenes, then of their time."""
@@ -105,11 +98,6 @@ class Measured:
     """Control step of each window's present, `[W]`."""
     values: NDArray[np.float64]
     """The quantity, `[W]`, in the unit that `QUANTITIES` gives."""
-
-    def __post_init__(self) -> None:
-        shapes = {(len(self.scenes),), self.steps.shape, self.values.shape}
-        if len(shapes) > 1:
-            raise ValueError(f"scenes, steps and values are of the same windows, not of {shapes}")
 
     def __len__(self) -> int:
         return len(self.scenes)

@@ -7,8 +7,8 @@ from importlib.resources import files
 from typing import Any, Literal, NamedTuple
 
 import yaml
-from pydantic import BaseModel, ConfigDict
 
+from faultpath.core.results import Frozen
 from faultpath.trials import Side
 
 SYSTEM = "quadrotor"
@@ -106,10 +106,8 @@ def calibration(error: float, module: str | None = None) -> str:
     return f"calibration={error:+g}" + (f"@{module}" if module else "")
 
 
-class PublishedClaim(BaseModel):
+class PublishedClaim(Frozen):
     """A finding of the paper, stated so that our own runs can confirm or refute it."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     id: str
     kind: Literal["platform", "finding"]
@@ -129,7 +127,7 @@ class Printed(NamedTuple):
 
 def published(*keys: str | int) -> Any:
     """Return a figure of the paper by its keys in `paper/published.yaml`; `KeyError` for none."""
-    found: Any = _figures()
+    found: Any = data("published.yaml")
     for key in keys:
         found = found[key]
     return found
@@ -137,13 +135,10 @@ def published(*keys: str | int) -> Any:
 
 def published_claims() -> tuple[PublishedClaim, ...]:
     """Return every claim of `paper/claims.yaml`, in its order."""
-    return tuple(PublishedClaim.model_validate(entry) for entry in _read("claims.yaml"))
+    return tuple(PublishedClaim.model_validate(entry) for entry in data("claims.yaml"))
 
 
 @cache
-def _figures() -> Any:
-    return _read("published.yaml")
-
-
-def _read(name: str) -> Any:
+def data(name: str) -> Any:
+    """Return a file of `paper/paper`."""
     return yaml.safe_load((files("faultpath_quadrotor.paper") / "paper" / name).read_text("utf-8"))

@@ -37,10 +37,8 @@ def of_run(found: Reproduction, place: str) -> Line | None:
 
 
 def state(ledger: Ledger, run: str = "this run") -> str:
-    """Say what became of the claim in a run, and by which of its parts."""
-    claim = next((each for each in ledger.claims if each.id == CLAIM), None)
-    if claim is None:
-        return f"{CLAIM} is not asked of {run}."
+    """Say what became of the claim in a run that is about it, and by which of its parts."""
+    claim = next(each for each in ledger.claims if each.id == CLAIM)
     part = next(each for each in claim.parts if each.answer == claim.verdict)
     by = "" if claim.verdict == "confirmed" else f" by this part: {part.words}"
     figure = f" ({words.estimate(part)})" if words.estimate(part) else ""
@@ -50,6 +48,8 @@ def state(ledger: Ledger, run: str = "this run") -> str:
 def central(lines: Iterable[Line]) -> Table:
     """Return the claim with its numbers and where it holds, the paper's below."""
     every = tuple(lines)
+    held = [each.label for each in every if each.entries[-1].text == DECIDED]
+    where = "; ".join(f"{place[:1].lower()}{place[1:]}" for place in held)
     theirs = [paper_contrast(REPAIR, BASELINE, path) for path in ("reconstruction-only", "shared")]
     printed = (f"{wording.signed(each.value)} {bracket(each.interval or ())}" for each in theirs)
     return Table(
@@ -59,7 +59,7 @@ def central(lines: Iterable[Line]) -> Table:
         lines=(*every, line("The paper", *printed, "claimed")),
         words=COLUMNS[-1:],
         notes=(
-            _when(every),
+            f"The ranking reverses {where}." if held else "Nowhere is it decided.",
             "Each was decided by itself; no test compares them. Intervals of the paper and of its "
             "reproduction are percentile bootstraps of scenes, those of audits score intervals.",
         ),
@@ -80,14 +80,3 @@ def of_page(found: Reproduction) -> tuple[str, Table] | None:
     seeds = wording.seeds(asked.seeds)
     own = of_run(found, f"In this run, {asked.scenes} scenes of {asked.library}, {seeds}")
     return state(asked), central([*([own] if own else []), *besides])
-
-
-def _when(lines: tuple[Line, ...]) -> str:
-    """Say where the ranking is decided to reverse."""
-    places = (f"{each.label[:1].lower()}{each.label[1:]}" for each in lines)
-    held = [place for place, each in zip(places, lines, strict=True) if _decided(each)]
-    return f"The ranking reverses {'; '.join(held)}." if held else "Nowhere is it decided."
-
-
-def _decided(each: Line) -> bool:
-    return each.entries[-1].text == DECIDED

@@ -1,7 +1,9 @@
 """Entries of tables as data: what each is made of, how, and the paper's figure beside it."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import astuple, dataclass
+
+import numpy as np
 
 from faultpath.decisions import wording
 from faultpath.decisions.tables import MISSING, Entry
@@ -72,22 +74,20 @@ def ended(cell: Cell, status: Status, paper: Figure = "") -> Group:
     """Share of seed 0's trials that ended in a way, percent; failed trials do not count."""
 
     def make(results: Results) -> Made:
-        counts = results.counts(cell)
-        flown = sum(counts.values()) - counts[Status.FAILED]
-        if not flown:
-            raise NotRun(f"a trial of {cell} that did not fail")
-        return (wording.plain(100 * counts[status] / flown, 0),)
+        ends = [each.status for each in results.first(cell)]
+        return (wording.plain(100 * ends.count(status) / len(ends), 0),)
 
     return Group(make, (printed(paper),), (of_seed(cell),))
 
 
 def time(cell: Cell, paper: float) -> Group:
     """Median time of seed 0's successful trials, s."""
-    return Group(
-        lambda results: (wording.plain(results.median_time(cell), 2),),
-        (printed(paper, 2),),
-        (of_seed(cell),),
-    )
+
+    def make(results: Results) -> Made:
+        times = [e.time_s for e in results.first(cell) if e.status is Status.SUCCESS]
+        return (wording.plain(float(np.median(times)), 2) if times else MISSING,)
+
+    return Group(make, (printed(paper, 2),), (of_seed(cell),))
 
 
 def measured(
@@ -120,7 +120,7 @@ def of_quantity(
         as_paper = found.resampled()
         bold = found.unit == "pp" and bool(detection(as_paper))
         entry = Entry(text=wording.signed(found.value, digits), detected=bold)
-        return entry, *_intervals((as_paper, found), digits)
+        return entry, interval_of(as_paper, digits), interval_of(found, digits)
 
     return Group(make, (*published, ""), tuple(cells))
 
@@ -128,10 +128,6 @@ def of_quantity(
 def interval_of(found: Contrast, digits: int = 1) -> str:
     """Return an interval as the paper's are written; a dash without one."""
     return bracket(found.interval, digits) if found.interval else MISSING
-
-
-def _intervals(contrasts: Iterable[Contrast], digits: int = 1) -> Iterator[str]:
-    return (interval_of(each, digits) for each in contrasts)
 
 
 @dataclass(frozen=True)
@@ -160,22 +156,19 @@ def published_contrasts(
 
 def difference(first: Cell, second: Cell, published: PublishedContrast) -> Group:
     """Difference, its two intervals, wins:losses, p-value and least detectable difference."""
-    return Group(
-        lambda results: _entries(contrast(results, first, second)),
-        astuple(published),
-        (first, second),
-    )
 
+    def make(results: Results) -> Made:
+        found = contrast(results, first, second)
+        assert found.test is not None
+        return (
+            decided(found),
+            *map(interval_of, (found.resampled(), found)),
+            str(found.counts),
+            wording.p_value(found.test.p_value),
+            "none" if found.least is None else wording.plain(found.least),
+        )
 
-def _entries(found: Contrast) -> Made:
-    assert found.test is not None
-    return (
-        decided(found),
-        *_intervals((found.resampled(), found)),
-        str(found.counts),
-        wording.p_value(found.test.p_value),
-        "none" if found.least is None else wording.plain(found.least),
-    )
+    return Group(make, astuple(published), (first, second))
 
 
 def decided(found: Contrast) -> Entry:

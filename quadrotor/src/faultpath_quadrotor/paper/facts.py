@@ -1,14 +1,12 @@
 """What the paper states, fact by fact, and how the project stands to each."""
 
 from functools import cache
-from importlib.resources import files
 from itertools import groupby
 from typing import Literal, get_args
 
-import yaml
-from pydantic import BaseModel, ConfigDict
-
+from faultpath.core.results import Frozen
 from faultpath.decisions.tables import Entry, Line, Table, line
+from faultpath_quadrotor.paper.cells import data
 
 Standing = Literal["as written", "our reading", "otherwise"]
 STANDINGS: tuple[Standing, ...] = get_args(Standing)
@@ -24,11 +22,7 @@ SECTIONS = {
 """Sections of the paper that state facts."""
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class Fact(_Frozen):
+class Fact(Frozen):
     """Something that the paper says of its set-up, its methods or what it reports."""
 
     number: int
@@ -41,7 +35,7 @@ class Fact(_Frozen):
     """What is done and why, unless it is as written."""
 
 
-class Group(_Frozen):
+class Group(Frozen):
     """Facts of one section on one subject."""
 
     section: Literal["IV-A", "IV-B", "V", "VI", "VII", "VIII", "Appendix"]
@@ -52,8 +46,7 @@ class Group(_Frozen):
 @cache
 def groups() -> tuple[Group, ...]:
     """Return every group of `paper/facts.yaml`, in the order of the paper."""
-    text = (files("faultpath_quadrotor.paper") / "paper" / "facts.yaml").read_text("utf-8")
-    return tuple(Group.model_validate(entry) for entry in yaml.safe_load(text))
+    return tuple(Group.model_validate(entry) for entry in data("facts.yaml"))
 
 
 def facts() -> tuple[Fact, ...]:
@@ -79,11 +72,8 @@ def listed(section: str) -> Table:
     for group in groups():
         if group.section == section:
             lines.append(Line(label=group.heading))
-            lines += [_row(fact) for fact in group.facts]
+            for fact in group.facts:
+                state = Entry(text=fact.state, tone="bad" if fact.state == "otherwise" else "")
+                said = fact.fact, state, fact.ours, "; ".join(fact.at)
+                lines.append(line(str(fact.number), *said))
     return Table(corner="Fact", columns=columns, lines=tuple(lines), words=columns)
-
-
-def _row(fact: Fact) -> Line:
-    other = fact.state == "otherwise"
-    state = Entry(text=fact.state, tone="bad" if other else "")
-    return line(str(fact.number), fact.fact, state, fact.ours, "; ".join(fact.at))

@@ -1,9 +1,9 @@
 """A page of the paper as data: its tables, row by row, and so what it needs flown and measured."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 from faultpath.decisions import wording
 from faultpath.decisions.tables import Line, Table
@@ -118,24 +118,6 @@ def differences(
     return Columns(ROWS, tuple(difference(*pair, paper) for pair, paper in columns))
 
 
-class Part(Protocol):
-    """A table or a figure of a page."""
-
-    @property
-    def cells(self) -> tuple[Cell, ...]:
-        """What it needs flown."""
-        ...
-
-    @property
-    def measurements(self) -> tuple[Measurement, ...]:
-        """What it needs measured."""
-        ...
-
-    def build(self, results: Results) -> Table | Sweep:
-        """Return it as a run fills it, with any part of its cells; never raises `NotRun`."""
-        ...
-
-
 @dataclass(frozen=True)
 class TableSpec:
     """A table: what stands in it, and where that comes from."""
@@ -174,13 +156,23 @@ class TableSpec:
 
 
 @dataclass(frozen=True)
+class FigureSpec:
+    """A figure of lines, and what they are made of."""
+
+    build: Callable[[Results], Sweep]
+    """Fills it with what was run."""
+    cells: tuple[Cell, ...]
+    measurements: tuple[Measurement, ...] = ()
+
+
+@dataclass(frozen=True)
 class Page:
     """One table or figure of the paper, or its results in the text: what is shown of a run."""
 
     name: str
     """Such as `table-2`."""
     title: str
-    parts: tuple[Part, ...] = ()
+    parts: tuple[TableSpec | FigureSpec, ...] = ()
     cells: tuple[Cell, ...] = ()
     """What the page needs run; by default what its parts do."""
     measurements: tuple[Measurement, ...] = ()

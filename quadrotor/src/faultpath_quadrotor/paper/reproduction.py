@@ -139,7 +139,7 @@ def carry_out(plan: Plan, job: Job) -> ReproductionRun:
     results = plan.results(flown.outcomes, evidence)
     place = folder / plan.place
     found = conclude(plan, results)
-    result = save(place, flown, results, evidence, found)
+    result = save(place, flown, results, found)
     provenance = job.finish(result, plan.system, (*RESULTS, DELIVERIES), place)
     write_pages(place, found, provenance)
     return ReproductionRun(place, found, provenance)

@@ -10,7 +10,7 @@ from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.effects import success_rate
 from faultpath.statistics.estimate import Estimate, Sign
 from faultpath.statistics.resamples import Resamples
-from faultpath.trials import OutcomeTable, PairingRefused, Pairs, Status, pair
+from faultpath.trials import Outcome, OutcomeTable, PairingRefused, Pairs, pair
 from faultpath_quadrotor.evidence.table import EvidenceTable, Measured, Measurement
 from faultpath_quadrotor.paper.cells import Cell
 
@@ -28,7 +28,7 @@ class Results:
     """A run of studies: its outcome table, and what was measured on recorded windows."""
 
     outcomes: OutcomeTable
-    evidence: EvidenceTable | None
+    evidence: EvidenceTable
     library_hash: str
     """Names the bootstrap's stream, so that intervals do not depend on where they are made."""
 
@@ -79,35 +79,26 @@ class Results:
             raise NotRun(f"a scene of {first} and {second} to compare")
         return pairs
 
-    def rate(self, cell: Cell, scenes: Sequence[int] | None = None) -> Estimate:
+    def rate(self, cell: Cell) -> Estimate:
         """Return the success of a cell in percent, mean over its seeds."""
-        pairs = self.pairs(cell, cell, scenes=scenes)
+        pairs = self.pairs(cell, cell)
         return success_rate(pairs.first.success, self.resamples(pairs)).estimate()
 
-    def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:
-        """Return how many trials of a cell ended in each way, for one seed."""
-        if seed not in self.seeds(cell):
-            raise NotRun(f"{cell}, seed {seed}")
-        ends = [row.outcome.status for row in self.outcomes.arm(cell.variant, cell.path, seed)]
-        return {status: ends.count(status) for status in Status}
-
-    def median_time(self, cell: Cell, seed: int = 0) -> float:
-        """Return the median time of a cell's successful trials, s; `NotRun` without a success."""
-        self.counts(cell, seed)
-        rows = self.outcomes.arm(cell.variant, cell.path, seed)
-        times = [row.outcome.time_s for row in rows if row.outcome.status is Status.SUCCESS]
-        if not times:
-            raise NotRun(f"a success of {cell}")
-        return float(np.median(times))
+    def first(self, cell: Cell) -> list[Outcome]:
+        """Return how the trials of seed 0 ended, failed ones apart; `NotRun` without any."""
+        if 0 not in self.seeds(cell):
+            raise NotRun(f"{cell}, seed 0")
+        ends = [row.outcome for row in self.outcomes.arm(cell.variant, cell.path, 0)]
+        ended = [each for each in ends if not each.failed]
+        if not ended:
+            raise NotRun(f"a trial of {cell} that did not fail")
+        return ended
 
     def measured(self, measurement: Measurement) -> Measured:
         """Return the values of a measurement; `NotRun` when it was not made."""
-        try:
-            if self.evidence is not None:
-                return self.evidence.values(measurement)
-        except KeyError:
-            pass
-        raise NotRun(f"{measurement.quantity} of {measurement.subject}")
+        if measurement not in self.evidence:
+            raise NotRun(f"{measurement.quantity} of {measurement.subject}")
+        return self.evidence.values(measurement)
 
     def resamples(self, pairs: Pairs) -> Resamples:
         """Return the scene resamples that every contrast over so many scenes shares."""

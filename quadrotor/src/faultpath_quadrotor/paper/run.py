@@ -141,9 +141,7 @@ def conclude(plan: Plan, results: Results) -> Reproduction:
     )
 
 
-def save(
-    folder: Path, flown: Flown, results: Results, evidence: EvidenceTable, found: Reproduction
-) -> RunResult:
+def save(folder: Path, flown: Flown, results: Results, found: Reproduction) -> RunResult:
     """Write outcomes, evidence and conclusions; return the run as one result, without traces."""
     folder.mkdir(parents=True, exist_ok=True)
     slim = (replace(row, outcome=replace(row.outcome, trace=None)) for row in results.outcomes.rows)
@@ -152,7 +150,7 @@ def save(
         findings=tuple(dict.fromkeys(said for result in flown.results for said in result.findings)),
     )
     digest = RunFolder(folder).save_tables(OutcomeTable(tuple(slim)), deliveries)
-    write_evidence(folder / EVIDENCE, evidence)
+    write_evidence(folder / EVIDENCE, results.evidence)
     write_text(folder / CONCLUSIONS, found.model_dump_json(indent=1) + "\n", folder)
     return RunResult(
         outcomes=results.outcomes,

@@ -1,20 +1,13 @@
 """The distance to a scene baked on a lattice, for planners that ask about many points.
 
 `DistanceField` holds one flat table for any number of scenes. All lattices are laid out with the
-same pitch, so that the eight corners of a point's cell are read with one index from eight
-shifted views of the table, each read being consumed by the next step of the interpolation while
-it is in the cache. (Packing the corners of a cell side by side takes eight times the memory; it
-was measured to be slower, because the table no longer fits the cache.)
+same pitch, so that the eight corners of a point's cell are read with one index from eight shifted
+views of the table, each read being consumed while it is in the cache. (Corners packed side by side
+take eight times the memory, and were measured to be slower.)
 
-Between lattice points the value is trilinear. Distance is 1-Lipschitz, so the error is at most
-the weighted distance to the corners: half a cell's diagonal, 0.087 m at 0.1 m spacing. That is
-reached only where several surfaces meet; it is largest on ridges half-way between
-surfaces (0.05 m) and behind edges, and zero to rounding beside a flat wall along the lattice.
-
-Outside the arena the value goes on falling without end (cells at the border extrapolate): minus the
-sum of the distances beyond each wall. Beyond one wall that is the exact distance; beyond an edge
-it is lower. Being a sum over axes it is reproduced by trilinear cells, to rounding, however far
-outside a point lies.
+Between lattice points the value is trilinear; `docs/design/scenes.md` gives its error. Outside the
+arena it goes on falling without end (cells at the border extrapolate): minus the sum of the
+distances beyond each wall, which trilinear cells reproduce, to rounding, however far a point lies.
 """
 
 from collections.abc import Iterable, Sequence

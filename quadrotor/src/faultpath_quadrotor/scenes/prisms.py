@@ -9,14 +9,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import cos, hypot, sin
-from typing import TYPE_CHECKING
 
 from faultpath.trials import declared
 from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Point, Scene
-
-if TYPE_CHECKING:
-    from faultpath_quadrotor.scenes.scene import Scene
-
 
 _BURIED_M = 10.0
 """How far a solid that touches the floor or the ceiling goes on beyond it. What lies beyond is

@@ -20,23 +20,16 @@ GOAL_RADIUS_M = 0.5
 _NAME = re.compile(r"\w[\w .+-]{0,63}")
 
 
-def unfit_name(name: str) -> str:
-    """Return in words why a library cannot be called `name`; empty where it can."""
-    if _NAME.fullmatch(name):
-        return ""
-    return (
-        f"its name {name!r:.80} is none; up to 64 letters, digits, spaces and . _ + - make one, a "
-        "letter or digit first"
-    )
-
-
 def misnamed(name: str, scenes: Sequence[Scene]) -> str:
     """Return in words what is wrong with the names of a library; empty when nothing is.
 
     A scene's id keys its wind and the planner's noise, so no id may belong to another library.
     """
-    if wrong := unfit_name(name):
-        return wrong
+    if not _NAME.fullmatch(name):
+        return (
+            f"its name {name!r:.80} is none; up to 64 letters, digits, spaces and . _ + - make "
+            "one, a letter or digit first"
+        )
     if not scenes:
         return "it holds no scene"
     for place, scene in enumerate(scenes):

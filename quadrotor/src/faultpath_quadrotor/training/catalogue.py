@@ -114,17 +114,12 @@ GROUPS: dict[str, tuple[Entry, ...]] = {
 }
 
 
-def choose(
-    names: Sequence[str],
-    seeds: Sequence[int] = (),
-) -> tuple[Job, ...]:
+def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[Job, ...]:
     """Return the jobs of some models or groups, each once, in the order of the catalogue.
 
     Without names: everything. Without seeds: the default seeds of each model. Raises `UserError`
-    for a name that is not known and a seed below 0.
+    for a name that is not known.
     """
-    if wrong := [seed for seed in seeds if seed < 0]:
-        raise UserError(f"the seed {wrong[0]} is negative: seeds start at 0.")
     wanted: set[str] = set()
     for name in names or ("all",):
         found = GROUPS.get(name) or [entry for entry in ALL if entry.name == name]

@@ -9,14 +9,12 @@ it was and ends with the same bytes.
 import hashlib
 import json
 import sys
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import torch
-from pydantic import BaseModel, ConfigDict
 from safetensors import SafetensorError
 from safetensors.torch import load, save
 from torch import Tensor
@@ -24,6 +22,7 @@ from torch import Tensor
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_json
+from faultpath.core.results import Frozen
 from faultpath.core.streams import generator
 from faultpath.trials.store import atomic
 from faultpath.trials.store.atomic import locked
@@ -35,7 +34,7 @@ from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import Library, load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.parts import Part, make_missing
+from faultpath_quadrotor.training.parts import Part, Progress, make_missing
 from faultpath_quadrotor.training.provenance import code_of
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 
@@ -43,14 +42,9 @@ FORMAT = 2
 PER_METRE = 10_000
 """Depths are stored in tenths of a millimetre, 16 bits each."""
 
-Progress = Callable[[float, float], None]
-"""Called with the scenes done and those asked for."""
 
-
-class Recipe(BaseModel):
+class Recipe(Frozen):
     """What decides every number of the data set."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     format: int = FORMAT
     library: str = "training"
@@ -105,10 +99,7 @@ class Samples:
 
 
 def collect(
-    folder: Path,
-    recipe: Recipe | None = None,
-    workers: int = 2,
-    progress: Progress | None = None,
+    folder: Path, recipe: Recipe | None = None, workers: int = 2, progress: Progress | None = None
 ) -> Path:
     """Make the data set below `folder` and return its provenance file.
 
@@ -142,9 +133,8 @@ def collect(
     return path
 
 
-def read(folder: Path, recipe: Recipe | None = None) -> Samples:
+def read(folder: Path, recipe: Recipe) -> Samples:
     """Return the data set that `collect` made below `folder`; `UserError` when it is not whole."""
-    recipe = recipe or Recipe()
     library = load_library(recipe.library)
     path = provenance_path(folder)
     if not path.exists() or _read_provenance(path) != _provenance(recipe, library):
@@ -156,11 +146,6 @@ def read(folder: Path, recipe: Recipe | None = None) -> Samples:
         except (OSError, SafetensorError) as error:
             raise UserError(f"{shard} cannot be read: delete {path} and collect again.") from error
         parts.append(Samples(**content, scene=torch.full((recipe.images,), scene.index)))
-    return join(parts)
-
-
-def join(parts: Sequence[Samples]) -> Samples:
-    """Return the images of several sets as one, in their order."""
     columns = zip(*(vars(part).values() for part in parts), strict=True)
     return Samples(*map(torch.cat, columns))
 

@@ -24,7 +24,7 @@ from faultpath_quadrotor.training.pool import episodes_path, join_flights, write
 from faultpath_quadrotor.training.provenance import (
     Provenance,
     Recipe,
-    code_sha256,
+    code_of,
     provenance_path,
     read_provenance,
 )
@@ -83,7 +83,8 @@ def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> Recipe:
     count = EPISODES[pool] if episodes is None else episodes
     if count < 1:
         raise UserError(f"pool '{pool}' cannot have {count} episodes: ask for at least one.")
-    return Recipe(pool=pool, episodes=count, seed=seed, code_sha256=code_sha256())
+    code = code_of("training.flight", "training.pool")
+    return Recipe(pool=pool, episodes=count, seed=seed, code_sha256=code)
 
 
 def is_there(path: Path, asked: Recipe) -> bool:
@@ -157,11 +158,8 @@ def _join(path: Path, recipe: Recipe, stems: Sequence[Path]) -> None:
 
 
 def _batches(asked: Recipe) -> list[Batch]:
-    members = [
-        range(first, min(first + BATCH, asked.episodes))
-        for first in range(0, asked.episodes, BATCH)
-    ]
+    every = range(asked.episodes)
+    parts = (every[first : first + BATCH] for first in every[::BATCH])
     return [
-        Batch(f"{m.start:06d}+{len(m)}", m, partial(fly, asked.pool, m, asked.seed))
-        for m in members
+        Batch(f"{m.start:06d}+{len(m)}", m, partial(fly, asked.pool, m, asked.seed)) for m in parts
     ]

@@ -102,10 +102,7 @@ class Course:
 
     @classmethod
     def draw(
-        cls,
-        stream: np.random.Generator,
-        settings: ControllerSettings,
-        perturbation: Perturbation,
+        cls, stream: np.random.Generator, settings: ControllerSettings, perturbation: Perturbation
     ) -> Course:
         """Return the course of one episode, without batch axes."""
         count = settings.waypoints
@@ -133,18 +130,12 @@ class Course:
     @classmethod
     def stack(cls, courses: Sequence[Course]) -> Course:
         """Return single courses as one batch, in their order."""
-        return cls(
-            **{
-                field.name: torch.stack([getattr(c, field.name) for c in courses], dim=-1)
-                for field in fields(cls)
-            }
-        )
+        names = [field.name for field in fields(cls)]
+        return cls(**{n: torch.stack([getattr(c, n) for c in courses], dim=-1) for n in names})
 
     def take(self, index: Tensor) -> Course:
         """Return the lanes that `index` (long, [n]) picks."""
-        return Course(
-            **{field.name: getattr(self, field.name)[..., index] for field in fields(self)}
-        )
+        return Course(**{name: value[..., index] for name, value in vars(self).items()})
 
 
 class WaypointController:

@@ -44,10 +44,7 @@ class _Start:
 @torch.inference_mode()
 @native.using(native.PORTABLE)
 def fly(
-    pool: str,
-    episodes: Sequence[int],
-    seed: int,
-    settings: FlightSettings | None = None,
+    pool: str, episodes: Sequence[int], seed: int, settings: FlightSettings | None = None
 ) -> Flights:
     """Fly some episodes of a pool together; each comes out the same in any company, bit for bit.
 
@@ -62,7 +59,8 @@ def fly(
     course = Course.stack([start.course for start in starts]).take(lanes)
     plant, winds = TorchPlant(vehicle), _winds(starts)
     controller = WaypointController(vehicle, course, settings.controller.arrival_m)
-    now = plant.start(_stack([start.state for start in starts]).take(lanes))
+    parts = zip(*(vars(start.state).values() for start in starts), strict=True)
+    now = plant.start(State(*(torch.stack(part, -1) for part in parts)).take(lanes))
     running = torch.ones(len(lanes), dtype=torch.bool)
     steps = torch.zeros(len(lanes), dtype=torch.long)
     values = blank_values(EPISODE_STEPS, len(starts))
@@ -120,28 +118,15 @@ def _draw_state(stream: np.random.Generator, settings: FlightSettings) -> State:
     )
 
 
-def _stack(states: Sequence[State]) -> State:
-    return State(
-        torch.stack([s.position for s in states], -1),
-        torch.stack([s.velocity for s in states], -1),
-        torch.stack([s.rotation for s in states], -1),
-        torch.stack([s.rate for s in states], -1),
-    )
-
-
 def _winds(starts: Sequence[_Start]) -> Tensor:
     """Return the winds of a batch at the plant's steps, [T, 3, B]; still air is a broadcast zero.
 
     In single precision, so that the wind that is recorded is the wind that blew.
     """
-    steps = EPISODE_STEPS * STEPS_PER_CONTROL + 1
-    out = torch.zeros(1, 3, len(starts)).expand(steps, -1, -1)
-    if any(start.winds is not None for start in starts):
-        out = out.clone()
-        for lane, start in enumerate(starts):
-            if start.winds is not None:
-                out[..., lane] = torch.from_numpy(start.winds)
-    return out
+    winds = [torch.from_numpy(start.winds) for start in starts if start.winds is not None]
+    if winds:
+        return torch.stack(winds, -1).float()
+    return torch.zeros(1, 3, 1).expand(EPISODE_STEPS * STEPS_PER_CONTROL + 1, 3, len(starts))
 
 
 def _in_bounds(state: State, settings: FlightSettings) -> Tensor:

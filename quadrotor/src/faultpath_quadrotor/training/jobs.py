@@ -52,17 +52,14 @@ def check_pilots(jobs: Sequence[Job]) -> None:
 
 
 def collect_missing(
-    jobs: Sequence[Job],
-    data: Path,
-    workers: int,
-    progress: Callable[[str, float, float], None] | None = None,
+    jobs: Sequence[Job], data: Path, workers: int, progress: Callable[[str, float, float], None]
 ) -> None:
     """Collect the pools that are missing: training flights, closed-loop flights, depth images.
 
     `progress` is called with the name of a pool, what is done of it and what was asked for.
     """
     for pool in missing_pools(jobs, data):
-        report = None if progress is None else partial(progress, pool)
+        report = partial(progress, pool)
         if pool == CLEARANCE_POOL:
             clearance_data.collect(data, workers=workers, progress=report)
         elif pool == trajectories.POOL:
@@ -114,7 +111,6 @@ def run_jobs(
     nothing can be fitted at all.
     """
     executor = local(workers)
-    check_pools(jobs, data)
     make_folder(out)
     order = sorted(jobs, key=lambda job: -job.entry.cost)
     running: dict[str, Moment | None] = {}

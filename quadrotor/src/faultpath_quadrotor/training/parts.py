@@ -22,11 +22,7 @@ class Part:
     """What it counts for in the progress."""
 
 
-def make_missing(
-    stages: Sequence[Sequence[Part]],
-    workers: int,
-    progress: Progress | None,
-) -> None:
+def make_missing(stages: Sequence[Sequence[Part]], workers: int, progress: Progress | None) -> None:
     """Make what is missing, one stage after the other, with so many processes (0: this one).
 
     Raises the error of the first part that fails.

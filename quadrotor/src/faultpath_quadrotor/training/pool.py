@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.parquet import read_table
 from faultpath.trials.store import atomic
-from faultpath_quadrotor.training.provenance import Provenance, read_provenance
+from faultpath_quadrotor.training.provenance import read_provenance
 from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, Flights
 from faultpath_quadrotor.vehicle import VehicleParameters
 
@@ -51,16 +52,9 @@ class FlightData:
         return cls(
             name=name,
             values=np.stack([table.column(name).to_numpy() for name in COMPONENTS]),
-            steps=steps_of(episodes),
+            steps=flights.column("steps").to_numpy().astype(np.int64),
             vehicles={name: _vehicle(flights, name) for name in VehicleParameters.model_fields},
         )
-
-
-@dataclass(frozen=True)
-class Pool(FlightData):
-    """A pool in memory."""
-
-    provenance: Provenance
 
 
 def episodes_path(path: Path) -> Path:
@@ -86,20 +80,12 @@ def encode_rows(episodes: Sequence[int], flights: Flights) -> bytes:
 
 def encode_episodes(episodes: Sequence[int], flights: Flights) -> bytes:
     """Return the lengths and vehicles of a batch as a Parquet file."""
-    columns = {
-        "episode": np.asarray(episodes, np.int32),
-        "steps": flights.steps.astype(np.int16),
-    }
+    columns = {"episode": np.asarray(episodes, np.int32), "steps": flights.steps.astype(np.int16)}
     for name in VehicleParameters.model_fields:
         values = np.array([getattr(vehicle, name) for vehicle in flights.vehicles])
         axes = _columns(name, values.ndim == 2)
         columns.update(zip(axes, np.atleast_2d(values.T), strict=True))
     return _write([pa.table(columns)])
-
-
-def join(parts: Iterable[bytes]) -> bytes:
-    """Return one Parquet file with each part's rows as a row group, in their order."""
-    return _write(read_table(part) for part in parts)
 
 
 def write_flights(stem: Path, episodes: Sequence[int], flights: Flights) -> None:
@@ -109,27 +95,24 @@ def write_flights(stem: Path, episodes: Sequence[int], flights: Flights) -> None
 
 
 def join_flights(stems: Sequence[Path]) -> tuple[bytes, bytes]:
-    """Return the rows and the episodes of batches that `write_flights` wrote."""
+    """Return the rows and the episodes of batches that `write_flights` wrote.
+
+    Each batch is a row group of the two Parquet files.
+    """
     return (
-        join(contents(f"{stem}.rows") for stem in stems),
-        join(contents(f"{stem}.episodes") for stem in stems),
+        _write(read_table(contents(f"{stem}.rows")) for stem in stems),
+        _write(read_table(contents(f"{stem}.episodes")) for stem in stems),
     )
 
 
-def read_pool(path: Path) -> Pool:
+def read_pool(path: Path) -> FlightData:
     """Read a pool; `UserError` when it is missing, unfinished or damaged."""
     provenance = read_provenance(path)
     if provenance is None:
         raise UserError(f"there is no finished pool at {path}: collect it first.")
     rows = _read(path, provenance.rows_sha256)
     episodes = _read(episodes_path(path), provenance.episodes_sha256)
-    flown = FlightData.decode(provenance.pool, rows, episodes)
-    return Pool(**vars(flown), provenance=provenance)
-
-
-def steps_of(episodes: bytes) -> np.ndarray:
-    """Return the control steps of each episode in an encoded episode table, [E]."""
-    return read_table(episodes).column("steps").to_numpy().astype(np.int64)
+    return FlightData.decode(provenance.pool, rows, episodes)
 
 
 def _read(path: Path, sha256: str) -> bytes:
@@ -159,19 +142,12 @@ def _columns(name: str, by_axis: bool) -> list[str]:
 
 def _write(tables: Iterable[pa.Table]) -> bytes:
     """Row groups as they come; splitting floats by byte lets zstd find what they share."""
-    sink = pa.BufferOutputStream()
-    writer = None
-    for table in tables:
-        if writer is None:
-            floats = [f.name for f in table.schema if pa.types.is_floating(f.type)]
-            writer = pq.ParquetWriter(
-                sink,
-                table.schema,
-                compression="zstd",
-                use_dictionary=False,
-                column_encoding=dict.fromkeys(floats, "BYTE_STREAM_SPLIT"),
-            )
-        writer.write_table(table)
-    if writer is not None:
-        writer.close()
+    sink, others = pa.BufferOutputStream(), iter(tables)
+    first = next(others)
+    floats = [field.name for field in first.schema if pa.types.is_floating(field.type)]
+    split = dict.fromkeys(floats, "BYTE_STREAM_SPLIT")
+    given = {"compression": "zstd", "use_dictionary": False, "column_encoding": split}
+    with pq.ParquetWriter(sink, first.schema, **given) as writer:
+        for table in chain((first,), others):
+            writer.write_table(table)
     return sink.getvalue().to_pybytes()

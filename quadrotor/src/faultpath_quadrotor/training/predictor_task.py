@@ -9,7 +9,6 @@ import torch
 from torch import LongTensor, Tensor, nn
 from typing_extensions import override
 
-from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.learning.model_card import Schedule
 from faultpath_quadrotor import so3
@@ -68,17 +67,11 @@ class PredictorTask(ModelTask):
     """
 
     def __init__(
-        self,
-        name: str,
-        seed: int,
-        data: Path,
-        half_range: float = DCC_HALF_RANGE,
+        self, name: str, seed: int, data: Path, half_range: float = DCC_HALF_RANGE
     ) -> None:
         self.name = name
         self.seed = seed
         self.order_key = name.removesuffix(DCC)
-        if self.order_key not in RECIPES:
-            raise UserError(f"there is no predictor '{name}' to fit: choose from {known()}.")
         self._recipe = RECIPES[self.order_key]
         self.schedule = Schedule(epochs=self._recipe.epochs, batch_size=BATCH_SIZE)
         self._data = data
@@ -150,11 +143,6 @@ class PredictorTask(ModelTask):
         made: Any = self._blank()
         made.network = network
         return made
-
-
-def known() -> str:
-    """Return the names of all predictors that can be fitted."""
-    return ", ".join(name for base in RECIPES for name in (base, base + DCC))
 
 
 def scales(windows: Windows) -> dict[str, Tensor]:

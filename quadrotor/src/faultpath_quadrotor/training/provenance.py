@@ -7,21 +7,18 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict
-
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, model_of
+from faultpath.core.results import Frozen
 from faultpath.trials.code import read_code
 from faultpath.trials.imports import Root
 
 FORMAT = 2
 
 
-class Recipe(BaseModel):
+class Recipe(Frozen):
     """What decides every number of a pool."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     format: int = FORMAT
     pool: str
@@ -57,11 +54,6 @@ def code_of(*modules: str) -> str:
     What they made is made anew where one of these files has changed.
     """
     return read_code([Root(f"faultpath_quadrotor.{module}") for module in modules]).state.contents
-
-
-def code_sha256() -> str:
-    """Return a hash of the files that draw and fly episodes: another code, another pool."""
-    return code_of("training.flight", "training.pool")
 
 
 def rows_sha256(data: Path, pools: Iterable[str]) -> dict[str, str]:

@@ -6,7 +6,6 @@ import copy
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 import torch
@@ -14,7 +13,6 @@ from torch import LongTensor, Tensor, nn
 from torch.nn import functional
 from typing_extensions import override
 
-from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.learning.model_card import Schedule
 from faultpath_quadrotor.platform import PLATFORM
@@ -47,26 +45,22 @@ class Model:
     """Whether there is noise on the motion in the history."""
 
 
-MODELS: Mapping[str, Model] = MappingProxyType(
-    {
-        "gru": Model("Wind from twelve completed intervals and calibration."),
-        "gru+dcc": Model(
-            "The same, trained with noise on the calibration that enters its head.",
-            half_range=DCC_HALF_RANGE,
-        ),
-        "gru+state": Model(
-            "The same, trained with noise on the motion in its history.", moves=True
-        ),
-        "gru-withheld": Model(
-            "Wind from twelve completed intervals alone, without calibration.", calibrated=False
-        ),
-        "gru-trajectory": Model(
-            "Wind from twelve completed intervals alone, learned in closed loop.",
-            pool=TRAJECTORY_POOL,
-            calibrated=False,
-        ),
-    }
-)
+MODELS: Mapping[str, Model] = {
+    "gru": Model("Wind from twelve completed intervals and calibration."),
+    "gru+dcc": Model(
+        "The same, trained with noise on the calibration that enters its head.",
+        half_range=DCC_HALF_RANGE,
+    ),
+    "gru+state": Model("The same, trained with noise on the motion in its history.", moves=True),
+    "gru-withheld": Model(
+        "Wind from twelve completed intervals alone, without calibration.", calibrated=False
+    ),
+    "gru-trajectory": Model(
+        "Wind from twelve completed intervals alone, learned in closed loop.",
+        pool=TRAJECTORY_POOL,
+        calibrated=False,
+    ),
+}
 """The reference module, its repair, the control without calibration, and the one that learns from
 closed-loop flights, which has no calibration input (paper, Section V-A and V-B)."""
 
@@ -95,10 +89,6 @@ class ReconstructionTask(ModelTask):
     """
 
     def __init__(self, name: str, seed: int, data_folder: Path) -> None:
-        if name not in MODELS:
-            raise UserError(
-                f"there is no wind reconstruction '{name}' to fit; choose from {', '.join(MODELS)}."
-            )
         self.name = name
         self.seed = seed
         self.platform = PLATFORM.weights_hash(name)

@@ -90,8 +90,13 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
 
 
 def recipe() -> Recipe:
-    """Return what decides the pool's numbers."""
-    return Recipe(pool=POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code_sha256())
+    """Return what decides the pool's numbers: the system, its weights, and the settings here."""
+    spec = SystemSpec(name=Quadrotor.name, options={"clearance": "true"})
+    state = system_code(Quadrotor.parse(**spec.options), spec).state
+    settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORM.hash)
+    content = repr((state.contents, code_of("training.trajectories"), *settings))
+    code = hashlib.sha256(content.encode()).hexdigest()
+    return Recipe(pool=POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code)
 
 
 @native.using(native.PORTABLE)
@@ -100,13 +105,3 @@ def fly(level: str, first: int) -> Flights:
     system = Quadrotor.parse(wind=level, clearance="true")
     scenes = tuple(s.id for s in system.library(LIBRARY).scenes)
     return record_flights(system, VARIANT, scenes[first : first + BLOCK], SEED)
-
-
-def code_sha256() -> str:
-    """Return a hash of what decides the pool: the system, its weights, and the settings here."""
-    spec = SystemSpec(name=Quadrotor.name, options={"clearance": "true"})
-    state = system_code(Quadrotor.parse(**spec.options), spec).state
-    code = code_of("training.trajectories")
-    settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORM.hash)
-    content = repr((state.contents, code, *settings))
-    return hashlib.sha256(content.encode()).hexdigest()

@@ -14,8 +14,7 @@ EXAMPLE = "flight.ulg --columns px4 --mass 1.5"
 
 def command(
     log: Annotated[
-        Path,
-        typer.Argument(parser=path, help="A .csv, .parquet or .ulg file, or a bag of ROS."),
+        Path, typer.Argument(parser=path, help="A .csv, .parquet or .ulg file, or a bag of ROS.")
     ],
     columns: Annotated[
         str | None, typer.Option(help="YAML file that says which columns hold what, or px4.")

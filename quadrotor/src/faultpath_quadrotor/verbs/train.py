@@ -66,15 +66,8 @@ def command(
 
     console = SafeConsole()
     if list_:
-        refuse_with(
-            "--list",
-            names=names or None,
-            seed=seeds or None,
-            data=data,
-            out=out,
-            workers=workers,
-            ship=ship or None,
-        )
+        given = {"names": names or None, "seed": seeds or None, "ship": ship or None}
+        refuse_with("--list", **given, data=data, out=out, workers=workers)
         console.print(drawn(_models()))
         return 0
 
@@ -117,11 +110,11 @@ def _models() -> "Table":
 
 def result_table(cards: "Sequence[ModelCard]") -> "Table":
     """Return the table of fitted models."""
-    from faultpath.decisions.tables import MISSING, Line, Table, line
+    from faultpath.decisions.tables import Line, Table, line
 
     lines: list[Line] = []
     for card in cards:
-        metric, value = next(iter(card.final.items()), ("", None))
+        metric, value = next(iter(card.final.items()))
         minutes, seconds = divmod(round(card.duration_s), 60)
         lines.append(
             line(
@@ -129,7 +122,7 @@ def result_table(cards: "Sequence[ModelCard]") -> "Table":
                 str(card.seed),
                 f"{card.parameters:,}",
                 f"{card.training_loss[-1]:.4g}",
-                MISSING if value is None else f"{metric} {value:.4g}",
+                f"{metric} {value:.4g}",
                 f"{minutes}:{seconds:02d}",
             )
         )

@@ -43,7 +43,7 @@ def _error_at_lower_success_in_paper() -> float:
 def _repaired(pair: tuple[str, str], error: float) -> Statement:
     repair, baseline = pair
     return Statement(
-        f"success of {_name(repair)} minus {_name(baseline)} at e = {error:+g}",
+        f"success of {repair.upper()} minus {baseline.upper()} at e = {error:+g}",
         success(table_2.cell(repair, error), table_2.cell(baseline, error)),
         ABOVE,
         table_2.paper_repair(baseline, error),
@@ -58,7 +58,7 @@ def _responds(
     first: str, second: str, probe: str, rule: Rule, paper: Printed | None = None
 ) -> Statement:
     return Statement(
-        f"median response of {_name(first)} to the {probe} probe over that of {_name(second)}",
+        f"median response of {first.upper()} to the {probe} probe over that of {second.upper()}",
         ratio((in_text.response(first, probe),), (in_text.response(second, probe),)),
         rule,
         paper,
@@ -69,10 +69,6 @@ def _response_in_paper(first: str, probe: str, second: str) -> Printed:
     probed = f"probe_WM-A_{probe.replace(' ', '_')}_response_cm"
     found = dict(zip((BASELINE, REPAIR), published("in_text", probed).values(), strict=True))
     return Printed(found[first] / found[second])
-
-
-def _name(model: str) -> str:
-    return model.upper()
 
 
 CLAIMS: dict[str, Statements] = {
@@ -113,7 +109,7 @@ CLAIMS: dict[str, Statements] = {
     "C10": (_repaired(WM_U, 0.1),),
     "C11": tuple(
         Statement(
-            f"success of {_name(repair)} minus {_name(baseline)} at e = 0",
+            f"success of {repair.upper()} minus {baseline.upper()} at e = 0",
             success(table_2.cell(repair, 0.0), table_2.cell(baseline, 0.0)),
             NO_LOSS,
             table_2.paper_repair(baseline, 0.0),

@@ -1,12 +1,11 @@
 """A statement of a claim: what is looked at, and the rule that answers."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from faultpath.statistics.contrast import ROUNDING, Contrast, change
-from faultpath_quadrotor.paper.answers import Answer, ClaimVerdict, Part, Size
+from faultpath_quadrotor.paper.answers import ClaimVerdict, Part, Size
 from faultpath_quadrotor.paper.cells import Printed, PublishedClaim
 from faultpath_quadrotor.paper.claims.rules import (
     CONFIRMED,
@@ -153,18 +152,20 @@ def beside(paper: Printed | None) -> dict[str, Any]:
     return {} if paper is None else {"paper": paper.value, "paper_interval": paper.interval}
 
 
+_FIRST_WINS = ("refuted", "undecided", "confirmed")
+
+
 def verdict(claim: PublishedClaim, statements: Statements, results: Results) -> ClaimVerdict:
     """Answer a claim: confirmed when every part is, refuted when any is.
 
     Its numbers are those of the first part that has the answer of the whole.
     """
     parts = tuple(answered(statement, results) for statement in statements)
-    answer = _together([part.answer for part in parts])
-    deciding = next(part for part in parts if part.answer == answer)
+    deciding = min(parts, key=lambda part: _FIRST_WINS.index(part.answer))
     return ClaimVerdict(
         id=claim.id,
         kind=claim.kind,
-        verdict=answer,
+        verdict=deciding.answer,
         estimate=deciding.estimate,
         interval=deciding.interval,
         mde=deciding.mde,
@@ -188,12 +189,6 @@ def answered(statement: Stated, results: Results) -> Part:
         return left_open(f"not run: {missing}", not_run=True)
     except Undecidable as why:
         return left_open(str(why))
-
-
-def _together(answers: Sequence[Answer]) -> Answer:
-    if "refuted" in answers:
-        return "refuted"
-    return "undecided" if "undecided" in answers else "confirmed"
 
 
 ALL_SEEDS = 3

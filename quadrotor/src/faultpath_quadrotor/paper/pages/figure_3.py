@@ -1,9 +1,8 @@
 """Figure 3: success over the calibration error, in free space on the selection library."""
 
-from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.answers import Point, Series, Sweep
 from faultpath_quadrotor.paper.cells import SELECTION, Cell, Setting, published
-from faultpath_quadrotor.paper.page import Page, flown
+from faultpath_quadrotor.paper.page import FigureSpec, Page, flown
 from faultpath_quadrotor.paper.pages.table_2 import NAMES, faults
 from faultpath_quadrotor.paper.results import NotRun, Results
 
@@ -21,30 +20,23 @@ TITLE = "Success over the calibration error, free space"
 _PAPER = published("figure_3_free_space_sweep")
 
 
-class _Figure:
-    """The four models over the errors."""
+CELLS = tuple(cell(model, error) for model in NAMES for error in ERRORS)
 
-    cells = tuple(cell(model, error) for model in NAMES for error in ERRORS)
-    measurements: tuple[Measurement, ...] = ()
 
-    def build(self, results: Results) -> Sweep:
-        """Return the lines of what was flown."""
-        words = (f"{model}: {_PAPER[model]}" for model in ("WM-U+DCC", "WM-A+DCC"))
-        low, high = _PAPER["tested_range"]
-        return Sweep(
-            name="figure-3",
-            title=f"{TITLE} (paper, Figure 3)",
-            x_title="Calibration error e",
-            y_title="Success (%)",
-            series=tuple(
-                Series(label=name, points=_points(results, model)) for model, name in NAMES.items()
-            ),
-            published=f"e from {low} to {high}. {'; '.join(words)}.",
-            notes=(
-                flown(results, self.cells),
-                "Bands: 95 % score intervals (Wilson's), point by point.",
-            ),
-        )
+def _build(results: Results) -> Sweep:
+    words = (f"{model}: {_PAPER[model]}" for model in ("WM-U+DCC", "WM-A+DCC"))
+    low, high = _PAPER["tested_range"]
+    return Sweep(
+        name="figure-3",
+        title=f"{TITLE} (paper, Figure 3)",
+        x_title="Calibration error e",
+        y_title="Success (%)",
+        series=tuple(
+            Series(label=name, points=_points(results, model)) for model, name in NAMES.items()
+        ),
+        published=f"e from {low} to {high}. {'; '.join(words)}.",
+        notes=(flown(results, CELLS), "Bands: 95 % score intervals (Wilson's), point by point."),
+    )
 
 
 def _points(results: Results, model: str) -> tuple[Point, ...]:
@@ -58,4 +50,4 @@ def _points(results: Results, model: str) -> tuple[Point, ...]:
     return tuple(points)
 
 
-PAGE = Page("figure-3", TITLE, (_Figure(),))
+PAGE = Page("figure-3", TITLE, (FigureSpec(_build, CELLS),))

@@ -3,12 +3,7 @@
 from faultpath.decisions import wording
 from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.cells import SEEDS, Cell, Printed, calibration, of_seed, published
-from faultpath_quadrotor.paper.entries import (
-    Group,
-    PublishedContrast,
-    centimetres,
-    published_contrasts,
-)
+from faultpath_quadrotor.paper.entries import Group, centimetres, published_contrasts
 from faultpath_quadrotor.paper.page import (
     INTERVALS,
     WINDOWS,
@@ -52,16 +47,6 @@ _PAPER = published("table_2_calibration")
 _FIRST = _PAPER["WM-A_seed0"]
 
 
-def published_repairs(baseline: str) -> tuple[PublishedContrast, ...]:
-    """Return what the paper prints of repair minus baseline, one for each of `ERRORS`."""
-    name = NAMES[baseline]
-    return published_contrasts(
-        _PAPER[f"{name}_dcc_minus_baseline_pp"],
-        _PAPER[f"{name}_ci95"],
-        _PAPER[f"{name}_wins_losses"],
-    )
-
-
 def paper_rate(model: str, error: float) -> float:
     """Return the success that the paper prints, percent."""
     return _PAPER[NAMES[model]][ERRORS.index(error)]
@@ -79,6 +64,8 @@ def _rates(model: str) -> Row:
 
 
 def _matched(repair: str, baseline: str) -> Rows:
+    kinds = ("dcc_minus_baseline_pp", "ci95", "wins_losses")
+    printed = (_PAPER[f"{NAMES[baseline]}_{kind}"] for kind in kinds)
     return (
         Row(f"Matched {NAMES[baseline]} comparison, success (%)"),
         _rates(baseline),
@@ -86,7 +73,7 @@ def _matched(repair: str, baseline: str) -> Rows:
         Row(f"{NAMES[repair]} minus {NAMES[baseline]} (pp)"),
         differences(
             ((cell(repair, error), cell(baseline, error)) for error in ERRORS),
-            published_repairs(baseline),
+            published_contrasts(*printed),
         ),
     )
 

@@ -5,13 +5,7 @@ from typing import Any
 
 from faultpath.decisions import wording
 from faultpath_quadrotor.paper.cells import SEEDS, Cell, Printed, Setting, calibration, published
-from faultpath_quadrotor.paper.entries import (
-    Group,
-    PublishedContrast,
-    bracket,
-    of_quantity,
-    published_contrasts,
-)
+from faultpath_quadrotor.paper.entries import Group, bracket, of_quantity, published_contrasts
 from faultpath_quadrotor.paper.page import (
     FLOWN_ONCE,
     INTERVALS,
@@ -63,12 +57,6 @@ TITLE = "Wind reconstruction under an isolated and under a shared calibration er
 _PAPER = published("table_4_shared_calibration")
 
 
-def published_methods(first: str, second: str) -> tuple[PublishedContrast, ...]:
-    """Return what the paper prints of one method minus another, one for each of `PATHS`."""
-    paper = _PAPER[f"{NAMES[first]}_minus_{NAMES[second]}"]
-    return published_contrasts(paper["pp"], paper["ci95"], paper["wins_losses"])
-
-
 def paper_rate(method: str, path: str) -> float:
     """Return the success that the paper prints, percent."""
     return _PAPER[NAMES[method]][list(PATHS).index(path)]
@@ -86,11 +74,11 @@ def _cells(first: str, second: str, path: str) -> tuple[Cell, Cell]:
 
 
 def _contrast(first: str, second: str) -> Rows:
+    paper = _PAPER[f"{NAMES[first]}_minus_{NAMES[second]}"]
+    printed = published_contrasts(paper["pp"], paper["ci95"], paper["wins_losses"])
     return (
         Row(f"{NAMES[first]} minus {NAMES[second]}, success (pp)"),
-        differences(
-            (_cells(first, second, path) for path in PATHS), published_methods(first, second)
-        ),
+        differences((_cells(first, second, path) for path in PATHS), printed),
     )
 
 

@@ -60,9 +60,16 @@ def contrast(
     return effect(pairs, results.resamples(pairs))
 
 
-def success(first: Cell, second: Cell, *, other_noise: bool = False) -> Quantity:
-    """Return the difference in success; `other_noise` as in `Results.pairs`."""
-    return _counted(first, second, succeeded, other_noise=other_noise)
+def success(
+    first: Cell, second: Cell, effect: Effect = succeeded, *, other_noise: bool = False
+) -> Quantity:
+    """Return the difference in success, or other ends; `other_noise` as in `Results.pairs`."""
+
+    def found(results: Results) -> Contrast:
+        shown = contrast(results, first, second, effect, other_noise=other_noise)
+        return decisive(shown, TELLING_PP)
+
+    return found
 
 
 def rate(cell: Cell) -> Quantity:
@@ -77,20 +84,12 @@ def rate(cell: Cell) -> Quantity:
 
 def crashes(first: Cell, second: Cell) -> Quantity:
     """Return the difference in crashes."""
-    return _counted(first, second, ended(lambda trials: trials.crash))
+    return success(first, second, ended(lambda trials: trials.crash))
 
 
 def timeouts(first: Cell, second: Cell) -> Quantity:
     """Return the difference in timeouts."""
-    return _counted(first, second, ended(lambda trials: ~(trials.success | trials.crash)))
-
-
-def _counted(first: Cell, second: Cell, effect: Effect, *, other_noise: bool = False) -> Quantity:
-    def found(results: Results) -> Contrast:
-        shown = contrast(results, first, second, effect, other_noise=other_noise)
-        return decisive(shown, TELLING_PP)
-
-    return found
+    return success(first, second, ended(lambda trials: ~(trials.success | trials.crash)))
 
 
 def time(first: Cell, second: Cell) -> Quantity:

@@ -1,6 +1,6 @@
 """Quantities over several cells at once: orderings, shares of scenes, rank correlations."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,6 @@ from faultpath_quadrotor.paper.quantities.windows import (
 )
 from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable, decisive
 
-Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
 
@@ -41,26 +40,16 @@ def at_lower_success(
     return found
 
 
-def share(cells: Sequence[Cell], of: Callable[[Bools], Bools]) -> Quantity:
-    """Return the share of scenes that `of` finds in `[cells, scenes]` successes of seed 0."""
+def share(cells: Sequence[Cell], end: bool) -> Quantity:
+    """Return the share of scenes in which all cells succeed (`end`), or all fail, seed 0."""
 
     def found(results: Results) -> Contrast:
         own = [of_seed(cell) for cell in cells]
         every = joint(results, *((cell, cell) for cell in own))
-        success = np.stack([pairs.first.success[:, 0] for pairs in every])
-        return decisive(success_rate(of(success), results.resamples(every[0])))
+        ends = np.stack([pairs.first.success[:, 0] == end for pairs in every])
+        return decisive(success_rate(np.all(ends, axis=0), results.resamples(every[0])))
 
     return found
-
-
-def in_all(success: Bools) -> Bools:
-    """Return the scenes that succeed in every cell."""
-    return np.all(success, axis=0)
-
-
-def in_none(success: Bools) -> Bools:
-    """Return the scenes that succeed in no cell."""
-    return ~np.any(success, axis=0)
 
 
 def rank_correlation(cells: Sequence[tuple[Cell, Subject]]) -> Quantity:
@@ -93,8 +82,6 @@ def _ranks(values: Floats) -> Floats:
     _, place, times = np.unique(values, return_inverse=True, return_counts=True)
     return (np.cumsum(times) - (times - 1) / 2.0)[place]
 
-
-Floats = NDArray[np.float64]
 
 PEAK_PERCENT = 90.0
 

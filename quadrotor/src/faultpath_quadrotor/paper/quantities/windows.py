@@ -89,7 +89,6 @@ def quantiles(results: Results, q: float, *subjects: Subject) -> list[Contrast]:
     if not all(kept):
         raise NotRun(f"a seed that all measurements beside {subjects[0][0].subject} share")
     _check_windows(results, [m for subject in kept for m in subject])
-    assert results.evidence is not None
     return [_mean(results.evidence, subject, q) for subject in kept]
 
 
@@ -114,8 +113,7 @@ def mean_of_medians(results: Results, by_seed: Iterable[Measurement]) -> float:
 
 
 def _run(results: Results, subject: Subject) -> Subject:
-    evidence = results.evidence
-    run = tuple(each for each in subject if evidence is not None and each in evidence)
+    run = tuple(each for each in subject if each in results.evidence)
     if not run:
         results.measured(subject[0])  # says what is missing
     return run

@@ -21,13 +21,12 @@ _KEY_ROW, _SAMPLE = 20.0, 28.0
 def sweep_plot(sweep: Sweep) -> str:
     """Return the lines of a sweep with their bands."""
     width, height = 560.0, 250.0
-    key = _key_rows(sweep.series, width)
-    top = _KEY_ROW * len(key) + 34
+    top = _KEY_ROW + 34
     told = "; ".join(f"{line.label}: {', '.join(map(_told, line.points))}" for line in sweep.series)
     svg = Svg(width, top + height + 42, sweep.title, told)
-    _key(svg, key)
-    x = _across(sweep.series).at(34, width - 10)
-    y = _upward(sweep.series).at(top + height, top)
+    _key(svg, sweep.series)
+    across, upward = _axes([point for line in sweep.series for point in line.points])
+    x, y = across.at(34, width - 10), upward.at(top + height, top)
     svg.text(0, top - 12, sweep.y_title, "small soft")
     draw_axes(svg, x, y, 6, x.ticks(6), zero="axis")
     if x.start < x(0.0) < x.end:
@@ -49,18 +48,13 @@ def _told(point: Point) -> str:
     return f"{tick_label(point.x)}: {wording.plain(point.y)}{ends}"
 
 
-def _across(series: Sequence[Series]) -> Axis:
-    values = [p.x for line in series for p in line.points] or [0.0, 1.0]
-    low, high = min(values), max(values)
-    pad = 0.03 * (high - low) or 0.5
-    return Axis(low - pad, high + pad, 0.0, 1.0)
-
-
-def _upward(series: Sequence[Series]) -> Axis:
-    points = [p for line in series for p in line.points]
-    values = [0.0, *(v for p in points for v in (p.y, p.low, p.high) if v is not None)]
-    low, high = min(values), max(values)
-    return Axis(low, high + (0.04 * (high - low) or 1.0), 0.0, 1.0)
+def _axes(points: Sequence[Point]) -> tuple[Axis, Axis]:
+    across = [point.x for point in points] or [0.0, 1.0]
+    upward = [0.0, *(v for p in points for v in (p.y, p.low, p.high) if v is not None)]
+    (left, right), (low, high) = ((min(each), max(each)) for each in (across, upward))
+    pad = 0.03 * (right - left) or 0.5
+    x = Axis(left - pad, right + pad, 0.0, 1.0)
+    return x, Axis(low, high + (0.04 * (high - low) or 1.0), 0.0, 1.0)
 
 
 def _band(svg: Svg, line: Series, x: Axis, y: Axis, look: str) -> None:
@@ -83,26 +77,13 @@ def _mark(svg: Svg, x: float, y: float, look: int, tip: str) -> None:
             svg.polygon([(x - 4.8, y), (x, y - 4.8), (x + 4.8, y), (x, y + 4.8)], cls, tip)
 
 
-def _key_rows(series: Sequence[Series], width: float) -> list[list[tuple[int, str, float]]]:
-    rows: list[list[tuple[int, str, float]]] = [[]]
-    left = 0.0
+def _key(svg: Svg, series: Sequence[Series]) -> None:
+    left, y = 0.0, 9.0
     for i, line in enumerate(series):
-        room = _SAMPLE + 8 + text_width(line.label, 12) + 22
-        if rows[-1] and left + room > width:
-            rows.append([])
-            left = 0.0
-        rows[-1].append((i % LOOKS, line.label, left))
-        left += room
-    return rows
-
-
-def _key(svg: Svg, rows: Sequence[Sequence[tuple[int, str, float]]]) -> None:
-    for row, entries in enumerate(rows):
-        y = _KEY_ROW * row + 9
-        for look, label, left in entries:
-            svg.line((left, y), (left + _SAMPLE, y), f"curve s{look}")
-            _mark(svg, left + _SAMPLE / 2, y, look, label)
-            svg.text(left + _SAMPLE + 8, y + 4, label)
+        svg.line((left, y), (left + _SAMPLE, y), f"curve s{i % LOOKS}")
+        _mark(svg, left + _SAMPLE / 2, y, i % LOOKS, line.label)
+        svg.text(left + _SAMPLE + 8, y + 4, line.label)
+        left += _SAMPLE + 8 + text_width(line.label, 12) + 22
 
 
 def reproduction_page(

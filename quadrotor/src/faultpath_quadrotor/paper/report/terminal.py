@@ -29,31 +29,11 @@ _IN_SHORT: dict[Size, str] = {
     "right sign, other size": "right sign only",
     "not comparable": MISSING,
 }
-
-
 _FARTHEST = (
     "Sizes: how the estimate stands to the paper's figure, for the statement of a claim that is "
     "farthest from it, and how many of those that can be compared stand so. No verdict depends on "
     "it."
 )
-
-
-def _counts(ledger: Ledger) -> Text:
-    parts = (
-        Text(f"{words.SIGNS[answer]} {ledger.count(answer)} {answer}", STYLES[_TONES[answer]])
-        for answer in words.ANSWERS
-    )
-    return Text(", ").join(parts)
-
-
-def _table(ledger: Ledger) -> Table:
-    lines = (
-        line(claim.id, *(entries[column] for column in _PRINTED))
-        for claim in ledger.claims
-        for entries in [_entries(claim)]
-    )
-    texts = ("Kind", "Verdict", "Sizes", "The paper", "What is claimed")
-    return Table(corner="Claim", columns=_PRINTED, lines=tuple(lines), words=texts)
 
 
 def ledger_view(ledger: Ledger, profile: str) -> RenderableType:
@@ -67,7 +47,11 @@ def ledger_view(ledger: Ledger, profile: str) -> RenderableType:
     about, claims = Text(_about(ledger)), _claims(ledger)
     if profile == words.QUICK:
         return Group(title, Text(words.VERDICTS), about, blank, *claims)
-    return Group(title, about, blank, *claims, blank, _counts(ledger), *below)
+    counts = (
+        Text(f"{words.SIGNS[answer]} {ledger.count(answer)} {answer}", STYLES[_TONES[answer]])
+        for answer in words.ANSWERS
+    )
+    return Group(title, about, blank, *claims, blank, Text(", ").join(counts), *below)
 
 
 def _claims(ledger: Ledger) -> Iterable[RenderableType]:
@@ -96,12 +80,16 @@ def _shown(claim: ClaimVerdict) -> Iterable[Text]:
 
 def ledger_markdown(ledger: Ledger, profile: str) -> str:
     """Return the ledger as a Markdown table, the counts above it."""
-    about = f"{_about(ledger)}."
-    table = grid(_table(ledger))
-    sizes = ["", markdown(f"{words.sizes(ledger)} {_FARTHEST}")] if words.sizes(ledger) else []
-    return "\n".join(
-        [f"{words.headline(ledger, profile)}.", "", markdown(about), "", table, *sizes, ""]
+    lines = (
+        line(claim.id, *(entries[column] for column in _PRINTED))
+        for claim in ledger.claims
+        for entries in [_entries(claim)]
     )
+    texts = ("Kind", "Verdict", "Sizes", "The paper", "What is claimed")
+    table = grid(Table(corner="Claim", columns=_PRINTED, lines=tuple(lines), words=texts))
+    sizes = [markdown(f"{words.sizes(ledger)} {_FARTHEST}")] if words.sizes(ledger) else []
+    head = f"{words.headline(ledger, profile)}.", markdown(f"{_about(ledger)}.")
+    return "\n\n".join([*head, table, *sizes]) + "\n"
 
 
 def _about(ledger: Ledger) -> str:

@@ -39,14 +39,14 @@ def figure(of: ClaimVerdict | Part) -> str:
     write = wording.signed if of.unit in _DIFFERENCES else wording.plain
     if of.unit in _COUNTED:
         return wording.counted(round(of.estimate), of.unit.removesuffix("s"))
-    return f"{write(of.estimate, _digits(of.unit))}{behind(of.unit)}"
+    return f"{write(of.estimate, _DIGITS.get(of.unit, 2))}{behind(of.unit)}"
 
 
 def interval(of: ClaimVerdict | Part) -> str:
     """Return `[48.3, 66.3]`, or nothing without an interval."""
     if of.interval is None:
         return ""
-    return f"[{', '.join(wording.plain(end, _digits(of.unit)) for end in of.interval)}]"
+    return f"[{', '.join(wording.plain(end, _DIGITS.get(of.unit, 2)) for end in of.interval)}]"
 
 
 def estimate(of: ClaimVerdict | Part) -> str:
@@ -58,7 +58,7 @@ def least_detectable(of: ClaimVerdict | Part) -> str:
     """Return the minimum detectable difference from 0; nothing where there is none."""
     if of.mde is None or of.unit in _SHARES:
         return ""
-    return f"{wording.plain(of.mde, _digits(of.unit))}{behind(of.unit)}"
+    return f"{wording.plain(of.mde, _DIGITS.get(of.unit, 2))}{behind(of.unit)}"
 
 
 def evidence(part: Part) -> tuple[str, ...]:
@@ -130,10 +130,6 @@ def headline(ledger: Ledger, profile: str) -> str:
         f"Of {about}, our runs confirm "
         f"{confirmed}, refute {refuted} and leave {undecided} undecided"
     )
-
-
-def _digits(unit: str) -> int:
-    return _DIGITS.get(unit, 2)
 
 
 def behind(unit: str) -> str:
