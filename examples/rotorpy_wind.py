@@ -5,7 +5,7 @@ reads `mass`, `c_Dx`, `c_Dy` and `c_Dz`. Baseline `alone`: the controller as it 
 `fed-forward`: it also works against what that wind does, for which the mass is needed once more.
 
     faultpath audit examples/rotorpy_wind.py:create --baseline alone --repair fed-forward \
-        --fault mass:scale=0.8 --scenes 80
+        --fault mass:scale=0.8 --scenes 60
 """
 
 # --- modules ---
