@@ -1,5 +1,6 @@
 """RotorPy, untouched: it flies in our loop as in its own, and a fault reaches who reads."""
 
+from importlib import import_module
 from itertools import count
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from rotorpy.sensors.imu import Imu
 from rotorpy.simulate import simulate
 from rotorpy.trajectories.hover_traj import HoverTraj
 from rotorpy.vehicles.hummingbird_params import quad_params
+from rotorpy.vehicles.multirotor import Multirotor
 from rotorpy.world import World
 from scipy.spatial.transform import Rotation
 
@@ -24,6 +26,7 @@ from faultpath.systems import shared_objects
 from faultpath.trials import Arm
 from faultpath.trials.attempt import attempt
 
+ROOT = Path(__file__).resolve().parents[2]
 SCENE, STEPS = "seed/7", 60
 
 
@@ -31,11 +34,10 @@ SCENE, STEPS = "seed/7", 60
 def example():
     """The example, with short flights."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(Path(__file__).resolve().parents[2] / "examples"))
-        import rotorpy_wind
-
-        patch.setattr(rotorpy_wind, "STEPS", STEPS)
-        yield rotorpy_wind
+        patch.syspath_prepend(str(ROOT / "examples"))
+        found = import_module(Path("rotorpy_wind.py").stem)
+        patch.setattr(found, "STEPS", STEPS)
+        yield found
 
 
 class FirstExact(MotionCapture):
@@ -121,3 +123,41 @@ def test_it_flies_in_our_loop_as_in_its_own(example, variant, fed):
     theirs = by_themselves(example, fed)
     assert outcome.metrics["offset_m"] == example.offset_m({"place": theirs})
     assert np.abs(theirs[-1]).max() > 1e-3
+
+
+def test_a_fault_at_one_object_reaches_its_reads_alone(example):
+    system = example.create()
+    readers = {"controller.mass", "feedforward.mass", "filter.mass"}
+    assert set(system.interface.channel("mass").consumers) == readers
+    exact, _ = attempted(system, "fed-forward")
+    for struck in ("controller", "feedforward", "filter"):
+        outcome, taps = attempted(system, "fed-forward", f"mass:scale=0.8@{struck}")
+        faulted = {name for name, tap in taps.items() if tap.faulted_steps}
+        assert faulted == {f"{struck}.mass"}
+        assert outcome.metrics != exact.metrics
+
+
+def test_it_is_audited(example):
+    system = example.create()
+    asked = {"baseline": "alone", "repair": "fed-forward", "fault": "mass:scale=0.8"}
+    found = audit(system, **asked, library="training", scenes=2, workers=0)
+    assert {path.name for path in found.record.paths} == {
+        "correct",
+        "controller",
+        "feedforward",
+        "filter",
+        "shared",
+    }
+
+
+def test_what_their_objects_share_is_what_the_page_says():
+    parts = {
+        "controller": SE3Control(quad_params),
+        "filter": WindUKF(quad_params),
+        "vehicle": Multirotor(quad_params),
+    }
+    found = [str(each) for each in shared_objects(parts)]
+    told = [line for line in found if line.startswith(("mass ", "c_Dx ", "k_eta "))]
+    assert len(told) == 3
+    page = (ROOT / "docs" / "rotorpy.md").read_text("utf-8")
+    assert all(line in page for line in told)
