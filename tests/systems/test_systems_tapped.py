@@ -116,6 +116,15 @@ def test_a_mapping_is_delivered_however_it_is_read():
     }
 
 
+def test_a_consumer_is_named_in_small_letters():
+    made = writes("out", of=lambda: tapped({"c_Dx": 1.0}, c_Dx="drag", at="filter"))
+    module = made(lambda par: par["c_Dx"])
+    assert module.reads == {Port("drag", "filter.c_dx")}
+    given = delivered(drag=("filter.c_dx", [4.0]))
+    outputs, _ = module.step(Inputs("module", 0, given, {}), module.begin(Batch(("a",), 0, 0.1)))
+    assert outputs["out"].tolist() == [4.0]
+
+
 def test_mistakes_are_told_in_a_sentence():
     with pytest.raises(SystemMistake, match="unknown attribute 'flax'; did you mean 'flux'"):
         tapped(Parameters(), "flax", at="control")

@@ -21,7 +21,8 @@ class Reads:
 
     def __init__(self, at: str, kind: str, channels: Mapping[str, str]) -> None:
         self.at, self.kind = at, kind
-        self.ports = {name: Port(channel, f"{at}.{name}") for name, channel in channels.items()}
+        # Consumers are in small letters, which attributes need not be.
+        self.ports = {n: Port(channel, f"{at}.{n.lower()}") for n, channel in channels.items()}
         self.own: dict[str, Any] = {}
         """What its reader wrote itself. From there on that is what it reads, as it would of an
         object of its own; who stands elsewhere goes on reading what is delivered."""
@@ -73,7 +74,8 @@ class _Keys(dict[Any, Any]):
 def tapped(what: T, *names: str, at: str, **channels: str) -> T:
     """Return a stand-in for an object of which some attributes or keys are delivered at each read.
 
-    Each of them is a channel, by default of the same name, with the consumer `at.name`. All else is
+    Each of them is a channel, by default of the same name, with the consumer `at.name`, in small
+    letters. All else is
     the object's own and stays shared with it: the stand-in is of a class made from the object's,
     and has the object's own attributes. What its reader writes into a tapped attribute is that
     reader's from there on, and no fault reaches it there any more.
