@@ -10,7 +10,10 @@ QUICK = {"own_model.py": ("--episodes", "40", "--epochs", "1")}
 """Arguments of examples that would take their time without."""
 ROOT = Path(__file__).resolve().parents[2]
 ELSEWHERE = {
+    "basilisk_attitude.py": "tests/foreign/test_basilisk.py",
+    "do_mpc_masses.py": "tests/foreign/test_do_mpc.py",
     "learned_pendulum.py": "tests/learning/test_learned_pendulum.py",
+    "motulator_drive.py": "tests/foreign/test_motulator.py",
     "rotorpy_wind.py": "tests/foreign/test_rotorpy.py",
 }
 """Examples that a test of their own runs."""
