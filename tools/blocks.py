@@ -240,13 +240,13 @@ def picture(run: Run, part: str) -> str:
     return f"![{PARTS[part][0]} of {run.name}: {about}]({{images}}/{run.name}-{part}.svg)"
 
 
-def code(place: str, part: str) -> str:
-    """Return the part of a Python file below the line `# --- PART ---`."""
+def code(place: str, part: str, *words: str) -> str:
+    """Return a file's part below the line `# --- PART ---`; `words` follow the fence."""
     pieces = re.split(r"^ *# --- (.+) ---\n", (ROOT / place).read_text("utf-8"), flags=re.MULTILINE)
     found = dict(zip(pieces[1::2], pieces[2::2], strict=True))
     if part not in found:
         raise Wrong(f"{place} has no part '{part}'; it has {', '.join(found)}")
-    return fence("python", found[part].rstrip().strip("\n"))
+    return fence(" ".join(["python", *words]), found[part].rstrip().strip("\n"))
 
 
 def template(kind: str, name: str) -> str:

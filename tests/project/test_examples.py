@@ -9,8 +9,11 @@ import pytest
 QUICK = {"own_model.py": ("--episodes", "40", "--epochs", "1")}
 """Arguments of examples that would take their time without."""
 ROOT = Path(__file__).resolve().parents[2]
-ELSEWHERE = {"learned_pendulum.py": "tests/learning/test_learned_pendulum.py"}
-"""Examples that a test of their own runs from an empty directory, where it goes on with them."""
+ELSEWHERE = {
+    "learned_pendulum.py": "tests/learning/test_learned_pendulum.py",
+    "motulator_drive.py": "tests/foreign/test_motulator.py",
+}
+"""Examples that a test of their own runs, where it goes on with them or has their packages."""
 EXAMPLES = sorted({*(ROOT / "examples").glob("*.py")} - {ROOT / "examples" / e for e in ELSEWHERE})
 
 
