@@ -227,6 +227,19 @@ def test_what_parts_share_is_found_and_what_a_run_writes_is_named():
         "the run wrote observer.par.flux",
         "bias = 0.25 at control.bias, observer.bias",
     ]
+    par = Parameters()
+    copied = Observer(copy.copy(par), 0.1)
+    shared = shared_objects(
+        {"control": Controller(par), "limits": Controller(par), "observer": copied},
+        run=lambda: copied.estimate(0.0),
+    )
+    assert [str(each) for each in shared if "bias" not in each.what] == [
+        "Parameters is one object at control.par, limits.par",
+        "flux = 0.5 at control.par.flux, limits.par.flux, observer.par.flux; "
+        "the run wrote observer.par.flux",
+        "resistance = 2.0 at control.par.resistance, limits.par.resistance, "
+        "observer.par.resistance",
+    ]
     apart = shared_objects({"a": Observer(Parameters(), 0.0), "b": Controller(Parameters())})
     assert [(each.what, each.alias) for each in apart] == [
         ("flux = 0.5", False),

@@ -41,9 +41,9 @@ def shared_objects(
     """Return what several parts of a program share, objects first.
 
     It follows attributes, keys, items, bound methods and what functions close over; compiled code
-    is not seen. What lies within a shared object is not listed again. A number that two parts keep
-    under one name may be a copy that each took of one source. Zeros, whole numbers and truths are
-    left out.
+    is not seen. What lies within a shared object is listed again only beside a copy of it. A number
+    that two parts keep under one name may be a copy that each took of one source. Zeros, whole
+    numbers and truths are left out.
 
     Args:
         parts: The objects that read, by a name for each.
@@ -59,7 +59,7 @@ def shared_objects(
     within = {place for walk in walks for place in walk.inside(aliases)}
     for walk in walks:
         for place, value in walk.numbers.items():
-            if place not in within and value.any():
+            if value.any():
                 name = place.rpartition(".")[2]
                 copies.setdefault((name, value.tobytes()), []).append(place)
     before = {place: value for walk in walks for place, value in walk.numbers.items()}
@@ -77,7 +77,8 @@ def shared_objects(
         held = tuple(p for p in changed if p == places[0] or p.startswith(f"{places[0]}."))
         found.append(Shared(type(by[0].objects[key].found).__name__, places, True, held))
     for places in copies.values():
-        if len({place.partition(".")[0] for place in places}) > 1:
+        parts_of = {place.partition(".")[0] for place in places}
+        if len(parts_of) > 1 and not within.issuperset(places):
             said = f"{places[0].rpartition('.')[2]} = {before[places[0]]}"
             held = tuple(p for p in changed if p in places)
             found.append(Shared(said, tuple(places), False, held))
