@@ -5,8 +5,9 @@ from contextlib import chdir
 from functools import cache
 from pathlib import Path
 
+from faultpath.core.errors import UserError
 from faultpath.trials import SystemSpec, load_system
-from faultpath.trials.code import CodeState, system_code
+from faultpath.trials.code import CodeState, source_state, system_code
 from faultpath.trials.provenance import RunProvenance
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -33,4 +34,9 @@ def flown_by(made: RunProvenance, system: str, options: Mapping[str, str]) -> st
 def _state(system: str, options: tuple[tuple[str, str], ...]) -> CodeState:
     spec = SystemSpec(name=system, options=dict(options))
     with chdir(ROOT):
-        return system_code(load_system(spec), spec).state
+        try:
+            return system_code(load_system(spec), spec).state
+        except UserError as error:
+            if not isinstance(error.__cause__, ModuleNotFoundError):
+                raise
+            return source_state(spec)  # it runs on a package that documents do without

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from faultpath.core.errors import UserError
+from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.provenance import RunProvenance
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -60,3 +62,14 @@ def test_what_else_is_to_be_known_is_said(
     flown_code, made: RunProvenance, change, says: str
 ) -> None:
     assert says in flown_code.flown_by(made.model_copy(update=change(made)), TOY, {})
+
+
+def test_what_flies_is_known_without_the_package_that_it_runs_on(flown_code, monkeypatch) -> None:
+    place = "examples/pendulum.py:create"
+    with_it = flown_code._state(place, ())
+    flown_code._state.cache_clear()
+    monkeypatch.setitem(sys.modules, "gymnasium", None)
+    monkeypatch.delitem(sys.modules, "faultpath.systems.gymnasium")
+    with pytest.raises(UserError, match="gymnasium"):
+        load_system(SystemSpec(name=str(ROOT / place)))
+    assert flown_code._state(place, ()).files == with_it.files
