@@ -1,6 +1,6 @@
-"""Basilisk's flight software, run through taps by the example."""
+"""Basilisk, untouched: it flies in our loop as in its own, and a fault reaches who reads."""
 
-import sys
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -22,19 +22,34 @@ from Basilisk.fswAlgorithms import (
 from Basilisk.simulation import reactionWheelStateEffector, simpleNav, spacecraft, starTracker
 from Basilisk.utilities import SimulationBaseClass
 
-from faultpath import generator
-from faultpath.systems import FunctionPlant
+from faultpath import audit, generator
+from faultpath.faults import parse_fault
+from faultpath.systems import FunctionPlant, shared_objects
 from faultpath.trials import Arm
 from faultpath.trials.attempt import attempt
 
-ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "examples"))
-import basilisk_attitude as example  # noqa: E402
-
+EXAMPLE = Path(__file__).parents[2] / "examples" / "basilisk_attitude.py"
 SCENE, STEPS = "seed/7", 300
 
 
-def theirs(variant):
+@pytest.fixture
+def example(monkeypatch):
+    """The example, flown for a shorter time and without errors of its sensors."""
+    spec = spec_from_file_location("example", EXAMPLE)
+    made = module_from_spec(spec)
+    spec.loader.exec_module(made)
+    made.TRACKER = made.BIAS = made.NOISE = 0.0
+    made.episodes = []
+
+    def plant(*given, **named):
+        named |= {"steps": STEPS, "succeeded": lambda each: made.episodes.append(each) or True}
+        return FunctionPlant(*given, **named)
+
+    made.FunctionPlant = plant
+    return made
+
+
+def theirs(example, variant):
     """Return their closed loop as their scenarios write one: a process, two tasks, no taps."""
     sim = SimulationBaseClass.SimBaseClass()
     process = sim.CreateNewProcess("all")
@@ -97,26 +112,40 @@ def theirs(variant):
     sim.ConfigureStopTime((STEPS + 1) * example.TICK)
     sim.ExecuteSimulation()
     flown = np.hstack([log.sigma_BN, log.omega_BN_B])[1:]
-    return SimpleNamespace(flown=flown, ukf=ukf, law=law, motor=motor)
-
-
-@pytest.fixture
-def episodes(monkeypatch):
-    """The episodes that the example flies, shortened and without errors of its sensors."""
-    flown = []
-
-    def plant(*given, **named):
-        named |= {"steps": STEPS, "succeeded": lambda episode: flown.append(episode) or True}
-        return FunctionPlant(*given, **named)
-
-    monkeypatch.setattr(example, "FunctionPlant", plant)
-    for error in ("TRACKER", "BIAS", "NOISE"):
-        monkeypatch.setattr(example, error, 0.0)
-    return flown
+    return SimpleNamespace(flown=flown, ukf=ukf, law=law, rotors=rotors)
 
 
 @pytest.mark.parametrize("variant", ["gyro", "filtered"])
-def test_their_loop_through_taps_is_their_loop(variant, episodes):
+def test_it_flies_in_our_loop_as_in_its_own(example, variant):
     attempt(example.create(), Arm(variant=variant), (SCENE,))
-    own = theirs(variant)
-    assert np.allclose(episodes[0]["sensed"], own.flown, rtol=0, atol=1e-12)
+    own = theirs(example, variant)
+    assert np.allclose(example.episodes[0]["sensed"], own.flown, rtol=0, atol=1e-12)
+
+
+def test_the_messages_that_they_share_are_found(example):
+    own = theirs(example, "gyro")
+    found = shared_objects({"inertialUKF": own.ukf, "mrpFeedback": own.law})
+    assert {each.what for each in found} == {"VehicleConfigMsg", "RWArrayConfigMsg"}
+    for module in (own.ukf, own.law):  # one of a module is another object whenever it is asked for
+        assert module.rwSpeedsInMsg.isSubscribedTo(own.rotors.rwSpeedOutMsg)
+
+
+def test_a_fault_reaches_who_reads(example):
+    system = example.create()
+    fault = "wheel_speeds:freeze@filter,onset_s=50"
+    faults = parse_fault(fault, system.interface, {}, 0.5).resolved(system.interface)
+    attempted = attempt(system, Arm(variant="filtered", faults=faults), (SCENE,))
+    faulted = {tap.consumer: tap.faulted_steps for tap in attempted.taps}
+    assert faulted["filter.wheel_speeds"] == STEPS - 100
+    assert faulted["control.wheel_speeds"] == 0
+
+
+def test_it_is_audited(example):
+    found = audit(
+        example.create(),
+        baseline="gyro",
+        repair="filtered",
+        fault="wheel_speeds:freeze,onset_s=50",
+        scenes=2,
+    )
+    assert [path.name for path in found.record.paths] == ["correct", "control", "filter", "shared"]

@@ -9,8 +9,11 @@ import pytest
 QUICK = {"own_model.py": ("--episodes", "40", "--epochs", "1")}
 """Arguments of examples that would take their time without."""
 ROOT = Path(__file__).resolve().parents[2]
-ELSEWHERE = {"learned_pendulum.py": "tests/learning/test_learned_pendulum.py"}
-"""Examples that a test of their own runs from an empty directory, where it goes on with them."""
+ELSEWHERE = {
+    "basilisk_attitude.py": "tests/foreign/test_basilisk.py",
+    "learned_pendulum.py": "tests/learning/test_learned_pendulum.py",
+}
+"""Examples that a test of their own runs."""
 EXAMPLES = sorted({*(ROOT / "examples").glob("*.py")} - {ROOT / "examples" / e for e in ELSEWHERE})
 
 
