@@ -7,7 +7,7 @@ from gym_toys import SCENES, Steer, fly
 import faultpath
 from faultpath.core.errors import SystemMistake
 from faultpath.loop import Port
-from faultpath.systems import ComposedSystem, FunctionPlant, Parts
+from faultpath.systems import ComposedSystem, FunctionPlant, Parts, writes
 from faultpath.trials import Status
 
 SYSTEM = """
@@ -125,3 +125,33 @@ def test_a_system_of_functions_is_audited(tmp_path):
     effects = {effect.path: effect.success.value for effect in run.record.effects}
     assert effects["correct"] > 0
     assert effects["brake"] < 0
+
+
+def test_a_module_stands_in_for_a_source_of_several_numbers():
+    plant = FunctionPlant(
+        lambda rng: {"pair": rng.uniform(size=2)},
+        lambda state, push, rng: {"pair": state["pair"] + push},
+        observes={"seen": "pair"},
+        action="push",
+        steps=3,
+        dt_s=0.5,
+        succeeded=lambda episode: True,
+    )
+
+    @writes("guessed")
+    def guess(seen):
+        return 2 * seen
+
+    @writes("push")
+    def steer(place):
+        return place[:, 0]
+
+    built = ComposedSystem(
+        "pair",
+        plant,
+        {"seeing": [steer], "guessing": [guess, steer]},
+        dict.fromkeys(("seen", "guessed", "push"), "m"),
+        channels={"place": ("seen", "guessed")},
+    )
+    assert built.interface.source("guessed").shape == (2,)
+    assert len(fly(built, variant="guessing")) == len(SCENES)

@@ -149,6 +149,10 @@ class ComposedSystem(LoopSystem):
             port.channel for part in (*modules, plant) for port in sorted(part.ports)
         )
         feeds = {channel: several.get(channel, (channel,)) for channel in read}
+        # Until a first step shows what a module writes, it has the shape of what it stands in for.
+        for fed in feeds.values():
+            if shaped := [name for name in fed if name in shapes]:
+                shapes = dict.fromkeys(fed, shapes[shaped[0]]) | dict(shapes)
         written = [name for module in modules for name in module.writes]
         known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.told, "estimated")
         known |= dict.fromkeys(several.get(plant.action, (plant.action,)), "commanded")
