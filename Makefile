@@ -25,7 +25,7 @@ unless_given = $(if $(filter $(1) $(1)=%,$(ARGS)),,$(1) $(2))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup setup-runtime prerequisites audit confirm reproduce train test test-pythons fuzz statistics bench docs lint format clean distclean
+.PHONY: help setup setup-runtime prerequisites audit confirm reproduce train test test-pythons test-foreign fuzz statistics bench docs lint format clean distclean
 
 help: ## Show this list
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -55,7 +55,7 @@ train: $(STAMPS)/runtime ## Collect flights and fit every learned model of the q
 # Processes of the tests write no byte code: a file that a test edits twice within a second, to the
 # same length, would go on as it was. What they import is compiled before, torch above all, since
 # compiling it in each process would take most of their time.
-test test-pythons fuzz: export PYTHONDONTWRITEBYTECODE := 1
+test test-pythons test-foreign fuzz: export PYTHONDONTWRITEBYTECODE := 1
 test fuzz: $(STAMPS)/compiled
 
 test: $(STAMPS)/dev prerequisites ## Run the tests; more options in ARGS="..."
@@ -76,6 +76,10 @@ test-pythons: ## Run the engine's tests under the other Pythons that are found h
 	    || failed="$$failed $$version"; \
 	done; \
 	[ -z "$$failed" ] || { echo "The engine's tests fail under Python$$failed."; exit 1; }
+
+test-foreign: .venv-foreign/ready ## Run the examples' tests on packages of other people
+	OMP_NUM_THREADS=1 .venv-foreign/bin/python -m pytest -n $(JOBS) --dist worksteal tests/foreign \
+	  -p no:cacheprovider $(ARGS)
 
 fuzz: $(STAMPS)/dev ## Try the laws and the command line with random inputs; SEED=7 repeats
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "hypothesis or fuzz" \
@@ -194,5 +198,14 @@ $(BENCH_JAX)/ready: benchmarks/requirements-jax.txt
 	@echo "Installing the engine for Python $* into .venv-$*"
 	@rm -rf .venv-$* && $(OTHER) -m venv .venv-$*
 	@.venv-$*/bin/python -m pip install --disable-pip-version-check --quiet \
-	  -c constraints.txt -e '.[test]'
+	  -c constraints.txt -e '.[test,motulator]'
+	@touch $@
+
+# Basilisk wants older versions of what the tools of development pin, so this takes what pip finds.
+.venv-foreign/ready: pyproject.toml
+	@$(CHECK_PYTHON)
+	@echo "Installing the packages that examples audit into .venv-foreign"
+	@rm -rf .venv-foreign && $(PYTHON) -m venv .venv-foreign
+	@.venv-foreign/bin/python -m pip install --no-compile --disable-pip-version-check --quiet \
+	  -e '.[rotorpy,do-mpc,basilisk,gymnasium]' hypothesis pytest pytest-xdist
 	@touch $@
