@@ -1,5 +1,6 @@
 """Documents say by which code a reference run was flown, and whether that has changed since."""
 
+import sys
 from pathlib import Path
 
 import flown_code
