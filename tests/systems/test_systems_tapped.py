@@ -139,6 +139,23 @@ def test_mistakes_are_told_in_a_sentence():
 
     with pytest.raises(SystemMistake, match="read 'mass' of dict while it was made"):
         writes("out", of=lambda: Copies(tapped({"mass": 1.0}, "mass", at="a")))(lambda made: 0.0)
+
+    class Solves:
+        def __init__(self):
+            self.mass, self.solver = 1.0, SimpleNamespace(f=self.f)
+
+        def f(self):
+            return self.mass
+
+    def bound(rebind):
+        made = Solves()
+        seen = tapped(made, "mass", at="filter")
+        made.solver.f = seen.f if rebind else made.f
+        return seen
+
+    with pytest.raises(SystemMistake, match=r"past its taps: Solves\.solver\.f\.__self__ is the"):
+        writes("out", of=lambda: bound(False))(lambda made: made.solver.f())
+    assert writes("out", of=lambda: bound(True))(lambda made: made.solver.f()).ports
     with pytest.raises(SystemMistake, match="objects and a memory"):
         writes("out", of=Parameters)(lambda made, memory: (0.0, memory))
 

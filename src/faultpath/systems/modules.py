@@ -66,7 +66,9 @@ class FunctionModule(Module):
         parameters = dict(signature(function).parameters)
         if of is not None:  # the first argument are the objects
             parameters.pop(next(iter(parameters), ""), None)
-            self.at_read = Made(of).ports
+            made = Made(of)
+            made.check()
+            self.at_read = made.ports
             if MEMORY in parameters:
                 raise SystemMistake(
                     f"module '{self.name}' has objects and a memory: let the objects keep it"

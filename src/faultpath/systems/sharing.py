@@ -49,8 +49,8 @@ def shared_objects(
         parts: The objects that read, by a name for each.
         run: Makes a step or more; numbers that it changes are named.
     """
-    walks = [_Walk(part, root) for part, root in parts.items()]
-    reached: dict[int, list[_Walk]] = {}
+    walks = [Walk(part, root) for part, root in parts.items()]
+    reached: dict[int, list[Walk]] = {}
     for walk in walks:
         for key in walk.objects:
             reached.setdefault(key, []).append(walk)
@@ -66,7 +66,7 @@ def shared_objects(
     after = before
     if run is not None:
         run()
-        again = [_Walk(part, root) for part, root in parts.items()]
+        again = [Walk(part, root) for part, root in parts.items()]
         after = {place: value for walk in again for place, value in walk.numbers.items()}
     changed = [p for p, v in before.items() if p not in after or v.tobytes() != after[p].tobytes()]
     found: list[Shared] = []
@@ -92,7 +92,7 @@ class _Object:
     parent: int
 
 
-class _Walk:
+class Walk:
     """What can be reached from one part, by the shortest way."""
 
     def __init__(self, part: str, root: Any) -> None:
@@ -138,6 +138,9 @@ def _held(found: Any) -> Iterator[tuple[str, Any]]:
                 yield name, cell.cell_contents
             except ValueError:  # not filled yet
                 continue
+    elif isinstance(found, dict):  # of a stand-in what it holds, not what is delivered
+        for key, value in cast("Any", dict).items(found):
+            yield str(key), value
     elif isinstance(found, Mapping):
         for key, value in cast("Mapping[Any, Any]", found).items():
             yield str(key), value

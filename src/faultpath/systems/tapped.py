@@ -9,6 +9,7 @@ from typing import Any, TypeVar, cast
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
 from faultpath.loop import Inputs, Port
+from faultpath.systems.sharing import Walk
 
 T = TypeVar("T")
 
@@ -19,8 +20,8 @@ _MADE: ContextVar[list["Reads"] | None] = ContextVar("_MADE", default=None)
 class Reads:
     """What one stand-in reads, and what delivers it at present."""
 
-    def __init__(self, at: str, kind: str, channels: Mapping[str, str]) -> None:
-        self.at, self.kind = at, kind
+    def __init__(self, at: str, what: Any, channels: Mapping[str, str]) -> None:
+        self.at, self.what, self.kind = at, what, type(what).__name__
         # Consumers are in small letters, which attributes need not be.
         self.ports = {n: Port(channel, f"{at}.{n.lower()}") for n, channel in channels.items()}
         self.own: dict[str, Any] = {}
@@ -74,13 +75,13 @@ class _Keys(dict[Any, Any]):
 def tapped(what: T, *names: str, at: str, **channels: str) -> T:
     """Return a stand-in for an object of which some attributes or keys are delivered at each read.
 
-    Each of them is a channel, by default of the same name, with the consumer `at.name`, in small
-    letters. All else is
-    the object's own and stays shared with it: the stand-in is of a class made from the object's,
-    and has the object's own attributes. What its reader writes into a tapped attribute is that
-    reader's from there on, and no fault reaches it there any more.
+    Each of them is a channel, by default of the same name, with the consumer `at.name` in small
+    letters. All else is the object's own and stays shared with it: the stand-in is of a class made
+    from the object's, and has the object's own attributes. What its reader writes into a tapped
+    attribute is that reader's from there on, and no fault reaches it there any more.
 
-    Make stand-ins in the function that `writes(..., of=make)` calls for each scene.
+    Make stand-ins in the function that `writes(..., of=make)` calls for each scene. An object that
+    has handed out its own methods leads past its taps; `writes` refuses it and says where.
 
     Args:
         what: An object with attributes that Python keeps, or a dict.
@@ -94,7 +95,7 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
             delivered yet, because the reader is still being made.
     """
     kind = cast("type[Any]", type(what))
-    reads = Reads(at, kind.__name__, {name: name for name in names} | channels)
+    reads = Reads(at, what, {name: name for name in names} | channels)
     keyed = isinstance(what, dict)
     found = list(cast("dict[Any, Any]", what)) if keyed else dir(what)
     for name in reads.ports:
@@ -146,6 +147,16 @@ class Made:
     def ports(self) -> frozenset[Port]:
         """Where its stand-ins read."""
         return frozenset(port for each in self.reads for port in each.ports.values())
+
+    def check(self) -> None:
+        """Raise `SystemMistake` where what a tapped object holds leads back to it."""
+        for each in self.reads:
+            found = Walk(each.kind, getattr(each.what, "__dict__", {})).objects.get(id(each.what))
+            if found is not None:
+                raise SystemMistake(
+                    f"'{each.at}' reads past its taps: {found.place} is the {each.kind} that is "
+                    "not tapped; after tapping, put the stand-in or its method there"
+                )
 
     @contextmanager
     def reading(self, inputs: Inputs, row: int) -> Generator[Any]:
