@@ -206,6 +206,6 @@ $(BENCH_JAX)/ready: benchmarks/requirements-jax.txt
 	@$(CHECK_PYTHON)
 	@echo "Installing the packages that examples audit into .venv-foreign"
 	@rm -rf .venv-foreign && $(PYTHON) -m venv .venv-foreign
-	@.venv-foreign/bin/python -m pip install --no-compile --disable-pip-version-check --quiet \
+	@.venv-foreign/bin/python -m pip install --disable-pip-version-check --quiet \
 	  -e '.[rotorpy,do-mpc,basilisk,gymnasium]' hypothesis pytest pytest-xdist
 	@touch $@
