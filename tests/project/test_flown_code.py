@@ -53,7 +53,9 @@ def test_what_else_is_to_be_known_is_said(made: RunProvenance, change, says: str
     assert says in flown_code.flown_by(made.model_copy(update=change(made)), TOY, {})
 
 
-def test_what_flies_is_known_without_the_package_that_it_runs_on(flown_code, monkeypatch) -> None:
+def test_what_flies_is_known_without_the_package_that_it_runs_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     place = "examples/pendulum.py:create"
     with_it = flown_code._state(place, ())
     flown_code._state.cache_clear()
