@@ -53,7 +53,7 @@ def test_what_else_is_to_be_known_is_said(made: RunProvenance, change, says: str
     assert says in flown_code.flown_by(made.model_copy(update=change(made)), TOY, {})
 
 
-def test_what_flies_is_known_without_the_package_that_it_runs_on(
+def test_what_flies_is_known_without_its_package(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     place = "examples/pendulum.py:create"
