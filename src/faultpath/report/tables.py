@@ -12,7 +12,7 @@ from faultpath.statistics.estimate import Estimate
 
 _ARMS = ("baseline", "repair")
 DIFFERENCE = ("difference", "interval", "won")
-SHOWN = (*_ARMS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even", "beta")
+SHOWN = (*_ARMS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even")
 ALL = (
     *(*_ARMS, *DIFFERENCE, "p", "mcnemar", "holm", "decided"),
     *("power", "scenes", "void", "break-even", "beta"),
