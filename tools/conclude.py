@@ -15,7 +15,6 @@ from faultpath_quadrotor.paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
 
 from faultpath.api.runs import MAP, RECORD, SYSTEM, TRACES, as_text
-from faultpath.core.errors import SystemMistake
 from faultpath.decisions.decide import decide
 from faultpath.decisions.map.decide import conclude as map_decided
 from faultpath.decisions.map.lattice import UNITS
@@ -25,11 +24,10 @@ from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.model import Path as FaultPath
 from faultpath.decisions.question import Question
 from faultpath.decisions.tables import Table
-from faultpath.faults import parse_fault
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.map import table_markdown
-from faultpath.trials import System, SystemSpec, library_of, load_system, system_shown
+from faultpath.trials import System, SystemSpec, library_of, load_system
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import MapQuestion
 from faultpath.trials.shown import SystemShown
@@ -54,34 +52,12 @@ def audit(folder: Path) -> DecisionRecord:
     """Decide a stored audit anew and write its record and pages."""
     before = json.loads((folder / "record.json").read_bytes())
     asked = Question.model_validate(before["question"])
-    try:
-        _, system = _system(asked)
-    except SystemMistake:  # the package that it flew on is not here: what is stored holds
-        system = None
-    else:
-        fault = parse_fault(
-            asked.fault, system.interface, system.fault_presets, system.control_dt_s
-        )
-        asked = asked.model_copy(
-            update={
-                "faults": fault.resolved(system.interface),
-                "trained": system.trained,
-                "ends": {status.value: words for status, words in system.ends.items()},
-                "metrics": dict(system.metrics),
-            }
-        )
     paths = [FaultPath.model_validate(path) for path in before["paths"]]
     outcomes = read_outcomes(folder / "outcomes.parquet")
     record = decide(asked, paths, outcomes, findings=tuple(before.get("findings", ())))
     (folder / RECORD).write_text(as_text(record), "utf-8")
     origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
-    scenes = list(dict.fromkeys(row.outcome.scene for row in outcomes.rows))
-    if system is None:
-        shown = SystemShown.model_validate_json((folder / SYSTEM).read_bytes())
-    else:
-        shown = system_shown(system, (asked.baseline, asked.repair), scenes)
-    if SYSTEM in origin.files:
-        (folder / SYSTEM).write_text(shown.model_dump_json(indent=1) + "\n", "utf-8")
+    shown = SystemShown.model_validate_json((folder / SYSTEM).read_bytes())  # as it flew
     kept = (folder / SIGNALS).is_file()
     write_report(
         ReportInput(
