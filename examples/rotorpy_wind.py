@@ -83,13 +83,13 @@ def start(rng):
 def step(scene, command, rng):
     """Read the accelerometer and let the vehicle fly on, in the order of their `simulate`."""
     vehicle, state, sent = scene["vehicle"], scene["state"], {"cmd_motor_speeds": command[1:]}
-    stream, time_s = np.random.get_state(), scene["time_s"] + DT_S  # noqa: NPY002
-    np.random.seed(rng.integers(2**32))  # noqa: NPY002 - theirs draw from the global stream
+    stream, time_s = np.random.get_state(), scene["time_s"] + DT_S
+    np.random.seed(rng.integers(2**32))  # theirs draw from the global stream
     moved = vehicle.statedot(state, sent, DT_S)
     imu = Imu(sampling_rate=1 / DT_S).measurement(state, moved)["accel"]
     state = vehicle.step(state | {"wind": scene["wind"].update(time_s, state["x"])}, sent, DT_S)
     mocap = MotionCapture(1 / DT_S).measurement(state, with_noise=True)
-    np.random.set_state(stream)  # noqa: NPY002
+    np.random.set_state(stream)
     return scene | {"time_s": time_s, "state": state, "mocap": mocap, "imu": imu}
 
 

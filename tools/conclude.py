@@ -14,7 +14,7 @@ from faultpath_quadrotor.paper.reproduction import write_pages
 from faultpath_quadrotor.paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
 
-from faultpath.api.runs import MAP, RECORD, SYSTEM, TRACES, as_text
+from faultpath.api.folders import MAP, RECORD, SYSTEM, TRACES, as_text
 from faultpath.decisions.decide import decide
 from faultpath.decisions.map.decide import conclude as map_decided
 from faultpath.decisions.map.lattice import UNITS

@@ -29,7 +29,7 @@ import state_blocks
 from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images, name_of
 
-from faultpath.api.runs import MADE_FROM, MAP
+from faultpath.api.folders import MADE_FROM, MAP
 from faultpath.trials.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))

@@ -9,8 +9,8 @@ from blocks import REFERENCE, TAKE_AGAIN, about, command, copied, parsed, printe
 from flown_code import flown_by
 from pictures import IMAGES
 
-from faultpath.api.runs import MAP
-from faultpath.api.runs import MAP_MADE_FROM as MADE_FROM
+from faultpath.api.folders import MAP
+from faultpath.api.folders import MAP_MADE_FROM as MADE_FROM
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.tables.markdown import grid
 from faultpath.report.map import shown, table_markdown, tables

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import faultpath
-from faultpath.api.runs import read_run
+from faultpath.api.folders import read_run
 from faultpath.trials.store.signals import SIGNALS, TOGETHER
 
 AUDIT_MODULE = import_module("faultpath.api.audit")

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import faultpath
+from faultpath.api.folders import read_run
 from faultpath.api.replaying import chosen_scenes, keep_signals, replay
-from faultpath.api.runs import read_run
 from faultpath.cli.replay import replay as command
 from faultpath.core.errors import UserError
 from faultpath.trials.store.mcap import encode_mcap

@@ -60,11 +60,11 @@ class Seeded(Imu):
     def measurement(self, state, acceleration, with_noise=True):
         if with_noise:  # else it is their record of the truth, which must not use up draws
             draws = generator("plant/step", SCENE, 0, next(self.steps))
-            np.random.seed(draws.integers(2**32))  # noqa: NPY002
+            np.random.seed(draws.integers(2**32))
             return super().measurement(state, acceleration)
-        kept = np.random.get_state()  # noqa: NPY002
+        kept = np.random.get_state()
         exact = super().measurement(state, acceleration, with_noise=False)
-        np.random.set_state(kept)  # noqa: NPY002
+        np.random.set_state(kept)
         return exact
 
 
@@ -117,9 +117,9 @@ def attempted(system, variant, fault=None):
 
 @pytest.mark.parametrize(("variant", "fed"), [("alone", False), ("fed-forward", True)])
 def test_it_flies_in_our_loop_as_in_its_own(example, variant, fed):
-    kept = np.random.get_state()[1].copy()  # noqa: NPY002
+    kept = np.random.get_state()[1].copy()
     outcome, _ = attempted(example.create(), variant)
-    assert np.array_equal(np.random.get_state()[1], kept)  # noqa: NPY002
+    assert np.array_equal(np.random.get_state()[1], kept)
     theirs = by_themselves(example, fed)
     assert outcome.metrics["offset_m"] == example.offset_m({"place": theirs})
     assert np.abs(theirs[-1]).max() > 1e-3

@@ -11,17 +11,17 @@ from typing import Any
 
 from faultpath.api.asking import Job, asks, begin
 from faultpath.api.display import Display
-from faultpath.api.replaying import outcomes_at, run_again, shown_first
-from faultpath.api.runs import (
+from faultpath.api.folders import (
     MADE_FROM,
     RECORD,
     SYSTEM,
-    Run,
     as_text,
     parsed,
     read_provenance,
     read_run,
 )
+from faultpath.api.replaying import outcomes_at, run_again, shown_first
+from faultpath.api.runs import Run
 from faultpath.api.systems import Chosen, executor_of
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable

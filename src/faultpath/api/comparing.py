@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
-from faultpath.api.runs import RECORD, Run, open_run
+from faultpath.api.folders import RECORD
+from faultpath.api.runs import Run, open_run
 from faultpath.core.errors import UserError
 from faultpath.decisions.tables.csv import csv_text
 from faultpath.report.compared import Compared, differing, together

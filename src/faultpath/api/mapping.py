@@ -8,7 +8,8 @@ from typing import Any
 from faultpath.api.asking import Job, asks, begin
 from faultpath.api.audit import run_folder
 from faultpath.api.display import Display
-from faultpath.api.runs import MAP, MAP_MADE_FROM, MapRun
+from faultpath.api.folders import MAP, MAP_MADE_FROM
+from faultpath.api.runs import MapRun
 from faultpath.api.systems import executor_of
 from faultpath.decisions.map.decide import conclude
 from faultpath.decisions.map.lattice import COARSE, Point, lattice

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from faultpath.api.runs import read_run
+from faultpath.api.folders import read_run
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown

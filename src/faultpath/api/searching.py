@@ -9,7 +9,8 @@ from typing import Any
 from faultpath.api.asking import Job, asks, begin
 from faultpath.api.audit import carry_out, run_folder
 from faultpath.api.display import Display
-from faultpath.api.runs import SEARCH, SEARCH_MADE_FROM, Run, SearchRun, read_run
+from faultpath.api.folders import SEARCH, SEARCH_MADE_FROM, read_run
+from faultpath.api.runs import Run, SearchRun
 from faultpath.api.systems import executor_of
 from faultpath.decisions.search.decide import best, conclude
 from faultpath.decisions.search.model import Tried

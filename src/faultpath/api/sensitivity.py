@@ -7,7 +7,8 @@ from typing import Any
 from faultpath.api.asking import Job, asks, begin
 from faultpath.api.audit import run_folder
 from faultpath.api.display import Display
-from faultpath.api.runs import SENSITIVITY, SENSITIVITY_MADE_FROM, SensitivityRun
+from faultpath.api.folders import SENSITIVITY, SENSITIVITY_MADE_FROM
+from faultpath.api.runs import SensitivityRun
 from faultpath.api.systems import executor_of
 from faultpath.decisions.sensitivity.decide import conclude
 from faultpath.decisions.sensitivity.study import plan_sensitivity

@@ -31,6 +31,7 @@ def replay(
     """Run trials of a finished run again and compare them with the run, to the bit; it runs the
     system that the run names. Exits with 1 where one differs."""
     from faultpath.api.display import SafeConsole
+    from faultpath.api.folders import RECORD, read_provenance, read_run
     from faultpath.api.replaying import (
         check_export,
         chosen_scenes,
@@ -38,7 +39,6 @@ def replay(
         keep_signals,
         replay,
     )
-    from faultpath.api.runs import RECORD, read_provenance, read_run
     from faultpath.decisions.tables.terminal import STYLES
     from faultpath.decisions.wording import counted
 

@@ -8,7 +8,8 @@ from typing import NoReturn
 
 from faultpath.api.asking import Job
 from faultpath.api.display import Display, display
-from faultpath.api.runs import FinishedRun, read_provenance
+from faultpath.api.folders import read_provenance
+from faultpath.api.runs import FinishedRun
 from faultpath.api.systems import LOCAL, check_executor, executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.decisions.tables import markdown
