@@ -30,7 +30,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ended = faultpath(*line(folder))
     assert (ended.status, ended.err) == (0, "")
     assert "64 points of 2 groups of sources: 512 trials at most." in ended.out
-    assert "speedometer is worth improving first" in ended.out
+    assert "Alone, speedometer explains more than any other source" in ended.out
     assert str(folder / "run" / "report.html") in ended.out
     return folder / "run"
 

@@ -62,14 +62,15 @@ def foremost(record: SensitivityRecord) -> str:
 
 
 def headline(record: SensitivityRecord) -> str:
-    """Return which source is worth improving first, as far as that is decided."""
+    """Return which source explains most, as far as that is decided in the scenes that were run."""
     asked = record.question
     if not record.indices:
         return (
             f"{capital(asked.said)} hardly varies with these errors: there is nothing to explain."
         )
     if first := foremost(record):
-        return f"{first} is worth improving first: alone it explains more than any other source."
+        where = counted(record.scenes, "scene")
+        return f"Alone, {first} explains more than any other source in the {where} that ran."
     alone = [each.group for each in record.indices if each.first.counts]
     if len(alone) == 1:
         return f"{alone[0]} explains a share by itself; whether it is the largest is not decided."
