@@ -8,6 +8,7 @@ import faultpath
 from faultpath.core.errors import SystemMistake
 from faultpath.loop import Port
 from faultpath.systems import ComposedSystem, FunctionPlant, Parts, writes
+from faultpath.systems.observed import hashed
 from faultpath.trials import Status
 
 SYSTEM = """
@@ -155,3 +156,12 @@ def test_a_module_stands_in_for_a_source_of_several_numbers():
     )
     assert built.interface.source("guessed").shape == (2,)
     assert len(fly(built, variant="guessing")) == len(SCENES)
+
+
+def test_the_hash_of_a_state_that_holds_an_object_does_not_depend_on_places() -> None:
+    def held(name: str, module: str) -> object:
+        return type(name, (), {"__module__": module})()
+
+    one, two = held("Craft", "faultpath_system_a1"), held("Craft", "faultpath_system_b2")
+    assert hashed({"craft": one, "x": 1.0}) == hashed({"craft": two, "x": 1.0})
+    assert hashed({"craft": one}) != hashed({"craft": held("Boat", "faultpath_system_a1")})

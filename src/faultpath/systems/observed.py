@@ -9,7 +9,8 @@ import numpy as np
 
 from faultpath.core.arrays import HostArray
 
-_ADDRESS = re.compile(r" at 0x[0-9a-f]+")
+_PLACE = re.compile(r"faultpath_system_\w+\.| at 0x[0-9a-f]+")
+"""The module of a system, called after where its file lies, and where in memory an object is."""
 
 
 def stacked(rows: Sequence[Any]) -> Any:
@@ -39,6 +40,6 @@ def hashed(*parts: Any) -> str:
         if isinstance(part, np.ndarray | np.generic):
             array = cast("HostArray", part)
             return f"{array.dtype}{array.shape}{array.tobytes().hex()}"
-        return _ADDRESS.sub("", repr(part))
+        return _PLACE.sub("", repr(part))
 
     return sha256("\n".join(map(exact, parts)).encode()).hexdigest()
