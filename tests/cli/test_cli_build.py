@@ -100,6 +100,7 @@ def test_a_test_of_ones_own_asserts_what_was_decided(tmp_path: Path) -> None:
     (plugin,) = points["pytest11"].values()
     (file := tmp_path / "test_mine.py").write_text(WRITTEN.format(toy=TOY))
     command = [sys.executable, "-m", "pytest", "-q", "-p", plugin, "-p", "no:cacheprovider", file]
+    command += ["--basetemp", tmp_path / "inner"]  # what it clears is its own
     alone = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # by its entry point, once more
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=alone)
     assert done.returncode == 1, done.stdout + done.stderr
