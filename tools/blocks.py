@@ -21,7 +21,6 @@ from faultpath.decisions.tables.markdown import grid
 from faultpath.report.tables import DIFFERENCE, by_quantity
 from faultpath.report.terminal import decision
 from faultpath.statistics import unconditional
-from faultpath.statistics.estimate import IN_FORCE
 from faultpath.trials.provenance import RunProvenance
 
 REFERENCE = ROOT / "docs" / "reference"
@@ -97,7 +96,7 @@ def table(run: Run) -> str:
 def _rule(run: Run) -> str:
     """Say by which rule a run was decided, and what today's makes of its primary effect."""
     asked, effects = run.record.question, {each.path: each for each in run.record.effects}
-    if asked.stop or asked.rule == IN_FORCE:
+    if asked.stop or asked.rule != "exact":
         return f" Rule: {asked.ruled}." if asked.ruled else ""
     said = (
         f" Rule: {asked.ruled}; its scenes were seen under it, so it keeps that verdict. Scenes "

@@ -62,16 +62,16 @@ def test_a_run_holds_what_was_decided_and_from_what(run):
 
 
 def test_the_rule_is_in_the_record_and_no_verdict_is_redone_by_another(run, tmp_path):
-    assert run.record.question.rule == "unconditional"
-    assert "since 2026-11-23" in markdown_table(run.record)
+    assert run.record.question.rule == "graded"
+    assert "since 2026-11-26" in markdown_table(run.record)
     told = io.StringIO()
     Console(file=told, width=200).print(decision(run.record, details=True))
     assert "E+M" in told.getvalue()
     assert "McNemar" in told.getvalue()
     assert all(effect.mcnemar_p_value is not None for effect in run.record.effects)
-    with pytest.raises(faultpath.UserError, match="--rule unconditional"):
+    with pytest.raises(faultpath.UserError, match="--rule graded"):
         faultpath.audit(TOY, folder=run.folder, workers=0, rule="exact", **ASKED)
-    with pytest.raises(faultpath.UserError, match="'exact' or 'unconditional'"):
+    with pytest.raises(faultpath.UserError, match="'exact', 'unconditional' or 'graded'"):
         faultpath.audit(TOY, folder=tmp_path / "no", workers=0, rule="sign", **ASKED)
     old = run.record.question.model_dump()
     del old["rule"]

@@ -23,7 +23,7 @@ def audit(correct: tuple[Ends, Ends], shared: tuple[Ends, Ends] | None = None) -
         for variant, statuses in zip((REPAIR, BASELINE), ends, strict=True)
         for row in rows(variant, path, statuses)
     ]
-    asked = question(len(correct[0])).model_copy(update={"rule": "unconditional"})
+    asked = question(len(correct[0])).model_copy(update={"rule": "graded"})
     return decide(asked, paths(*over), OutcomeTable(tuple(out)))
 
 

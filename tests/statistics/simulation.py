@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +18,12 @@ from faultpath.core.streams import generator
 from faultpath.decisions.family import CORRECT, SHARED, Arms, Family, alpha_shares, decide_paths
 from faultpath.decisions.search.propose import proposals
 from faultpath.decisions.search.study import regret
-from faultpath.statistics.estimate import IN_FORCE, RULES
+from faultpath.statistics.estimate import ALPHA, IN_FORCE, RULES
 from faultpath.statistics.power import detectable, detected, rule_power
 from faultpath.statistics.resamples import Resamples
-from faultpath.statistics.score import quantile, reach, rejects
+from faultpath.statistics.score import degrees_interval, degrees_rejects, reach
 
 Floats = NDArray[np.float64]
-Z = quantile(0.95)
 PRIOR = RULES[IN_FORCE].prior
 RATES = (0.005, 0.02, 0.05, 0.1, 0.3, 0.5)
 LEANS = {0.0: "even", 0.5: "three to one", 1.0: "one-sided"}
@@ -111,6 +111,51 @@ def joint(first: Population, second: Population, together: float) -> Floats:
     return mixed / mixed.sum()
 
 
+class Skewed(NamedTuple):
+    """Scenes of which neither arm is ahead, and that differ otherwise to one side than to the
+    other: many by little, few by much."""
+
+    scenes: int
+    seeds: int
+    chances: Floats
+    """Of each of the possible differences, ascending."""
+
+    @classmethod
+    def drawn(cls, stream: np.random.Generator) -> "Skewed":
+        """Draw one."""
+        scenes, seeds = int(stream.choice([25, 50, 100, 300])), int(stream.choice([2, 3, 5]))
+        sizes = np.arange(1, seeds + 1) / seeds
+        won, lost = (
+            stream.dirichlet(np.full(seeds, stream.choice([0.15, 0.5, 2.0]))) for _ in range(2)
+        )
+        differ = float(np.exp(stream.uniform(np.log(0.01), np.log(0.8))))
+        wins = differ * float(lost @ sizes) / float((won + lost) @ sizes)
+        parts = ((differ - wins) * lost[::-1], [1.0 - differ], wins * won)
+        return cls(scenes, seeds, np.concatenate(parts))
+
+    def announced(self, runs: int, stream: np.random.Generator) -> float:
+        """Return how often an audit of one path announces a difference."""
+        counts = stream.multinomial(self.scenes, self.chances, size=runs).astype(np.float64)
+        values = np.arange(-self.seeds, self.seeds + 1) / self.seeds
+        counts, times = np.unique(counts, axis=0, return_counts=True)
+        far = reach(values, counts, 1.0, PRIOR)
+        return float(times @ detected(values, counts, far, ALPHA, IN_FORCE)) / runs
+
+
+def skewed(populations: int, runs: int = 2000, again: int = 40_000) -> tuple[float, float]:
+    """Return the largest share of audits that announce a difference among so many populations
+    without one, and the share of populations in which it is above 5 %.
+
+    Those in which it seems to be are looked at ``again``, so that the largest of many is not noise.
+    """
+    stream, above = generator("statistics", f"skewed {populations}", 0), list[float]()
+    for _ in range(populations):
+        population = Skewed.drawn(stream)
+        if population.announced(runs, stream) > ALPHA:
+            above.append(population.announced(again, stream))
+    return max(above, default=0.0), sum(rate > ALPHA for rate in above) / populations
+
+
 def tables(n: int) -> Floats:
     """Return every table of ``n`` scenes of one seed: second only, neither, first only."""
     first, second = np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij")
@@ -130,7 +175,8 @@ def interval_coverage(scenes: int, truth: Population, runs: int = 4000) -> float
         counts, times = np.unique(drawn, axis=0, return_counts=True)
         weight = times / runs
     far = reach(truth.sizes, counts, 1.0, PRIOR)
-    return float(weight @ ~rejects(truth.sizes, counts, truth.mean, far, Z))
+    low, high = degrees_interval(truth.sizes, counts, far, 1.0, 1.0 - ALPHA)
+    return float(weight @ ((low <= truth.mean) & (high >= truth.mean)))
 
 
 def break_even_coverage(
@@ -138,17 +184,12 @@ def break_even_coverage(
 ) -> float:
     """Return how often the break-even set holds the true frequency: its mixture is not rejected."""
     p = correct.mean / (correct.mean - faulty.mean)
-    kinds = len(correct.sizes)
     stream = generator("statistics", f"break-even {scenes} {correct} {faulty}", 0)
     chances = joint(correct, faulty, 0.5).ravel()
     drawn = stream.multinomial(scenes, chances, size=runs).astype(np.float64)
     counts, times = np.unique(drawn, axis=0, return_counts=True)
-    square = counts.reshape(-1, kinds, kinds)
-    far_0 = reach(correct.sizes, square.sum(axis=2), 1.0, PRIOR)
-    far_f = reach(faulty.sizes, square.sum(axis=1), 1.0, PRIOR)
     mixed = (1.0 - p) * correct.sizes[:, np.newaxis] + p * faulty.sizes
-    far = (1.0 - p) * far_0 + p * far_f
-    return float(times @ ~rejects(mixed.ravel().round(9), counts, 0.0, far, Z)) / runs
+    return float(times @ ~degrees_rejects(mixed.ravel().round(9), counts, 1.0, ALPHA)) / runs
 
 
 def audit_of(
@@ -272,8 +313,7 @@ def detection(scenes: int, truth: Population, alpha: float, runs: int = 20) -> f
             shares.append(rule_power(scenes, rate, least / 100.0, alpha, rule=IN_FORCE))
             continue
         counts = stream.multinomial(scenes, true.chances(), size=400).astype(np.float64)
-        far = reach(true.sizes, counts, 1.0, PRIOR)
-        shares.append(float(detected(true.sizes, counts, far, alpha, IN_FORCE).mean()))
+        shares.append(float(detected(true.sizes, counts, 1.0, alpha, IN_FORCE).mean()))
     return float(np.mean(shares))
 
 

@@ -76,7 +76,7 @@ def test_copying_a_seed_does_not_shrink_it(n_seeds):
     assert copied == once
 
 
-@pytest.mark.parametrize("rule", ["exact", "unconditional"])
+@pytest.mark.parametrize("rule", ["exact", "unconditional", "graded"])
 @pytest.mark.parametrize(("wins", "losses"), [(5, 5), (10, 10)])
 def test_the_number_to_plan_by_is_found_in_four_audits_of_five(rule, wins, losses):
     """Wins on top of noise: at the other number it is .8 only if the noise gives way to them."""

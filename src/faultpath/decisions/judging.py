@@ -63,7 +63,7 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
     labels: dict[str, dict[str, None]] = {}
     for _, _, (unit, label) in trials:
         labels.setdefault(unit, {})[label] = None
-    if len(labels) > _MOST and asked.rule == "unconditional":
+    if len(labels) > _MOST and asked.rule != "exact":
         raise UserError(
             f"the rule in force takes at most {_MOST:,} scenes, and these are {len(labels):,}: "
             "give --rule exact, or --cluster task."

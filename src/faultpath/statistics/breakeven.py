@@ -104,7 +104,8 @@ class _Mixture:
         self.kinds, counts = np.unique(both, axis=1, return_counts=True)
         self.counts: Floats = counts.astype(np.float64)
         self.far = first.scale * first.far, second.scale * second.far
-        self.sequential, self.level = first.sequential, level
+        self.bounds = first.scale * first.bound, second.scale * second.bound
+        self.alike, self.level = first, level
         self.ends = correct, faulty
         self.models = correct.estimand == SCENES_AND_SEEDS
 
@@ -117,17 +118,17 @@ class _Mixture:
         if self.models:
             low, high = self.intervals(p)
             return (low <= 0.0) & (high >= 0.0)
-        values, counts, far = self._scenes(p)
-        if self.sequential:
+        values, counts, far, bound = self._scenes(p)
+        if self.alike.sequential:
             return ~betting.rejects(values, counts, 0.0, far, self.level)
+        if self.alike.graded:
+            return ~score.degrees_rejects(values, counts, bound, 1.0 - self.level)
         return ~score.rejects(values, counts, 0.0, far, score.quantile(self.level))
 
     def intervals(self, p: Floats) -> tuple[Floats, Floats]:
         """Return both ends [frequencies] of the difference's interval at each."""
-        values, counts, far = self._scenes(p)
-        if self.sequential:
-            return betting.interval(values, counts, far, self.level)
-        low, high = score.interval(values, counts, far, score.quantile(self.level))
+        values, counts, far, bound = self._scenes(p)
+        low, high = self.alike.ends(values, counts, far, bound, self.level)
         if self.models:
             one, two = (np.asarray(end.per_seed) for end in self.ends)
             share = p[:, np.newaxis]
@@ -136,12 +137,12 @@ class _Mixture:
             low, high = np.minimum(low, ends[0]), np.maximum(high, ends[1])
         return low, high
 
-    def _scenes(self, p: Floats) -> tuple[Floats, Floats, Floats]:
+    def _scenes(self, p: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         share = p[:, np.newaxis]
         mixed: Floats = (1.0 - share) * self.kinds[0] + share * self.kinds[1]
         values = mixed.round(_DIGITS)
-        far = (1.0 - p) * self.far[0] + p * self.far[1]
-        return values, np.broadcast_to(self.counts, values.shape), far
+        far, bound = ((1.0 - p) * one + p * two for one, two in (self.far, self.bounds))
+        return values, np.broadcast_to(self.counts, values.shape), far, bound
 
 
 def pieces_of(undecided: Callable[[Floats], Bools], grid: Floats) -> tuple[Piece, ...]:

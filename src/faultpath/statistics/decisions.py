@@ -11,8 +11,10 @@ from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.distributions import sign_p_value, t_p_value
 from faultpath.statistics.estimate import (
     ALPHA,
+    DEGREES,
     EM,
     FLIPS,
+    RULES,
     SCENES_AND_SEEDS,
     Decision,
     PairedTest,
@@ -25,11 +27,11 @@ Turn: TypeAlias = Literal["reversal", "interaction", "none"]
 def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
     """Return a contrast with its test: the one place where that is chosen.
 
-    For given models and one seed: exact McNemar, or by the ``unconditional`` rule the E+M test.
-    Else, of what scenes differ by: the sign test, or by that rule the larger p of sign flips and of
-    the score. For newly trained models: the t test of the seeds' effects. For a sequential audit:
-    bets on the mean (`betting`). ``ValueError`` for contrasts that have no test, as means and
-    medians of unbounded outcomes.
+    For given models and one seed: the E+M test, or by the ``exact`` rule McNemar's. Else, of what
+    scenes differ by: the test of degrees (`score`), by the ``unconditional`` rule the larger p of
+    sign flips and of the score, by the exact one the sign test. For newly trained models: the t
+    test of the seeds' effects. For a sequential audit: bets on the mean (`betting`). ``ValueError``
+    for contrasts that have no test, as means and medians of unbounded outcomes.
     """
     scenes, seeds, ahead = contrast.scenes, contrast.n_seeds, contrast.value
     if contrast.estimand == SCENES_AND_SEEDS:
@@ -40,13 +42,15 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
     elif scenes.sequential:
         name = "bets on the mean"
         p, ahead = betting.p_value(*scenes.kinds(), scenes.bound)
-    elif rule == "unconditional" and (contrast.arms is None or seeds > 1):
+    elif rule != "exact" and (contrast.arms is None or seeds > 1) and RULES[rule].graded:
+        name, p = DEGREES, score.degrees_p_value(*scenes.kinds(), scenes.bound)
+    elif rule != "exact" and (contrast.arms is None or seeds > 1):
         name = FLIPS
         p = max(signflip.p_value(scenes.values, seeds), score.p_value(*scenes.kinds(), scenes.far))
     else:
         first, second = int((scenes.values > 0).sum()), int((scenes.values < 0).sum())
         ahead = first - second
-        if rule == "unconditional":
+        if rule != "exact":
             name, p = EM, unconditional.p_value(first, second, contrast.n_scenes)
         else:
             name = "exact McNemar" if seeds == 1 else "sign test on scene means"

@@ -32,7 +32,7 @@ def success_effect(
     one, two = paired(first, second, binary=True)
     # Summed first, so that wins and losses of a scene cancel exactly.
     values = (one - two).sum(axis=1) / one.shape[1]
-    scenes = SceneValues.paired(values, 1.0, 100.0, sequential, RULES[rule].prior)
+    scenes = SceneValues.paired(values, 1.0, 100.0, sequential, RULES[rule])
     found = _mean(one - two, resamples, "pp", scenes, models)
     return replace(found, arms=(one, two))
 

@@ -127,7 +127,7 @@ class BreakEven(Frozen, allow_inf_nan=False):
     estimand: str
 
 
-RuleName: TypeAlias = Literal["exact", "unconditional"]
+RuleName: TypeAlias = Literal["exact", "unconditional", "graded"]
 
 
 class Rule(NamedTuple):
@@ -141,6 +141,8 @@ class Rule(NamedTuple):
     """Of `score.reach`: scenes of the largest possible difference that several seeds are given."""
     period: str
     """When audits took it by default."""
+    graded: bool = False
+    """Whether several seeds and changes take the test of degrees (`score`)."""
 
     @property
     def words(self) -> str:
@@ -154,11 +156,20 @@ RULES: dict[RuleName, Rule] = {
         "E+M test (sign flips and score of several seeds and changes) and weighted Holm",
         True,
         12.0,
-        "since 2026-11-23",
+        "from 2026-11-23 to 2026-11-25",
+    ),
+    "graded": Rule(
+        "E+M test (with the score, of several seeds and changes) and weighted Holm",
+        True,
+        12.0,
+        "since 2026-11-26",
+        graded=True,
     ),
 }
-IN_FORCE: RuleName = "unconditional"
+IN_FORCE: RuleName = "graded"
 EM = "E+M (Lloyd)"
 """Name of the test of one seed under the rule in force."""
-FLIPS = "sign flips and score of scenes"
+DEGREES = "E+M and score of scenes"
 """Name of that of several seeds, and of changes."""
+FLIPS = "sign flips and score of scenes"
+"""Its name under the rule before."""

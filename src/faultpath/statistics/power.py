@@ -14,7 +14,7 @@ from faultpath.statistics import signflip, unconditional
 from faultpath.statistics.distributions import binomial_cdf, binomial_pmf
 from faultpath.statistics.estimate import ALPHA, RULES, RuleName
 from faultpath.statistics.inputs import Floats, Numbers, paired
-from faultpath.statistics.score import quantile, reach, rejects
+from faultpath.statistics.score import degrees_rejects, quantile, reach, rejects
 
 LEVEL = 0.95
 """Of the interval that has to exclude 0 as well."""
@@ -69,7 +69,7 @@ def _critical(n_scenes: int, alpha: float, rule: RuleName) -> NDArray[np.int64]:
     Bisected: what detects also does so with fewer.
     """
     total = np.arange(n_scenes + 1)
-    known = unconditional.critical(n_scenes, alpha) if rule == "unconditional" else None
+    known = unconditional.critical(n_scenes, alpha)[1] if rule != "exact" else None
     low, high = np.full_like(total, -1), total.copy()  # the one detects, the other does not
     while (apart := high - low > 1).any():
         fewer = (low + high) // 2
@@ -112,7 +112,9 @@ def detected(
 
     ``counts`` [audits, values] says how many scenes differ by each of ``values``.
     """
-    if rule == "unconditional":
+    if RULES[rule].graded:
+        return degrees_rejects(values, counts, 1.0, alpha)
+    if rule != "exact":
         found = rejects(values, counts, 0.0, far, quantile(max(LEVEL, 1.0 - alpha)))
         found[found] = signflip.rejects(values, counts[found], alpha)
         return found

@@ -11,14 +11,15 @@ means over the seeds of a scene, so that seeds may depend on each other in any w
 width zero, because what was not observed in n scenes may still exist.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics import betting
+from faultpath.statistics import betting, unconditional
 from faultpath.statistics.distributions import normal_p_value, normal_quantile
+from faultpath.statistics.estimate import RULES, Rule
 from faultpath.statistics.inputs import Floats
 
 _HALVINGS = 44
@@ -26,6 +27,8 @@ _DIGITS = 9
 """Of a combined value, so that values which cancel leave exactly 0."""
 PRIOR = 3.0
 """Scenes of the largest possible difference that `reach` adds by itself; a rule has its own."""
+_DOUBT = 10.0
+"""The same of `degrees_reach`, before anything was seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +46,8 @@ class SceneValues:
     centre: float = 0.0
     sequential: bool = False
     """Whether the number of scenes was not fixed beforehand: see `betting`."""
+    graded: bool = False
+    """Whether the interval leaves out 0 exactly where `degrees_p_value` is small."""
 
     @classmethod
     def paired(
@@ -51,7 +56,7 @@ class SceneValues:
         bound: float,
         scale: float = 1.0,
         sequential: bool = False,
-        prior: float = PRIOR,
+        rule: Rule = RULES["exact"],
     ) -> "SceneValues":
         """Return differences between two arms; what was not observed lies within `reach`.
 
@@ -59,22 +64,27 @@ class SceneValues:
         """
         if sequential:
             return cls(values, bound, far=bound, scale=scale, sequential=True)
-        found = cls(values, bound, bound, scale)
+        found = cls(values, bound, bound, scale, graded=rule.graded)
         kinds, often = found.kinds()
         # Summed in both orders, since swapping the arms turns the order round.
         orders = ((kinds, often), (kinds[::-1], often[::-1]))
-        return replace(found, far=float(max(reach(*each, bound, prior) for each in orders)))
+        return replace(found, far=float(max(reach(*each, bound, rule.prior) for each in orders)))
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Return the interval of the mean, in the unit of the effect: by score, or by betting."""
-        values, counts = self.kinds()
-        far = np.asarray(self.far)
-        if self.sequential:
-            ends = betting.interval(values, counts, far, level)
-        else:
-            ends = interval(values, counts, far, quantile(level))
+        ends = self.ends(*self.kinds(), np.asarray(self.far), self.bound, level)
         low, high = (self.scale * (float(end) + self.centre) for end in ends)
         return low + 0.0, high + 0.0  # never -0.0
+
+    def ends(
+        self, values: Floats, counts: Floats, far: Floats, bound: Floats | float, level: float
+    ) -> tuple[Floats, Floats]:
+        """Return both ends [...] of the interval of such scenes as these, with other values."""
+        if self.sequential:
+            return betting.interval(values, counts, far, level)
+        if self.graded:
+            return degrees_interval(values, counts, far, bound, level)
+        return interval(values, counts, far, quantile(level))
 
     def kinds(self) -> tuple[Floats, Floats]:
         """Return the different values, ascending, and how often each occurred."""
@@ -88,7 +98,7 @@ def combined(weights: Sequence[float], parts: Sequence[SceneValues]) -> SceneVal
     size = np.abs(np.array(weights))
     bound = float(size @ np.array([part.bound for part in parts]))
     far = float(size @ np.array([part.far for part in parts]))
-    return SceneValues(values, bound, far, parts[0].scale, sequential=parts[0].sequential)
+    return replace(parts[0], values=values, bound=bound, far=far)
 
 
 def quantile(level: float) -> float:
@@ -114,6 +124,71 @@ def reach(values: Floats, counts: Floats, bound: Floats | float, prior: float = 
     return np.asarray(np.clip(shrunk, largest, bound), dtype=np.float64)
 
 
+def degrees_reach(values: Floats, counts: Floats, bound: Floats | float) -> Floats:
+    """Return [...]: `reach` as the test of degrees takes it.
+
+    Scenes of the largest size are added the less, the more was seen; and it may be shorter than the
+    largest seen, since losses need not be as large as gains.
+    """
+    _, sizes, squares = _sums(values, counts)
+    added = _DOUBT * np.square(bound) / (1.0 + squares / np.square(bound))
+    return np.asarray(np.minimum((squares + added) / (sizes + added / bound), bound))
+
+
+def degrees_p_value(values: Floats, counts: Floats, bound: float) -> float:
+    """Return the two-sided p of "the mean is 0" for scenes that differ by degrees.
+
+    It is the larger of the score's and of E+M's (`unconditional`) for as many scenes as would tell
+    as much if they differed wholly: ``(sum |y|)^2 / sum y^2``, at ``z = sum y / sqrt(sum y^2)``. Of
+    scenes that differ wholly or not at all these are its own numbers.
+    """
+    if counts @ values < 0.0:  # one order of sums for both arms
+        values, counts = -values[::-1].copy(), counts[::-1].copy()
+    z, discordants = _degrees(values, counts)
+    p = unconditional.degrees_p_value(float(z), float(discordants), round(counts.sum()))
+    return max(p, p_value(values, counts, float(degrees_reach(values, counts, bound))))
+
+
+def degrees_rejects(
+    values: Floats, counts: Floats, bound: Floats | float, alpha: float
+) -> NDArray[np.bool_]:
+    """Return [...]: whether that p is at most ``alpha``; all samples have as many scenes."""
+    far = degrees_reach(values, counts, bound)
+    found = rejects(values, counts, 0.0, far, quantile(1.0 - alpha))
+    z, discordants = (part[found] for part in _degrees(values, counts))
+    n_pairs = round(float(counts.sum(axis=-1).max()))
+    found[found] = unconditional.degrees_rejects(z, discordants, n_pairs, alpha)
+    return found
+
+
+def degrees_interval(
+    values: Floats, counts: Floats, far: Floats, bound: Floats | float, level: float
+) -> tuple[Floats, Floats]:
+    """Return both ends [...] of `interval`, of which one is moved where it and the test of degrees
+    disagree on 0: onto it, or to the end at the reach of that test."""
+    z = quantile(level)
+    low, high = interval(values, counts, far, z)
+    near = interval(values, counts, degrees_reach(values, counts, bound), z)
+    found = degrees_rejects(values, counts, bound, 1.0 - level)
+    above, below = found & (near[0] > 0.0), found & (near[1] < 0.0)
+    low = np.where(above, np.where(low > 0.0, low, near[0]), np.minimum(low, 0.0))
+    return low, np.where(below, np.where(high < 0.0, high, near[1]), np.maximum(high, 0.0))
+
+
+def _degrees(values: Floats, counts: Floats) -> tuple[Floats, Floats]:
+    """Return [...]: z of scenes that differ by degrees, and how many whole ones they are worth."""
+    total, sizes, squares = _sums(values, counts)
+    squares = np.where(squares > 0.0, squares, 1.0)
+    return np.abs(total) / np.sqrt(squares), np.square(sizes) / squares
+
+
+def _sums(values: Floats, counts: Floats) -> Iterator[Floats]:
+    """Yield [...]: the sums of values, sizes and squares, to the bit the same of swapped arms."""
+    for y in (values, np.abs(values), np.square(values)):
+        parts = counts * y
+        yield 0.5 * (parts.sum(axis=-1) + parts[..., ::-1].copy().sum(axis=-1))
+
+
 def rejects(
     values: Floats, counts: Floats, null: Floats | float, far: Floats | float, z: float
 ) -> NDArray[np.bool_]:
@@ -127,8 +202,10 @@ def rejects(
     off = values - np.asarray(null, dtype=np.float64)[..., np.newaxis]
     mean = (share * off).sum(axis=-1)
     side = np.where(mean < 0.0, -1.0, 1.0)
+    lost = np.where(counts > 0, -side[..., np.newaxis] * values, -np.inf).max(axis=-1)
+    far = np.maximum(far, lost)
     # z^2 = n a |mean| exceeds its level when `a` exceeds `tilt`; the support's end limits `a`.
-    beyond = np.abs(mean) > z * z / total * (np.asarray(far) + side * null)
+    beyond = np.abs(mean) > z * z / total * (far + side * null)
     tilt = np.zeros_like(mean)
     np.divide(z * z / total, np.abs(mean), out=tilt, where=beyond)
     off = np.where(counts > 0, side[..., np.newaxis] * off, 0.0)
@@ -144,7 +221,7 @@ def p_value(values: Floats, counts: Floats, far: float) -> float:
     total = float(counts.sum())
     mean = float(counts @ values) / total
     off = values if mean > 0.0 else -values
-    low, high = 0.0, 1.0 / far
+    low, high = 0.0, 1.0 / max(far, -float(off.min()))
     for _ in range(_HALVINGS + 8):
         tilt = 0.5 * (low + high)
         further = float((counts * off / (1.0 + tilt * off)).sum()) > 0.0
@@ -172,6 +249,7 @@ def _low(values: Floats, counts: Floats, far: Floats, z: float) -> Floats:
     level = z * z / total
     mean = (share * values).sum(axis=-1)
     off = np.where(counts > 0, values - mean[..., np.newaxis], 0.0)
+    far = np.maximum(far, -np.where(counts > 0, values, np.inf).min(axis=-1))
     # The support's end limits `a`, hence the width from below.
     short: Floats = np.asarray(level * (far + mean) / (1.0 + level), dtype=np.float64)
     long: Floats = np.maximum(short, -off.min(axis=-1))

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from faultpath.statistics.distributions import binomial_pmf
 from faultpath.statistics.inputs import Floats
 
-Counts = NDArray[np.int64]
+Counts, Bools = NDArray[np.int64], NDArray[np.bool_]
 
 _TIE = 1e-9
 """Relative: what differs by less is as far out, but for rounding."""
@@ -35,13 +35,26 @@ def p_value(first: int, second: int, n_pairs: int) -> float:
         return 1.0
     law, total = _law(n_pairs), np.array([first + second])
     seen = law.expected(total, np.array([min(first, second)]))[0]
-    none, most = _bounds(n_pairs)
-    return law.worst(law.region(float(seen), none, most))
+    return law.worst(law.region(float(seen), *_bounds(n_pairs)))
+
+
+def degrees_p_value(z: float, discordants: float, n_pairs: int) -> float:
+    """Return the two-sided p of ``z`` where the number of discordant pairs need not be whole."""
+    law = _law(n_pairs)
+    seen = law.chance(np.array([z]), *_near(n_pairs, np.array([discordants])))[0]
+    return law.worst(law.region(float(seen), *_bounds(n_pairs))) if z else 1.0
+
+
+def degrees_rejects(z: Floats, discordants: Floats, n_pairs: int, alpha: float) -> Bools:
+    """Return [tables]: whether that p is at most ``alpha``."""
+    seen = _law(n_pairs).chance(z, *_near(n_pairs, discordants))
+    return (z > 0.0) & (seen <= critical(n_pairs, alpha)[0] * (1.0 + _TIE))
 
 
 @lru_cache(maxsize=256)
-def critical(n_pairs: int, alpha: float) -> Counts:
-    """Return [discordants]: the largest smaller count with a p of at most ``alpha``; -1: none."""
+def critical(n_pairs: int, alpha: float) -> tuple[float, Counts]:
+    """Return the E step's largest chance with a p of at most ``alpha``, and [discordants] the
+    largest smaller count within it; -1: none."""
     law = _law(n_pairs)
     inside, outside = _bounds(n_pairs)
     low, high = 0.0, 1.0
@@ -52,7 +65,7 @@ def critical(n_pairs: int, alpha: float) -> Counts:
             low, inside = middle, region
         else:
             high, outside = middle, region
-    return inside
+    return low, inside
 
 
 def _bounds(n_pairs: int) -> tuple[Counts, Counts]:
@@ -67,8 +80,6 @@ class _Law(NamedTuple):
     """[discordants, 1 + fewer]: the chance of so few or fewer on either side."""
     others: Counts
     """[discordants, expected]: numbers of discordant pairs that are expected beside that one."""
-    roots: Floats
-    """[discordants, expected]: of how many times as many each of them is."""
     chances: Floats
     """[discordants, expected]: of each of them."""
     shares: Floats
@@ -78,12 +89,16 @@ class _Law(NamedTuple):
 
     def expected(self, total: Counts, fewer: Counts) -> Floats:
         """Return [tables]: the E step's chance of tables whose counts differ."""
-        others = self.others[total]
-        apart = (total - 2 * fewer)[:, np.newaxis] * self.roots[total]
+        z = (total - 2 * fewer) / np.sqrt(np.maximum(total, 1))
+        return self.chance(z, self.others[total], self.chances[total])
+
+    def chance(self, z: Floats, others: Counts, chances: Floats) -> Floats:
+        """Return [tables]: the chance of a statistic as large as ``z``, with these of `_near`."""
+        apart = z[:, np.newaxis] * np.sqrt(others)
         # Halves of whole numbers and of roots of fractions: as near as this only where they agree.
         most = np.maximum(np.floor((others - apart) / 2.0 + 1e-9), -1.0).astype(np.int64)
         most[others == 0] = -1
-        return (self.chances[total] * self.tails[others, most + 1]).sum(axis=1)
+        return (chances * self.tails[others, most + 1]).sum(axis=1)
 
     def region(self, chance: float, inside: Counts, outside: Counts) -> Counts:
         """Return [discordants]: the largest smaller count that is as far out as ``chance``.
@@ -124,11 +139,7 @@ class _Law(NamedTuple):
 
 @lru_cache(maxsize=4)
 def _law(n_pairs: int) -> _Law:
-    discordants = np.arange(n_pairs + 1)
-    width = min(n_pairs + 1, 2 * int(np.ceil(_SPREAD * np.sqrt(n_pairs) / 2.0)) + 1)
-    start = np.clip(discordants - width // 2, 0, n_pairs + 1 - width)
-    others = start[:, np.newaxis] + np.arange(width)
-    share = discordants / n_pairs
+    others, chances = _near(n_pairs, np.arange(n_pairs + 1.0))
     points = 32 + 16 * int(np.ceil(np.sqrt(n_pairs)))
     shares = np.sin(np.linspace(0.0, np.pi / 2.0, points)) ** 2
     split = np.zeros(n_pairs // 2 + 2)  # of one more discordant pair with each row of the tails
@@ -142,11 +153,20 @@ def _law(n_pairs: int) -> _Law:
     return _Law(
         tails=tails,
         others=others,
-        roots=np.sqrt(others / np.maximum(discordants, 1)[:, np.newaxis]),
-        chances=binomial_pmf(others, n_pairs, share[:, np.newaxis]),
+        chances=chances,
         shares=shares,
         mixed=_mixed(n_pairs, shares),
     )
+
+
+def _near(n_pairs: int, discordants: Floats) -> tuple[Counts, Floats]:
+    """Return [tables, expected]: how many pairs may be discordant beside so many, and how likely
+    that is."""
+    width = min(n_pairs + 1, 2 * int(np.ceil(_SPREAD * np.sqrt(n_pairs) / 2.0)) + 1)
+    start = np.clip(np.rint(discordants).astype(np.int64) - width // 2, 0, n_pairs + 1 - width)
+    others = start[:, np.newaxis] + np.arange(width)
+    share = np.minimum(discordants / n_pairs, 1.0)[:, np.newaxis]
+    return others, binomial_pmf(others, n_pairs, share)
 
 
 def _mixed(n_pairs: int, shares: Floats) -> Floats:

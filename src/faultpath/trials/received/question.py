@@ -89,8 +89,8 @@ class JudgeQuestion(Asked):
         description="What intervals speak of: new scenes, or newly trained models too, one a seed.",
     )
     rule: Annotated[Rule, Flag(panel="How it is decided")] = Field(
-        default="unconditional",
-        description="By which it is decided: that in force, or the exact one for scenes that were "
+        default="graded",
+        description="By which it is decided: that in force, or an earlier one for scenes that were "
         "seen under it.",
     )
     folder: Annotated[Place, Flag("--out")] = Field(
