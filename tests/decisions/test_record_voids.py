@@ -106,3 +106,66 @@ def test_no_reversal_rests_on_a_path_where_one_arm_fails_more_often():
     assert (shared.uneven, shared.leads) == (True, False)
     assert made.changes[0].turn != "reversal"
     assert "Do not choose" not in made.headline
+
+
+def seeded(ends_of: list[tuple[Ends, Ends]], path: str = CORRECT) -> DecisionRecord:
+    """Return the record of ends of repair and baseline, a pair of them for each seed."""
+    out = [
+        row
+        for seed, pair in enumerate(ends_of)
+        for variant, statuses in zip((REPAIR, BASELINE), pair, strict=True)
+        for row in rows(variant, path, statuses, seed)
+    ]
+    asked = question(len(ends_of[0][0]), range(len(ends_of)))
+    asked = asked.model_copy(update={"rule": "graded"})
+    return decide(asked, paths(path), OutcomeTable(tuple(out)))
+
+
+def test_what_is_missing_of_a_seed_that_repeats_another_is_open():
+    """The seeds agree in every scene that both have: 16 wins without a loss, p = .00017 before."""
+    scene = np.arange(SCENES)
+    wins, losses = scene < 16, scene >= 80
+    first = ends(wins), ends(losses)
+    # Of the second, the repair says nothing of the scenes that it loses, the baseline of others.
+    second = ends(wins, losses), ends(losses, (scene >= 40) & (scene < 60))
+    made = seeded([first, second])
+    effect = made.effects[0]
+    assert len(effect.wins) == 2
+    assert effect.failed is not None
+    assert effect.failed.against_pp < effect.success.value
+    assert (effect.sign, effect.failed.unsettled) == (0, True)
+    assert "new is ahead" not in made.headline
+
+
+def mixed(stream: np.random.Generator) -> DecisionRecord:
+    """Return a record of which the repair's trials that end badly without the fault fail."""
+    scene = np.arange(SCENES)
+    lost, won = stream.random((2, SCENES)) < [[0.35], [0.6]]
+    correct = ends(~lost, lost & (stream.random(SCENES) < 0.5)), ends(scene >= 0)
+    shared = ends(won), ends(~won & (scene % 3 == 0))
+    return audit(correct, shared)
+
+
+def test_a_break_even_frequency_holds_whatever_failed_trials_would_have_been():
+    """`ahead from 35 % on` was said where it is from 45 % on with those trials lost."""
+    stream = np.random.default_rng(2)
+    for _ in range(5):
+        made = mixed(stream)
+        (found,) = (each for each in made.break_even if each.path == SHARED)
+        against = {each.path: each.failed.against_pp for each in made.effects}
+        even = -against[CORRECT] / (against[SHARED] - against[CORRECT])
+        (region,) = (each for each in found.result.regions if each.sign > 0)
+        assert region.low > even
+        for share, _, low, _ in found.curve:
+            assert low > 0.0 or share <= region.low
+
+
+def test_break_even_without_open_trials_stays_what_it_was():
+    stream = np.random.default_rng(3)
+    lost, won = stream.random((2, SCENES)) < [[0.3], [0.6]]
+    none, every = np.zeros(SCENES, bool), np.ones(SCENES, bool)
+    both = np.arange(SCENES) < 5
+    whole = audit((ends(~lost), ends(every)), (ends(won), ends(none)))
+    voided = audit((ends(~lost, both), ends(every, both)), (ends(won), ends(none)))
+    assert whole.break_even[-1].result.kind == voided.break_even[-1].result.kind == "interval"
+    assert voided.findings

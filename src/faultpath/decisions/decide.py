@@ -276,7 +276,11 @@ def _break_even(
     none, all_ = ends
     tested = family.effects[none.path], family.effects[all_.path]
     level = 1.0 - min(end.decision.critical_p for end in tested if end.decision)
-    found = break_even(*tested, level=level)
+    filled = [family.fills[end.path] for end in ends if end.path in family.fills]
+    # Both ends with what failed trials leave open against the repair, and for it.
+    open_ = any(low.value != high.value for low, high in filled)
+    fills = tuple(zip(*filled, strict=True)) if open_ else ()
+    found = break_even(*tested, level=level, fills=fills)
     # What a table and a picture show is borne out by the effect at an end, and reaches it.
     kept: list[Region] = []
     for each in found.regions:
@@ -289,6 +293,6 @@ def _break_even(
     return PathBreakEven(
         path=path,
         result=only(found, kept),
-        curve=mixture_curve(*tested, level=level),
+        curve=mixture_curve(*tested, level=level, fills=fills),
         words=phrases.shares(asked, found.regions, none, all_, said),
     )

@@ -100,16 +100,17 @@ def compared(
         del left[min(faulty, key=lambda name: len(left[name].scenes))]
     cut = {name: each.only(tuple(kept)) for name, each in left.items()}
     success = {name: (each.first.success, each.second.success) for name, each in cut.items()}
-    every = np.concatenate([arm for arms in success.values() for arm in arms])
+    unlike = {mismatch.scene for each in left.values() for mismatch in each.mismatches}
+    keep = np.array([scene not in unlike for scene in next(iter(left.values())).all_scenes])
+    # Seeds repeat each other where their trials failed alike, too: what is missing of one is open.
+    ended = [side for each in left.values() for side in each.ended]
+    every = np.concatenate([part[keep] for side in ended for part in (side.success, side.failed)])
     seeds = list(range(every.shape[1]))
     if distinct:
         first = {column.tobytes(): seed for seed, column in reversed(list(enumerate(every.T)))}
         seeds = sorted(first.values())
     voids: dict[str, Voids] = {}
-    if any(side.failed.any() for each in left.values() for side in each.ended):
-        unlike = {mismatch.scene for each in left.values() for mismatch in each.mismatches}
-        every_scene = next(iter(left.values())).all_scenes
-        keep = np.array([scene not in unlike for scene in every_scene])
+    if any(side.failed.any() for side in ended):
         for name, each in left.items():
             ours, theirs = (side.failed for side in each.ended)
             won, lost = (side.success[keep][:, seeds] for side in each.ended)

@@ -8,7 +8,7 @@ confidence set for the break-even frequency (Fieller, Journal of the Royal Stati
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,23 +25,33 @@ _DIGITS = 9
 """Of a mixture's values, so that values which cancel leave exactly 0."""
 Bools = NDArray[np.bool_]
 Piece = tuple[float, float]
+Ends = tuple[Contrast, Contrast]
+Share = TypeVar("Share", float, Floats)
 
 
-def break_even(correct: Contrast, faulty: Contrast, level: float = 0.95) -> BreakEven:
+def break_even(
+    correct: Contrast, faulty: Contrast, level: float = 0.95, fills: Sequence[Ends] = ()
+) -> BreakEven:
     """Return at which fault frequencies who is ahead is decided, and at which it is not.
 
     ``correct`` and ``faulty`` are effects on the same scenes, without and with the fault. At every
     frequency the test is that of the effects' own intervals, on the mixture: the picture's band
-    (`mixture_curve`) touches 0 exactly where a frequency is in the set.
+    (`mixture_curve`) touches 0 exactly where a frequency is in the set. Of ``fills``, both effects
+    as trials that failed may have made them, all have to decide for the same arm.
     """
-    mixture = _Mixture(correct, faulty, level)
+    mixture, *others = (_Mixture(*ends, level) for ends in ((correct, faulty), *fills))
+
+    def undecided(p: Floats) -> Bools:
+        apart = [np.sign(each.value(p)) != np.sign(mixture.value(p)) for each in others]
+        return np.any([*apart, *(each.undecided(p) for each in (mixture, *others))], axis=0)
+
     delta_0, delta_f = correct.value, faulty.value
     grid = np.linspace(0.0, 1.0, _GRID + 1)
     p_star = None
     if delta_0 != delta_f and delta_0 * delta_f <= 0.0:
         p_star = delta_0 / (delta_0 - delta_f) + 0.0
         grid = np.unique(np.append(grid, p_star))
-    pieces = list(pieces_of(mixture.undecided, grid))
+    pieces = list(pieces_of(undecided, grid))
     while len(pieces) > 2:  # not known to happen; closing a gap only claims less
         gaps = [after[0] - before[1] for before, after in pairwise(pieces)]
         least = int(np.argmin(gaps))
@@ -80,12 +90,17 @@ def _kind(pieces: Sequence[Piece]) -> Literal["interval", "empty", "whole", "two
 
 
 def mixture_curve(
-    correct: Contrast, faulty: Contrast, points: int = 41, level: float = 0.95
+    correct: Contrast,
+    faulty: Contrast,
+    points: int = 41,
+    level: float = 0.95,
+    fills: Sequence[Ends] = (),
 ) -> tuple[tuple[float, float, float, float], ...]:
     """Return ``(p, expected difference, low, high)`` at evenly spaced fault frequencies p."""
-    mixture = _Mixture(correct, faulty, level)
-    p = np.linspace(0.0, 1.0, points)
-    ends = zip(*(end.tolist() for end in mixture.intervals(p)), strict=True)
+    mixture, p = _Mixture(correct, faulty, level), np.linspace(0.0, 1.0, points)
+    bands = [mixture.intervals(p), *(_Mixture(*ends, level).intervals(p) for ends in fills)]
+    lows, highs = (np.array(part) for part in zip(*bands, strict=True))
+    ends = zip(lows.min(axis=0).tolist(), highs.max(axis=0).tolist(), strict=True)
     return tuple(
         (at, mixture.value(at), low + 0.0, high + 0.0)
         for at, (low, high) in zip(p.tolist(), ends, strict=True)
@@ -109,8 +124,8 @@ class _Mixture:
         self.ends = correct, faulty
         self.models = correct.estimand == SCENES_AND_SEEDS
 
-    def value(self, p: float) -> float:
-        """Return the expected difference at a frequency."""
+    def value(self, p: Share) -> Share:
+        """Return the expected difference at a frequency, or at many."""
         return (1.0 - p) * self.ends[0].value + p * self.ends[1].value + 0.0
 
     def undecided(self, p: Floats) -> Bools:
