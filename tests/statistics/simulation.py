@@ -156,6 +156,18 @@ def skewed(populations: int, runs: int = 2000, again: int = 40_000) -> tuple[flo
     return max(above, default=0.0), sum(rate > ALPHA for rate in above) / populations
 
 
+def powered(seeds: int, scenes: int = 100, runs: int = 20_000) -> float:
+    """Return the power of one or more seeds of which half of the scenes agree, where 5.4 % of the
+    trials favour one arm and .6 % the other."""
+    truth = Population(0.06, 0.8, seeds, 0.5)
+    if seeds == 1:
+        return rule_power(scenes, truth.rate, truth.mean, rule=IN_FORCE)
+    stream = generator("statistics", f"power {scenes} {truth}", 0)
+    counts = stream.multinomial(scenes, truth.chances(), size=runs).astype(np.float64)
+    far = reach(truth.sizes, counts, 1.0, PRIOR)
+    return float(detected(truth.sizes, counts, far, ALPHA, IN_FORCE).mean())
+
+
 def tables(n: int) -> Floats:
     """Return every table of ``n`` scenes of one seed: second only, neither, first only."""
     first, second = np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij")

@@ -88,7 +88,7 @@ def test_a_break_even_frequency_near_zero_cost_is_covered(lean):
 def test_equal_arms_announce_next_to_nothing_and_no_reversal_is_made_up():
     """By signs of point estimates 44 % of audits had a reversal."""
     assert kept(simulated.equal_arms(100, Population(0.3, 0.0, 3, 0.5), 0.7, 150), 150, most=ALPHA)
-    assert kept(simulated.reversals(100, 1, 0.0, 150), 150, most=0.015)
+    assert kept(simulated.reversals(100, 1, 0.0, 150), 150, most=0.025)
     assert simulated.reversals(100, 1, 0.2, 20) > 0.5
 
 

@@ -80,6 +80,7 @@ def decide(
     noted = (
         *(f"{phrases.no_pair(path)}: the table shows what failed." for path in found.void),
         *phrases.failed_trials(record),
+        *phrases.partly_measured(record),
         *mismatch_words(found.mismatches),
         *findings,  # of a record that is decided anew, with some of the above among them
     )

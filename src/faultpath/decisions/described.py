@@ -80,23 +80,31 @@ def secondary(pairs: Pairs, resamples: Resamples, asked: Question) -> dict[str, 
     time_s = None
     if joint.any():
         time_s = median_effect(first.time_s, second.time_s, joint, resamples).estimate()
-    both = [name for name in asked.metrics if name in first.metrics and name in second.metrics]
     metrics: dict[str, Estimate] = {}
-    for name in both:
-        arms, unit = (first.metrics[name], second.metrics[name]), asked.metrics[name].unit
-        metrics[name] = honest(mean_effect(*arms, resamples, unit).estimate(), "mean")
     means, thresholds = None, list[AtThreshold]()
-    if asked.metric in first.metrics and asked.metric in second.metrics:
-        values = second.metrics[asked.metric], first.metrics[asked.metric]
+    for name in asked.metrics:
+        if name not in first.metrics or name not in second.metrics:
+            continue
+        full = np.asarray(np.isfinite(first.metrics[name] + second.metrics[name]).all(axis=1))
+        if not (n_scenes := int(full.sum())):
+            continue
+        arms, drawn = (second.only(full), first.only(full)), resamples
+        if n_scenes < len(full):  # of a scene in which a trial has no value nothing is told
+            drawn = Resamples.draw(drawn.label, n_scenes, n_resamples=drawn.n_resamples)
+        values = arms[0].metrics[name], arms[1].metrics[name]
+        difference = mean_effect(values[1], values[0], drawn, asked.metrics[name].unit)
+        metrics[name] = honest(difference.estimate(), "mean")
+        if name != asked.metric:
+            continue
         means = float(values[0].mean()), float(values[1].mean())
         for threshold in asked.thresholds:
             less = asked.metrics[asked.metric].better == "less"
             baseline, repair = (
                 ~side.crash & (value <= threshold if less else value >= threshold)
-                for side, value in zip((second, first), values, strict=True)
+                for side, value in zip(arms, values, strict=True)
             )
             difference = success_effect(
-                repair, baseline, resamples, sequential=asked.stop is not None, rule=asked.rule
+                repair, baseline, drawn, sequential=asked.stop is not None, rule=asked.rule
             )
             thresholds.append(
                 AtThreshold(

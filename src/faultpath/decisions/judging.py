@@ -3,6 +3,7 @@
 import hashlib
 import json
 import re
+from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -68,7 +69,8 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
             f"the rule in force takes at most {_MOST:,} scenes, and these are {len(labels):,}: "
             "give --rule exact, or --cluster task."
         )
-    seen = {tuple(sorted(each, key=_in_order)) for each in labels.values()}
+    units = _common(labels)
+    seen = set(map(frozenset, units.values()))
     # Seeds that are the same everywhere are seeds; others only number the trials of a scene.
     alike = len(seen) == 1
     if asked.generalise == "models" and (not alike or len(min(seen)) < 2):
@@ -76,10 +78,10 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
             "newly trained models need several seeds, the same ones in every scene: leave "
             "--generalise models out."
         )
-    most = max(map(len, labels.values()))
+    most = max(map(len, units.values()))
     seeds = tuple(range(most))
     if alike and all(label.isdecimal() and len(label) < 19 for label in min(seen)):
-        seeds = tuple(map(int, min(seen)))
+        seeds = tuple(sorted(map(int, min(seen))))
     hashed = _hashed(rows)
     found: list[TrialRow] = []
     missing: dict[tuple[str, str], list[_Key]] = {}
@@ -87,7 +89,7 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
     for path, arm in product(paths, (asked.baseline, asked.repair)):
         for place, at in product(range(most), enumerate(sorted(labels, key=_in_order))):
             index, unit = at
-            ordered = sorted(labels[unit], key=_in_order)[place:]
+            ordered = units[unit][place:]
             row = trials.get((arm, path, (unit, ordered[0]))) if ordered else None
             if row is None:
                 missing.setdefault((arm, path), []).append((unit, "".join(ordered[:1])))
@@ -117,7 +119,23 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
         rule=asked.rule,
         judged=Judged(pairing="hashes" if hashed else "keys", unit=asked.cluster),
     )
-    return LaidOut(question, laid, table, tuple(_findings(table, missing, tasks, asked, hashed)))
+    longer = [unit for unit, each in labels.items() if len(each) > most]
+    findings = _findings(table, missing, longer, tasks, asked, hashed)
+    return LaidOut(question, laid, table, tuple(findings))
+
+
+def _common(labels: Mapping[str, Collection[str]]) -> dict[str, list[str]]:
+    """Return of each unit the trials that are compared: as many as leave the most of all.
+
+    Those that most units have go first; outcomes have no part in it.
+    """
+    often = Counter(label for each in labels.values() for label in each)
+    sizes = sorted(map(len, labels.values()))
+    most = max(sizes, key=lambda size: size * sum(each >= size for each in sizes))
+    return {
+        unit: sorted(sorted(each, key=lambda x: (-often[x], _in_order(x)))[:most], key=_in_order)
+        for unit, each in labels.items()
+    }
 
 
 def _path_names(conditions: Collection[str], asked: JudgeQuestion) -> dict[str, str]:
@@ -237,6 +255,7 @@ def _metrics(asked: JudgeQuestion) -> dict[str, Metric]:
 def _findings(
     table: OutcomeTable,
     missing: Mapping[tuple[str, str], Sequence[_Key]],
+    longer: Sequence[str],
     tasks: Mapping[str, str],
     asked: JudgeQuestion,
     hashed: bool,
@@ -248,6 +267,11 @@ def _findings(
             f"{capital(where(path))}, {counted(len(keys), 'trial')} of {arm} "
             f"{'is' if len(keys) == 1 else 'are'} missing, for example that in {unit}{which}: "
             "each voids its pair."
+        )
+    if longer:
+        yield (
+            f"More trials than of most, for example in {longer[0]}, are of "
+            f"{counted(len(longer), asked.cluster)}: what is more is not compared."
         )
     several = len(set(tasks.values()))
     if asked.cluster == "scene" and several > 1:

@@ -246,6 +246,18 @@ def no_pair(path: str) -> str:
     return f"{capital(where(path))}, no pair of trials is left to compare and nothing is decided"
 
 
+def partly_measured(record: DecisionRecord) -> Iterator[str]:
+    """Say of which metrics not every trial has a value."""
+    for each in record.effects:
+        for name in record.question.metrics:
+            scenes = each.metrics[name].n_scenes if name in each.metrics else 0
+            if scenes < each.scenes and (scenes or record.question.judged):
+                yield (
+                    f"{capital(where(each.path))}, not every trial has {name}: it is told of "
+                    f"{scenes} of {counted(each.scenes, 'scene')}, in which all have it."
+                )
+
+
 def failed_trials(record: DecisionRecord) -> Iterator[str]:
     """Say by arm and path how many trials failed, and what their outcomes could make of it."""
     asked = record.question

@@ -14,7 +14,6 @@ from faultpath.statistics.estimate import (
     DEGREES,
     EM,
     FLIPS,
-    RULES,
     SCENES_AND_SEEDS,
     Decision,
     PairedTest,
@@ -42,7 +41,7 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
     elif scenes.sequential:
         name = "bets on the mean"
         p, ahead = betting.p_value(*scenes.kinds(), scenes.bound)
-    elif rule != "exact" and (contrast.arms is None or seeds > 1) and RULES[rule].graded:
+    elif scenes.graded and (contrast.arms is None or seeds > 1):
         name, p = DEGREES, score.degrees_p_value(*scenes.kinds(), scenes.bound)
     elif rule != "exact" and (contrast.arms is None or seeds > 1):
         name = FLIPS

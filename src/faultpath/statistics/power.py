@@ -116,7 +116,7 @@ def detected(
         return degrees_rejects(values, counts, 1.0, alpha)
     if rule != "exact":
         found = rejects(values, counts, 0.0, far, quantile(max(LEVEL, 1.0 - alpha)))
-        found[found] = signflip.rejects(values, counts[found], alpha)
+        found[found] = signflip.p_values(values, counts[found]) <= alpha
         return found
     first = counts[:, values > 0].sum(axis=1)
     second = counts[:, values < 0].sum(axis=1)

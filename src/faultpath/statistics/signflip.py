@@ -5,7 +5,6 @@ their sizes, their sum is then a sum of independent signs, whose law is a produc
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faultpath.statistics.inputs import Floats
 
@@ -56,14 +55,3 @@ def p_values(values: Floats, counts: Floats) -> Floats:
     far = np.minimum(place, around - place)
     beyond = np.where(far >= seen[:, np.newaxis], law, 0.0).sum(axis=1)
     return np.clip(beyond, 0.0, 1.0)
-
-
-def rejects(values: Floats, counts: Floats, alpha: float) -> NDArray[np.bool_]:
-    """Return [audits]: whether the p is at most ``alpha``; worked out where it is not plain."""
-    squares = counts @ values**2
-    found = (counts @ values) ** 2 >= 2.0 * np.log(2.0 / alpha) * squares  # Hoeffding's inequality
-    found &= squares > 0.0
-    open_ = np.flatnonzero(~found & (squares > 0.0))
-    if len(open_):
-        found[open_] = p_values(values, counts[open_]) <= alpha
-    return found

@@ -51,7 +51,7 @@ class Trials:
     failed: Bools
     time_s: Floats
     metrics: Mapping[str, Floats]
-    """Those that all of the trials have."""
+    """Those that any of the trials has; not a number where one has not."""
 
     def only(self, keep: Bools) -> "Trials":
         """Return the scenes where `keep` `[scenes]` is true."""
@@ -209,10 +209,9 @@ def _trials(arms: Sequence[Sequence[TrialRow]]) -> Trials:
         np.array([[o.status is status for o in arm] for arm in outcomes], dtype=np.bool_).T
         for status in (Status.SUCCESS, Status.CRASH, Status.FAILED)
     )
-    metrics: dict[str, Floats] = {}
-    for name in dict.fromkeys(name for arm in outcomes for o in arm for name in o.metrics):
-        values = [[o.metrics.get(name) for o in arm] for arm in outcomes]
-        if not any(None in arm for arm in values):
-            metrics[name] = np.array(values, dtype=np.float64).T
+    metrics: dict[str, Floats] = {
+        name: np.array([[o.metrics.get(name) for o in arm] for arm in outcomes], np.float64).T
+        for name in dict.fromkeys(name for arm in outcomes for o in arm for name in o.metrics)
+    }
     time_s = np.array([[o.time_s for o in arm] for arm in outcomes], dtype=np.float64).T
     return Trials(success, crash, failed, time_s, metrics)

@@ -1,0 +1,76 @@
+"""Results of which not everything is there: what both arms have is compared, and it is said."""
+
+import numpy as np
+import pytest
+
+from faultpath.decisions.decide import decide
+from faultpath.decisions.judging import lay_out
+from faultpath.decisions.model import DecisionRecord
+from faultpath.trials.outcome import Status
+from faultpath.trials.received.question import JudgeQuestion
+from faultpath.trials.received.trial import Received
+
+
+def judged(trials: list[tuple[str, str, str]], blank: int | None = None, **asked) -> DecisionRecord:
+    """Return the record of two arms over `trials` (task, scene, seed), the repair ahead in each
+    third of them; the repair's trial number `blank` has no metric."""
+    rows = [
+        Received(
+            f"line {place}",
+            arm,
+            "",
+            *trial,
+            Status.SUCCESS if arm == "new" or place % 3 else Status.CRASH,
+            "",
+            float("nan"),
+            {} if (arm, place) == ("new", blank) else {"metres": place + (arm == "new")},
+        )
+        for arm in ("old", "new")
+        for place, trial in enumerate(trials)
+    ]
+    question = JudgeQuestion.model_validate({"baseline": "old", "repair": "new", **asked})
+    laid = lay_out(rows, question)
+    return decide(laid.question, laid.paths, laid.table, laid.findings)
+
+
+def test_two_scenes_with_an_extra_seed_leave_the_other_28():
+    """They alone were compared: the others, with one seed, counted as void."""
+    trials = [("", f"s{n}", "7") for n in range(30)]
+    made = judged([*trials, ("", "s3", "1"), ("", "s4", "9")])
+    whole = judged(trials)
+    assert made.scenes == 30
+    assert made.question.seeds == (7,)
+    assert made.effects[0].success == whole.effects[0].success
+    (said,) = set(made.findings) - set(whole.findings)
+    assert said == (
+        "More trials than of most, for example in s3, are of 2 scenes: what is more is not compared."
+    )
+
+
+def test_one_scene_of_a_hundred_without_a_seed_costs_that_scene_alone():
+    trials = [("", f"s{n}", f"{seed}") for n in range(100) for seed in range(3)]
+    made = judged(trials[1:])
+    assert made.scenes == 99
+    assert len(made.effects[0].wins) == 3
+
+
+def test_tasks_with_a_scene_less_are_compared_by_what_all_tasks_have():
+    """Half of the tasks were lost."""
+    trials = [(f"t{n}", f"{scene}", "") for n in range(20) for scene in range(10 - n % 2)]
+    made = judged(trials, cluster="task")
+    assert made.scenes == 20
+    assert any("10 tasks: what is more is not compared" in each for each in made.findings)
+
+
+@pytest.mark.parametrize("seeds", [1, 2])
+def test_a_metric_with_a_blank_is_told_of_the_other_scenes_and_that_is_said(seeds):
+    """It vanished without a word."""
+    trials = [("", f"s{n}", f"{seed}") for n in range(12) for seed in range(seeds)]
+    made = judged(trials, blank=4, metrics=["metres:more"])
+    effect = made.effects[0]
+    assert effect.metrics["metres"].n_scenes == 11
+    assert effect.metrics["metres"].value == 1.0
+    assert any("metres: it is told of 11 of 12 scenes" in each for each in made.findings)
+    whole = judged(trials, metrics=["metres:more"])
+    assert not any("metres" in each for each in whole.findings)
+    assert np.isfinite(whole.effects[0].metrics["metres"].value)

@@ -1,0 +1,101 @@
+"""Results with trials missing, laid out and decided as `faultpath judge` does."""
+
+from itertools import product
+from unittest.mock import patch
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.core.errors import UserError
+from faultpath.core.streams import generator
+from faultpath.decisions.decide import decide
+from faultpath.decisions.judging import lay_out
+from faultpath.decisions.model import DecisionRecord
+from faultpath.trials.outcome import Status
+from faultpath.trials.received.question import JudgeQuestion
+from faultpath.trials.received.trial import Received
+
+Bools = NDArray[np.bool_]
+BLANKS = (
+    *product(("one-sided", "opposite"), (1, 3)),
+    ("repeated", 3),
+    *product(("clustered",), (1, 3)),
+)
+"""What is missing, and of how many seeds."""
+CONDITIONS = ("nominal", "isolated:observer", "shared")
+SHIFTS = (-0.1, 0.05, 0.15)
+"""Of the repair's success in each condition, where it differs: even at a share of .4, and of .67
+and more."""
+SCENES = 60
+
+
+def judged(success: Bools, blank: Bools, cluster: str = "scene") -> DecisionRecord:
+    """Return the record of `success` [arms, conditions, scenes, seeds] without what is `blank`."""
+    rows: list[Received] = []
+    for at in product(*map(range, success.shape)):
+        if blank[at]:
+            continue
+        arm, condition, scene, seed = at
+        status = Status.SUCCESS if success[at] else Status.CRASH
+        named = (
+            (f"task {scene}", f"{seed}", "") if cluster == "task" else ("", f"{scene}", f"{seed}")
+        )
+        where = ("old", "new")[arm], CONDITIONS[condition], *named
+        rows.append(Received("line", *where, status, "", float("nan")))
+    asked = JudgeQuestion.model_validate({"baseline": "old", "repair": "new", "cluster": cluster})
+    laid = lay_out(rows, asked)
+    # What could have been detected decides nothing, and takes most of the time.
+    with patch("faultpath.decisions.decide.detectable", return_value=None):
+        return decide(laid.question, laid.paths, laid.table, laid.findings)
+
+
+def drawn(
+    stream: np.random.Generator, kind: str, seeds: int, shifts: tuple[float, ...]
+) -> tuple[Bools, Bools]:
+    """Return success and what is missing of it [arms, conditions, scenes, seeds]."""
+    tasks = 5 if kind == "clustered" else 1
+    shape = (2, 3, SCENES, seeds * tasks)
+    own = stream.random(shape) + 0.8 * (stream.random((1, 1, SCENES, 1)) - 0.5)
+    success = own < 0.5 + np.array([np.zeros(3), shifts])[:, :, np.newaxis, np.newaxis]
+    if kind == "repeated":
+        success[:] = success[..., :1]
+    bad = np.stack([success[0] if kind == "opposite" else success[0] & False, ~success[1]])
+    rate = 0.03 if kind == "clustered" else 0.2
+    blank = bad & (stream.random(shape) < rate)
+    if kind == "repeated":
+        blank[..., 1:] = False
+    if kind == "clustered":  # half of the tasks have a scene less, in both arms
+        blank[:, :, ::2, -1] = True
+    return success, blank
+
+
+def wrong(record: DecisionRecord, shifts: tuple[float, ...]) -> bool:
+    """Return whether any break-even set puts an arm ahead where the other one is."""
+    ends = dict(zip(("correct", "observer", "shared"), shifts, strict=True))
+    sets = [(each, "correct", each.path) for each in record.break_even]
+    sets += [(each, each.path, "shared") for each in record.break_even_beta]
+    for each, none, every in sets:
+        for region in each.result.regions:
+            for share in (region.low + 1e-9, region.high - 1e-9):
+                ahead = (1.0 - share) * ends[none] + share * ends[every]
+                if ahead * region.sign < 0.0:
+                    return True
+    return False
+
+
+def blanks(kind: str, seeds: int, runs: int = 200) -> tuple[float, float]:
+    """Return the share of results of equal arms that announce anything, and of those of arms that
+    differ in which any break-even set is wrong."""
+    stream = generator("statistics", f"blanks {kind} {seeds}", 0)
+    rates = [0, 0]
+    for column, shifts in enumerate(((0.0, 0.0, 0.0), SHIFTS)):
+        for _ in range(runs):
+            try:
+                record = judged(
+                    *drawn(stream, kind, seeds, shifts), "task" if kind == "clustered" else "scene"
+                )
+            except UserError:  # nothing is left, and nothing is said
+                continue
+            announced = any(each.sign for each in (*record.effects, *record.changes))
+            rates[column] += wrong(record, shifts) if column else announced
+    return rates[0] / runs, rates[1] / runs
