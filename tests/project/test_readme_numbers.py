@@ -103,6 +103,7 @@ def plan(record: DecisionRecord, scenes: int | None = None) -> Audit:
             fault=asked.fault,
             scenes=scenes or asked.n_scenes,
             seeds=asked.seeds,
+            rule=asked.rule,
         ),
         system.library(asked.library),
     )

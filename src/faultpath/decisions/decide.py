@@ -279,8 +279,7 @@ def _break_even(
     level = 1.0 - min(end.decision.critical_p for end in tested if end.decision)
     filled = [family.fills[end.path] for end in ends if end.path in family.fills]
     # Both ends with what failed trials leave open against the repair, and for it.
-    open_ = any(low.value != high.value for low, high in filled)
-    fills = tuple(zip(*filled, strict=True)) if open_ else ()
+    fills = tuple(zip(*filled, strict=True)) if any(a.value != b.value for a, b in filled) else ()
     found = break_even(*tested, level=level, fills=fills)
     # What a table and a picture show is borne out by the effect at an end, and reaches it.
     kept: list[Region] = []

@@ -69,7 +69,14 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
             f"the rule in force takes at most {_MOST:,} scenes, and these are {len(labels):,}: "
             "give --rule exact, or --cluster task."
         )
-    units = _common(labels)
+    often = Counter(label for each in labels.values() for label in each)
+    sizes = [len(each) for each in labels.values()]
+    # As many trials of each as leave the most of all, and first those that most scenes have.
+    most = max(sorted(sizes), key=lambda size: size * sum(each >= size for each in sizes))
+    units = {
+        unit: sorted(sorted(each, key=lambda x: (-often[x], _in_order(x)))[:most], key=_in_order)
+        for unit, each in labels.items()
+    }
     seen = set(map(frozenset, units.values()))
     # Seeds that are the same everywhere are seeds; others only number the trials of a scene.
     alike = len(seen) == 1
@@ -78,7 +85,6 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
             "newly trained models need several seeds, the same ones in every scene: leave "
             "--generalise models out."
         )
-    most = max(map(len, units.values()))
     seeds = tuple(range(most))
     if alike and all(label.isdecimal() and len(label) < 19 for label in min(seen)):
         seeds = tuple(sorted(map(int, min(seen))))
@@ -122,20 +128,6 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
     longer = [unit for unit, each in labels.items() if len(each) > most]
     findings = _findings(table, missing, longer, tasks, asked, hashed)
     return LaidOut(question, laid, table, tuple(findings))
-
-
-def _common(labels: Mapping[str, Collection[str]]) -> dict[str, list[str]]:
-    """Return of each unit the trials that are compared: as many as leave the most of all.
-
-    Those that most units have go first; outcomes have no part in it.
-    """
-    often = Counter(label for each in labels.values() for label in each)
-    sizes = sorted(map(len, labels.values()))
-    most = max(sizes, key=lambda size: size * sum(each >= size for each in sizes))
-    return {
-        unit: sorted(sorted(each, key=lambda x: (-often[x], _in_order(x)))[:most], key=_in_order)
-        for unit, each in labels.items()
-    }
 
 
 def _path_names(conditions: Collection[str], asked: JudgeQuestion) -> dict[str, str]:

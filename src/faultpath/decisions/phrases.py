@@ -250,12 +250,12 @@ def partly_measured(record: DecisionRecord) -> Iterator[str]:
     """Say of which metrics not every trial has a value."""
     for each in record.effects:
         for name in record.question.metrics:
-            scenes = each.metrics[name].n_scenes if name in each.metrics else 0
-            if scenes < each.scenes and (scenes or record.question.judged):
-                yield (
-                    f"{capital(where(each.path))}, not every trial has {name}: it is told of "
-                    f"{scenes} of {counted(each.scenes, 'scene')}, in which all have it."
+            told = each.metrics[name].n_scenes if name in each.metrics else 0
+            if told < each.scenes and (told or record.question.judged):
+                of = (
+                    f"it is told of {told} of {counted(each.scenes, 'scene')}, in which all have it"
                 )
+                yield f"{capital(where(each.path))}, not every trial has {name}: {of}."
 
 
 def failed_trials(record: DecisionRecord) -> Iterator[str]:

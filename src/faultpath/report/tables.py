@@ -134,10 +134,8 @@ def whole_table(record: DecisionRecord) -> Table:
         title = f"{arms}{under}: {record.scenes_run} {asked.judged.unit}s, {seeds}"
     corrected = f"Holm's correction is for {record.hypotheses} contrasts."
     if (sets := len(record.break_even + record.break_even_beta)) > 1:
-        corrected += (
-            f" It is not for the {sets} break-even sets: each is wrong in at most 5 % of audits, "
-            "one or another of them in more."
-        )
+        corrected += f" Of {sets} break-even sets each is wrong in at most 5 % of audits, one or "
+        corrected += "another of them in more."
     if record.stopped is not None:
         others = "" if record.hypotheses == 1 else ", half of it for the primary one"
         corrected = (

@@ -19,7 +19,7 @@ from faultpath.statistics.distributions import t_interval
 from faultpath.statistics.estimate import SCENES_AND_SEEDS, BreakEven, Region
 from faultpath.statistics.inputs import Floats
 
-_GRID = 400
+_GRID, _POINTS = 400, 41
 _HALVINGS = 40
 _DIGITS = 9
 """Of a mixture's values, so that values which cancel leave exactly 0."""
@@ -90,14 +90,10 @@ def _kind(pieces: Sequence[Piece]) -> Literal["interval", "empty", "whole", "two
 
 
 def mixture_curve(
-    correct: Contrast,
-    faulty: Contrast,
-    points: int = 41,
-    level: float = 0.95,
-    fills: Sequence[Ends] = (),
+    correct: Contrast, faulty: Contrast, level: float = 0.95, fills: Sequence[Ends] = ()
 ) -> tuple[tuple[float, float, float, float], ...]:
     """Return ``(p, expected difference, low, high)`` at evenly spaced fault frequencies p."""
-    mixture, p = _Mixture(correct, faulty, level), np.linspace(0.0, 1.0, points)
+    mixture, p = _Mixture(correct, faulty, level), np.linspace(0.0, 1.0, _POINTS)
     bands = [mixture.intervals(p), *(_Mixture(*ends, level).intervals(p) for ends in fills)]
     lows, highs = (np.array(part) for part in zip(*bands, strict=True))
     ends = zip(lows.min(axis=0).tolist(), highs.max(axis=0).tolist(), strict=True)

@@ -27,10 +27,10 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
     """Return a contrast with its test: the one place where that is chosen.
 
     For given models and one seed: the E+M test, or by the ``exact`` rule McNemar's. Else, of what
-    scenes differ by: the test of degrees (`score`), by the ``unconditional`` rule the larger p of
-    sign flips and of the score, by the exact one the sign test. For newly trained models: the t
-    test of the seeds' effects. For a sequential audit: bets on the mean (`betting`). ``ValueError``
-    for contrasts that have no test, as means and medians of unbounded outcomes.
+    scenes differ by: the test of degrees (`score`), or by earlier rules sign flips with the score,
+    and the sign test. For newly trained models: the t test of the seeds' effects. For a sequential
+    audit: bets on the mean. ``ValueError`` for contrasts that have no test, as those of unbounded
+    outcomes.
     """
     scenes, seeds, ahead = contrast.scenes, contrast.n_seeds, contrast.value
     if contrast.estimand == SCENES_AND_SEEDS:

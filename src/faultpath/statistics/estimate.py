@@ -152,24 +152,11 @@ class Rule(NamedTuple):
 
 RULES: dict[RuleName, Rule] = {
     "exact": Rule("exact McNemar or sign test and Holm", False, 3.0, "until 2026-11-22"),
-    "unconditional": Rule(
-        "E+M test (sign flips and score of several seeds and changes) and weighted Holm",
-        True,
-        12.0,
-        "from 2026-11-23 to 2026-11-25",
-    ),
-    "graded": Rule(
-        "E+M test (with the score, of several seeds and changes) and weighted Holm",
-        True,
-        12.0,
-        "since 2026-11-26",
-        graded=True,
-    ),
+    "unconditional": Rule("E+M, sign flips and weighted Holm", True, 12.0, "until 2026-11-25"),
+    "graded": Rule("E+M test and weighted Holm", True, 12.0, "since 2026-11-26", graded=True),
 }
 IN_FORCE: RuleName = "graded"
 EM = "E+M (Lloyd)"
 """Name of the test of one seed under the rule in force."""
-DEGREES = "E+M and score of scenes"
-"""Name of that of several seeds, and of changes."""
-FLIPS = "sign flips and score of scenes"
-"""Its name under the rule before."""
+DEGREES, FLIPS = "E+M and score of scenes", "sign flips and score of scenes"
+"""Names of that of several seeds, and of changes, by this rule and the one before."""

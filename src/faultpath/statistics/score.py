@@ -11,7 +11,7 @@ means over the seeds of a scene, so that seeds may depend on each other in any w
 width zero, because what was not observed in n scenes may still exist.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -25,10 +25,9 @@ from faultpath.statistics.inputs import Floats
 _HALVINGS = 44
 _DIGITS = 9
 """Of a combined value, so that values which cancel leave exactly 0."""
-PRIOR = 3.0
-"""Scenes of the largest possible difference that `reach` adds by itself; a rule has its own."""
-_DOUBT = 10.0
-"""The same of `degrees_reach`, before anything was seen."""
+PRIOR, _DOUBT = 3.0, 10.0
+"""Scenes of the largest possible difference that `reach` adds by itself, where a rule has not its
+own; and those of the test of degrees, before anything was seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,17 +123,6 @@ def reach(values: Floats, counts: Floats, bound: Floats | float, prior: float = 
     return np.asarray(np.clip(shrunk, largest, bound), dtype=np.float64)
 
 
-def degrees_reach(values: Floats, counts: Floats, bound: Floats | float) -> Floats:
-    """Return [...]: `reach` as the test of degrees takes it.
-
-    Scenes of the largest size are added the less, the more was seen; and it may be shorter than the
-    largest seen, since losses need not be as large as gains.
-    """
-    _, sizes, squares = _sums(values, counts)
-    added = _DOUBT * np.square(bound) / (1.0 + squares / np.square(bound))
-    return np.asarray(np.minimum((squares + added) / (sizes + added / bound), bound))
-
-
 def degrees_p_value(values: Floats, counts: Floats, bound: float) -> float:
     """Return the two-sided p of "the mean is 0" for scenes that differ by degrees.
 
@@ -144,20 +132,19 @@ def degrees_p_value(values: Floats, counts: Floats, bound: float) -> float:
     """
     if counts @ values < 0.0:  # one order of sums for both arms
         values, counts = -values[::-1].copy(), counts[::-1].copy()
-    z, discordants = _degrees(values, counts)
-    p = unconditional.degrees_p_value(float(z), float(discordants), round(counts.sum()))
-    return max(p, p_value(values, counts, float(degrees_reach(values, counts, bound))))
+    z, discordants, far = map(float, _degrees(values, counts, bound))
+    p = unconditional.degrees_p_value(z, discordants, round(counts.sum()))
+    return max(p, p_value(values, counts, far))
 
 
 def degrees_rejects(
     values: Floats, counts: Floats, bound: Floats | float, alpha: float
 ) -> NDArray[np.bool_]:
     """Return [...]: whether that p is at most ``alpha``; all samples have as many scenes."""
-    far = degrees_reach(values, counts, bound)
+    z, discordants, far = _degrees(values, counts, bound)
     found = rejects(values, counts, 0.0, far, quantile(1.0 - alpha))
-    z, discordants = (part[found] for part in _degrees(values, counts))
-    n_pairs = round(float(counts.sum(axis=-1).max()))
-    found[found] = unconditional.degrees_rejects(z, discordants, n_pairs, alpha)
+    most = round(float(counts.sum(axis=-1).max()))
+    found[found] = unconditional.degrees_rejects(z[found], discordants[found], most, alpha)
     return found
 
 
@@ -166,27 +153,28 @@ def degrees_interval(
 ) -> tuple[Floats, Floats]:
     """Return both ends [...] of `interval`, of which one is moved where it and the test of degrees
     disagree on 0: onto it, or to the end at the reach of that test."""
-    z = quantile(level)
+    z, found = quantile(level), degrees_rejects(values, counts, bound, 1.0 - level)
     low, high = interval(values, counts, far, z)
-    near = interval(values, counts, degrees_reach(values, counts, bound), z)
-    found = degrees_rejects(values, counts, bound, 1.0 - level)
-    above, below = found & (near[0] > 0.0), found & (near[1] < 0.0)
-    low = np.where(above, np.where(low > 0.0, low, near[0]), np.minimum(low, 0.0))
-    return low, np.where(below, np.where(high < 0.0, high, near[1]), np.maximum(high, 0.0))
+    near, most = interval(values, counts, _degrees(values, counts, bound)[2], z)
+    low = np.where(found & (near > 0.0), np.where(low > 0.0, low, near), np.minimum(low, 0.0))
+    high = np.where(found & (most < 0.0), np.where(high < 0.0, high, most), np.maximum(high, 0.0))
+    return low, high
 
 
-def _degrees(values: Floats, counts: Floats) -> tuple[Floats, Floats]:
-    """Return [...]: z of scenes that differ by degrees, and how many whole ones they are worth."""
-    total, sizes, squares = _sums(values, counts)
+def _degrees(
+    values: Floats, counts: Floats, bound: Floats | float
+) -> tuple[Floats, Floats, Floats]:
+    """Return [...]: z of scenes that differ by degrees, how many whole ones they are worth, and
+    `reach` as this test takes it: with fewer whole scenes added, the more was seen, and maybe
+    shorter than the largest seen, since losses need not be as large as gains."""
+    total, sizes, squares = (  # in both orders, since swapping the arms turns the order round
+        0.5 * ((counts * y).sum(axis=-1) + (counts * y)[..., ::-1].copy().sum(axis=-1))
+        for y in (values, np.abs(values), np.square(values))
+    )
+    added = _DOUBT * np.square(bound) / (1.0 + squares / np.square(bound))
+    far = np.minimum((squares + added) / (sizes + added / bound), bound)
     squares = np.where(squares > 0.0, squares, 1.0)
-    return np.abs(total) / np.sqrt(squares), np.square(sizes) / squares
-
-
-def _sums(values: Floats, counts: Floats) -> Iterator[Floats]:
-    """Yield [...]: the sums of values, sizes and squares, to the bit the same of swapped arms."""
-    for y in (values, np.abs(values), np.square(values)):
-        parts = counts * y
-        yield 0.5 * (parts.sum(axis=-1) + parts[..., ::-1].copy().sum(axis=-1))
+    return np.abs(total) / np.sqrt(squares), np.square(sizes) / squares, np.asarray(far)
 
 
 def rejects(

@@ -43,7 +43,7 @@ def p_values(values: Floats, counts: Floats) -> Floats:
     sizes = np.rint(np.abs(values) / step)
     seen = np.abs(counts @ np.rint(values / step))
     # A law of independent signs has next to nothing beyond eight of its standard deviations.
-    spread = float(np.sqrt((counts @ sizes**2).max()))
+    spread = float(np.sqrt((counts @ sizes**2).max(initial=0.0)))
     around = 2 * int(max(seen.max(initial=0.0), 8.0 * spread)) + 3
     angles = np.arange(around) * (2.0 * np.pi / around)
     cosines = np.cos(sizes[:, np.newaxis] * angles)

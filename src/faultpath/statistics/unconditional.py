@@ -33,9 +33,7 @@ def p_value(first: int, second: int, n_pairs: int) -> float:
     """Return the two-sided p of ``first`` against ``second`` discordant pairs among ``n_pairs``."""
     if first == second:
         return 1.0
-    law, total = _law(n_pairs), np.array([first + second])
-    seen = law.expected(total, np.array([min(first, second)]))[0]
-    return law.worst(law.region(float(seen), *_bounds(n_pairs)))
+    return degrees_p_value(abs(first - second) / np.sqrt(first + second), first + second, n_pairs)
 
 
 def degrees_p_value(z: float, discordants: float, n_pairs: int) -> float:
