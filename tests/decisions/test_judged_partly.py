@@ -43,7 +43,8 @@ def test_two_scenes_with_an_extra_seed_leave_the_other_28():
     assert made.effects[0].success == whole.effects[0].success
     (said,) = set(made.findings) - set(whole.findings)
     assert said == (
-        "More trials than of most, for example in s3, are of 2 scenes: what is more is not compared."
+        "More trials than of most, for example in s3, are of 2 scenes: what is more is not "
+        "compared."
     )
 
 
