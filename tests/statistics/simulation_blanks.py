@@ -83,7 +83,7 @@ def wrong(record: DecisionRecord, shifts: tuple[float, ...]) -> bool:
     return False
 
 
-def blanks(kind: str, seeds: int, runs: int = 200) -> tuple[float, float]:
+def blanks(kind: str, seeds: int, runs: int = 100) -> tuple[float, float]:
     """Return the share of results of equal arms that announce anything, and of those of arms that
     differ in which any break-even set is wrong."""
     stream = generator("statistics", f"blanks {kind} {seeds}", 0)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import simulation as simulated
 from simulation import Population, kept
+from simulation_blanks import blanks
 
 from faultpath.statistics import unconditional
 from faultpath.statistics.breakeven import break_even
@@ -120,3 +121,10 @@ def test_few_searches_announce_a_reversal_where_no_fault_has_one():
     asked = {"scenes": 60, "isolated": 0.2, "candidates": 24, "runs": 100}
     assert kept(simulated.searches(**asked), 100, most=0.05)
     assert simulated.searches(**asked, fresh=False) > 0.1
+
+
+@pytest.mark.parametrize(("kind", "seeds"), [("one-sided", 1), ("repeated", 3)])
+def test_missing_trials_announce_nothing_and_move_no_break_even(kind, seeds):
+    announced, wrong = blanks(kind, seeds, 25)
+    assert kept(announced, 25, most=ALPHA)
+    assert kept(wrong, 25, most=ALPHA)
