@@ -7,6 +7,7 @@ The platform is set before anything that flies is imported: one process, one pla
 
 import hashlib
 import json
+import shutil
 import sys
 import time
 from itertools import pairwise
@@ -56,35 +57,50 @@ from faultpath.loop import Taps  # noqa: E402
 from faultpath.trials.store import atomic  # noqa: E402
 
 
+def decisive(name: str) -> list[object]:
+    """Return what decides a model: of one fitted in still air alone, not the winds."""
+    flown = PLATFORM.model_dump(mode="json", include={"drag_kgps", "ranges", "collection"})
+    decides: list[object] = [flown]
+    if name in ("wm-u", "wm-u+dcc"):
+        return [*decides, POINT["conditioning_scale"]]
+    if name.startswith("wm-a"):
+        decides.append(POINT["residual_bound_mps2"])
+    if name not in ("wm-a", "wm-a+dcc"):
+        winds = PLATFORM.winds.model_dump(mode="json", exclude={"means_mps"})
+        windy = PLATFORM.model_dump(mode="json", include={"wind_collection"})
+        decides += [winds, windy, POINT["pool_turbulence_mps"]]
+    return decides
+
+
+OWN_HASH = chosen.Platform.weights_hash
+chosen.Platform.weights_hash = lambda self, model: (
+    OWN_HASH(self, model) if model == chosen.CLEARANCE else digest(*decisive(model))[:16]
+)
+
+
 def weights(names: list[str], seeds: list[int]) -> Path:
-    """Fit what is missing and return the folder of the weights."""
-    flown = PLATFORM.weights_hash("wm-a"), POINT["pool_turbulence_mps"]
-    data = FOLDER / "pools" / digest(*flown)
-    folder = (
-        FOLDER
-        / "models"
-        / digest(*flown, POINT["residual_bound_mps2"], POINT["conditioning_scale"])
-    )
+    """Fit what no point has fitted yet and return the folder of this point's weights."""
+    data = FOLDER / "pools" / digest(*decisive("gru"))
+    folder = FOLDER / "weights" / digest(*[decisive(name) for name in names])
     folder.mkdir(parents=True, exist_ok=True)
-    data.mkdir(parents=True, exist_ok=True)
     for name in ("clearance-0.json", "clearance-0.safetensors"):
-        (folder / name).write_bytes((checkpoint.shipped_folder() / name).read_bytes())
-    missing = [
-        (name, seed)
-        for name in names
-        for seed in seeds
-        if not (folder / f"{name}-{seed}.json").exists()
-    ]
-    with atomic.locked(folder, print):
-        if missing:
-            with atomic.locked(data, print):
-                collect(data / "rows", workers=0)
-        for name, seed in missing:
-            began = time.monotonic()
-            task = ReconstructionTask if name in MODELS else PredictorTask
-            with native.using(native.PORTABLE):
-                fit(task(name, seed, data / "rows"), folder)
-            print(f"fitted {name}-{seed} in {time.monotonic() - began:.0f} s", flush=True)
+        shutil.copy(checkpoint.shipped_folder() / name, folder)
+    for name in names:
+        place = FOLDER / "models" / digest(name, *decisive(name))
+        place.mkdir(parents=True, exist_ok=True)
+        for seed in seeds:
+            with atomic.locked(place, print):
+                if not (place / f"{name}-{seed}.json").exists():
+                    data.mkdir(parents=True, exist_ok=True)
+                    with atomic.locked(data, print):
+                        collect(data / "rows", workers=0)
+                    began = time.monotonic()
+                    task = ReconstructionTask if name in MODELS else PredictorTask
+                    with native.using(native.PORTABLE):
+                        fit(task(name, seed, data / "rows"), place)
+                    print(f"fitted {name}-{seed} in {time.monotonic() - began:.0f} s", flush=True)
+            for suffix in (".json", ".safetensors"):
+                shutil.copy(place / f"{name}-{seed}{suffix}", folder)
     return folder
 
 

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from faultpath.core.streams import generator
 from faultpath_quadrotor.perception import PerceptionSettings
 from faultpath_quadrotor.planners import CostWeights, SamplerSettings
 from faultpath_quadrotor.plant.wind import WindLevel, Winds
@@ -14,6 +13,8 @@ from faultpath_quadrotor.platform import (
     Platform,
 )
 from faultpath_quadrotor.vehicle import VehicleRanges
+
+from faultpath.core.streams import generator
 
 SPACE: dict[str, tuple[float, float]] = {
     "goal_running": (0.1, 0.8),
