@@ -1,14 +1,19 @@
-"""The paper's central claim: sharing the error reverses the ranking of GRU and GRU+DCC.
+"""The paper's central question, whether sharing the error reverses the ranking, and our answers.
 
-What was decided of it besides in a run itself stands in a file that comes with the package.
+Audits that ask it besides the reproduction itself stand in a file that comes with the package.
+Sentences come from what was detected, never from an estimate.
 """
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from pathlib import Path
 
+from pydantic import TypeAdapter
+
+from faultpath.core.results import Frozen
 from faultpath.decisions import wording
-from faultpath.decisions.tables import Entry, Line, Table, line
-from faultpath_quadrotor.paper.answers import Ledger, Reproduction
+from faultpath.decisions.tables import Entry, Table, line
+from faultpath.statistics.estimate import Sign
+from faultpath_quadrotor.paper.answers import Reproduction
 from faultpath_quadrotor.paper.entries import bracket
 from faultpath_quadrotor.paper.pages.table_4 import NAMES, PAGE, paper_contrast
 from faultpath_quadrotor.paper.report import words
@@ -16,67 +21,151 @@ from faultpath_quadrotor.paper.report import words
 CLAIM = "C26"
 BASELINE, REPAIR = "gru", "gru+dcc"
 ELSEWHERE = Path(__file__).parent / "paper" / "reversal.json"
-COLUMNS = ("Reconstruction only", "Shared error", "Reversal")
-DECIDED, OPEN = "decided", "not decided"
+COLUMNS = ("Wrong values at the wind estimator alone", "Wrong values shared", "Reversal")
+QUESTION = (
+    "The paper reports a reversal: a wind estimator that was retrained to tolerate wrong values of "
+    "mass and thrust flies better than the original while only the estimator gets wrong values, "
+    "and worse once the predictor gets the same ones."
+)
+QUICK_RUN = "This quick run is too small to answer the question."
 
 
-def of_run(found: Reproduction, place: str) -> Line | None:
-    """Return what a run of the paper found, by the paper's rules; `None` of one without it."""
-    claim = next((each for each in found.ledger.claims if each.id == CLAIM), None)
-    table = next((each for each in found.tables if each.name == PAGE.name), None)
+class Effect(Frozen):
+    """Success of the retrained estimator minus the original one."""
+
+    text: str
+    """Percentage points with their interval, such as `+6.7 [3.0, 11.0]`."""
+    sign: Sign
+    """Side of zero on which a difference is detected; 0 where none is."""
+
+    @classmethod
+    def of(cls, text: str, detected: bool) -> "Effect":
+        """Return the effect that a table prints."""
+        if not detected:
+            return cls(text=text, sign=0)
+        return cls(text=text, sign=-1 if text.startswith(wording.MINUS) else 1)
+
+
+class Case(Frozen):
+    """A run that asks the question, and what it detected."""
+
+    place: str
+    """Such as `300 scenes of confirmation, seeds 0, 1, 2`."""
+    isolated: Effect
+    shared: Effect
+    reversal: bool
+    """Whether the run decides that the ranking reverses."""
+
+
+CASES: TypeAdapter[tuple[Case, ...]] = TypeAdapter(tuple[Case, ...])
+
+
+def elsewhere() -> tuple[Case, ...]:
+    """Return what audits besides the reproduction detected."""
+    return CASES.validate_json(ELSEWHERE.read_bytes())
+
+
+def case_of(reproduction: Reproduction) -> Case | None:
+    """Return what a run of the paper detected, by the paper's rules; `None` without the claim."""
+    ledger = reproduction.ledger
+    claim = next((claim for claim in ledger.claims if claim.id == CLAIM), None)
+    table = next((table for table in reproduction.tables if table.name == PAGE.name), None)
     if claim is None or table is None:
         return None
-    labels = [each.label for each in table.lines]
+    labels = [row.label for row in table.lines]
     at = labels.index(f"{NAMES[REPAIR]} minus {NAMES[BASELINE]}, success (pp)")
     differences, intervals = table.lines[at + 1].entries, table.lines[at + 2].entries
-    shown = (
-        Entry(text=f"{each.text} {ends.text}", detected=each.detected)
-        for each, ends in zip(differences[1:], intervals[1:], strict=True)
+    isolated, shared = (
+        Effect.of(f"{difference.text} {ends.text}", difference.detected)
+        for difference, ends in zip(differences[1:], intervals[1:], strict=True)
     )
-    return line(place, *shown, DECIDED if claim.parts[0].answer == "confirmed" else OPEN)
+    return Case(
+        place=f"{ledger.scenes} scenes of {ledger.library}, {wording.seeds(ledger.seeds)}",
+        isolated=isolated,
+        shared=shared,
+        reversal=claim.parts[0].answer == "confirmed",
+    )
 
 
-def state(ledger: Ledger, run: str = "this run") -> str:
-    """Say what became of the claim in a run that is about it, and by which of its parts."""
-    claim = next(each for each in ledger.claims if each.id == CLAIM)
-    part = next(each for each in claim.parts if each.answer == claim.verdict)
-    by = "" if claim.verdict == "confirmed" else f" by this part: {part.words}"
-    figure = f" ({words.estimate(part)})" if words.estimate(part) else ""
-    return f"As stated, {CLAIM} is {claim.verdict} on {run}{by}{figure}."
+def answer(cases: Sequence[Case]) -> str:
+    """Return our answer in a few words."""
+    if not cases:
+        return "No run here asked the paper's central question"
+    if any(case.reversal for case in cases):
+        return "The paper's reversal appeared here too"
+    return "We did not reproduce the paper's reversal"
 
 
-def central(lines: Iterable[Line]) -> Table:
-    """Return the claim with its numbers and where it holds, the paper's below."""
-    every = tuple(lines)
-    held = [each.label for each in every if each.entries[-1].text == DECIDED]
-    where = "; ".join(f"{place[:1].lower()}{place[1:]}" for place in held)
+def detail(cases: Sequence[Case]) -> str:
+    """Return what the answer rests on: the last run that decides a reversal, else the last."""
+    reversing = [case for case in cases if case.reversal] or cases
+    if not reversing:
+        return ""
+    case = reversing[-1]
+    alone = clause("With wrong values at the wind estimator alone", case.isolated)
+    shared = clause("with the predictor sharing them", case.shared)
+    return f"{alone}; {shared} ({case.place})."
+
+
+def clause(where: str, effect: Effect) -> str:
+    """Return what was detected in a condition, as a clause."""
+    if not effect.sign:
+        return f"{where} no difference between the two was detected ({effect.text} pp)"
+    than = "more" if effect.sign > 0 else "less"
+    return f"{where} the retrained estimator succeeds {than} often ({effect.text} pp)"
+
+
+def by_training(reproduction: Reproduction) -> str:
+    """Return in how many trainings the estimates reverse, as the paper counts them."""
+    claim = next(claim for claim in reproduction.ledger.claims if claim.id == CLAIM)
+    counted = claim.parts[1]
+    seeds = len(reproduction.ledger.seeds)
+    if counted.estimate is None:
+        return ""
+    count = round(counted.estimate)
+    rank = "ranks" if count == 1 else "rank"
+    return (
+        f"By the estimates alone, {count} of {seeds} trained models {rank} the two as the paper "
+        "does; in the paper all three do."
+    )
+
+
+def table_of(cases: Sequence[Case]) -> Table:
+    """Return the question's numbers run by run, the paper's below."""
     theirs = [paper_contrast(REPAIR, BASELINE, path) for path in ("reconstruction-only", "shared")]
-    printed = (f"{wording.signed(each.value)} {bracket(each.interval or ())}" for each in theirs)
+    printed = [f"{wording.signed(c.value)} {bracket(c.interval or ())}" for c in theirs]
+    rows = [
+        line(
+            case.place[:1].upper() + case.place[1:],
+            *(Entry(text=e.text, detected=bool(e.sign)) for e in (case.isolated, case.shared)),
+            "yes" if case.reversal else "not detected",
+        )
+        for case in cases
+    ]
     return Table(
         name="central",
-        title="GRU+DCC minus GRU, success (pp), wind L3",
+        title="Success of the retrained wind estimator minus the original one (pp), strong wind",
         columns=COLUMNS,
-        lines=(*every, line("The paper", *printed, "claimed")),
+        lines=(*rows, line("The paper", *printed, "yes")),
         words=COLUMNS[-1:],
         notes=(
-            f"The ranking reverses {where}." if held else "Nowhere is it decided.",
-            "Each was decided by itself; no test compares them. Intervals of the paper and of its "
-            "reproduction are percentile bootstraps of scenes, those of audits score intervals.",
+            "Rows are separate tests; they are not compared with each other. Intervals of the "
+            "paper and of its reproduction are percentile bootstraps of scenes, those of audits "
+            "score intervals.",
         ),
     )
 
 
-def of_page(found: Reproduction) -> tuple[str, Table] | None:
-    """Return what the page of a run says first: the claim's state, and where it holds.
+def of_page(reproduction: Reproduction) -> tuple[str, str, Table] | None:
+    """Return our answer, what it rests on, and its table for the page of a run.
 
-    `None` for a run that is not about the claim; of a quick run only what was decided besides.
+    `None` where the run is not about the question; a quick run has only the answers of others.
     """
-    asked = found.ledger
-    if all(each.id != CLAIM for each in asked.claims):
+    if all(claim.id != CLAIM for claim in reproduction.ledger.claims):
         return None
-    besides = Table.model_validate_json(ELSEWHERE.read_bytes()).lines
-    if found.profile == words.QUICK:
-        return f"A quick run decides nothing about {CLAIM}.", central(besides)
-    seeds = wording.seeds(asked.seeds)
-    own = of_run(found, f"In this run, {asked.scenes} scenes of {asked.library}, {seeds}")
-    return state(asked), central([*([own] if own else []), *besides])
+    cases = elsewhere()
+    if reproduction.profile != words.QUICK:
+        own = case_of(reproduction)
+        cases = (*([own] if own else []), *cases)
+        return answer(cases), f"{detail(cases)} {by_training(reproduction)}", table_of(cases)
+    return answer(cases), f"{detail(cases)} {QUICK_RUN}", table_of(cases)

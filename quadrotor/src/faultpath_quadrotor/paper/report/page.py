@@ -11,6 +11,7 @@ from faultpath.report.frame import render
 from faultpath.report.svg import Axis, Svg, draw_axes, text_width, tick_label
 from faultpath.trials.provenance import RunProvenance
 from faultpath_quadrotor.paper.answers import Point, Reproduction, Series, Sweep
+from faultpath_quadrotor.paper.central import QUESTION
 from faultpath_quadrotor.paper.report import words
 
 LOOKS = 4
@@ -87,12 +88,12 @@ def _key(svg: Svg, series: Sequence[Series]) -> None:
 
 
 def reproduction_page(
-    found: Reproduction, provenance: RunProvenance | None, central: tuple[str, Table] | None
+    found: Reproduction, provenance: RunProvenance | None, central: tuple[str, str, Table] | None
 ) -> str:
     """Return the whole page as HTML: styles and pictures inside.
 
-    `central` says what became of the paper's central claim here, and where it holds; `None` where
-    the run is not about it.
+    `central` is our answer to the paper's central question with its table; `None` where the run
+    is not about it.
     """
     notes = [note for part in (*found.tables, *found.figures) for note in dict.fromkeys(part.notes)]
     shared = [note for note in dict.fromkeys(notes) if notes.count(note) > 1]
@@ -105,9 +106,11 @@ def reproduction_page(
         ledger=found.ledger,
         central=central
         and {
-            "state": central[0],
-            "table": Markup(html(central[1])),
-            "notes": (*central[1].legend(), *central[1].notes),
+            "answer": central[0],
+            "question": QUESTION,
+            "detail": central[1],
+            "table": Markup(html(central[2])),
+            "notes": (*central[2].legend(), *central[2].notes),
         },
         tables=[(table, Markup(html(table, "beside", caption=False))) for table in found.tables],
         footnotes={note: number for number, note in enumerate(shared, 1)},

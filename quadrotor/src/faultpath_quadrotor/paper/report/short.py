@@ -5,23 +5,32 @@ from collections.abc import Iterator
 from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath_quadrotor.paper.answers import ClaimVerdict, Ledger, Part
 from faultpath_quadrotor.paper.claims import SUBJECTS
-from faultpath_quadrotor.paper.report.words import ANSWERS, SIZES, estimate, figure, typeset
-
-KINDS = ("platform", "finding")
+from faultpath_quadrotor.paper.report.words import (
+    ANSWERS,
+    KINDS,
+    SIZES,
+    estimate,
+    figure,
+    is_non_detection,
+    typeset,
+)
 
 
 def by_kind(ledger: Ledger) -> Table:
-    """Return how many claims of each kind got which answer, with their ids."""
+    """Return how many claims of each kind got which answer, with their ids.
+
+    An asterisk marks what is confirmed by a difference that was not detected.
+    """
     lines: list[Line] = []
-    for kind in KINDS:
+    for kind, name in KINDS.items():
         claims = [claim for claim in ledger.claims if claim.kind == kind]
-        lines.append(line(kind, *(_ids(claims, answer) for answer in ANSWERS)))
-    return Table(corner="Kind", columns=ANSWERS, words=ANSWERS, lines=tuple(lines))
+        lines.append(line(name, *(_ids(claims, answer) for answer in ANSWERS)))
+    return Table(corner="The paper's", columns=ANSWERS, words=ANSWERS, lines=tuple(lines))
 
 
 def _ids(claims: list[ClaimVerdict], answer: str) -> str:
-    found = [claim.id for claim in claims if claim.verdict == answer]
-    return f"{len(found)}: {', '.join(found)}" if found else "0"
+    ids = [f"{c.id}{'*' * is_non_detection(c)}" for c in claims if c.verdict == answer]
+    return f"{len(ids)}: {', '.join(ids)}" if ids else "0"
 
 
 def by_subject(ledger: Ledger) -> Table:

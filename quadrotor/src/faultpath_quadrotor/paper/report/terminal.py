@@ -47,11 +47,7 @@ def ledger_view(ledger: Ledger, profile: str) -> RenderableType:
     about, claims = Text(_about(ledger)), _claims(ledger)
     if profile == words.QUICK:
         return Group(title, Text(words.VERDICTS), about, blank, *claims)
-    counts = (
-        Text(f"{words.SIGNS[answer]} {ledger.count(answer)} {answer}", STYLES[_TONES[answer]])
-        for answer in words.ANSWERS
-    )
-    return Group(title, about, blank, *claims, blank, Text(", ").join(counts), *below)
+    return Group(title, about, blank, *claims, blank, title, *below)
 
 
 def _claims(ledger: Ledger) -> Iterable[RenderableType]:

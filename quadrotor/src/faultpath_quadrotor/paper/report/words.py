@@ -119,17 +119,44 @@ def sizes(ledger: Ledger) -> str:
     )
 
 
+KINDS = {
+    "finding": "findings",
+    "platform": "properties that the simulator was matched to",
+}
+"""What claims of a kind are called: findings come out by themselves, matched properties do not."""
+
+
 def headline(ledger: Ledger, profile: str) -> str:
-    """Return the outcome of all claims in one sentence; a quick run has none."""
+    """Return the outcome of all claims in one sentence, kind by kind; a quick run has none."""
     if profile == QUICK:
         return "The quick profile tests the pipeline and decides nothing about the paper’s claims"
-    confirmed, refuted, undecided = map(ledger.count, ANSWERS)
-    claims = wording.counted(len(ledger.claims), "claim")
-    about = f"{claims} that this run is about" if ledger.left_out else f"the paper’s {claims}"
-    return (
-        f"Of {about}, our runs confirm "
-        f"{confirmed}, refute {refuted} and leave {undecided} undecided"
-    )
+    clauses = [tally(ledger, kind) for kind in KINDS if any(c.kind == kind for c in ledger.claims)]
+    return "; ".join(clauses) or "This run is about none of the paper’s claims"
+
+
+def tally(ledger: Ledger, kind: str) -> str:
+    """Return how many claims of a kind got which answer, as a clause."""
+    verdicts = [claim.verdict for claim in ledger.claims if claim.kind == kind]
+    confirmed, refuted, undecided = map(verdicts.count, ANSWERS)
+    about = " that this run is about" if ledger.left_out else ""
+    if kind == "finding":
+        return (
+            f"Of the paper’s {len(verdicts)} findings{about}, {confirmed} came out, {refuted} "
+            f"{'was' if refuted == 1 else 'were'} refuted and {undecided} stayed undecided"
+        )
+    return f"of {len(verdicts)} {KINDS[kind]}, {confirmed} hold on these scenes"
+
+
+def is_non_detection(claim: ClaimVerdict) -> bool:
+    """Return whether a claim is confirmed by differences that were looked for and not detected."""
+    return claim.verdict == "confirmed" and all(NOT_DETECTED in p.words for p in claim.parts)
+
+
+NOT_DETECTED = "is not detected"
+NON_DETECTION = (
+    "An asterisk marks a claim that is confirmed because no difference was detected: that is no "
+    "proof that there is none."
+)
 
 
 def behind(unit: str) -> str:
