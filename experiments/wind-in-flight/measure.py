@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import faultpath_quadrotor.platform as chosen
-from faultpath_quadrotor.predictors import anchored
+from faultpath_quadrotor.predictors import anchored, compiled
 from space import platform_of
 
 JOB: dict[str, Any] = json.loads(Path(sys.argv[1]).read_text())
@@ -23,7 +23,7 @@ FOLDER = Path(sys.argv[2])
 MEASURED_SEEDS: list[int] = JOB["seeds"]
 POINT: dict[str, Any] = JOB["point"]
 PLATFORM = chosen.PLATFORM = platform_of(POINT)
-anchored.LINEAR_BOUND_MPS2 = POINT["residual_bound_mps2"]
+anchored.LINEAR_BOUND_MPS2 = compiled.LINEAR_BOUND_MPS2 = POINT["residual_bound_mps2"]
 
 import numpy as np  # noqa: E402  (the platform first)
 import torch  # noqa: E402
@@ -123,12 +123,19 @@ def scaled_statistics(measure: Any) -> Any:
 predictor_task._measure = scaled_statistics(predictor_task._measure)
 
 
+def flight_key(cell: dict[str, Any], seed: int, first: int, last: int) -> str:
+    """Return a hash of what decides the flights of a cell and what is measured on them."""
+    beside = ["residual_bound_mps2", "pool_turbulence_mps", "elevation_deg"]
+    beside += ["conditioning_scale"] if "wm-u" in json.dumps(cell) else []
+    more = [POINT[name] for name in beside]
+    return digest(PLATFORM.hash, more, JOB["code"], cell, seed, first, last, MEASURED_SEEDS)
+
+
 @arithmetic()
 @torch.inference_mode()
 def fly(cell: dict[str, Any], seed: int, first: int, last: int) -> dict[str, Any]:
     """Return how scenes of a cell ended, and each measured model's errors by window."""
-    key = digest(PLATFORM.hash, POINT, JOB["code"], cell, seed, first, last, MEASURED_SEEDS)
-    place = FOLDER / "flights" / f"{key}.json"
+    place = FOLDER / "flights" / f"{flight_key(cell, seed, first, last)}.json"
     if place.exists():
         return json.loads(place.read_text())
     system = Quadrotor.parse(**cell["options"])

@@ -100,7 +100,7 @@ def job_path(options: argparse.Namespace, name: str, seeds: list[int]) -> Path:
 def start(
     options: argparse.Namespace, name: str, point: dict[str, Any], seeds: list[int]
 ) -> "subprocess.Popen[bytes]":
-    """Start to measure a point in a process of its own, behind what a person waits for."""
+    """Start to measure a point in a process of its own."""
     job = {
         "point": point,
         "code": commit(),
@@ -112,7 +112,7 @@ def start(
     file = job_path(options, name, seeds)
     file.write_text(json.dumps(job))
     log = (options.folder / f"{name}.log").open("a")
-    command = ["nice", "-n", "10", sys.executable, str(HERE / "measure.py"), str(file)]
+    command = [sys.executable, str(HERE / "measure.py"), str(file)]
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     return subprocess.Popen(
         [*command, str(options.folder)], stdout=log, stderr=log, env=environment
