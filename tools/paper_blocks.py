@@ -6,9 +6,9 @@ from pathlib import Path
 
 import blocks
 from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed
-from faultpath_quadrotor.paper.answers import RUN, Reproduction
-from faultpath_quadrotor.paper.cells import SYSTEM, Setting
-from faultpath_quadrotor.paper.central import (
+from faultpath_paper.answers import RUN, Reproduction
+from faultpath_paper.cells import SYSTEM, Setting
+from faultpath_paper.central import (
     CASES,
     ELSEWHERE,
     QUESTION,
@@ -20,10 +20,10 @@ from faultpath_quadrotor.paper.central import (
     detail,
     table_of,
 )
-from faultpath_quadrotor.paper.facts import SECTIONS, STANDINGS, counted, facts, listed
-from faultpath_quadrotor.paper.report.page import sweep_plot
-from faultpath_quadrotor.paper.report.short import apart, by_kind, by_subject
-from faultpath_quadrotor.paper.report.words import NON_DETECTION, headline
+from faultpath_paper.facts import SECTIONS, STANDINGS, counted, facts, listed
+from faultpath_paper.report.page import sweep_plot
+from faultpath_paper.report.short import apart, by_kind, by_subject
+from faultpath_paper.report.words import NON_DETECTION, headline
 from flown_code import flown_by
 from pictures import IMAGES, standing
 
@@ -176,7 +176,8 @@ def fact_page() -> Mapping[Path, str]:
         f"{len(facts())} facts: {words}. *As written*: what the paper says. *Our reading*: the "
         "paper is silent there, or can be read in several ways. *Otherwise*: something else. "
         "Places are files of `quadrotor/src/faultpath_quadrotor`, or of `src` from `faultpath/` "
-        "on, each with a name in the file. Made from `paper/paper/facts.yaml` by `make docs`.",
+        "on and of `paper/src` from `faultpath_paper/` on, each with a name in the file. `make "
+        "docs` makes this page from `paper/src/faultpath_paper/data/facts.yaml`.",
     ]
     for section, title in SECTIONS.items():
         parts += [f"## {title}", grid(listed(section))]

@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from faultpath_quadrotor.paper.cells import published
+from faultpath_paper.cells import published
 
 from faultpath.core.streams import generator
 

@@ -3,9 +3,9 @@
 import re
 
 import pytest
-from faultpath_quadrotor.paper.answers import RUN, Ledger, Reproduction, shipped_ledger
-from faultpath_quadrotor.paper.cells import published_claims
-from faultpath_quadrotor.paper.central import (
+from faultpath_paper.answers import RUN, Ledger, Reproduction, shipped_ledger
+from faultpath_paper.cells import published_claims
+from faultpath_paper.central import (
     CLAIM,
     Case,
     Effect,
@@ -17,9 +17,9 @@ from faultpath_quadrotor.paper.central import (
     elsewhere,
     of_page,
 )
-from faultpath_quadrotor.paper.claims import SUBJECTS
-from faultpath_quadrotor.paper.report.short import apart, by_kind, by_subject
-from faultpath_quadrotor.paper.report.words import headline, is_non_detection
+from faultpath_paper.claims import SUBJECTS
+from faultpath_paper.report.short import apart, by_kind, by_subject
+from faultpath_paper.report.words import headline, is_non_detection
 
 from faultpath.statistics.estimate import Sign
 
