@@ -9,7 +9,6 @@ from pydantic import Discriminator, Field, model_validator
 
 from faultpath.core.arrays import Array
 from faultpath.core.errors import UserError
-from faultpath.core.renamed import tells_renames
 from faultpath.core.results import Frozen
 from faultpath.core.text import listed, unknown
 from faultpath.faults.base import Draws, Intervention, Memory, Moment
@@ -91,7 +90,6 @@ ALL = "*"
 """Every consumer of the channel: the fault is shared."""
 
 
-@tells_renames
 class Fault(Frozen):
     """One intervention on one channel, at some or all of its consumers, for some time.
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 
 from faultpath.core.arrays import Array
-from faultpath.core.renamed import tells_renames
 from faultpath.loop.reading import IllegalRead, UndeclaredReader
 
 Memory: TypeAlias = Any
@@ -150,7 +149,6 @@ class Module(Part):
         return None
 
 
-@tells_renames
 @dataclass(frozen=True)
 class Progress:
     """Where each scene's trial stands, `[B]` each; one that runs no longer stays as it ended."""

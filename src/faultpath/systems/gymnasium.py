@@ -15,7 +15,6 @@ from typing_extensions import override
 
 from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
-from faultpath.core.renamed import tells_renames
 from faultpath.core.streams import generator
 from faultpath.systems.episodes import (
     SCENE,
@@ -38,7 +37,6 @@ _PLACE = re.compile(r"(?<=faultpath_system_)\w*(?=:)| at 0x[0-9a-f]+")
 both differ from machine to machine."""
 
 
-@tells_renames
 class GymnasiumPlant(EpisodePlant):
     """Environments of Gymnasium, side by side.
 
