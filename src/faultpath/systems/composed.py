@@ -1,4 +1,4 @@
-"""A system composed of a plant of episodes and modules; all that can be seen is not declared."""
+"""A system composed of a plant of episodes and modules; its interface follows from these."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -47,8 +47,8 @@ class ComposedSystem(LoopSystem):
     has a fidelity gap), what the plant reads is commanded, what a module writes is reconstructed.
 
     Args:
-        name: Of the system.
-        plant: What senses and is moved.
+        name: Name of the system.
+        plant: The part that senses and is moved.
         variants: The ways to wire it: `Parts`, or just their modules.
         units: Unit of each source, or the fields of a `faultpath.interface.Source` where there is
             more to say: unit, provenance, latency_s, rate_hz, uncertainty, correlation_group; and
@@ -77,7 +77,7 @@ class ComposedSystem(LoopSystem):
         self._parts = {
             key: parts
             if isinstance(parts, Parts)
-            else Parts(f"Modules: {', '.join(map(_said, parts))}.", parts)
+            else Parts(f"Modules: {', '.join(map(_described, parts))}.", parts)
             for key, parts in variants.items()
         }
         self.components = dict[str, tuple[str, ...]]()
@@ -94,9 +94,9 @@ class ComposedSystem(LoopSystem):
         seen = _Shapes()
         for variant in self._parts:
             wired = self.wirings[variant].bindings
-            made = graph(self._interface, plant, self.modules(variant, None), wired)
+            executable = graph(self._interface, plant, self.modules(variant, None), wired)
             batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
-            first = next(iter(Loop(self._interface, made).execute(batch, cast("Any", seen))))
+            first = next(iter(Loop(self._interface, executable).execute(batch, cast("Any", seen))))
             for world in first.state.worlds:
                 world.close()
         self._interface = self._declared(units, several, plant.shapes | seen.shapes)
@@ -163,8 +163,8 @@ class ComposedSystem(LoopSystem):
                     f"system '{self.name}': source '{name}' has no unit: add it to units, '1' for "
                     "a number without one"
                 )
-            given = units[name]
-            facts = {"unit": given} if isinstance(given, str) else dict(given)
+            entry = units[name]
+            facts = {"unit": entry} if isinstance(entry, str) else dict(entry)
             if named := facts.pop("components", ()):
                 self.components[name] = tuple(named)
                 if name in shapes and len(named) != np.prod(shapes[name], dtype=int):
@@ -193,7 +193,7 @@ class ComposedSystem(LoopSystem):
             raise SystemMistake(f"system '{self.name}': {error}") from None
 
 
-def _said(module: Module) -> str:
+def _described(module: Module) -> str:
     return str(module) if isinstance(module, FunctionModule) else module.name
 
 

@@ -27,8 +27,8 @@ def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
             f"{name!r} cannot name a system and its file: take small letters, digits and '_', such "
             "as my_rover."
         )
-    found = None if iskeyword(name) else find_spec(name)
-    places = [] if found is None else [*(found.submodule_search_locations or ()), found.origin]
+    spec = None if iskeyword(name) else find_spec(name)
+    places = [] if spec is None else [*(spec.submodule_search_locations or ()), spec.origin]
     here = all(Path(place).resolve().is_relative_to(folder.resolve()) for place in places if place)
     taken = ""
     if iskeyword(name):
