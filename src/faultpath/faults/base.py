@@ -87,7 +87,7 @@ class Draws:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """When an intervention is asked for its value."""
+    """The time at which an intervention acts."""
 
     step: int
     """Control step, from 0."""

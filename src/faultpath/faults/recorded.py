@@ -16,7 +16,7 @@ from faultpath.interface import Channel
 
 
 class Address(NamedTuple):
-    """Whose errors a part of a record holds."""
+    """Channel, scene and seed of the errors in a part of a record."""
 
     channel: str
     scene: str

@@ -57,7 +57,7 @@ Words = Annotated[str, AfterValidator(_readable)]
 
 
 class Provenance(StrEnum):
-    """Where a source's numbers come from."""
+    """Origin of a source's numbers."""
 
     MEASURED = "measured"
     ESTIMATED = "estimated"

@@ -85,15 +85,15 @@ def fit(
     `[n, ...]` where windows have no steps.
 
     Args:
-        module: What is fitted; it is copied, and its weights are the initial ones. Or a function
-            that makes it, called with torch's random numbers at the seed.
+        module: The module to fit; it is copied, and its weights are the initial ones. Or a
+            function that makes it, called with torch's random numbers at the seed.
         data: Windows and targets.
-        loss: Of the module's output and the targets, which are tensors as `Windows` names them.
+        loss: Function of the module's output and the targets, tensors as `Windows` names them.
         repair: One repair or several; none makes a baseline.
-        seed: Of initial weights, minibatch order, torch's random numbers and errors.
+        seed: Seed of initial weights, minibatch order, torch's random numbers and errors.
         schedule: Default: `Schedule()`.
         validation: Share of the episodes that are kept for validation.
-        name: Of the files; default the module's class and the repair's kind.
+        name: Name of the files; default the module's class and the repair's kind.
         folder: Gets `<name>-<seed>.safetensors` and its record `.json`, each whole or absent.
 
     Raises:

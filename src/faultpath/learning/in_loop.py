@@ -27,8 +27,8 @@ class Learned(Module):
     because in a batch torch rounds a scene otherwise in other company.
 
     Args:
-        name: Under which the interface lists its places.
-        net: What was fitted; it returns `[n, ...]`.
+        name: Name under which the interface lists its places.
+        net: The fitted module; it returns `[n, ...]`.
         writes: The source that its output is.
         reads: Ports of this step.
         reads_past: Ports of the step before.

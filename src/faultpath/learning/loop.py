@@ -35,7 +35,7 @@ class Diverged(UserError):
 
 @dataclass(frozen=True)
 class Moment:
-    """How far a fit is."""
+    """Progress of a fit."""
 
     epoch: int
     """Epoch at work, counted from 0."""
@@ -89,7 +89,7 @@ class Task(ABC):
 
 @dataclass(frozen=True)
 class Journal:
-    """Where an unfinished fit stands: one file, written whole after every epoch.
+    """State of an unfinished fit: one file, written whole after every epoch.
 
     It holds everything that the next epoch depends on. Draws are addressed by the epoch, so that
     there is no random state to keep.

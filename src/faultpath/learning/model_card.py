@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class Schedule(Frozen, allow_inf_nan=False):
-    """How long and by which steps a module is fitted; the learning rate is constant."""
+    """Epochs, minibatches and optimiser of a fit; the learning rate is constant."""
 
     epochs: int = Field(default=10, ge=1, le=90_000)
     batch_size: int = Field(default=64, ge=1)
@@ -40,7 +40,7 @@ class Schedule(Frozen, allow_inf_nan=False):
 
 
 class Card(Frozen):
-    """Where the weights of one fit come from: `<name>-<seed>.json` beside its weights.
+    """Origin of the weights of one fit: `<name>-<seed>.json` beside its weights.
 
     Only `weights_sha256` identifies the weights: durations and versions differ between fits that
     gave the same ones.

@@ -163,7 +163,7 @@ def withholding(
     a module that no longer reads the channel.
 
     Args:
-        channel: What is withheld.
+        channel: Channel to withhold.
         consumers: Modules or `module.place`; all by default.
         value: In the reading's unit and shape; default the channel's erasure default.
     """

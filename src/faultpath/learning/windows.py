@@ -30,7 +30,7 @@ class Windows:
     """Windows, or whole episodes, of one length: what a module reads in them, and its targets.
 
     Args:
-        interface: Of the system that the module belongs to; its taps deliver.
+        interface: Interface of the module's system; its taps deliver.
         reader: The module, or the consumers `module.place` of one or several, that is fitted.
         readings: By channel, what the source holds: `[N, T, ...]` step by step in order, or
             `[N, ...]` for what is constant in a window. Without steps all are `[N, ...]`.
@@ -103,7 +103,7 @@ class Windows:
 
     @cached_property
     def ports(self) -> Mapping[Port, str]:
-        """Where the reader reads, with the consumer's full name."""
+        """Ports at which the reader reads, with the consumer's full name."""
         ports: dict[Port, str] = {}
         for channel in self.interface.channels:
             for consumer in channel.consumers:

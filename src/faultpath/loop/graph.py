@@ -20,7 +20,7 @@ def graph(
 
     Args:
         interface: Declares the channels, their sources and their consumers.
-        plant: What senses and is moved.
+        plant: The part that senses and is moved.
         modules: In any order.
         bindings: Channel to source, where it is not the channel's first source.
 

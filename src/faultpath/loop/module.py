@@ -99,8 +99,8 @@ class Part(ABC):
     """Ports that get what their source held one step before: this is what closes a cycle. At the
     first step that is what the source's module gives as `before`."""
     at_read: frozenset[Port] = frozenset()
-    """Those of its ports that get their reading only in steps in which it is looked at; then
-    receipts count what was read and not what was handed over."""
+    """Ports that get their reading only in steps in which it is looked at; then receipts count what
+    was read and not what was handed over."""
 
     writes: tuple[str, ...] = ()
     """Sources of the interface that it produces at every step; a plant senses its sources."""
@@ -151,7 +151,7 @@ class Module(Part):
 
 @dataclass(frozen=True)
 class Progress:
-    """Where each scene's trial stands, `[B]` each; one that runs no longer stays as it ended."""
+    """State of each scene's trial, `[B]` each; one that runs no longer stays as it ended."""
 
     running: Array
     succeeded: Array

@@ -82,7 +82,7 @@ class Tap:
     asks: int = 0
     """Answers of a query, over all steps."""
     asked: int = 0
-    """Those of the last step."""
+    """Answers of a query in the last step."""
     last_step: int = -1
     given: Array = None
     """The value of the step's reading."""

@@ -40,7 +40,7 @@ class Taps:
     """The taps of one variant over one block of scenes, with the faults of one arm.
 
     Args:
-        interface: What the system declares.
+        interface: The system's interface.
         faults: As `faultpath.faults.resolve` returns them, in the order in which they act where
             they meet at a tap.
         scenes: Scene ids, one a row of every reading.
