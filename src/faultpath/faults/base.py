@@ -27,8 +27,8 @@ class Draws:
     address starts the stream anew: calls with different shapes, and normal and uniform numbers,
     come from the same bits. `beside` gives an independent address.
 
-    With `own`, numbers are made of those of the cause and of its own: two draws of one cause with
-    the loadings a and b have the correlation a * b (one-factor model; uniform numbers through the
+    With `own`, numbers mix those of the cause with those of `own`: two draws of one cause with the
+    loadings a and b have the correlation a * b (one-factor model; uniform numbers through the
     Gaussian copula). Permutations are of the cause.
     """
 

@@ -52,7 +52,7 @@ def encode_record(record: Record, turning: Collection[str] = ()) -> bytes:
 class Recorded(Intervention):
     """Deliver with the errors that a file holds for the channel, by scene, seed and step.
 
-    A module alone can so get the errors that all modules had in another flight. After the end of a
+    So one module alone can get the errors that all modules had in another trial. After the end of a
     scene's record its last error stays.
     """
 

@@ -1,4 +1,4 @@
-"""Repaired modules in a loop: what a fit had at its taps is what they have in a trial."""
+"""Repaired modules in a loop: they read in a trial what they read in the fit."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class Learned(Module):
     """A fitted torch module in the loop: one output of the last steps of what its ports got.
 
     At each step `forward` gets what it got in the fit, `inputs["gain", "model"]` of `[1, T, ...]`,
-    float32, the present last; before there are T steps the first fills in. Scenes go one by one,
-    because in a batch torch rounds a scene otherwise in other company.
+    float32, the present last; before step T the first step fills in. Scenes go one by one, because
+    torch may round a scene differently in another batch.
 
     Args:
         name: Name under which the interface lists its places.

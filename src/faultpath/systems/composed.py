@@ -28,7 +28,7 @@ SCENES: Mapping[str, Sequence[int]] = {
 class Parts:
     """A variant: its modules, in any order, or a function of the arm's seed that returns them.
 
-    The function is for trained modules; with `None` only their ports and shapes are looked at.
+    The function is for trained modules; it gets `None` where only ports and shapes are needed.
     """
 
     description: str
@@ -40,11 +40,11 @@ class Parts:
 
 
 class ComposedSystem(LoopSystem):
-    """A system of a plant and modules whose interface is what runs.
+    """A system of a plant and modules, whose interface follows from them.
 
     Consumers follow from the modules' ports, shapes from the first step of each variant.
-    A source of the plant is measured, what a scene's set-up tells is an estimate of it (its channel
-    has a fidelity gap), what the plant reads is commanded, what a module writes is reconstructed.
+    What the plant senses is measured, what a scene's set-up returns is estimated (its channel has a
+    fidelity gap), what the plant reads is commanded, what a module writes is reconstructed.
 
     Args:
         name: Name of the system.
@@ -142,7 +142,7 @@ class ComposedSystem(LoopSystem):
         several: Mapping[str, Sequence[str]],
         shapes: Mapping[str, tuple[int, ...]],
     ) -> Interface:
-        """Return the interface; what no shape is known of counts as a number."""
+        """Return the interface; a source of unknown shape counts as a number."""
         plant = self._plant
         modules = [module for parts in self._parts.values() for module in parts.of(None)]
         read = dict.fromkeys(

@@ -51,8 +51,8 @@ class GymnasiumPlant(EpisodePlant):
         steps: Control steps of an episode; default the time limit of the environment.
         dt_s: Length of a control step, s; default the `dt` of the environment.
         setup: Called as `setup(env, rng)` for each scene, after its seeded reset, to set model
-            parameters and disturbances. What it returns by name are sources too. It is hashed:
-            two trials whose scenes were set up in another way are no pair.
+            parameters and disturbances. The values that it returns by name are sources too, and
+            are hashed: two trials whose scenes were set up differently are no pair.
         on_step: Called as `on_step(env, rng, step)` before each step, to disturb the scene. It
             draws other numbers at each step and seed, and the same in every arm.
         trace: `trace(env)` returns where it is, `(x, y)` or `(x, y, z)` in metres, for the report.
@@ -155,8 +155,8 @@ def _identity(env: Any) -> str:
 def _code(env: Any) -> tuple[str, ...]:
     """Return the classes of an environment and its wrappers that are not Gymnasium's own.
 
-    What is registered under an id is imported by nobody, and its code counts all the same. The
-    file of a system counts already.
+    Nobody imports an environment that is registered under an id, but its code decides trials all
+    the same. The file of a system is counted elsewhere.
     """
     parts: list[Any] = [env]
     while hasattr(parts[-1], "env"):

@@ -19,8 +19,8 @@ TEMPLATES = {
 def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
     """Write `NAME.py` and `test_NAME.py` into a folder and return their paths.
 
-    Raises `UserError` for a name that is none in Python or begins with `test_`, that something
-    else is imported by, an unknown template, and for files that are there.
+    Raises `UserError` for a name that is no Python name, begins with `test_` or already belongs to
+    another module, for an unknown template, and for files that exist.
     """
     if not name.isidentifier() or not name.islower() or name.startswith("test_"):
         raise UserError(

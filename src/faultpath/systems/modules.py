@@ -140,9 +140,9 @@ class FunctionModule(Module):
 def row_wise(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return a function, such as a torch module, that takes the rows of a batch one at a time.
 
-    A product of matrices rounds otherwise for another number of rows; called row by row it gives
-    each scene the same bits, whatever the scenes beside it. Arrays are `[B, ...]`, and so is each
-    that is returned; all else is handed on.
+    A matrix product rounds differently for another number of rows; row by row it gives each scene
+    the same bits, whatever the other scenes. Arrays are `[B, ...]`, also those returned; all other
+    arguments are passed on unchanged.
     """
 
     def each(*values: Any) -> Any:

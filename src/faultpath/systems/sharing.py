@@ -40,10 +40,10 @@ def shared_objects(
 ) -> tuple[Shared, ...]:
     """Return what several parts of a program share, objects first.
 
-    It follows attributes, keys, items, bound methods and what functions close over; compiled code
-    is not seen. What lies within a shared object is listed again only beside a copy of it. A number
-    that two parts keep under one name may be a copy that each took of one source. Zeros, whole
-    numbers and truths are left out.
+    It follows attributes, keys, items, bound methods and closures, but not compiled code. The
+    contents of a shared object are listed only together with a copy outside of it. A number that
+    two parts keep under one name may be copied from one source. Zeros, whole numbers and booleans
+    are left out.
 
     Args:
         parts: The objects that read, by a name for each.

@@ -77,8 +77,8 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
 
     Each of them is a channel, by default of the same name, with the consumer `at.name` in small
     letters. All else is the object's own and stays shared with it: the stand-in is of a class made
-    from the object's, and has the object's own attributes. What its reader writes into a tapped
-    attribute is that reader's from there on, and no fault reaches it there any more.
+    from the object's, and has the object's own attributes. Once its reader writes into a tapped
+    attribute, the reader gets what it wrote, and no fault reaches it there any more.
 
     Make stand-ins in the function that `writes(..., of=make)` calls for each scene. An object that
     has handed out its own methods leads past its taps; `writes` refuses it and says where.
