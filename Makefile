@@ -8,11 +8,11 @@ SEED ?= random
 VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
-INPUTS := pyproject.toml constraints.txt quadrotor/pyproject.toml quadrotor/hatch_build.py $(wildcard quadrotor/src/faultpath_quadrotor/native/source/*)
+INPUTS := pyproject.toml constraints.txt quadrotor/pyproject.toml paper/pyproject.toml quadrotor/hatch_build.py $(wildcard quadrotor/src/faultpath_quadrotor/native/source/*)
 BENCH := .venv-bench
 BENCH_JAX := .venv-bench-jax
 PYTHONS := 3.12 3.13
-SOURCES := src quadrotor tests examples benchmarks
+SOURCES := src quadrotor paper tests examples benchmarks
 
 # Installing compiles the kernels for whoever asks, and all that is installed here is for the quadrotor too.
 export HATCH_BUILD_HOOK_ENABLE_CUSTOM := true
@@ -59,7 +59,7 @@ test test-pythons test-foreign fuzz: export PYTHONDONTWRITEBYTECODE := 1
 test fuzz: $(STAMPS)/compiled
 
 test: $(STAMPS)/dev prerequisites ## Run the tests; more options in ARGS="..."
-	@$(BIN)/python -m compileall -qq src quadrotor
+	@$(BIN)/python -m compileall -qq src quadrotor paper
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal $(ARGS)
 
 # torch, and with it the quadrotor, is tested under the Python of .venv alone: the engine is for all of
@@ -149,8 +149,8 @@ endef
 
 # A stamp is written only after everything before it has worked. $(VENV)/incomplete lies there while
 # pip writes, so an environment in which an install was cut short is built again from nothing.
-$(STAMPS)/runtime: PARTS := -e . -e ./quadrotor
-$(STAMPS)/dev: PARTS := -e '.[dev]' -e './quadrotor[mujoco,ulog,bags]'
+$(STAMPS)/runtime: PARTS := -e . -e ./quadrotor -e ./paper
+$(STAMPS)/dev: PARTS := -e '.[dev]' -e './quadrotor[mujoco,ulog,bags]' -e ./paper
 $(STAMPS)/runtime $(STAMPS)/dev: $(INPUTS)
 	@if [ -e $(VENV)/incomplete ] || ! $(BIN)/python -m pip --version >/dev/null 2>&1; then \
 	  $(CHECK_PYTHON); \
@@ -179,7 +179,7 @@ $(BENCH)/ready: $(INPUTS) benchmarks/requirements.txt
 	@touch $(BENCH)/incomplete
 	@echo "Installing faultpath and what it is compared with into $(BENCH); the first time takes minutes"
 	@$(BENCH)/bin/python -m pip install --no-compile --disable-pip-version-check --quiet \
-	  -c constraints.txt -r benchmarks/requirements.txt -e . -e './quadrotor[mujoco,ulog]'
+	  -c constraints.txt -r benchmarks/requirements.txt -e . -e './quadrotor[mujoco,ulog]' -e ./paper
 	@rm $(BENCH)/incomplete
 	@touch $@
 

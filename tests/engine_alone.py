@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-OPTIONAL = ("torch", "faultpath_quadrotor", "ray", "playwright")
+OPTIONAL = ("torch", "faultpath_quadrotor", "faultpath_paper", "ray", "playwright")
 QUADROTOR = re.compile(r"quadrotor\b(?!-)|\b(reproduce|train)\b")
 """What a test that asks for the quadrotor says in its code or its parameters: where commands and
 processes name it, no import does."""

@@ -8,10 +8,10 @@ from typing import Any
 
 import map_blocks
 from blocks import REFERENCE, ROOT
-from faultpath_quadrotor.paper.claims import again
-from faultpath_quadrotor.paper.pages import PAGES
-from faultpath_quadrotor.paper.reproduction import write_pages
-from faultpath_quadrotor.paper.run import CONCLUSIONS, read_results
+from faultpath_paper.claims import again
+from faultpath_paper.pages import PAGES
+from faultpath_paper.reproduction import write_pages
+from faultpath_paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
 
 from faultpath.api.folders import MAP, RECORD, SYSTEM, TRACES, as_text

@@ -42,7 +42,7 @@ KINDS: Mapping[str, Any] = {
     **blocks.KINDS,
     "carry": carry_blocks.KIND,
     "map": map_blocks.KIND,
-    "central": paper_blocks.central_claim,
+    "central": {"answer": paper_blocks.central_answer, "table": paper_blocks.central_table},
     "models": model_blocks.table,
     "paper": paper_blocks.KIND,
     "performance": performance.KIND,

@@ -6,26 +6,29 @@ from pathlib import Path
 
 import blocks
 from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed
-from faultpath_quadrotor.paper.answers import RUN, Reproduction
-from faultpath_quadrotor.paper.cells import SYSTEM, Setting
-from faultpath_quadrotor.paper.central import (
-    COLUMNS,
-    DECIDED,
+from faultpath_paper.answers import RUN, Reproduction
+from faultpath_paper.cells import SYSTEM, Setting
+from faultpath_paper.central import (
+    CASES,
     ELSEWHERE,
-    OPEN,
-    central,
-    of_run,
-    state,
+    QUESTION,
+    Case,
+    Effect,
+    answer,
+    by_training,
+    case_of,
+    detail,
+    table_of,
 )
-from faultpath_quadrotor.paper.facts import SECTIONS, STANDINGS, counted, facts, listed
-from faultpath_quadrotor.paper.report.page import sweep_plot
-from faultpath_quadrotor.paper.report.short import apart, by_kind, by_subject
+from faultpath_paper.facts import SECTIONS, STANDINGS, counted, facts, listed
+from faultpath_paper.report.page import sweep_plot
+from faultpath_paper.report.short import apart, by_kind, by_subject
+from faultpath_paper.report.words import NON_DETECTION, headline
 from flown_code import flown_by
 from pictures import IMAGES, standing
 
 from faultpath.decisions import wording
 from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.tables.escapes import markdown
 from faultpath.decisions.tables.markdown import block, grid
 from faultpath.trials.provenance import RunProvenance
@@ -39,10 +42,8 @@ PAGES = ("reproduction.html", "tables.md", "ledger.md")
 """What of a run stands in `docs/reference/paper`."""
 AGAIN = "quadrotor-L3"
 """The reference run that asks what Table IV asks, of the same scenes."""
-BESIDES = {
-    "quadrotor-L3-confirmation": "At the paper's error, {scenes} scenes of {library}, {seeds}"
-}
-"""Reference runs that ask the central question, with the words of their lines."""
+BESIDES = ("quadrotor-L3-confirmation",)
+"""Reference runs that ask the central question."""
 _FAULT, _MODULE = "calibration=+0.1", "reconstruction"
 
 
@@ -69,45 +70,54 @@ def pictures() -> Mapping[Path, str]:
     return {IMAGES / f"paper-{each.name}.svg": standing(sweep_plot(each)) for each in figures}
 
 
-def central_claim() -> str:
-    """Return the paper's central claim, its numbers and where it holds."""
-    found, asked = load()[0], load()[0].ledger
-    seeds = ", ".join(map(str, asked.seeds))
-    own = of_run(found, f"At the paper's error, {asked.scenes} held-out scenes, seeds {seeds}")
-    table = central([*([own] if own else []), *_besides().lines])
-    return f"{block(table)}\n{state(asked, run='the shipped run')}"
+def central_answer() -> str:
+    """Return the paper's central question and our answer, in words that need no glossary."""
+    cases = _cases()
+    return f"{QUESTION} **{answer(cases)}.** {detail(cases)} {by_training(load()[0])}"
+
+
+def central_table() -> str:
+    """Return the numbers behind the answer, run by run."""
+    return block(table_of(_cases()))
 
 
 def elsewhere() -> Mapping[Path, str]:
-    """Return the file that says what reference runs decided of the central claim."""
-    return {ELSEWHERE: _besides().model_dump_json(indent=1, exclude_defaults=True) + "\n"}
+    """Return the file that says what reference runs detected of the central question."""
+    return {ELSEWHERE: CASES.dump_json(_besides(), indent=1).decode() + "\n"}
 
 
-def _besides() -> Table:
-    lines: list[Line] = []
-    for name, words in BESIDES.items():
-        run = blocks.load(name)
-        record, asked = run.record, run.record.question
-        place = words.format(
-            scenes=record.scenes, library=asked.library, seeds=wording.seeds(asked.seeds)
-        )
-        effects = {each.path: each for each in record.effects}
-        shown = (
-            Entry(text=wording.with_interval(each.success), detected=each.detected)
-            for each in (effects[_MODULE], effects[SHARED])
-        )
-        turned = any(e.isolated == _MODULE and e.turn == "reversal" for e in record.changes)
-        lines.append(line(place, *shown, DECIDED if turned else OPEN))
-    return Table(name="elsewhere", title="", columns=COLUMNS, lines=tuple(lines))
+def _cases() -> tuple[Case, ...]:
+    own = case_of(load()[0])
+    return (*([own] if own else []), *_besides())
+
+
+def _besides() -> tuple[Case, ...]:
+    return tuple(_case(name) for name in BESIDES)
+
+
+def _case(name: str) -> Case:
+    record = blocks.load(name).record
+    effects = {effect.path: effect for effect in record.effects}
+    isolated, shared = (
+        Effect.of(wording.with_interval(effect.success), effect.detected)
+        for effect in (effects[_MODULE], effects[SHARED])
+    )
+    question = record.question
+    return Case(
+        place=f"{record.scenes} scenes of {question.library}, {wording.seeds(question.seeds)}",
+        isolated=isolated,
+        shared=shared,
+        reversal=any(
+            change.isolated == _MODULE and change.turn == "reversal" for change in record.changes
+        ),
+    )
 
 
 def _counts() -> str:
     found, ledger = load()[0], load()[0].ledger
     return (
-        f"Of the paper's {len(ledger.claims)} claims, {ledger.count('confirmed')} are confirmed, "
-        f"{ledger.count('refuted')} refuted and {ledger.count('undecided')} undecided on "
-        f"{ledger.scenes} scenes of `{ledger.library}`, seeds "
-        f"{', '.join(map(str, ledger.seeds))} ({found.trials:,} trials)."
+        f"{headline(ledger, found.profile)} ({ledger.scenes} scenes of `{ledger.library}`, seeds "
+        f"{', '.join(map(str, ledger.seeds))}; {found.trials:,} trials)."
     )
 
 
@@ -166,7 +176,8 @@ def fact_page() -> Mapping[Path, str]:
         f"{len(facts())} facts: {words}. *As written*: what the paper says. *Our reading*: the "
         "paper is silent there, or can be read in several ways. *Otherwise*: something else. "
         "Places are files of `quadrotor/src/faultpath_quadrotor`, or of `src` from `faultpath/` "
-        "on, each with a name in the file. Made from `paper/paper/facts.yaml` by `make docs`.",
+        "on and of `paper/src` from `faultpath_paper/` on, each with a name in the file. `make "
+        "docs` makes this page from `paper/src/faultpath_paper/data/facts.yaml`.",
     ]
     for section, title in SECTIONS.items():
         parts += [f"## {title}", grid(listed(section))]
@@ -193,7 +204,7 @@ def _facts() -> str:
 
 KIND: dict[str, Callable[..., str]] = {
     "counts": _counts,
-    "ledger": lambda: grid(by_kind(load()[0].ledger)),
+    "ledger": lambda: f"{grid(by_kind(load()[0].ledger))}\n\n{markdown(NON_DETECTION)}",
     "sizes": lambda: grid(by_subject(load()[0].ledger)),
     "apart": _apart,
     "facts": _facts,

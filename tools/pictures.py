@@ -139,7 +139,7 @@ def standing(drawing: str) -> str:
     head += f' width="{around[2]:g}" height="{around[3]:g}">'
     own = [
         line
-        for line in template("reproduction.css", "faultpath_quadrotor.paper.report").splitlines()
+        for line in template("reproduction.css", "faultpath_paper.report").splitlines()
         if line.startswith(".fig")
     ]
     css = "".join((template("tokens.css"), template("svg.css"), *own))

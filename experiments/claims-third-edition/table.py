@@ -8,8 +8,8 @@ Both are a `reproduction.json` of the same trials. README.md says by which commi
 import sys
 from pathlib import Path
 
-from faultpath_quadrotor.paper.answers import ClaimVerdict, Reproduction
-from faultpath_quadrotor.paper.report.words import estimate, interval, typeset
+from faultpath_paper.answers import ClaimVerdict, Reproduction
+from faultpath_paper.report.words import estimate, interval, typeset
 
 from faultpath.decisions.tables.escapes import markdown
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import torch
 import yaml
-from faultpath_quadrotor.evidence.state_errors import TURNING, state_errors
+from faultpath_quadrotor.state_errors import TURNING, state_errors
 
 from faultpath.decisions.family import compared, decide_paths
 from faultpath.decisions.model import CORRECT, SHARED

@@ -68,11 +68,7 @@ _HOMES = {
 
 def __getattr__(name: str) -> object:
     if name not in _HOMES:
-        from faultpath.core.renamed import of_module
-
-        moved = of_module(f"faultpath.{name}")
-        hint = f": {moved}" if moved else ""
-        raise AttributeError(f"module 'faultpath' has no attribute {name!r}{hint}")
+        raise AttributeError(f"module 'faultpath' has no attribute {name!r}")
     import random
 
     drawn = random.getstate()

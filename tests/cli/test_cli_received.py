@@ -259,9 +259,7 @@ def test_pages_are_not_written_through_a_link_out_of_the_folder(run: Path, tmp_p
 
 @pytest.mark.parametrize("name", ["outcomes.parquet", "evidence.parquet"])
 def test_claims_say_which_file_of_a_reproduction_was_changed(name: str, tmp_path: Path) -> None:
-    shipped = (
-        Path(__file__).resolve().parents[2] / "quadrotor/src/faultpath_quadrotor/paper/paper/run"
-    )
+    shipped = Path(__file__).resolve().parents[2] / "paper/src/faultpath_paper/data/run"
     run = Path(shutil.copytree(shipped, tmp_path / "run"))
     digest = hashlib.sha256((run / name).read_bytes()).hexdigest()
     _edit(run / "provenance.json", lambda content: content.update(files={name: digest}))

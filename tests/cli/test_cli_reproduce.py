@@ -4,11 +4,11 @@ import shutil
 from pathlib import Path
 
 import pytest
-from faultpath_quadrotor.paper.cells import QUICK
-from faultpath_quadrotor.paper.pages import table_4
-from faultpath_quadrotor.paper.reproduction import ReproductionRun, carry_out
-from faultpath_quadrotor.paper.run import Plan
-from faultpath_quadrotor.verbs.reproduce import show
+from faultpath_paper.cells import QUICK
+from faultpath_paper.pages import table_4
+from faultpath_paper.reproduction import ReproductionRun, carry_out
+from faultpath_paper.run import Plan
+from faultpath_paper.verb import show
 
 import faultpath
 from faultpath.api.asking import Job

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from cli_runs import faultpath
-from faultpath_quadrotor.paper.cells import published_claims
+from faultpath_paper.cells import published_claims
 
 MISTAKES = {
     "no such page": (["reproduce", "table-9"], ["no page 'table-9'", "table-1, table-2"]),

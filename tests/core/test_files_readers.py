@@ -48,13 +48,13 @@ def _card(path: Path) -> object:
 
 
 def _evidence(path: Path) -> object:
-    from faultpath_quadrotor.evidence.table import read_evidence
+    from faultpath_paper.evidence.table import read_evidence
 
     return read_evidence(path)
 
 
 def _reproduction(path: Path) -> object:
-    from faultpath_quadrotor.paper.run import read_results
+    from faultpath_paper.run import read_results
 
     return read_results(path.parent)
 

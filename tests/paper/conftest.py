@@ -1,9 +1,9 @@
 """A run in which the paper's figures come true, and what the claims make of it."""
 
 import pytest
-from faultpath_quadrotor.paper.answers import ClaimVerdict
-from faultpath_quadrotor.paper.claims import evaluate
-from faultpath_quadrotor.paper.results import Results
+from faultpath_paper.answers import ClaimVerdict
+from faultpath_paper.claims import evaluate
+from faultpath_paper.results import Results
 from study_toys import whole
 
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 from itertools import product
 
 import numpy as np
-from faultpath_quadrotor.evidence.table import EvidenceTable, Measured, Measurement
-from faultpath_quadrotor.paper.cells import Cell
-from faultpath_quadrotor.paper.pages import (
+from faultpath_paper.cells import Cell
+from faultpath_paper.evidence.table import EvidenceTable, Measured, Measurement
+from faultpath_paper.pages import (
     figure_3,
     in_text,
     table_1,
@@ -16,7 +16,7 @@ from faultpath_quadrotor.paper.pages import (
     table_4,
     table_6,
 )
-from faultpath_quadrotor.paper.results import Results
+from faultpath_paper.results import Results
 from toy_runs import CELLS, MEASUREMENTS, Ends, trials
 
 from faultpath.trials import OutcomeTable, Status, TrialRow

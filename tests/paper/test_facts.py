@@ -4,10 +4,14 @@ from itertools import groupby
 from pathlib import Path
 
 import pytest
-from faultpath_quadrotor.paper.facts import SECTIONS, Fact, counted, facts, groups
+from faultpath_paper.facts import SECTIONS, Fact, counted, facts, groups
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGE, ENGINE = ROOT / "quadrotor" / "src" / "faultpath_quadrotor", ROOT / "src"
+PLACES = {
+    "faultpath": ROOT / "src",
+    "faultpath_paper": ROOT / "paper" / "src",
+}
+PACKAGE = ROOT / "quadrotor" / "src" / "faultpath_quadrotor"
 
 
 def test_every_fact_is_there_once_and_few_are_otherwise() -> None:
@@ -26,7 +30,7 @@ def test_a_fact_says_what_is_done_and_where(fact: Fact) -> None:
     assert fact.at
     for place in fact.at:
         file, _, name = place.partition(" ")
-        path = (ENGINE if file.startswith("faultpath/") else PACKAGE) / file
+        path = PLACES.get(file.partition("/")[0], PACKAGE) / file
         assert path.is_file(), place
         assert name, place
         assert name in path.read_text("utf-8"), place

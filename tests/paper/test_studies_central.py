@@ -3,13 +3,25 @@
 import re
 
 import pytest
-from faultpath_quadrotor.paper.answers import RUN, Ledger, Reproduction, shipped_ledger
-from faultpath_quadrotor.paper.cells import published_claims
-from faultpath_quadrotor.paper.central import CLAIM, central, of_page, of_run, state
-from faultpath_quadrotor.paper.claims import SUBJECTS
-from faultpath_quadrotor.paper.report.short import apart, by_kind, by_subject
+from faultpath_paper.answers import RUN, Ledger, Reproduction, shipped_ledger
+from faultpath_paper.cells import published_claims
+from faultpath_paper.central import (
+    CLAIM,
+    Case,
+    Effect,
+    answer,
+    by_training,
+    case_of,
+    clause,
+    detail,
+    elsewhere,
+    of_page,
+)
+from faultpath_paper.claims import SUBJECTS
+from faultpath_paper.report.short import apart, by_kind, by_subject
+from faultpath_paper.report.words import headline, is_non_detection
 
-from faultpath.decisions.tables import line
+from faultpath.statistics.estimate import Sign
 
 
 @pytest.fixture(scope="module")
@@ -17,35 +29,91 @@ def found() -> Reproduction:
     return Reproduction.model_validate_json((RUN / "reproduction.json").read_bytes())
 
 
-def test_it_says_where_the_ranking_is_decided_to_reverse() -> None:
-    answers = {"At a": "decided", "At b": "not decided", "At c": "decided"}
-    lines = [line(place, "+1", "-1", said) for place, said in answers.items()]
-    notes = central(lines).notes
-    assert notes[0] == "The ranking reverses at a; at c."
-    assert central([]).notes[0] == "Nowhere is it decided."
+SIGNS = {-1: "−5.0 [−9.0, −1.0]", 0: "+1.0 [−3.0, 5.0]", 1: "+6.0 [2.0, 10.0]"}
 
 
-def test_a_run_tells_the_claim_by_the_papers_rules(found: Reproduction) -> None:
-    told = of_run(found, "Here")
-    assert told is not None
-    for entry in told.entries[:-1]:
-        low, high = entry.text.replace("−", "-").split("[")[1].rstrip("]").split(", ")
-        assert entry.detected == (float(low) > 0 or float(high) < 0)
-    assert told.entries[-1].text == "not decided"
-    claim = next(each for each in found.ledger.claims if each.id == CLAIM)
-    assert f"{CLAIM} is {claim.verdict} on this run" in state(found.ledger)
+def case(isolated: Sign, shared: Sign, *, reversal: bool = False) -> Case:
+    """Return a run that detected effects with these signs."""
+    effects = (Effect(text=SIGNS[sign], sign=sign) for sign in (isolated, shared))
+    return Case(
+        place="4 scenes of here, seed 0",
+        **dict(zip(("isolated", "shared"), effects, strict=True)),
+        reversal=reversal,
+    )
 
 
-def test_a_page_tells_of_its_own_run_unless_it_is_quick(found: Reproduction) -> None:
-    told = of_page(found)
-    assert told
-    assert told[1].lines[0].label.startswith("In this run")
+def test_the_answer_is_a_reversal_only_where_a_run_decides_one() -> None:
+    for signs in ((0, 0), (1, 0), (0, -1), (1, -1), (-1, 1)):
+        assert answer([case(*signs)]) == "We did not reproduce the paper's reversal"
+    cases = [case(1, -1, reversal=True), case(0, 0)]
+    assert "appeared" in answer(cases)
+    assert "more often (+6.0" in detail(cases)
+    assert "less often (−5.0" in detail(cases)
+    assert "No run" in answer([])
+    assert detail([]) == ""
+
+
+@pytest.mark.parametrize("sign", [-1, 0, 1])
+def test_a_clause_says_more_or_less_only_of_what_was_detected(sign: Sign) -> None:
+    text = clause("There", Effect(text=SIGNS[sign], sign=sign))
+    assert ("no difference" in text) == (sign == 0)
+    assert ("more often" in text) == (sign == 1)
+    assert ("less often" in text) == (sign == -1)
+    assert SIGNS[sign] in text
+
+
+def test_an_effect_takes_its_side_from_its_text_only_where_it_is_detected() -> None:
+    for sign, text in SIGNS.items():
+        assert Effect.of(text, detected=True).sign == (sign or 1)
+        assert Effect.of(text, detected=False).sign == 0
+
+
+def test_a_run_answers_by_the_papers_rules(found: Reproduction) -> None:
+    own = case_of(found)
+    assert own is not None
+    for effect in (own.isolated, own.shared):
+        low, high = effect.text.replace("−", "-").split("[")[1].rstrip("]").split(", ")
+        assert bool(effect.sign) == (float(low) > 0 or float(high) < 0)
+    claim = next(claim for claim in found.ledger.claims if claim.id == CLAIM)
+    assert own.reversal == (claim.parts[0].answer == "confirmed")
+    assert "of 3 trained models" in by_training(found)
+
+
+def test_a_page_answers_with_its_own_run_unless_it_is_quick(found: Reproduction) -> None:
+    page = of_page(found)
+    assert page
+    assert len(page[2].lines) == len(elsewhere()) + 2
     quick = of_page(found.model_copy(update={"profile": "quick"}))
     assert quick
-    assert "decides nothing" in quick[0]
-    assert not any(each.label.startswith("In this run") for each in quick[1].lines)
+    assert "too small" in quick[1]
+    assert len(quick[2].lines) == len(elsewhere()) + 1
     none = found.ledger.model_copy(update={"claims": found.ledger.claims[:3]})
     assert of_page(found.model_copy(update={"ledger": none})) is None
+
+
+def test_findings_and_matched_properties_are_counted_apart(ledger: Ledger) -> None:
+    findings = [claim.verdict for claim in ledger.claims if claim.kind == "finding"]
+    text = headline(ledger, "paper")
+    assert f"{len(findings)} findings, {findings.count('confirmed')} came out" in text
+    assert f"of {len(ledger.claims) - len(findings)} properties" in text
+    some = ledger.model_copy(
+        update={
+            "claims": tuple(c for c in ledger.claims if c.kind == "finding")[:2],
+            "left_out": 43,
+        }
+    )
+    assert "2 findings that this run is about" in headline(some, "paper")
+    assert "properties" not in headline(some, "paper")
+    assert headline(ledger.model_copy(update={"claims": ()}), "paper")
+
+
+def test_a_claim_confirmed_by_no_detection_is_marked(ledger: Ledger) -> None:
+    marked = re.findall(r"(C\d\d)\*", str(by_kind(ledger)))
+    assert marked == sorted(
+        (claim.id for claim in ledger.claims if is_non_detection(claim)), key=marked.index
+    )
+    assert "C02" in marked
+    assert "C05" not in marked
 
 
 @pytest.fixture(scope="module")

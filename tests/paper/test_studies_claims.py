@@ -1,14 +1,14 @@
 """The claims over whole runs: as published, mirrored, in part, and not at all."""
 
 import pytest
-from faultpath_quadrotor.paper.answers import ClaimVerdict
-from faultpath_quadrotor.paper.cells import Cell, published_claims
-from faultpath_quadrotor.paper.claims import STATEMENTS, evaluate, ledger
-from faultpath_quadrotor.paper.claims.rules import ABOVE, BELOW
-from faultpath_quadrotor.paper.claims.statement import Statement, TurnsDown, answered, verdict
-from faultpath_quadrotor.paper.pages import table_1, table_4
-from faultpath_quadrotor.paper.quantities.differences import together
-from faultpath_quadrotor.paper.results import Results
+from faultpath_paper.answers import ClaimVerdict
+from faultpath_paper.cells import Cell, published_claims
+from faultpath_paper.claims import STATEMENTS, evaluate, ledger
+from faultpath_paper.claims.rules import ABOVE, BELOW
+from faultpath_paper.claims.statement import Statement, TurnsDown, answered, verdict
+from faultpath_paper.pages import table_1, table_4
+from faultpath_paper.quantities.differences import together
+from faultpath_paper.results import Results
 from study_toys import SCENES, as_published, mirrored, whole, without
 from toy_runs import EMPTY, NOTHING, trials
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from faultpath_quadrotor.paper.claims.rules import (
+from faultpath_paper.claims.rules import (
     ABOVE,
     BELOW,
     NO_DIFFERENCE,
@@ -21,8 +21,8 @@ from faultpath_quadrotor.paper.claims.rules import (
     less_than,
     within,
 )
-from faultpath_quadrotor.paper.claims.statement import Turned
-from faultpath_quadrotor.paper.results import decisive
+from faultpath_paper.claims.statement import Turned
+from faultpath_paper.results import decisive
 
 from faultpath.statistics.contrast import Contrast, change, weighted_sum
 from faultpath.statistics.decisions import with_test

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from faultpath_quadrotor.paper.cells import Cell
-from faultpath_quadrotor.paper.claims.paying import judge
-from faultpath_quadrotor.paper.claims.rules import Bound
-from faultpath_quadrotor.paper.pages.table_5 import REPAIRS
-from faultpath_quadrotor.paper.quantities.crossing import crossing, greater_effect
-from faultpath_quadrotor.paper.results import Results
+from faultpath_paper.cells import Cell
+from faultpath_paper.claims.paying import judge
+from faultpath_paper.claims.rules import Bound
+from faultpath_paper.pages.table_5 import REPAIRS
+from faultpath_paper.quantities.crossing import crossing, greater_effect
+from faultpath_paper.results import Results
 from toy_runs import NOTHING, trials
 
 from faultpath.statistics.contrast import percentile_interval

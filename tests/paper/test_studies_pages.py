@@ -5,10 +5,10 @@ from functools import cache
 from typing import Any
 
 import pytest
-from faultpath_quadrotor.evidence.table import EvidenceTable
-from faultpath_quadrotor.paper.answers import Sweep
-from faultpath_quadrotor.paper.cells import Cell, published
-from faultpath_quadrotor.paper.pages import PAGES
+from faultpath_paper.answers import Sweep
+from faultpath_paper.cells import Cell, published
+from faultpath_paper.evidence.table import EvidenceTable
+from faultpath_paper.pages import PAGES
 from toy_runs import (
     CELLS,
     EMPTY,

@@ -3,14 +3,14 @@
 from pathlib import Path
 
 import pytest
-from faultpath_quadrotor.paper import flights
-from faultpath_quadrotor.paper.answers import Reproduction
-from faultpath_quadrotor.paper.cells import HELD_OUT, PAPER, QUICK, Cell, Profile, calibration
-from faultpath_quadrotor.paper.entries import Group, centimetres, success
-from faultpath_quadrotor.paper.flights import Flown
-from faultpath_quadrotor.paper.page import Page, Row, TableSpec
-from faultpath_quadrotor.paper.pages import PAGES, table_1, table_2
-from faultpath_quadrotor.paper.run import Plan, conclude, measure_all, plan, read_results, save
+from faultpath_paper import flights
+from faultpath_paper.answers import Reproduction
+from faultpath_paper.cells import HELD_OUT, PAPER, QUICK, Cell, Profile, calibration
+from faultpath_paper.entries import Group, centimetres, success
+from faultpath_paper.flights import Flown
+from faultpath_paper.page import Page, Row, TableSpec
+from faultpath_paper.pages import PAGES, table_1, table_2
+from faultpath_paper.run import Plan, conclude, measure_all, plan, read_results, save
 
 from faultpath.api.asking import Job
 from faultpath.api.display import Display

@@ -1,10 +1,10 @@
 """Sizes: how an estimate stands to the paper's figure, beside answers that do not know it."""
 
 import pytest
-from faultpath_quadrotor.paper.answers import ClaimVerdict
-from faultpath_quadrotor.paper.cells import Printed
-from faultpath_quadrotor.paper.claims import STATEMENTS
-from faultpath_quadrotor.paper.claims.statement import size
+from faultpath_paper.answers import ClaimVerdict
+from faultpath_paper.cells import Printed
+from faultpath_paper.claims import STATEMENTS
+from faultpath_paper.claims.statement import size
 
 EXACT, MEASURED = Printed(10.0), Printed(10.0, (4.0, 16.0))
 UNPRINTED = {

@@ -1,9 +1,9 @@
 """Tables of the studies: known figures from runs with known results."""
 
-from faultpath_quadrotor.evidence.table import Measurement
-from faultpath_quadrotor.paper.answers import Sweep
-from faultpath_quadrotor.paper.cells import Cell
-from faultpath_quadrotor.paper.pages import figure_3, table_3, table_4, table_6
+from faultpath_paper.answers import Sweep
+from faultpath_paper.cells import Cell
+from faultpath_paper.evidence.table import Measurement
+from faultpath_paper.pages import figure_3, table_3, table_4, table_6
 from faultpath_quadrotor.training import trajectories
 from toy_runs import SCENES, calibrated, line, measured, page, papers, run, tables, texts, won
 

@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from faultpath_quadrotor.evidence.table import EvidenceTable, Measured, Measurement
-from faultpath_quadrotor.paper.cells import Cell, of_seed
-from faultpath_quadrotor.paper.page import Page
-from faultpath_quadrotor.paper.pages import PAGES
-from faultpath_quadrotor.paper.results import Results
+from faultpath_paper.cells import Cell, of_seed
+from faultpath_paper.evidence.table import EvidenceTable, Measured, Measurement
+from faultpath_paper.page import Page
+from faultpath_paper.pages import PAGES
+from faultpath_paper.results import Results
 
 from faultpath.decisions.tables import Entry, Line, Table
 from faultpath.trials import Outcome, OutcomeTable, Pairs, Status, TrialRow

@@ -10,6 +10,7 @@ from pathlib import Path
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+OWN = {"faultpath", "faultpath_quadrotor", "faultpath_paper"}
 # Packages whose types are part of the interface of the one that brings them.
 BROUGHT_BY = {"pydantic-core": "pydantic", "markupsafe": "jinja2", "click": "typer"}
 
@@ -26,7 +27,7 @@ def _imported(source: str) -> Iterator[str]:
 def _third_party(files: list[Path]) -> set[str]:
     names = {name for path in files for name in _imported(path.read_text(encoding="utf-8"))}
     distributions = packages_distributions()
-    outside = names - sys.stdlib_module_names - {"faultpath", "faultpath_quadrotor"}
+    outside = names - sys.stdlib_module_names - OWN
     found: set[str] = set()
     for name in outside:
         bringing = {canonicalize_name(each) for each in distributions.get(name, [name])}
@@ -39,7 +40,8 @@ def _declared(project: Path, *extras: str) -> set[str]:
     lines = list(declared["dependencies"])
     for extra in extras:
         lines += declared["optional-dependencies"][extra]
-    return {canonicalize_name(Requirement(line).name) for line in lines} - {"faultpath"}
+    own = {name.replace("_", "-") for name in OWN}
+    return {canonicalize_name(Requirement(line).name) for line in lines} - own
 
 
 def test_the_engine_imports_what_is_declared_and_nothing_else(root: Path) -> None:
@@ -51,6 +53,11 @@ def test_the_engine_imports_what_is_declared_and_nothing_else(root: Path) -> Non
 def test_the_quadrotor_imports_only_what_it_and_the_engine_declare(root: Path) -> None:
     files = sorted((root / "quadrotor" / "src").rglob("*.py"))
     assert _third_party(files) <= _declared(root) | _declared(root / "quadrotor", "ulog", "bags")
+
+
+def test_the_paper_imports_only_what_it_and_the_engine_declare(root: Path) -> None:
+    files = sorted((root / "paper" / "src").rglob("*.py"))
+    assert _third_party(files) <= _declared(root) | _declared(root / "quadrotor")
 
 
 def test_every_dependency_has_its_line_in_the_design_notes(root: Path) -> None:

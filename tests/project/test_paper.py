@@ -4,12 +4,12 @@ import hashlib
 from pathlib import Path
 
 import pytest
-from faultpath_quadrotor.paper.answers import RUN, Reproduction
-from faultpath_quadrotor.paper.cells import PAPER, published_claims
-from faultpath_quadrotor.paper.claims import again
-from faultpath_quadrotor.paper.pages import PAGES
-from faultpath_quadrotor.paper.results import Results
-from faultpath_quadrotor.paper.run import read_results
+from faultpath_paper.answers import RUN, Reproduction
+from faultpath_paper.cells import PAPER, published_claims
+from faultpath_paper.claims import again
+from faultpath_paper.pages import PAGES
+from faultpath_paper.results import Results
+from faultpath_paper.run import read_results
 
 from faultpath.trials.provenance import RunProvenance
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from faultpath_quadrotor.evidence.state_errors import TURNING, state_errors
+from faultpath_quadrotor.state_errors import TURNING, state_errors
 from flights import HELD_OUT, bits, fault, fly, quadrotor
 
 from faultpath.core.errors import UserError

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from faultpath_quadrotor.evidence import recording
-from faultpath_quadrotor.evidence.quantities import measure
-from faultpath_quadrotor.evidence.table import (
+from faultpath_paper.evidence import recording
+from faultpath_paper.evidence.quantities import measure
+from faultpath_paper.evidence.table import (
     Measurement,
     Recording,
     read_evidence,

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from faultpath_quadrotor.evidence import quantities
-from faultpath_quadrotor.evidence.inputs import Subject, with_shuffled_history
-from faultpath_quadrotor.evidence.quantities import measured
-from faultpath_quadrotor.evidence.recording import STRIDE, Recorded
-from faultpath_quadrotor.evidence.table import Measurement, Recording
+from faultpath_paper.evidence import quantities
+from faultpath_paper.evidence.inputs import Subject, with_shuffled_history
+from faultpath_paper.evidence.quantities import measured
+from faultpath_paper.evidence.recording import STRIDE, Recorded
+from faultpath_paper.evidence.table import Measurement, Recording
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
 from faultpath_quadrotor.training.flight import fly

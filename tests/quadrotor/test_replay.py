@@ -2,8 +2,8 @@
 
 import pytest
 import torch
-from faultpath_quadrotor.evidence.inputs import Subject
-from faultpath_quadrotor.evidence.playback import at_present
+from faultpath_paper.evidence.inputs import Subject
+from faultpath_paper.evidence.playback import at_present
 from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath_quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath_quadrotor.predictors import module as prediction

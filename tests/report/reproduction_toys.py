@@ -1,6 +1,6 @@
 """A reproduction small enough to read: claims, tables and a sweep."""
 
-from faultpath_quadrotor.paper.answers import (
+from faultpath_paper.answers import (
     ClaimVerdict,
     Ledger,
     Part,

@@ -5,7 +5,7 @@ import re
 from xml.etree import ElementTree
 
 import pytest
-from faultpath_quadrotor.paper.report.terminal import ledger_markdown
+from faultpath_paper.report.terminal import ledger_markdown
 from hypothesis import given
 from hypothesis import strategies as st
 from markdown_it import MarkdownIt

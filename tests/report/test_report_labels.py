@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from faultpath_quadrotor.paper.reproduction import ReproductionRun
+from faultpath_paper.reproduction import ReproductionRun
 from playwright.sync_api import Browser
 
 from faultpath import compare, open_run

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from faultpath_quadrotor.paper.report.page import reproduction_page
+from faultpath_paper.report.page import reproduction_page
 from playwright.sync_api import Browser
 from reproduction_toys import reproduction
 

@@ -3,9 +3,9 @@
 import re
 
 import pytest
-from faultpath_quadrotor.paper.report import words
-from faultpath_quadrotor.paper.report.page import reproduction_page, sweep_plot
-from faultpath_quadrotor.paper.report.terminal import ledger_markdown, ledger_view
+from faultpath_paper.report import words
+from faultpath_paper.report.page import reproduction_page, sweep_plot
+from faultpath_paper.report.terminal import ledger_markdown, ledger_view
 from page_reader import Page
 from reproduction_toys import NASTY, ledger, reproduction, sweep, tables
 from rich.console import Console

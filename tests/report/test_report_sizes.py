@@ -3,8 +3,8 @@
 import re
 
 import pytest
-from faultpath_quadrotor.paper.answers import ClaimVerdict
-from faultpath_quadrotor.paper.report import words
+from faultpath_paper.answers import ClaimVerdict
+from faultpath_paper.report import words
 from reproduction_toys import claim, ledger, part
 
 

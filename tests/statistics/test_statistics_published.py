@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from faultpath_quadrotor.paper.quantities.summaries import spearman
+from faultpath_paper.quantities.summaries import spearman
 
 from faultpath.statistics.breakeven import break_even
 from faultpath.statistics.contrast import change, percentile_interval

@@ -64,7 +64,11 @@ def test_what_only_tells_of_flights_does_not_count(name):
     spec = SystemSpec(name=place, options=options)
     files = system_code(load_system(spec), spec).state.files
     assert not [file for file in files for part in TELLING if file.startswith(f"faultpath/{part}")]
-    assert not [file for file in files if file.startswith("faultpath_quadrotor/evidence")]
+    assert not [
+        file
+        for file in files
+        if file.startswith(("faultpath_quadrotor/signals", "faultpath_paper"))
+    ]
 
 
 @pytest.mark.parametrize("name", FLOWN)

@@ -50,7 +50,7 @@ class Quadrotor(LoopSystem):
     trained = True
     control_dt_s = CONTROL_DT_S
     metrics = VEHICLE
-    more_signals = "faultpath_quadrotor.evidence.signals:quadrotor_signals"
+    more_signals = "faultpath_quadrotor.signals:quadrotor_signals"
 
     def __init__(self, options: QuadrotorOptions) -> None:
         self.options = options

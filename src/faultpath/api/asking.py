@@ -12,8 +12,6 @@ from typing import Any, TypeVar
 
 from faultpath.api.display import Display, Show, display
 from faultpath.api.systems import Chosen, choose
-from faultpath.core.errors import UserError
-from faultpath.core.renamed import of_option
 from faultpath.trials import Library, OutcomeTable, Study, System, library_of
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import Failure, RunResult, run_study
@@ -63,8 +61,6 @@ def begin(
     `UserError` for what does not fit, named as its caller names it, for a library that does not
     exist, and as `choose`.
     """
-    for gone in filter(None, (of_option(call, name) for name in given)):
-        raise UserError(f"{gone}.")
     asked = ask(model, given, isinstance(progress, Display) and progress.is_command)
     how = vars(asked)
     executor = how.get("executor", "local")

@@ -20,7 +20,6 @@ from faultpath.api.folders import (
     read_run,
 )
 from faultpath.core.errors import UserError
-from faultpath.core.renamed import tells_renames
 from faultpath.decisions.gate import Answer, Ask, found, holds_when_shared
 from faultpath.decisions.model import DecisionRecord
 from faultpath.report.html import write_report
@@ -55,7 +54,6 @@ class FinishedRun:
         return f"<{type(self).__name__} in {self.folder}: {self.headline}>"
 
 
-@tells_renames
 class Run(FinishedRun):
     """A finished audit: what was decided, from which trials, and where its files are.
 

@@ -13,7 +13,6 @@ from typer.models import OptionInfo
 
 from faultpath.cli.options import literal, path
 from faultpath.core.errors import UserError
-from faultpath.core.renamed import of_option
 from faultpath.trials.question import Asked, Flag, flag
 
 _Verb = TypeVar("_Verb", bound=Callable[..., Any])
@@ -132,8 +131,6 @@ def with_system_flags(
     named = {f"--{each.name.replace('_', '-')}": each for each in options}
     found = {name: option for name, option in named.items() if name not in own}
     for unknown in sorted(asked - {*found}) if not helps else ():
-        if gone := of_option(name, unknown):
-            raise UserError(f"{gone}.")
         close = get_close_matches(unknown, [*own, *found], n=1)
         hint = f"did you mean {close[0]}? " if close else ""
         raise UserError(

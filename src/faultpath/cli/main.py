@@ -123,7 +123,6 @@ def _sentence(error: BaseException) -> str | None:
     from typer import TyperException
 
     from faultpath.core.error_source import described, explained
-    from faultpath.core.renamed import of_option, of_verb
 
     if isinstance(error, TyperException):  # from the parser of the arguments
         said = error.format_message().strip().rstrip(".").replace(". ", ": ")
@@ -131,11 +130,6 @@ def _sentence(error: BaseException) -> str | None:
             return ""
         said = re.sub(r" \(Possible options: (.*)\)$", r", did you mean \1?", said)
         command = getattr(getattr(error, "ctx", None), "command_path", "faultpath")
-        if found := re.match(r"No such (command|option):? '?([\w-]+)", said):
-            kind, name = found.groups()
-            verb = command.removeprefix("faultpath ")
-            if gone := of_verb(name) if kind == "command" else of_option(verb, name):
-                return f"{gone}."
         return f"{said[0].lower()}{said[1:]}; `{command} --help` shows what there is."
     mistake = explained(error)
     if mistake is not None:

@@ -14,7 +14,6 @@ from typing import Any, cast
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.misfits import misfit_of
-from faultpath.core.renamed import of_module
 from faultpath.core.text import one_line
 
 _STANDARD = tuple(
@@ -62,8 +61,6 @@ def described(error: BaseException) -> str:
         said = error.msg if isinstance(error, SyntaxError) else str(error)
     except Exception:  # an error of the system's own may fail even at that
         said = ""
-    if isinstance(error, ImportError) and (moved := of_module(error.name or "")):
-        said = f"{said} ({moved})"
     return one_line(f"{type(error).__name__}: {said}" if said else type(error).__name__)
 
 

@@ -2,7 +2,6 @@
 
 from typing import Literal
 
-from faultpath.core.renamed import tells_renames
 from faultpath.core.results import Result
 from faultpath.decisions.question import EarlierLook, Question
 from faultpath.statistics.decisions import Turn
@@ -205,7 +204,6 @@ class Stopped(Result):
     """Paths on which the difference was shown to be smaller than the margin."""
 
 
-@tells_renames
 class DecisionRecord(Result):
     """Everything that tables, pictures and the report show; written as `record.json`."""
 

@@ -1,4 +1,4 @@
-"""What can be done to a reading: interventions, and faults that say where and when."""
+"""Interventions on readings, and faults that say where and when they act."""
 
 from faultpath.faults.base import Draws, Intervention, Moment
 from faultpath.faults.drawn import Bias, Drift, Dropout, Noise, Shuffle, UniformScale

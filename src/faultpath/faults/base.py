@@ -1,4 +1,4 @@
-"""What is done to a reading: the shape that every intervention has, and the numbers it draws."""
+"""The base class of interventions, and the random numbers that they draw."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -15,7 +15,8 @@ from faultpath.core.streams import generators
 from faultpath.interface import Channel
 
 Memory: TypeAlias = Any
-"""What an intervention carries from step to step: an array, a tuple or `None`; never written to."""
+"""Value that an intervention carries from step to step: an array, a tuple or `None`; never written
+to."""
 
 
 @dataclass(frozen=True)
@@ -26,8 +27,8 @@ class Draws:
     address starts the stream anew: calls with different shapes, and normal and uniform numbers,
     come from the same bits. `beside` gives an independent address.
 
-    With `own`, numbers are made of those of the cause and of its own: two draws of one cause with
-    the loadings a and b have the correlation a * b (one-factor model; uniform numbers through the
+    With `own`, numbers mix those of the cause with those of `own`: two draws of one cause with the
+    loadings a and b have the correlation a * b (one-factor model; uniform numbers through the
     Gaussian copula). Permutations are of the cause.
     """
 
@@ -40,7 +41,7 @@ class Draws:
     _kept: dict[Any, Any] = field(
         default_factory=dict[Any, Any], init=False, repr=False, compare=False
     )
-    """What was last drawn, which the other consumers of a step ask for again; draws beside."""
+    """Numbers drawn last, which the other consumers of a step need too; and draws of `beside`."""
 
     def normal(self, shape_per_scene: tuple[int, ...], step: int) -> NDArray[np.float64]:
         """Return standard normal numbers `[B, *shape_per_scene]`."""
@@ -86,7 +87,7 @@ class Draws:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """When an intervention is asked for its value."""
+    """The time at which an intervention acts."""
 
     step: int
     """Control step, from 0."""
@@ -105,7 +106,7 @@ class Intervention(BaseModel, ABC):
     the memory is written to. `apply` is called at every delivery from the first on, also before
     the onset, so that a delay has a past to draw on; the tap takes the value within the window.
 
-    A subclass has a literal `kind`, states its fields, and is named once in `registry.py`.
+    A subclass has a literal `kind`, states its fields, and is named once in `fault.py`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
@@ -115,7 +116,7 @@ class Intervention(BaseModel, ABC):
     random: ClassVar[bool] = False
     """Whether errors are drawn, so that those of several channels can be correlated."""
     said: ClassVar[str] = ""
-    """What is done, in a few words; a field's name in braces stands for its value."""
+    """Effect on the reading in a few words; a field's name in braces stands for its value."""
 
     def begin(self, reading: Array, at: Moment) -> Memory:
         """Return the memory before the first `apply`, at the first delivery."""
@@ -142,8 +143,8 @@ class Intervention(BaseModel, ABC):
 
         By default, because the numbers of a field that holds several do not fit it.
         """
-        laid: list[tuple[str, Any]] = [each for each in self if isinstance(each[1], tuple)]
-        return next(filter(None, (misfit(name, value, shape) for name, value in laid)), None)
+        fields: list[tuple[str, Any]] = [entry for entry in self if isinstance(entry[1], tuple)]
+        return next(filter(None, (misfit(name, value, shape) for name, value in fields)), None)
 
 
 def number(value: Any) -> str:

@@ -9,7 +9,6 @@ from pydantic import Discriminator, Field, model_validator
 
 from faultpath.core.arrays import Array
 from faultpath.core.errors import UserError
-from faultpath.core.renamed import tells_renames
 from faultpath.core.results import Frozen
 from faultpath.core.text import listed, unknown
 from faultpath.faults.base import Draws, Intervention, Memory, Moment
@@ -91,7 +90,6 @@ ALL = "*"
 """Every consumer of the channel: the fault is shared."""
 
 
-@tells_renames
 class Fault(Frozen):
     """One intervention on one channel, at some or all of its consumers, for some time.
 
@@ -220,17 +218,17 @@ def resolve(
     Raises `UserError` for a fault that cannot act on `interface`, or reaches no consumer that is
     `present`.
     """
-    found: list[Fault] = []
-    for each in faults:
-        parts = each.resolved(interface, present)
+    resolved: list[Fault] = []
+    for fault in faults:
+        parts = fault.resolved(interface, present)
         if not parts:
-            names = {c for part in each.resolved(interface) for c in part.consumers}
+            names = {c for part in fault.resolved(interface) for c in part.consumers}
             raise UserError(
-                f"fault '{each.describe()}' reaches no consumer in this variant, "
+                f"fault '{fault.describe()}' reaches no consumer in this variant, "
                 f"which has no {listed(names)}; leave the fault out or name other consumers"
             )
-        found += parts
-    return tuple(found)
+        resolved += parts
+    return tuple(resolved)
 
 
 def _resolved(
@@ -240,18 +238,18 @@ def _resolved(
     channels = [interface.channel(fault.channel) for fault in faults]
     readers = {consumer for channel in channels for consumer in channel.consumers}
     known = readers | {module_of(reader) for reader in readers}
-    found: list[Fault] = []
+    resolved: list[Fault] = []
     for fault, channel in zip(faults, channels, strict=True):
         for name in fault.consumers:
             if name == ALL or name in known:
                 continue
-            what = " and ".join(f"channel '{each.channel}'" for each in faults)
-            everyone = {c for each in interface.channels for c in each.consumers}
+            what = " and ".join(f"channel '{other.channel}'" for other in faults)
+            everyone = {c for other in interface.channels for c in other.consumers}
             if name in everyone or name in modules(interface):
-                said = f"'{name}' does not read it; its readers: {listed(known)}"
+                problem = f"'{name}' does not read it; its readers: {listed(known)}"
             else:
-                said = unknown("consumer", name, known)
-            raise UserError(f"{what}: {said}")
+                problem = unknown("consumer", name, known)
+            raise UserError(f"{what}: {problem}")
         wrong = fault.intervention.misfit(interface.source(channel.sources[0]).shape)
         if wrong:
             raise UserError(
@@ -269,5 +267,5 @@ def _resolved(
             "cause": fault.drawn_from,
         }
         if reached:
-            found.append(fault.model_copy(update=update))
-    return tuple(found)
+            resolved.append(fault.model_copy(update=update))
+    return tuple(resolved)

@@ -27,7 +27,7 @@ from faultpath.interface import Interface, groups
 FaultPreset: TypeAlias = Callable[[float], Coupled]
 """A system's named fault: its size in, the faults out; raises `UserError` for a wrong size."""
 
-KINDS = {kind: each for kind, each in INTERVENTIONS.items() if kind != "sequence"}
+KINDS = {kind: intervention for kind, intervention in INTERVENTIONS.items() if kind != "sequence"}
 """Interventions that text can state: those that need no more than one value."""
 
 _WINDOW = {
@@ -51,7 +51,7 @@ class FaultText:
     """The parts of a fault's text, not yet understood."""
 
     name: str
-    """Of a channel, a correlation group or a preset."""
+    """Name of a channel, a correlation group or a preset."""
     kind: str | None
     """`None` for a preset."""
     sizes: tuple[str, ...]
@@ -91,7 +91,7 @@ class FaultText:
         sizes = [*_spread(size)] if has_size else []
         options: dict[str, str] = {}
         for item in items[1:]:
-            key, equals, given = item.partition("=")
+            key, equals, value = item.partition("=")
             if not equals and (_SIZE.fullmatch(item) or ".." in item):
                 if not has_size:
                     raise UserError(
@@ -102,7 +102,7 @@ class FaultText:
                 continue
             if key in options:
                 raise UserError(f"option '{key}' appears twice; drop one")
-            options[key] = given
+            options[key] = value
         if len({tuple(map(float, s.split("/"))) if _SIZE.fullmatch(s) else s for s in sizes}) < len(
             sizes
         ):
@@ -117,7 +117,7 @@ class FaultText:
     def __str__(self) -> str:
         head = self.name if self.kind is None else f"{self.name}:{self.kind}"
         sized = f"{head}={','.join(self.sizes)}" if self.sizes else head
-        options = (f"{key}={given}" if given else key for key, given in self.options.items())
+        options = (f"{key}={value}" if value else key for key, value in self.options.items())
         at = f"@{'+'.join(self.consumers)}" if self.consumers else ""
         return ",".join((sized, *options)) + at
 
@@ -127,21 +127,21 @@ def each_size(text: str) -> tuple[str, ...]:
 
     `UserError` for a text that has no such form.
     """
-    asked = FaultText.read(text)
-    if len(asked.sizes) < 2:
+    parts = FaultText.read(text)
+    if len(parts.sizes) < 2:
         return (text,)
-    return tuple(str(asked.at(size)) for size in asked.sizes)
+    return tuple(str(parts.at(size)) for size in parts.sizes)
 
 
 def _spread(item: str) -> tuple[str, ...]:
-    found = _RANGE.fullmatch(item)
-    if found is None:
+    match = _RANGE.fullmatch(item)
+    if match is None:
         if ".." in item:
             raise UserError(
                 "a range cannot be read: write FROM..TO/COUNT, as in calibration=-0.2..0.2/9"
             )
         return (item,)
-    low, high, count = found.groups()
+    low, high, count = match.groups()
     if len(count) > len(str(_MOST)) or not 2 <= int(count) <= _MOST:
         raise UserError(f"it asks for {count} sizes: a range takes 2 to {_MOST}")
     first, last, steps = float(low), float(high), int(count) - 1
@@ -168,7 +168,7 @@ def parse_fault(
         else:
             fault = _intervention(parts, parts.kind, options, interface)
         if isinstance(fault, Coupled):
-            updated = tuple(each.model_copy(update=update) for each in fault.faults)
+            updated = tuple(part.model_copy(update=update) for part in fault.faults)
             fault = fault.model_copy(update={"faults": updated})
         else:
             fault = fault.model_copy(update=update)
@@ -182,10 +182,10 @@ def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], di
     """Return the fields of a fault that say when it is in force, and the other options."""
     when: dict[str, Any] = {}
     rest: dict[str, str] = {}
-    for key, given in options.items():
+    for key, text in options.items():
         plain = key.removesuffix("_s")
         if plain not in _WINDOW:
-            rest[key] = given
+            rest[key] = text
             continue
         field, least = _WINDOW[plain]
         if field in when:
@@ -193,10 +193,10 @@ def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], di
         unit, of, length = "control steps", "", 1.0
         if plain != key:
             unit, of, length = "seconds", f" of {dt_s:g} s each", dt_s
-        value = _number(key, given, unit) / length
+        value = _number(key, text, unit) / length
         steps = round(value) if abs(value) < 1e9 else -1
         if steps < least or abs(value - steps) > 1e-6 * max(1.0, abs(value)):
-            raise UserError(f"{key}={given} is not a whole number of steps{of}, at least {least}")
+            raise UserError(f"{key}={text} is not a whole number of steps{of}, at least {least}")
         when[field] = steps
     if "recovery_steps" in when and "duration_steps" not in when:
         raise UserError("'recover' needs an end to recover from; add for=STEPS")
@@ -211,13 +211,13 @@ def _preset(
 ) -> Coupled:
     name = parts.name
     if name not in presets:
-        if name in groups(interface) or name in {each.name for each in interface.channels}:
+        if name in groups(interface) or name in {channel.name for channel in interface.channels}:
             raise UserError(
                 f"says nothing about what happens to '{name}'; write {name}:KIND=VALUE, kinds: "
                 f"{listed(KINDS)}"
             )
-        said = unknown("preset", name, presets)
-        raise UserError(f"{said}; a fault of one channel is CHANNEL:KIND=VALUE")
+        problem = unknown("preset", name, presets)
+        raise UserError(f"{problem}; a fault of one channel is CHANNEL:KIND=VALUE")
     if not parts.sizes:
         raise UserError(f"'{name}' needs a size, as in {name}=+0.1")
     if options:
@@ -234,29 +234,29 @@ def _intervention(
         raise UserError(unknown("channel", parts.name, targets))
     if kind not in KINDS:
         raise UserError(unknown("kind", kind, KINDS))
-    said, cls = f"{parts.name}:{kind}", KINDS[kind]
+    head, cls = f"{parts.name}:{kind}", KINDS[kind]
     fields = [field for field in cls.model_fields if field not in ("kind", cls.value_field)]
     for key in options:
         if key not in fields:
             raise UserError(unknown("option", key, (*fields, *_ANY_FAULT)))
-    given = {key: _value(key, text or "true") for key, text in options.items()}
+    values = {key: _value(key, text or "true") for key, text in options.items()}
     if cls.value_field is None:
         if parts.sizes:
-            raise UserError(f"'{kind}' takes no value; write {said}")
+            raise UserError(f"'{kind}' takes no value; write {head}")
     elif parts.sizes:
-        size, wanted = parts.sizes[0], cls.model_fields[cls.value_field].annotation
-        given[cls.value_field] = size if wanted is str else _value(kind, size)
+        size, annotation = parts.sizes[0], cls.model_fields[cls.value_field].annotation
+        values[cls.value_field] = size if annotation is str else _value(kind, size)
     elif cls.model_fields[cls.value_field].is_required():
-        raise UserError(f"'{kind}' needs a value ({cls.value_field}), as in {said}=VALUE")
+        raise UserError(f"'{kind}' needs a value ({cls.value_field}), as in {head}=VALUE")
     try:
-        built: Any = cls.model_validate(given)
+        built: Any = cls.model_validate(values)
     except ValidationError as error:
-        found = misfit_of(error)
+        problem = misfit_of(error)
         raise UserError(
-            f"'{kind}': {found.where or kind} {found.says}; correct the value"
+            f"'{kind}': {problem.where or kind} {problem.says}; correct the value"
         ) from None
     faults = tuple(Fault(channel=channel, intervention=built) for channel in targets[parts.name])
-    return Coupled(name=said, faults=faults) if parts.name in together else faults[0]
+    return Coupled(name=head, faults=faults) if parts.name in together else faults[0]
 
 
 def _value(key: str, text: str) -> Any:
@@ -270,11 +270,11 @@ def _value(key: str, text: str) -> Any:
     return int(text) if re.fullmatch(r"[+-]?\d{1,15}", text) else _number(key, text)
 
 
-def _number(key: str, given: str, what: str = "a number") -> float:
+def _number(key: str, text: str, what: str = "a number") -> float:
     try:
-        value = float(given.replace("_", "?"))  # Python reads 1_0 as ten
+        value = float(text.replace("_", "?"))  # Python reads 1_0 as ten
     except ValueError:
-        raise UserError(f"'{key}' needs {what}, not '{given}'") from None
+        raise UserError(f"'{key}' needs {what}, not '{text}'") from None
     if value - value != 0.0:  # infinite or NaN
-        raise UserError(f"'{key}' needs a finite number, not '{given}'")
+        raise UserError(f"'{key}' needs a finite number, not '{text}'")
     return value

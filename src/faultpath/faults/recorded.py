@@ -16,7 +16,7 @@ from faultpath.interface import Channel
 
 
 class Address(NamedTuple):
-    """Whose errors a part of a record holds."""
+    """Channel, scene and seed of the errors in a part of a record."""
 
     channel: str
     scene: str
@@ -44,7 +44,7 @@ def encode_record(record: Record, turning: Collection[str] = ()) -> bytes:
             "turns": int(address.channel in turning),
             "errors": np.ascontiguousarray(errors, np.float32).reshape(-1),
         }
-        for address, errors in sorted(record.items(), key=lambda each: each[0])
+        for address, errors in sorted(record.items(), key=lambda entry: entry[0])
     ]
     return encode(_schema(), rows)
 
@@ -52,7 +52,7 @@ def encode_record(record: Record, turning: Collection[str] = ()) -> bytes:
 class Recorded(Intervention):
     """Deliver with the errors that a file holds for the channel, by scene, seed and step.
 
-    A module alone can so get the errors that all modules had in another flight. After the end of a
+    So one module alone can get the errors that all modules had in another trial. After the end of a
     scene's record its last error stays.
     """
 
@@ -64,7 +64,7 @@ class Recorded(Intervention):
     channel: str = ""
     """Filled in by `resolved`."""
     digest: str = ""
-    """Of the file, filled in by `resolved`: trials belong to what it held."""
+    """Digest of the file, filled in by `resolved`: trials belong to that content."""
 
     def resolved(self, channel: Channel) -> Self:
         """Take channel and digest; `UserError` for a file that holds no errors of the channel."""
@@ -83,7 +83,7 @@ class Recorded(Intervention):
         digest, errors, turns = _read(self.file, self.channel)
         if digest != self.digest:
             raise UserError(f"{self.file} has changed: {_AGAIN}")
-        found: list[NDArray[np.float32]] = []
+        scenes: list[NDArray[np.float32]] = []
         for scene in at.draws.scenes:
             rows = errors.get((scene, at.draws.seed))
             shape = tuple(reading.shape[1:])
@@ -92,10 +92,12 @@ class Recorded(Intervention):
                     f"{self.file} holds no errors like {list(shape)} of channel '{self.channel}' "
                     f"in scene '{scene}', seed {at.draws.seed}: record that scene too"
                 )
-            found.append(rows.reshape(-1, *shape))
-        longest = max(map(len, found))
-        held = [np.concatenate((each, each[-1:].repeat(longest - len(each), 0))) for each in found]
-        return np.stack(held, axis=1), turns
+            scenes.append(rows.reshape(-1, *shape))
+        longest = max(map(len, scenes))
+        padded = [
+            np.concatenate((rows, rows[-1:].repeat(longest - len(rows), 0))) for rows in scenes
+        ]
+        return np.stack(padded, axis=1), turns
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the reading with the error of this step."""
@@ -127,10 +129,10 @@ def _read(
         data = contents(file)
     except OSError as error:
         raise UserError(f"the record {file} cannot be read: {error.strerror}.") from error
-    found = decode_record(data, file).get(channel, {})
-    turning = {turns for turns, _ in found.values()}
+    trials = decode_record(data, file).get(channel, {})
+    turning = {turns for turns, _ in trials.values()}
     digest = hashlib.sha256(data).hexdigest()[:16]
-    return digest, {key: errors for key, (_, errors) in found.items()}, turning == {True}
+    return digest, {key: errors for key, (_, errors) in trials.items()}, turning == {True}
 
 
 @lru_cache(maxsize=4)

@@ -146,11 +146,11 @@ class Hold(Intervention):
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the held reading, refreshed when its time has come."""
-        held, turn = memory
-        now = at.elapsed // self.every
-        if now != turn or at.elapsed < 0:
-            held = copy(reading)
-        return held, (held, now)
+        value, last = memory
+        refresh = at.elapsed // self.every
+        if refresh != last or at.elapsed < 0:
+            value = copy(reading)
+        return value, (value, refresh)
 
 
 class Freeze(Intervention):
@@ -168,5 +168,5 @@ class Freeze(Intervention):
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the held reading, which follows the readings up to the onset."""
-        held = copy(reading) if at.elapsed <= 0 else memory
-        return held, held
+        value = copy(reading) if at.elapsed <= 0 else memory
+        return value, value

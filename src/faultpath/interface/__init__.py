@@ -1,4 +1,4 @@
-"""What a system declares: sources, channels, consumers, reconstructions."""
+"""The interface that a system declares: sources, channels, consumers, reconstructions."""
 
 from faultpath.interface.interface import (
     Interface,

@@ -1,4 +1,4 @@
-"""What a system declares as a whole: parts that fit each other, and who reads what.
+"""The interface of a system as a whole: parts that fit each other, and who reads what.
 
 Each refusal says where and what to do. The paper's rule on who reads what is recursive: a module
 that reads a channel and reconstructs a source passes the channel's faults on to everything that
@@ -37,7 +37,9 @@ class Interface(Frozen, allow_inf_nan=False):
     @property
     def reconstructions(self) -> tuple[tuple[str, str], ...]:
         """Each module that produces a source, with the source."""
-        return tuple((module, made) for module, all_ in self.reconstructs.items() for made in all_)
+        return tuple(
+            (module, name) for module, names in self.reconstructs.items() for name in names
+        )
 
     def source(self, name: str) -> Source:
         """Return the source called `name`; raises `UserError` with the known names."""
@@ -190,8 +192,8 @@ def transitive_consumers(interface: Interface, channel: str) -> tuple[str, ...]:
     Raises `UserError` for an unknown name.
     """
     fed: dict[str, list[int]] = {}
-    for index, each in enumerate(interface.channels):
-        for source in each.sources:
+    for index, other in enumerate(interface.channels):
+        for source in other.sources:
             fed.setdefault(source, []).append(index)
     reached: dict[str, None] = {}
     waiting = deque([interface.channel(channel)])
@@ -199,8 +201,8 @@ def transitive_consumers(interface: Interface, channel: str) -> tuple[str, ...]:
     while waiting:
         here = waiting.popleft()
         reached.update(dict.fromkeys(here.consumers))
-        made_by = interface.reconstructs.get
-        fresh = {made for c in here.consumers for made in made_by(module_of(c), ())} - followed
+        outputs = interface.reconstructs.get
+        fresh = {source for c in here.consumers for source in outputs(module_of(c), ())} - followed
         followed |= fresh
         for index in sorted({index for source in fresh for index in fed.get(source, ())}):
             other = interface.channels[index]
@@ -229,10 +231,10 @@ def rank(interface: Interface) -> tuple[Channel, ...]:
 
 def groups(interface: Interface) -> dict[str, tuple[str, ...]]:
     """Return each error-correlation group and the channels that its sources feed."""
-    found: dict[str, dict[str, None]] = {}
+    fed: dict[str, dict[str, None]] = {}
     for channel in interface.channels:
         for name in channel.sources:
             group = interface.source(name).correlation_group
             if group is not None:
-                found.setdefault(group, {})[channel.name] = None
-    return {group: tuple(channels) for group, channels in found.items()}
+                fed.setdefault(group, {})[channel.name] = None
+    return {group: tuple(channels) for group, channels in fed.items()}

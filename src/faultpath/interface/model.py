@@ -1,4 +1,4 @@
-"""What a system declares about the information that its modules read.
+"""The declaration of the information that a system's modules read.
 
 Terms follow the paper, section "A Framework for Auditing Information Interfaces": a channel
 conditions a module; its source, its consumers and its deployment conditions (latency, rate, error
@@ -34,10 +34,10 @@ def _readable(text: str) -> str:
     return text
 
 
-def _several(given: object) -> object:
-    if isinstance(given, str):
-        return (given,)
-    return tuple(cast("list[object]", given)) if isinstance(given, list) else given
+def _several(names: object) -> object:
+    if isinstance(names, str):
+        return (names,)
+    return tuple(cast("list[object]", names)) if isinstance(names, list) else names
 
 
 def _briefly(names: tuple[str, ...]) -> str | list[str]:
@@ -57,7 +57,7 @@ Words = Annotated[str, AfterValidator(_readable)]
 
 
 class Provenance(StrEnum):
-    """Where a source's numbers come from."""
+    """Origin of a source's numbers."""
 
     MEASURED = "measured"
     ESTIMATED = "estimated"
@@ -72,7 +72,7 @@ class Provenance(StrEnum):
 
 
 class Gap(StrEnum):
-    """What deployment takes away from a channel, relative to accurate input."""
+    """A channel's loss at deployment, relative to accurate input."""
 
     NONE = "none"
     FIDELITY = "fidelity"
@@ -87,7 +87,7 @@ class Uncertainty(Frozen, allow_inf_nan=False):
 
     std: float | None = Field(default=None, ge=0)
     half_range: float | None = Field(default=None, ge=0)
-    """Of a uniform distribution around the true value."""
+    """Half the width of a uniform distribution around the true value."""
     relative: bool = False
     words: Words = ""
 
@@ -112,7 +112,7 @@ class Source(Frozen, allow_inf_nan=False):
     unit: Words
     """`1` for a number without a unit."""
     shape: tuple[Annotated[int, Field(ge=1)], ...] = ()
-    """Of one scene's reading; `()` for a scalar."""
+    """Shape of one scene's reading; `()` for a scalar."""
     provenance: Provenance
     latency_s: float = Field(default=0.0, ge=0)
     rate_hz: float | None = Field(default=None, gt=0)
@@ -139,10 +139,10 @@ class Channel(Frozen, allow_inf_nan=False):
 
     name: Name
     sources: tuple[Name, ...] = Field(min_length=1)
-    """What may feed the channel; the first does at deployment."""
+    """Sources that may feed the channel; the first does at deployment."""
     consumers: tuple[Consumer, ...] = Field(min_length=1)
     """Every place that reads the channel, as `module.place`."""
     erasure_default: Constant = 0.0
-    """What a consumer gets when the channel is erased."""
+    """Value that a consumer gets when the channel is erased."""
     gap: Gap = Gap.NONE
     description: Words = ""

@@ -63,20 +63,20 @@ def _complete(
     for channel in _dicts(data, "channels"):
         if "consumers" not in channel and channel.get("name") in consumers:
             channel["consumers"] = list(consumers[channel["name"]])
-    made: dict[str, list[str]] = {}
+    outputs: dict[str, list[str]] = {}
     for source in _dicts(data, "sources"):
         name: str = source["name"]
         if source.get("provenance") == "reconstructed" and name in writers:
-            made.setdefault(writers[name], []).append(name)
-    if made:
-        data.setdefault("reconstructs", made)
+            outputs.setdefault(writers[name], []).append(name)
+    if outputs:
+        data.setdefault("reconstructs", outputs)
 
 
 def _dicts(data: dict[str, Any], part: str) -> list[dict[str, Any]]:
     items = data.get(part)
-    found = cast("list[Any]", items) if isinstance(items, list) else []
+    entries = cast("list[Any]", items) if isinstance(items, list) else []
     return [
-        cast("dict[str, Any]", each)
-        for each in found
-        if isinstance(each, dict) and isinstance(cast("dict[str, Any]", each).get("name"), str)
+        cast("dict[str, Any]", entry)
+        for entry in entries
+        if isinstance(entry, dict) and isinstance(cast("dict[str, Any]", entry).get("name"), str)
     ]

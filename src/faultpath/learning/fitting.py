@@ -51,7 +51,7 @@ class Fit:
     """In evaluation mode."""
     record: FitRecord
     path: Path | None = None
-    """Its weights, with the record beside them, where a folder was given."""
+    """Path of its weights, with the record beside them, where a folder was given."""
 
 
 def mean_squared_error(output: Tensor, target: Tensor) -> Tensor:
@@ -85,15 +85,15 @@ def fit(
     `[n, ...]` where windows have no steps.
 
     Args:
-        module: What is fitted; it is copied, and its weights are the initial ones. Or a function
-            that makes it, called with torch's random numbers at the seed.
+        module: The module to fit; it is copied, and its weights are the initial ones. Or a
+            function that makes it, called with torch's random numbers at the seed.
         data: Windows and targets.
-        loss: Of the module's output and the targets, which are tensors as `Windows` names them.
+        loss: Function of the module's output and the targets, tensors as `Windows` names them.
         repair: One repair or several; none makes a baseline.
-        seed: Of initial weights, minibatch order, torch's random numbers and errors.
+        seed: Seed of initial weights, minibatch order, torch's random numbers and errors.
         schedule: Default: `Schedule()`.
         validation: Share of the episodes that are kept for validation.
-        name: Of the files; default the module's class and the repair's kind.
+        name: Name of the files; default the module's class and the repair's kind.
         folder: Gets `<name>-<seed>.safetensors` and its record `.json`, each whole or absent.
 
     Raises:
@@ -104,7 +104,7 @@ def fit(
     if seed < 0:
         raise UserError(f"fit: the seed {seed} is negative: seeds start at 0")
     repairs = (repair,) if isinstance(repair, Repair) else tuple(repair)
-    repairs = tuple(each.against(data.interface, data.dt_s, data.consumers) for each in repairs)
+    repairs = tuple(part.against(data.interface, data.dt_s, data.consumers) for part in repairs)
     with torch.random.fork_rng():
         # The module's own code draws from torch's global state (initialisation, dropout): it is the
         # fit's own in here, and the caller's again behind.
@@ -118,7 +118,7 @@ def fit(
         if not parameter_count(net):
             raise UserError(f"fit: {_name_of(net)} has no parameters to fit")
         torch.manual_seed(drawn)  # also where the module was not made here
-        kinds = (each.kind.replace("_", "-") for each in repairs)
+        kinds = (part.kind.replace("_", "-") for part in repairs)
         task = _WindowTask(net, data, loss, repairs, seed, schedule or Schedule(), validation)
         task.name = name or "+".join((type(net).__name__.lower(), *kinds))
         if not task.count:
@@ -185,12 +185,12 @@ def evaluate(
     What it was fitted without stays withheld. Raises `UserError` as `fit`.
     """
     repairs = fitted.record.repairs
-    asked = understood((*faults, *kept(repairs)), data.interface, data.dt_s)
-    found = resolve(asked, data.interface, data.consumers)
+    parsed = understood((*faults, *kept(repairs)), data.interface, data.dt_s)
+    resolved = resolve(parsed, data.interface, data.consumers)
     task = _WindowTask(
         fitted.module, data, loss, repairs, fitted.record.seed, Schedule(), validation=0.0
     )
-    return task.mean_loss(fitted.module, np.arange(len(data)), found)
+    return task.mean_loss(fitted.module, np.arange(len(data)), resolved)
 
 
 def load(module: nn.Module, path: Path | str) -> Fit:
@@ -229,7 +229,7 @@ class _WindowTask(Task):
         """Digest of the order of the windows in each epoch."""
         self.taps: tuple[TapCount, ...] = ()
         self._data, self._loss, self._epoch = data, loss, 0
-        self._faults: list[Any] = [fault for each in repairs for fault in each.faults]
+        self._faults: list[Any] = [fault for repair in repairs for fault in repair.faults]
         self._kept = kept(repairs)
         read = {port.channel for port in data.ports}
         self._readings = {name: tensor(v) for name, v in data.readings.items() if name in read}
@@ -251,8 +251,8 @@ class _WindowTask(Task):
     def validate(self, net: nn.Module) -> Mapping[str, float]:
         if not len(self._held_out):
             return {}
-        faults = {"correct": self._kept, "perturbed": self._faults}
-        return {name: self.mean_loss(net, self._held_out, each) for name, each in faults.items()}
+        cases = {"correct": self._kept, "perturbed": self._faults}
+        return {name: self.mean_loss(net, self._held_out, faults) for name, faults in cases.items()}
 
     def mean_loss(self, net: nn.Module, index: np.ndarray, faults: Iterable[Any]) -> float:
         """Return the mean loss of some windows, without gradients and in evaluation mode."""

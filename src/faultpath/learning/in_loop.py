@@ -1,4 +1,4 @@
-"""Repaired modules in a loop: what a fit had at its taps is what they have in a trial."""
+"""Repaired modules in a loop: they read in a trial what they read in the fit."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class Learned(Module):
     """A fitted torch module in the loop: one output of the last steps of what its ports got.
 
     At each step `forward` gets what it got in the fit, `inputs["gain", "model"]` of `[1, T, ...]`,
-    float32, the present last; before there are T steps the first fills in. Scenes go one by one,
-    because in a batch torch rounds a scene otherwise in other company.
+    float32, the present last; before step T the first step fills in. Scenes go one by one, because
+    torch may round a scene differently in another batch.
 
     Args:
-        name: Under which the interface lists its places.
-        net: What was fitted; it returns `[n, ...]`.
+        name: Name under which the interface lists its places.
+        net: The fitted module; it returns `[n, ...]`.
         writes: The source that its output is.
         reads: Ports of this step.
         reads_past: Ports of the step before.
@@ -52,17 +52,17 @@ class Learned(Module):
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
         import torch
 
-        now = {port: to_numpy(inputs[port]).astype(np.float32) for port in inputs}
+        present = {port: to_numpy(inputs[port]).astype(np.float32) for port in inputs}
         length = self._steps or 1
-        past = (*(memory or (now,) * (length - 1)), now)
+        past = (*(memory or (present,) * (length - 1)), present)
         kept = past[1 - length :] if length > 1 else ()
-        laid = {port: np.stack([step[port] for step in past], axis=1) for port in now}
+        windows = {port: np.stack([step[port] for step in past], axis=1) for port in present}
         if self._steps is None:
-            laid = {port: value[:, 0] for port, value in laid.items()}
-        seen = {port: torch.from_numpy(value) for port, value in laid.items()}
-        scenes = range(len(next(iter(now.values()))))
+            windows = {port: value[:, 0] for port, value in windows.items()}
+        tensors = {port: torch.from_numpy(value) for port, value in windows.items()}
+        scenes = range(len(next(iter(present.values()))))
         with torch.no_grad():
-            rows = [self._net({p: v[i : i + 1] for p, v in seen.items()})[0] for i in scenes]
+            rows = [self._net({p: v[i : i + 1] for p, v in tensors.items()})[0] for i in scenes]
         return {self.writes[0]: np.stack([row.numpy() for row in rows]).astype(float)}, kept
 
 
@@ -115,13 +115,15 @@ class _Withheld(Module):
     @override
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
         scenes, past = memory
-        given = {port: inputs[port] for port in inputs}
+        readings = {port: inputs[port] for port in inputs}
         truths = {name: inputs.truth(name) for name in self.truths}
-        beside = next((value for value in given.values() if is_array(value)), np.zeros(1))
-        floating = namespace(beside).isdtype(beside.dtype, "real floating")
+        sample = next((value for value in readings.values() if is_array(value)), np.zeros(1))
+        floating = namespace(sample).isdtype(sample.dtype, "real floating")
         for port, value in self._values.items():
             rows = np.array(np.broadcast_to(value, (scenes, *value.shape)), dtype=float)
-            given[port] = place(rows, beside, beside.dtype if floating else None)
-        filled = Inputs(inputs.module, inputs.step, given, truths, inputs.running, inputs.at_read)
+            readings[port] = place(rows, sample, sample.dtype if floating else None)
+        filled = Inputs(
+            inputs.module, inputs.step, readings, truths, inputs.running, inputs.at_read
+        )
         outputs, past = self._inner.step(filled, past)
         return outputs, (scenes, past)

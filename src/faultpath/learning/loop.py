@@ -35,7 +35,7 @@ class Diverged(UserError):
 
 @dataclass(frozen=True)
 class Moment:
-    """How far a fit is."""
+    """Progress of a fit."""
 
     epoch: int
     """Epoch at work, counted from 0."""
@@ -47,7 +47,7 @@ class Moment:
 
 @dataclass(frozen=True)
 class History:
-    """What epochs gave so far; one entry an epoch."""
+    """Losses and metrics of the epochs so far, one entry an epoch."""
 
     training_loss: tuple[float, ...] = ()
     validation: tuple[dict[str, float], ...] = ()
@@ -55,7 +55,7 @@ class History:
 
 
 class Task(ABC):
-    """What is fitted: samples and their loss.
+    """The samples of a fit and their loss.
 
     For each epoch `begin_epoch`, the minibatches' `loss` and `validate` are called. A fit that was
     cut short goes on at a later epoch in a new process, so `begin_epoch` and `loss` may depend on
@@ -89,7 +89,7 @@ class Task(ABC):
 
 @dataclass(frozen=True)
 class Journal:
-    """Where an unfinished fit stands: one file, written whole after every epoch.
+    """State of an unfinished fit: one file, written whole after every epoch.
 
     It holds everything that the next epoch depends on. Draws are addressed by the epoch, so that
     there is no random state to keep.
@@ -97,7 +97,7 @@ class Journal:
 
     path: Path
     recipe: Mapping[str, Any]
-    """What decides the fit, as JSON values: a journal of another one is not used."""
+    """JSON values that decide the fit: a journal of another recipe is not used."""
 
     def write(self, net: nn.Module, optimiser: Optimizer, history: History) -> None:
         """Write weights, moments and step counts of the optimiser, and the history."""
@@ -170,10 +170,10 @@ def run(
         decay = schedule.weight_decay
         optimiser = optim.AdamW(fitted, lr=schedule.learning_rate, weight_decay=decay)
     if journal is not None and journal.path.exists():
-        found = journal.read(net, optimiser)
-        if found is None and notice is not None:
+        restored = journal.read(net, optimiser)
+        if restored is None and notice is not None:
             notice(f"{journal.path} is damaged or of another fit: starting from the first epoch.")
-        history = found or history
+        history = restored or history
     while (epoch := len(history.training_loss)) < schedule.epochs:
         started, total = time.monotonic(), 0.0
         task.begin_epoch(epoch)

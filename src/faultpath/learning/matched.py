@@ -18,7 +18,7 @@ Recorded: TypeAlias = Fit | FitRecord | Path | str
 
 
 class Comparison(Frozen):
-    """What tells a baseline and its repair apart."""
+    """Differences between a baseline and its repair."""
 
     baseline: str
     """Its repair in words, `none` for a plain one."""
@@ -34,7 +34,9 @@ class Comparison(Frozen):
 
     def __str__(self) -> str:
         if self.differences:
-            return "\n".join(("not matched:", *(f"  - {each}" for each in self.differences)))
+            return "\n".join(
+                ("not matched:", *(f"  - {difference}" for difference in self.differences))
+            )
         if self.same_repair:
             return f"the same fit twice: even the repair ({self.repair}) is the same"
         against = "" if self.baseline == "none" else f" against {self.baseline}"
@@ -46,12 +48,12 @@ def matched(baseline: Recorded, repair: Recorded) -> Comparison:
 
     `UserError` for a record that is missing or damaged.
     """
-    one, other = (_record(each) for each in (baseline, repair))
-    found: list[str] = []
+    one, other = (_record(fit) for fit in (baseline, repair))
+    differences: list[str] = []
 
     def compare(what: str, mine: object, theirs: object) -> None:
         if mine != theirs:
-            found.append(f"{what} {mine} in the baseline and {theirs} in the repair.")
+            differences.append(f"{what} {mine} in the baseline and {theirs} in the repair.")
 
     def compare_fields(what: str, mine: Frozen, theirs: Frozen) -> None:
         after = theirs.model_dump()
@@ -64,7 +66,7 @@ def matched(baseline: Recorded, repair: Recorded) -> Comparison:
     if mine.tensors != theirs.tensors:
         names = {**mine.tensors, **theirs.tensors}
         name = next(n for n in names if mine.tensors.get(n) != theirs.tensors.get(n))
-        before, after = (each.tensors.get(name, "missing") for each in (mine, theirs))
+        before, after = (side.tensors.get(name, "missing") for side in (mine, theirs))
         compare("Architecture:", f"'{name}' is {before}", after)
     else:  # only then can initial weights be compared
         if mine.structure != theirs.structure:
@@ -72,18 +74,18 @@ def matched(baseline: Recorded, repair: Recorded) -> Comparison:
             pairs = ((a.strip(), b.strip()) for a, b in lines if a != b)
             compare("Architecture:", *next(pairs, (mine.name, theirs.name)))
         if one.initial_sha256 != other.initial_sha256:
-            found.append(f"Initialisation: the weights before the first step differ; {seeds}")
-    found += _of_data(one.data, other.data)
+            differences.append(f"Initialisation: the weights before the first step differ; {seeds}")
+    differences += _data_differences(one.data, other.data)
     compare("Loss:", one.loss, other.loss)
     compare_fields("Budget", one.schedule, other.schedule)
     if one.data.training_sha256 == other.data.training_sha256:
         epochs = enumerate(zip(one.order_sha256, other.order_sha256, strict=False), start=1)
         first = next((epoch for epoch, (a, b) in epochs if a != b), None)
         if first is not None:
-            found.append(f"Minibatch order: different from epoch {first} on; {seeds}")
+            differences.append(f"Minibatch order: different from epoch {first} on; {seeds}")
     compare_fields("Machine", one.machine, other.machine)
-    if not found and not isclose(one.first_loss, other.first_loss, rel_tol=_SAME_LOSS):
-        found.append(
+    if not differences and not isclose(one.first_loss, other.first_loss, rel_tol=_SAME_LOSS):
+        differences.append(
             "Computation: before any step the same weights have the loss "
             f"{one.first_loss:.6g} in the baseline and {other.first_loss:.6g} in the repair on "
             "the same correct inputs, so the code of module or loss differs."
@@ -92,7 +94,7 @@ def matched(baseline: Recorded, repair: Recorded) -> Comparison:
         baseline=one.repair,
         repair=other.repair,
         same_repair=one.repairs == other.repairs,
-        differences=tuple(found),
+        differences=tuple(differences),
     )
 
 
@@ -102,7 +104,7 @@ def _record(fit: Recorded) -> FitRecord:
     return fit.record if isinstance(fit, Fit) else read_card(Path(fit), FitRecord)
 
 
-def _of_data(mine: Data, theirs: Data) -> Iterator[str]:
+def _data_differences(mine: Data, theirs: Data) -> Iterator[str]:
     if mine.ids_sha256 != theirs.ids_sha256:  # readings, split and order follow
         yield (
             f"Data: other windows, {mine.windows} in the baseline and {theirs.windows} in the "
@@ -110,7 +112,7 @@ def _of_data(mine: Data, theirs: Data) -> Iterator[str]:
         )
         return
     for what in ("readings", "targets"):
-        before, after = (getattr(each, f"{what}_sha256") for each in (mine, theirs))
+        before, after = (getattr(side, f"{what}_sha256") for side in (mine, theirs))
         names = sorted(n for n in {*before, *after} if before.get(n) != after.get(n))
         if names:
             yield f"Data: the {what} of {listed(names)} differ."

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class Schedule(Frozen, allow_inf_nan=False):
-    """How long and by which steps a module is fitted; the learning rate is constant."""
+    """Epochs, minibatches and optimiser of a fit; the learning rate is constant."""
 
     epochs: int = Field(default=10, ge=1, le=90_000)
     batch_size: int = Field(default=64, ge=1)
@@ -40,7 +40,7 @@ class Schedule(Frozen, allow_inf_nan=False):
 
 
 class Card(Frozen):
-    """Where the weights of one fit come from: `<name>-<seed>.json` beside its weights.
+    """Origin of the weights of one fit: `<name>-<seed>.json` beside its weights.
 
     Only `weights_sha256` identifies the weights: durations and versions differ between fits that
     gave the same ones.
@@ -52,9 +52,9 @@ class Card(Frozen):
     """Numbers that were fitted."""
     schedule: Schedule
     initial_sha256: str
-    """Of the weights before the first step."""
+    """Digest of the weights before the first step."""
     first_loss: float
-    """Of the first minibatch before the first step: it stands for the code."""
+    """Loss of the first minibatch before the first step: it stands for the code."""
     training_loss: tuple[float, ...]
     """Mean over the samples of each epoch."""
     validation: tuple[dict[str, float], ...]
@@ -69,7 +69,7 @@ class Card(Frozen):
 
 
 class Architecture(Frozen):
-    """What a module is before it has weights."""
+    """A module before it has weights."""
 
     name: str
     structure: str
@@ -79,7 +79,7 @@ class Architecture(Frozen):
 
 
 class Data(Frozen):
-    """What was fitted to, in digests."""
+    """The windows of a fit, in digests."""
 
     readings_sha256: dict[str, str]
     """By channel."""
@@ -91,11 +91,11 @@ class Data(Frozen):
     training: int
     """Windows on the training side of the split."""
     training_sha256: str
-    """Of their names."""
+    """Digest of their names."""
 
 
 class Machine(Frozen):
-    """What computed a fit: it decides the last bits."""
+    """The software and device that computed a fit: they decide the last bits."""
 
     torch: str
     faultpath: str
@@ -122,15 +122,15 @@ class FitRecord(Card):
     loss: str
     """Name of what was minimised."""
     order_sha256: tuple[str, ...]
-    """Of the order of the training windows in each epoch."""
+    """Digest of the order of the training windows in each epoch."""
     taps: tuple[TapCount, ...]
-    """What each tap did over all epochs, summed over windows."""
+    """Counts of each tap over all epochs, summed over windows."""
     machine: Machine
 
     @property
     def repair(self) -> str:
         """The repairs in words."""
-        return "; ".join(each.words for each in self.repairs) or "none"
+        return "; ".join(repair.words for repair in self.repairs) or "none"
 
 
 CardKind = TypeVar("CardKind", bound=Card)
@@ -205,7 +205,7 @@ def weights_sha256(net: nn.Module) -> str:
 
 def parameter_count(net: nn.Module) -> int:
     """Return how many numbers are fitted."""
-    return sum(each.numel() for each in net.parameters() if each.requires_grad)
+    return sum(weight.numel() for weight in net.parameters() if weight.requires_grad)
 
 
 def safetensors() -> Any:

@@ -1,4 +1,4 @@
-"""What a repair does to the inputs of a module: uncertainty, withholding, reconstruction."""
+"""Repairs of the inputs of a module: uncertainty training, withholding, reconstruction."""
 
 from collections.abc import Collection, Iterable, Mapping
 from math import sqrt
@@ -18,29 +18,29 @@ Persistence: TypeAlias = Literal["window", "step"] | float
 
 
 class Repair(Frozen):
-    """What a fit does that its baseline does not (paper, "Propose Repairs, Then Audit").
+    """A change to a fit, which its baseline lacks (paper, "Propose Repairs, Then Audit").
 
     Made by `uncertainty_training`, `withholding` and `reconstruction`.
     """
 
     kind: Literal["uncertainty_training", "withholding", "reconstruction"]
     faults: tuple[AnyFault | str, ...] = ()
-    """What the taps do to every window's readings; text as an audit's `--fault` takes it."""
+    """Faults that the taps apply to every window; text as an audit's `--fault` takes it."""
     channel: str | None = None
-    """What a reconstruction estimates."""
+    """Channel that a reconstruction estimates."""
 
     @property
     def words(self) -> str:
         """The repair in a few words."""
         if self.kind == "reconstruction":
             return f"reconstruction of {self.channel}"
-        said: list[str] = []
-        for each in self.faults:
-            text = each if isinstance(each, str) else each.describe()
-            if isinstance(each, Fault) and each.loading != 1.0:
-                text += f", with a loading of {each.loading:g} on {each.drawn_from}"
-            said.append(text)
-        return f"{self.kind.replace('_', ' ')}: {'; '.join(said)}"
+        descriptions: list[str] = []
+        for fault in self.faults:
+            text = fault if isinstance(fault, str) else fault.describe()
+            if isinstance(fault, Fault) and fault.loading != 1.0:
+                text += f", with a loading of {fault.loading:g} on {fault.drawn_from}"
+            descriptions.append(text)
+        return f"{self.kind.replace('_', ' ')}: {'; '.join(descriptions)}"
 
     def against(self, interface: Interface, dt_s: float, present: Collection[str]) -> "Repair":
         """Return the repair as it acts on the consumers that are `present`, all spelled out.
@@ -49,7 +49,7 @@ class Repair(Frozen):
         """
         if self.channel is not None:
             interface.channel(self.channel)
-        found: list[AnyFault] = []
+        resolved: list[AnyFault] = []
         for fault in understood(self.faults, interface, dt_s):
             if isinstance(fault, Fault) and isinstance(fault.intervention, Erase):
                 # It would be laid along a reading, and nothing says its shape in a loop.
@@ -66,8 +66,8 @@ class Repair(Frozen):
                     f"{self.kind}: '{fault.describe()}' acts on none of {listed(present)}, which "
                     "are fitted; name one of these, or another reader"
                 )
-            found += faults
-        return self.model_copy(update={"faults": tuple(found)})
+            resolved += faults
+        return self.model_copy(update={"faults": tuple(resolved)})
 
 
 def understood(
@@ -75,13 +75,16 @@ def understood(
 ) -> tuple[AnyFault, ...]:
     """Return faults with text parsed as `--fault` is; `UserError` for one that does not fit."""
     return tuple(
-        parse_fault(each, interface, {}, dt_s) if isinstance(each, str) else each for each in faults
+        parse_fault(fault, interface, {}, dt_s) if isinstance(fault, str) else fault
+        for fault in faults
     )
 
 
 def kept(repairs: Iterable[Repair]) -> tuple[AnyFault | str, ...]:
     """Return what stays at the taps after a fit: what is withheld."""
-    return tuple(f for each in repairs if each.kind == "withholding" for f in each.faults)
+    return tuple(
+        fault for repair in repairs if repair.kind == "withholding" for fault in repair.faults
+    )
 
 
 def uncertainty_training(*q_eps: AnyFault | str) -> Repair:
@@ -160,7 +163,7 @@ def withholding(
     a module that no longer reads the channel.
 
     Args:
-        channel: What is withheld.
+        channel: Channel to withhold.
         consumers: Modules or `module.place`; all by default.
         value: In the reading's unit and shape; default the channel's erasure default.
     """

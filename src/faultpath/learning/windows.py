@@ -1,4 +1,4 @@
-"""What a module is fitted to: windows of readings by channel, through the taps of its interface."""
+"""Windows of readings that a module is fitted to, delivered by the taps of its interface."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class Windows:
     """Windows, or whole episodes, of one length: what a module reads in them, and its targets.
 
     Args:
-        interface: Of the system that the module belongs to; its taps deliver.
+        interface: Interface of the module's system; its taps deliver.
         reader: The module, or the consumers `module.place` of one or several, that is fitted.
         readings: By channel, what the source holds: `[N, T, ...]` step by step in order, or
             `[N, ...]` for what is constant in a window. Without steps all are `[N, ...]`.
@@ -55,13 +55,13 @@ class Windows:
     def __post_init__(self) -> None:
         if not self.readings:
             raise UserError("windows: there are no readings; give them by channel")
-        found = {name: np.asarray(value) for name, value in self.readings.items()}
-        object.__setattr__(self, "readings", found)
-        n = len(next(iter(found.values())))
+        readings = {name: np.asarray(value) for name, value in self.readings.items()}
+        object.__setattr__(self, "readings", readings)
+        n = len(next(iter(readings.values())))
         ids = tuple(self.ids) or tuple(f"window/{i:06d}" for i in range(n))
         object.__setattr__(self, "ids", ids)
         object.__setattr__(self, "episodes", tuple(self.episodes) or ids)
-        parts: dict[str, Any] = {f"readings of '{name}'": v for name, v in found.items()}
+        parts: dict[str, Any] = {f"readings of '{name}'": v for name, v in readings.items()}
         parts |= {f"targets '{name}'": value for name, value in named(self.targets).items()}
         parts |= {"ids": ids, "episodes": self.episodes}
         for what, value in parts.items():
@@ -71,16 +71,16 @@ class Windows:
             raise UserError(
                 "windows: two have the same id, and would get the same errors: rename one"
             )
-        for name, value in found.items():
+        for name, value in readings.items():
             shape = self.shape(name)
             fits = (shape, shape if self.steps is None else (self.steps, *shape))
             if value.shape[1:] not in fits:
-                wanted = " or ".join(str([n, *each]) for each in dict.fromkeys(fits))
+                expected = " or ".join(str([n, *sizes]) for sizes in dict.fromkeys(fits))
                 raise UserError(
                     f"windows: readings of '{name}' have the shape {list(value.shape)}, and the "
-                    f"interface says {wanted}: mend one of the two"
+                    f"interface says {expected}: mend one of the two"
                 )
-        missing = {port.channel for port in self.ports} - set(found)
+        missing = {port.channel for port in self.ports} - set(readings)
         if missing:
             raise UserError(
                 f"windows: {listed(self.consumers)} read {listed(missing)}, of which there are no "
@@ -103,20 +103,20 @@ class Windows:
 
     @cached_property
     def ports(self) -> Mapping[Port, str]:
-        """Where the reader reads, with the consumer's full name."""
-        found: dict[Port, str] = {}
+        """Ports at which the reader reads, with the consumer's full name."""
+        ports: dict[Port, str] = {}
         for channel in self.interface.channels:
             for consumer in channel.consumers:
                 if consumer not in self.consumers:
                     continue
                 port = Port(channel.name, consumer.partition(".")[2])
-                if port in found:
+                if port in ports:
                     raise UserError(
-                        f"windows: {found[port]} and {consumer} read '{port.channel}' at places of "
+                        f"windows: {ports[port]} and {consumer} read '{port.channel}' at places of "
                         "one name: fit them apart"
                     )
-                found[port] = consumer
-        return found
+                ports[port] = consumer
+        return ports
 
     def shape(self, channel: str) -> tuple[int, ...]:
         """Return the shape of one reading of a channel."""
@@ -136,34 +136,36 @@ class Windows:
         The name of an episode decides alone, whatever else there is.
         """
 
-        def held(name: str) -> bool:
+        def validates(name: str) -> bool:
             digest = blake2b(name.encode(), digest_size=8, person=b"validation").digest()
             return int.from_bytes(digest, "little") / 2**64 < validation
 
-        sides = {name: held(name) for name in dict.fromkeys(self.episodes)}
+        sides = {name: validates(name) for name in dict.fromkeys(self.episodes)}
         held_out = np.array([sides[name] for name in self.episodes])
         return np.flatnonzero(~held_out), np.flatnonzero(held_out)
 
     def learned(self, repairs: Iterable[Repair]) -> Targets:
         """Return what the loss gets; for a reconstruction the correct readings of its channel."""
-        made = [each.channel for each in repairs if each.channel is not None]
-        if len(made) > 1:
-            raise UserError(f"fit: a module reconstructs one channel, not {listed(made)}")
-        if not made:
+        channels = [repair.channel for repair in repairs if repair.channel is not None]
+        if len(channels) > 1:
+            raise UserError(f"fit: a module reconstructs one channel, not {listed(channels)}")
+        if not channels:
             if self.targets is None:
                 raise UserError(
                     "fit: the windows have no targets; only a reconstruction needs none"
                 )
             return self.targets
         for port, consumer in self.ports.items():
-            if port.channel in made:
+            if port.channel in channels:
                 raise UserError(
-                    f"fit: {consumer} reads '{made[0]}', which it is to reconstruct: leave that "
-                    "place out of reader"
+                    f"fit: {consumer} reads '{channels[0]}', which it is to reconstruct: leave "
+                    "that place out of reader"
                 )
-        if made[0] not in self.readings:
-            raise UserError(f"fit: there are no readings of '{made[0]}' to learn from: add them")
-        return self.readings[made[0]]
+        if channels[0] not in self.readings:
+            raise UserError(
+                f"fit: there are no readings of '{channels[0]}' to learn from: add them"
+            )
+        return self.readings[channels[0]]
 
     def digested(self, targets: Targets, training: HostArray) -> Data:
         """Return digests of what is fitted to, with these windows on the training side."""

@@ -20,7 +20,7 @@ def graph(
 
     Args:
         interface: Declares the channels, their sources and their consumers.
-        plant: What senses and is moved.
+        plant: The part that senses and is moved.
         modules: In any order.
         bindings: Channel to source, where it is not the channel's first source.
 
@@ -90,7 +90,7 @@ def _ordered(
     waiting = list(modules)
     while waiting:
         left = {id(module) for module in waiting}
-        ready = next((each for each in waiting if left.isdisjoint(needed[id(each)])), None)
+        ready = next((module for module in waiting if left.isdisjoint(needed[id(module)])), None)
         if ready is None:
             names = " -> ".join(dict.fromkeys(module.name for module in waiting))
             raise SystemMistake(
@@ -121,4 +121,5 @@ def interface_of(facts: Path | str | Mapping[str, Any], parts: Iterable[Part]) -
         for port in sorted(part.ports):
             consumers.setdefault(port.channel, {})[part.consumer(port)] = None
         writers |= dict.fromkeys(part.writes, part.name)
-    return read_interface(facts, {name: tuple(found) for name, found in consumers.items()}, writers)
+    readers = {channel: tuple(names) for channel, names in consumers.items()}
+    return read_interface(facts, readers, writers)

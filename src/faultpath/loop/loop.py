@@ -15,7 +15,7 @@ from faultpath.loop.module import Batch, Graph, Inputs, Module, Outputs, Part, P
 from faultpath.loop.reading import Reading
 
 _SLACK = 1e-6
-"""Of a step: what rounding of rates and latencies may take away."""
+"""Share of a step that rounding of rates and latencies may take away."""
 
 
 class Clock:
@@ -47,7 +47,7 @@ class Clock:
 
 
 class Deliverer(Protocol):
-    """What a loop asks of taps, for what stands between a loop and its taps."""
+    """Methods of taps that a loop calls, for classes that stand between the two."""
 
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
         """Return what a consumer gets of a reading; see `Taps.deliver`."""
@@ -65,7 +65,7 @@ class Instant:
     step: int
     state: State
     inputs: Inputs
-    """What reaches the plant."""
+    """Readings that reach the plant."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Loop:
     interface: Interface
     """Declares rates and latencies of the sources."""
     graph: Graph
-    """What is executed; see `faultpath.loop.graph`."""
+    """Plant and modules to execute; see `faultpath.loop.graph`."""
 
     def execute(self, batch: Batch, taps: Deliverer) -> Iterator[Instant]:
         """Start a batch, and yield each of its control steps and the one at which nothing runs.
@@ -93,7 +93,7 @@ class _Execution:
         self._taps = taps
         read = {graph.bindings[port.channel] for part in graph.parts for port in part.ports}
         self._clocks = {name: Clock(loop.interface.source(name), batch.dt_s) for name in read}
-        """Of the sources that somebody reads."""
+        """Clocks of the sources that somebody reads."""
         self._ports = {id(part): sorted(part.ports) for part in graph.parts}
         self._past: dict[str, Reading] = {}
         self._state = graph.plant.start(batch)
@@ -125,9 +125,9 @@ class _Execution:
             step += 1
         yield Instant(step, state, Inputs(plant.name, step, {}, {}))
 
-    def _hold(self, part: Part, outputs: Outputs, step: int, wanted: tuple[str, ...]) -> None:
+    def _hold(self, part: Part, outputs: Outputs, step: int, names: tuple[str, ...]) -> None:
         """Take in what a part's sources hold at a step, as far as somebody reads them."""
-        for name in wanted:
+        for name in names:
             if name not in self._clocks:
                 continue
             if name not in outputs:

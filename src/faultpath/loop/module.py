@@ -6,14 +6,13 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 
 from faultpath.core.arrays import Array
-from faultpath.core.renamed import tells_renames
 from faultpath.loop.reading import IllegalRead, UndeclaredReader
 
 Memory: TypeAlias = Any
-"""What a module carries from step to step; opaque to everybody else."""
+"""Values that a module carries from step to step; opaque to everybody else."""
 
 State: TypeAlias = Any
-"""What a plant carries from step to step; opaque to everybody else."""
+"""Values that a plant carries from step to step; opaque to everybody else."""
 
 Outputs: TypeAlias = Mapping[str, Any]
 """By source: an array `[B, ...]`, or a `faultpath.loop.Query` that is asked within the step."""
@@ -32,7 +31,7 @@ class Port(NamedTuple):
 
 
 class Inputs(dict[tuple[str, str], Any]):
-    """What the taps delivered to one module at one step: an entry for each of its ports.
+    """Deliveries of the taps to one module at one step: an entry for each of its ports.
 
     A signal is an array `[B, ...]`, one row a scene; a query is a function of a request. A port
     that the module did not declare has no entry: looking for one raises `UndeclaredReader`.
@@ -54,7 +53,7 @@ class Inputs(dict[tuple[str, str], Any]):
         self.running = running
         """Which scenes still run, bool `[B]`, for modules that save work; `None`: all."""
         self.at_read = at_read or {}
-        """What delivers at ports that get nothing until they are looked at."""
+        """Deliveries that happen only when a port is looked at."""
         self._truths = truths
 
     def __missing__(self, port: tuple[str, str]) -> Any:
@@ -83,7 +82,7 @@ class Batch:
 
     scenes: tuple[str, ...]
     seed: int
-    """Of random numbers and, where models are trained, of their training."""
+    """Seed of random numbers and, where models are trained, of their training."""
     dt_s: float
     """Length of a control step, s."""
 
@@ -92,16 +91,16 @@ class Part(ABC):
     """A part of a loop, which reads at ports."""
 
     name: str
-    """Under which the interface lists its consumers, `name.place`. Parts may share it: a fault at
-    that module then reaches them all."""
+    """Name under which the interface lists its consumers, `name.place`. Parts may share it: a fault
+    at that module then reaches them all."""
     reads: frozenset[Port] = frozenset()
     """Ports that get what their source holds at this step."""
     reads_past: frozenset[Port] = frozenset()
     """Ports that get what their source held one step before: this is what closes a cycle. At the
     first step that is what the source's module gives as `before`."""
     at_read: frozenset[Port] = frozenset()
-    """Those of its ports that get their reading only in steps in which it is looked at; then
-    receipts count what was read and not what was handed over."""
+    """Ports that get their reading only in steps in which it is looked at; then receipts count what
+    was read and not what was handed over."""
 
     writes: tuple[str, ...] = ()
     """Sources of the interface that it produces at every step; a plant senses its sources."""
@@ -125,8 +124,8 @@ class Module(Part):
     """
 
     truths: tuple[str, ...] = ()
-    """What it takes of the plant's own state, past all taps. Only an override of an estimator does
-    so, and tracing names it."""
+    """Parts of the plant's own state that it takes past all taps. Only an override of an estimator
+    does so, and tracing names it."""
 
     def begin(self, batch: Batch) -> Memory:
         """Return the memory before the first step."""
@@ -150,10 +149,9 @@ class Module(Part):
         return None
 
 
-@tells_renames
 @dataclass(frozen=True)
 class Progress:
-    """Where each scene's trial stands, `[B]` each; one that runs no longer stays as it ended."""
+    """State of each scene's trial, `[B]` each; one that runs no longer stays as it ended."""
 
     running: Array
     succeeded: Array
@@ -162,11 +160,11 @@ class Progress:
     time_s: Array
     """Time at which it ended, or of now."""
     metrics: Mapping[str, Array] = field(default_factory=dict[str, Array])
-    """What else there is to measure, by name, `[B]` each."""
+    """Further measurements by name, `[B]` each."""
 
 
 class Plant(Part):
-    """What the loop closes over: it senses, and it is moved by what it reads at its ports."""
+    """The part that the loop closes over: it senses, and what it reads at its ports moves it."""
 
     name: str = "plant"
     steps: int

@@ -1,4 +1,4 @@
-"""What passes a tap, and what is a mistake there."""
+"""Readings and queries that pass a tap, and the errors that a tap raises."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from faultpath.core.errors import SystemMistake
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What a source says. A consumer cannot write to it; its owner may once the step is over."""
+    """A source's value. A consumer cannot write to it; its owner may once the step is over."""
 
     value: Array
     """`[B, ...]`, one row a scene, in the source's unit; or a `Query` whose answers are."""
@@ -29,7 +29,7 @@ class Query:
     """
 
     answer: Callable[[Any], Any]
-    """What a request gets without a fault."""
+    """Returns what a request gets without a fault."""
     value: Callable[[Any], Array] = lambda answer: answer
     """The array `[B, ...]` in an answer that faults act on, as the source declares it. It is
     called only where something looks at it."""

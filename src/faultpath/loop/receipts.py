@@ -1,4 +1,4 @@
-"""What was delivered to whom, when, and altered or not."""
+"""Receipts of deliveries: to whom, when, and altered or not."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -25,14 +25,14 @@ class Tally:
         self._pending: Any = False
         self._step = -1
 
-    def note(self, step: int, held: Any) -> None:
-        """Report that the bool or boolean array `[B]` `held` at `step`."""
+    def note(self, step: int, mask: Any) -> None:
+        """Report where something held at `step`; `mask` is a bool or boolean array `[B]`."""
         if step != self._step:
-            self._done, self._pending, self._step = self._total(), held, step
+            self._done, self._pending, self._step = self._total(), mask, step
         elif self._pending is False:
-            self._pending = held
-        elif held is not False:
-            one, other = together(self._pending, held)
+            self._pending = mask
+        elif mask is not False:
+            one, other = together(self._pending, mask)
             self._pending = one | other
 
     def _total(self) -> Any:
@@ -79,7 +79,7 @@ class Guard:
 
 @dataclass(frozen=True, slots=True)
 class TapCount:
-    """What one tap did, summed over scenes."""
+    """Counts of one tap, summed over scenes."""
 
     channel: str
     consumer: str
@@ -94,12 +94,12 @@ class TapCount:
 def added(counts: Iterable[TapCount]) -> tuple[TapCount, ...]:
     """Return one count a tap, in the order in which the taps come up first."""
     sums: dict[tuple[str, str], tuple[int, int, int]] = {}
-    for each in counts:
-        before = sums.get((each.channel, each.consumer), (0, 0, 0))
-        sums[each.channel, each.consumer] = (
-            before[0] + each.deliveries,
-            before[1] + each.faulted_steps,
-            before[2] + each.altered_steps,
+    for count in counts:
+        before = sums.get((count.channel, count.consumer), (0, 0, 0))
+        sums[count.channel, count.consumer] = (
+            before[0] + count.deliveries,
+            before[1] + count.faulted_steps,
+            before[2] + count.altered_steps,
         )
     return tuple(TapCount(*tap, *numbers) for tap, numbers in sums.items())
 

@@ -76,18 +76,18 @@ class Tap:
     source: str
     legal: bool
     shape: tuple[int, ...]
-    """Of every reading, scenes first."""
+    """Shape of every reading, scenes first."""
     corruptions: tuple[Corruption, ...] = ()
     deliveries: int = 0
     asks: int = 0
     """Answers of a query, over all steps."""
     asked: int = 0
-    """Those of the last step."""
+    """Answers of a query in the last step."""
     last_step: int = -1
     given: Array = None
     """The value of the step's reading."""
     cached: Array = None
-    """What the consumer got of it."""
+    """Value that the consumer got of it."""
     finite: Array = None
     """Where the first reading was finite, until that has been looked at."""
     guard: Guard | None = None
@@ -111,9 +111,11 @@ class Tap:
             asks=self.asks,
             corruptions=tuple(
                 CorruptionReceipt(
-                    each.fault.describe(), each.fault.onset_step, each.in_force.counts(n_scenes)
+                    corruption.fault.describe(),
+                    corruption.fault.onset_step,
+                    corruption.in_force.counts(n_scenes),
                 )
-                for each in self.corruptions
+                for corruption in self.corruptions
             ),
             steps_faulted=self.faulted.counts(n_scenes),
             steps_altered=self.altered.counts(n_scenes),
@@ -143,17 +145,17 @@ class Tap:
 
     def check_shape(self, value: Array) -> None:
         """Raise `MalformedReading` for another shape than declared."""
-        shape, wanted = list(getattr(value, "shape", ())), list(self.shape)
-        if shape == wanted:
+        shape, declared = list(getattr(value, "shape", ())), list(self.shape)
+        if shape == declared:
             return
-        if shape[:1] != wanted[:1]:
+        if shape[:1] != declared[:1]:
             rows = str(shape[0]) if shape else "no"
             raise MalformedReading(
-                f"tap {self}: the reading has {rows} rows for {wanted[0]} scenes"
+                f"tap {self}: the reading has {rows} rows for {declared[0]} scenes"
             )
         raise MalformedReading(
             f"tap {self}: the reading of one scene has the shape {shape[1:]}, but source "
-            f"'{self.source}' is declared with {wanted[1:]}; mend one of the two"
+            f"'{self.source}' is declared with {declared[1:]}; mend one of the two"
         )
 
     def check_finite(self, scenes: tuple[str, ...]) -> None:
@@ -211,8 +213,8 @@ def wire(
     for channel in interface.channels:
         bound = bindings.get(channel.name, channel.sources[0])
         if bound not in channel.sources:
-            said = unknown("source", bound, channel.sources)
-            raise UserError(f"channel '{channel.name}' cannot be bound: {said}")
+            problem = unknown("source", bound, channel.sources)
+            raise UserError(f"channel '{channel.name}' cannot be bound: {problem}")
         source = interface.source(bound)
         secret = source.provenance is Provenance.PRIVILEGED
         shape = (n_scenes, *source.shape)
@@ -237,5 +239,5 @@ class Observer:
     ) -> None:
         """See what a query answered to a request, and what the consumer got of that answer."""
 
-    def faulted(self, step: int, held: Any) -> None:
+    def faulted(self, step: int, in_force: Any) -> None:
         """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""

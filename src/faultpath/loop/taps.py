@@ -40,7 +40,7 @@ class Taps:
     """The taps of one variant over one block of scenes, with the faults of one arm.
 
     Args:
-        interface: What the system declares.
+        interface: The system's interface.
         faults: As `faultpath.faults.resolve` returns them, in the order in which they act where
             they meet at a tap.
         scenes: Scene ids, one a row of every reading.
@@ -91,23 +91,23 @@ class Taps:
         shared: dict[Draws, Draws] = {}
         apart: dict[Draws | None, Fault] = {}
         for fault in faults:
-            made = fault.draws(self._scenes, seed)
+            draws = fault.draws(self._scenes, seed)
             if abs(fault.loading) < 1:
-                if made.own in apart:
+                if draws.own in apart:
                     raise UserError(
-                        f"faults '{apart[made.own].describe()}' and '{fault.describe()}' have "
+                        f"faults '{apart[draws.own].describe()}' and '{fault.describe()}' have "
                         "a loading and draw the same numbers nevertheless: give them different "
                         "causes"
                     )
-                apart[made.own] = fault
-            drawn = shared.setdefault(made, made)
+                apart[draws.own] = fault
+            common = shared.setdefault(draws, draws)
             for consumer in fault.consumers:
                 if (fault.channel, consumer) not in self._taps:
                     raise UserError(
                         f"fault '{fault.describe()}' has no tap at '{consumer}': spell out its "
                         "consumers with faultpath.faults.resolve"
                     )
-                self._taps[fault.channel, consumer].add(Corruption(fault, drawn, dt_s))
+                self._taps[fault.channel, consumer].add(Corruption(fault, common, dt_s))
 
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
         """Return what `consumer` gets of `channel` at control step `step`.
@@ -172,14 +172,14 @@ class Taps:
         tap.asked, tap.asks = ask + 1, tap.asks + 1
         got = answer
         if first or tap.corruptions or tap.guard:
-            given = value = query.value(answer)
+            clean = value = query.value(answer)
             if first:
                 tap.check_first(value, self._scenes)
             if tap.corruptions:
                 value = self._corrupted(tap, value, step, ask)
             if tap.guard is not None:
                 value = tap.guard.hand_out(value)
-            if value is not given:
+            if value is not clean:
                 got = query.changed(answer, value)
         if self._observer is not None:
             self._observer.answered(tap, query, step, request, answer, got)
@@ -188,10 +188,10 @@ class Taps:
     def _corrupted(self, tap: Tap, reading: Array, step: int, ask: int = 0) -> Array:
         tap.check_shape(reading)
         value, faulted = reading, False
-        for each in tap.corruptions:
-            value, in_force = each.act(value, step, ask)
+        for corruption in tap.corruptions:
+            value, in_force = corruption.act(value, step, ask)
             in_force = self._running(in_force, reading)
-            each.in_force.note(step, in_force)
+            corruption.in_force.note(step, in_force)
             faulted = in_force if faulted is False else faulted | in_force
         if len(tap.corruptions) > 1:
             tap.faulted.note(step, faulted)
@@ -208,14 +208,14 @@ class Taps:
         """Say which scenes still run, a boolean array `[B]`; `None`: all. Receipts count these."""
         self._active = self._placed = mask
 
-    def _running(self, held: Any, reading: Array) -> Any:
-        """Return `held`, a bool or boolean array `[B]`, where the scene runs."""
-        if self._active is None or held is False:
-            return held
+    def _running(self, mask: Any, reading: Array) -> Any:
+        """Return `mask`, a bool or boolean array `[B]`, where the scene runs."""
+        if self._active is None or mask is False:
+            return mask
         placed = self._placed
         if namespace(placed) is not namespace(reading) or placed.device != reading.device:
             placed = self._placed = place(to_numpy(self._active), reading)
-        return placed if held is True else held & placed
+        return placed if mask is True else mask & placed
 
     def for_module(self, module: str) -> ModuleTaps:
         """Return the view that `module` gets; raises `TapError` for an unknown module."""
@@ -255,7 +255,7 @@ class Taps:
         last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
         check_delivered(self.receipts(), faulted, last)
 
-    def _refused(self, channel: str, consumer: str, given: Any, step: int) -> TapError:
+    def _refused(self, channel: str, consumer: str, reading: Any, step: int) -> TapError:
         """Return what is wrong with a delivery that the interface or the variant does not allow."""
         here = f"tap {channel} -> {consumer}"
         tap = self._taps.get((channel, consumer))
@@ -269,14 +269,14 @@ class Taps:
                 f"{here}: the channel does not declare this consumer; add it to the interface, "
                 f"declared: {listed(declared)}"
             )
-        if not isinstance(given, Reading):
+        if not isinstance(reading, Reading):
             return MalformedReading(
-                f"{here}: deliver() was given a {type(given).__name__}; wrap it: "
+                f"{here}: deliver() was given a {type(reading).__name__}; wrap it: "
                 f"Reading(value, '{tap.source}', step)"
             )
-        if given.source != tap.source:
+        if reading.source != tap.source:
             return IllegalRead(
-                f"{here}: the reading is of source '{given.source}', but the channel is bound to "
+                f"{here}: the reading is of source '{reading.source}', but the channel is bound to "
                 f"'{tap.source}'; deliver that one, or bind the channel in the variant"
             )
         if not tap.legal:
@@ -285,6 +285,6 @@ class Taps:
                 "read another one, or name it in the variant's privileged sources"
             )
         return IllegalRead(
-            f"{here}: the reading is of step {given.step}, which is after step {step}; deliver "
+            f"{here}: the reading is of step {reading.step}, which is after step {step}; deliver "
             "what is known by then"
         )

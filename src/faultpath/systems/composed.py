@@ -1,4 +1,4 @@
-"""A system composed of a plant of episodes and modules; all that can be seen is not declared."""
+"""A system composed of a plant of episodes and modules; its interface follows from these."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ SCENES: Mapping[str, Sequence[int]] = {
 class Parts:
     """A variant: its modules, in any order, or a function of the arm's seed that returns them.
 
-    The function is for trained modules; with `None` only their ports and shapes are looked at.
+    The function is for trained modules; it gets `None` where only ports and shapes are needed.
     """
 
     description: str
@@ -40,15 +40,15 @@ class Parts:
 
 
 class ComposedSystem(LoopSystem):
-    """A system of a plant and modules whose interface is what runs.
+    """A system of a plant and modules, whose interface follows from them.
 
     Consumers follow from the modules' ports, shapes from the first step of each variant.
-    A source of the plant is measured, what a scene's set-up tells is an estimate of it (its channel
-    has a fidelity gap), what the plant reads is commanded, what a module writes is reconstructed.
+    What the plant senses is measured, what a scene's set-up returns is estimated (its channel has a
+    fidelity gap), what the plant reads is commanded, what a module writes is reconstructed.
 
     Args:
-        name: Of the system.
-        plant: What senses and is moved.
+        name: Name of the system.
+        plant: The part that senses and is moved.
         variants: The ways to wire it: `Parts`, or just their modules.
         units: Unit of each source, or the fields of a `faultpath.interface.Source` where there is
             more to say: unit, provenance, latency_s, rate_hz, uncertainty, correlation_group; and
@@ -77,7 +77,7 @@ class ComposedSystem(LoopSystem):
         self._parts = {
             key: parts
             if isinstance(parts, Parts)
-            else Parts(f"Modules: {', '.join(map(_said, parts))}.", parts)
+            else Parts(f"Modules: {', '.join(map(_described, parts))}.", parts)
             for key, parts in variants.items()
         }
         self.components = dict[str, tuple[str, ...]]()
@@ -94,9 +94,9 @@ class ComposedSystem(LoopSystem):
         seen = _Shapes()
         for variant in self._parts:
             wired = self.wirings[variant].bindings
-            made = graph(self._interface, plant, self.modules(variant, None), wired)
+            executable = graph(self._interface, plant, self.modules(variant, None), wired)
             batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
-            first = next(iter(Loop(self._interface, made).execute(batch, cast("Any", seen))))
+            first = next(iter(Loop(self._interface, executable).execute(batch, cast("Any", seen))))
             for world in first.state.worlds:
                 world.close()
         self._interface = self._declared(units, several, plant.shapes | seen.shapes)
@@ -142,7 +142,7 @@ class ComposedSystem(LoopSystem):
         several: Mapping[str, Sequence[str]],
         shapes: Mapping[str, tuple[int, ...]],
     ) -> Interface:
-        """Return the interface; what no shape is known of counts as a number."""
+        """Return the interface; a source of unknown shape counts as a number."""
         plant = self._plant
         modules = [module for parts in self._parts.values() for module in parts.of(None)]
         read = dict.fromkeys(
@@ -163,8 +163,8 @@ class ComposedSystem(LoopSystem):
                     f"system '{self.name}': source '{name}' has no unit: add it to units, '1' for "
                     "a number without one"
                 )
-            given = units[name]
-            facts = {"unit": given} if isinstance(given, str) else dict(given)
+            entry = units[name]
+            facts = {"unit": entry} if isinstance(entry, str) else dict(entry)
             if named := facts.pop("components", ()):
                 self.components[name] = tuple(named)
                 if name in shapes and len(named) != np.prod(shapes[name], dtype=int):
@@ -193,7 +193,7 @@ class ComposedSystem(LoopSystem):
             raise SystemMistake(f"system '{self.name}': {error}") from None
 
 
-def _said(module: Module) -> str:
+def _described(module: Module) -> str:
     return str(module) if isinstance(module, FunctionModule) else module.name
 
 

@@ -34,7 +34,7 @@ class Episode:
     terminated: bool
     """Whether the environment ended it, for good or bad; else its time was up."""
     info: Mapping[str, Any]
-    """What the environment said at its last step."""
+    """Info that the environment returned at its last step."""
     dt_s: float
 
     def __getitem__(self, source: str) -> HostArray:
@@ -56,7 +56,7 @@ class World:
     observation: Any
     """An array, or a mapping or tuple of such."""
     told: Mapping[str, Any]
-    """What the set-up says of the scene, by source."""
+    """Facts about the scene that its set-up returned, by source."""
     initial: str
     """A hash of its initial state."""
     disturbance: str
@@ -78,7 +78,7 @@ class Measure:
 
 
 Look = str | int | slice | tuple[Any, ...] | Callable[[Any], Any]
-"""Where in the observation a source stands: a key, an index or slice, several in turn, or a
+"""Place of a source in the observation: a key, an index or slice, several in turn, or a
 function of the batch's observation that returns an array `[B, ...]`."""
 
 
@@ -92,18 +92,18 @@ class _Batch:
 
     worlds: Sequence[World]
     seen: list[Any]
-    """The last observation of each."""
+    """The last observation of each world."""
     sensed: dict[str, HostArray]
     running: HostArray
     succeeded: HostArray
     crashed: HostArray
     steps: HostArray
-    """Those that each scene has made."""
+    """Steps that each scene has made."""
     metrics: dict[str, HostArray]
     log: dict[str, list[HostArray]]
     rewards: list[HostArray]
     at: HostArray | None
-    """Where each is, `[B, 3]`, metres."""
+    """Position of each, `[B, 3]`, metres."""
 
 
 class EpisodePlant(Plant):
@@ -122,7 +122,7 @@ class EpisodePlant(Plant):
 
     name = "plant"
     identity: str = ""
-    """What decides a trial and stands in no file that the system imports."""
+    """Facts that decide a trial and stand in no file that the system imports."""
     code: Sequence[str] = ()
     """Classes, as `module:name`, whose code decides a trial and is not imported."""
 
@@ -154,25 +154,25 @@ class EpisodePlant(Plant):
     def world(self, scene: str, seed: int) -> World:
         """Return a scene at its start."""
 
-    def _sensed(self, worlds: Sequence[World], each: Sequence[Any]) -> dict[str, HostArray]:
-        """Return every source of worlds that are observed as `each`, `[B, ...]`."""
-        seen, found = stacked(each), dict[str, HostArray]()
+    def _sensed(self, worlds: Sequence[World], observations: Sequence[Any]) -> dict[str, HostArray]:
+        """Return every source, `[B, ...]`, of worlds with these observations."""
+        batch, sources = stacked(observations), dict[str, HostArray]()
         try:
             for name, at in self._observes.items():
-                part = at(seen) if callable(at) else seen
+                part = at(batch) if callable(at) else batch
                 keys = () if callable(at) else at if isinstance(at, tuple) else (at,)
                 for key in keys:
                     part = part[key] if isinstance(key, str) else part[:, key]
-                found[name] = np.array(part)
+                sources[name] = np.array(part)
         except (LookupError, TypeError) as error:
-            kind = type(seen).__name__ if not hasattr(seen, "shape") else list(seen.shape[1:])
+            kind = type(batch).__name__ if not hasattr(batch, "shape") else list(batch.shape[1:])
             raise SystemMistake(
                 f"observes: the observation ({kind}) holds no such part ({error}): give a key, an "
                 "index or a slice of it"
             ) from error
         for name in self.told:
-            found[name] = np.array([np.asarray(world.told[name]) for world in worlds])
-        return found
+            sources[name] = np.array([np.asarray(world.told[name]) for world in worlds])
+        return sources
 
     @override
     def start(self, batch: Batch) -> _Batch:
@@ -231,47 +231,48 @@ class EpisodePlant(Plant):
     @override
     def advance(self, state: _Batch, inputs: Inputs) -> _Batch:
         """Move what runs, freeze what does not, and judge what ends."""
-        now, was = state, state.running
+        running = state.running
         action = to_numpy(inputs[Port(self.action, "actuator")])
-        rewards, ends = np.zeros(len(was)), np.zeros((2, len(was)), bool)
-        info: list[Mapping[str, Any]] = [{} for _ in was]
-        for i in map(int, np.flatnonzero(was)):
-            made = now.worlds[i].step(action[i], inputs.step)
-            now.seen[i], rewards[i], ends[0, i], ends[1, i], info[i] = made
-        fresh = self._sensed(now.worlds, now.seen)
-        held, now.sensed = now.sensed, {}
-        for name, old in held.items():
+        rewards, ends = np.zeros(len(running)), np.zeros((2, len(running)), bool)
+        info: list[Mapping[str, Any]] = [{} for _ in running]
+        for i in map(int, np.flatnonzero(running)):
+            result = state.worlds[i].step(action[i], inputs.step)
+            state.seen[i], rewards[i], ends[0, i], ends[1, i], info[i] = result
+        fresh = self._sensed(state.worlds, state.seen)
+        before, state.sensed = state.sensed, {}
+        for name, old in before.items():
             value = fresh[name]
-            if not was.all():
-                value = np.where(was.reshape(-1, *[1] * (value.ndim - 1)), value, old)
+            if not running.all():
+                value = np.where(running.reshape(-1, *[1] * (value.ndim - 1)), value, old)
             if value.ndim > 2:
-                now.log[name].clear()
-            now.log[name].append(value)
-            now.sensed[name] = value
-        now.rewards.append(rewards)
-        now.steps = now.steps + was
+                state.log[name].clear()
+            state.log[name].append(value)
+            state.sensed[name] = value
+        state.rewards.append(rewards)
+        state.steps = state.steps + running
         terminated, truncated = ends
-        ended = was & (terminated | truncated | (now.steps == self.steps))
-        succeeded, crashed = now.succeeded.copy(), now.crashed.copy()
+        ended = running & (terminated | truncated | (state.steps == self.steps))
+        succeeded, crashed = state.succeeded.copy(), state.crashed.copy()
         for i in map(int, np.flatnonzero(ended)):
-            signals = {name: np.stack([each[i] for each in log]) for name, log in now.log.items()}
-            paid = np.array([each[i] for each in now.rewards])
+            signals = {name: np.stack([rows[i] for rows in log]) for name, log in state.log.items()}
+            paid = np.array([row[i] for row in state.rewards])
             episode = Episode(signals, paid, bool(terminated[i]), info[i], self.dt_s)
-            said: Any = self._succeeded(episode)
-            if type(said) not in (bool, np.bool_):
+            success: Any = self._succeeded(episode)
+            if type(success) not in (bool, np.bool_):
                 raise SystemMistake(
-                    f"`succeeded` returned {said!r:.80} of an episode: it must return true or false"
+                    f"`succeeded` returned {success!r:.80} of an episode: it must return true or "
+                    "false"
                 )
-            succeeded[i] = said
+            succeeded[i] = success
             for name, measure in self.metrics.items():
-                now.metrics[name][i] = measure.of(episode)
+                state.metrics[name][i] = measure.of(episode)
             crashed[i] = terminated[i] and not succeeded[i]
-        now.running, now.succeeded, now.crashed = was & ~ended, succeeded, crashed
-        now.at = self._places(now.worlds)
-        if not now.running.any():
-            for world in now.worlds:
+        state.running, state.succeeded, state.crashed = running & ~ended, succeeded, crashed
+        state.at = self._places(state.worlds)
+        if not state.running.any():
+            for world in state.worlds:
                 world.close()
-        return now
+        return state
 
     @override
     def progress(self, state: _Batch) -> Progress:

@@ -18,15 +18,15 @@ class FunctionPlant(EpisodePlant):
     Args:
         start: `start(rng)` returns the state at the start of a scene: an array, or numbers and
             arrays by name. Whatever makes one scene another is drawn from `rng`.
-        step: `step(state, action, rng)` returns the state one control step later. What it draws
-            is another for each step and seed, and the same in every arm.
+        step: `step(state, action, rng)` returns the state one control step later. It
+            draws other numbers at each step and seed, and the same in every arm.
         observes: Source to its part of the state: a name, an index, a slice, several of them in
             turn, or a function of the batch's state.
         action: Channel from which the plant is moved, at the place `actuator`.
         steps: Control steps of an episode.
         dt_s: Length of a control step, s.
         succeeded: Says of each finished episode whether it was a success.
-        metrics: What else is measured of each finished episode, by name.
+        metrics: Further measures of each finished episode, by name.
         over: `over(state)` says whether the scene ends before its time; without it none does.
         trace: `trace(state)` returns where it is, `(x, y)` or `(x, y, z)` in metres.
         render: `render(state)` returns points `(x, y)` of a line that draws it, in metres.

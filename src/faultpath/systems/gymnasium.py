@@ -15,7 +15,6 @@ from typing_extensions import override
 
 from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
-from faultpath.core.renamed import tells_renames
 from faultpath.core.streams import generator
 from faultpath.systems.episodes import (
     SCENE,
@@ -34,13 +33,12 @@ Setup = Callable[[Any, np.random.Generator], Mapping[str, Any] | None]
 OnStep = Callable[[Any, np.random.Generator, int], None]
 
 _PLACE = re.compile(r"(?<=faultpath_system_)\w*(?=:)| at 0x[0-9a-f]+")
-"""Where a system's file lies, which its module is called after, and where in memory a function is:
+"""A system's module, which is named after the place of its file, and a function's place in memory:
 both differ from machine to machine."""
 
 
-@tells_renames
 class GymnasiumPlant(EpisodePlant):
-    """Environments of Gymnasium, side by side.
+    """Gymnasium environments, side by side.
 
     Args:
         environment: An id, or a function without arguments that returns one environment.
@@ -49,14 +47,14 @@ class GymnasiumPlant(EpisodePlant):
         action: Channel from which the environment is moved, at the place `actuator`; a reading has
             the action's shape, or is a number where the action is one.
         succeeded: Says of each finished episode whether it was a success.
-        metrics: What else is measured of each finished episode, by name, beside its `return`.
+        metrics: Further measures of each finished episode, by name, beside its `return`.
         steps: Control steps of an episode; default the time limit of the environment.
         dt_s: Length of a control step, s; default the `dt` of the environment.
         setup: Called as `setup(env, rng)` for each scene, after its seeded reset, to set model
-            parameters and disturbances. What it returns by name are sources too. It is hashed:
-            two trials whose scenes were set up in another way are no pair.
-        on_step: Called as `on_step(env, rng, step)` before each step, to disturb the scene. What it
-            draws is another for each step and seed, and the same in every arm.
+            parameters and disturbances. The values that it returns by name are sources too, and
+            are hashed: two trials whose scenes were set up differently are no pair.
+        on_step: Called as `on_step(env, rng, step)` before each step, to disturb the scene. It
+            draws other numbers at each step and seed, and the same in every arm.
         trace: `trace(env)` returns where it is, `(x, y)` or `(x, y, z)` in metres, for the report.
         render: `render(env)` returns points `(x, y)` of a line that draws it, in metres.
     """
@@ -83,8 +81,8 @@ class GymnasiumPlant(EpisodePlant):
         steps = steps or getattr(sample.spec, "max_episode_steps", None)
         dt_s = dt_s or getattr(sample.unwrapped, "dt", None)
         sample.close()
-        for what, found in {"steps": steps, "dt_s": dt_s}.items():
-            if not found:
+        for what, value in {"steps": steps, "dt_s": dt_s}.items():
+            if not value:
                 raise SystemMistake(f"GymnasiumPlant: the environment does not say {what}: give it")
         returned = Measure(Metric(unit="1", better="more"), lambda episode: episode.returned)
         super().__init__(
@@ -106,11 +104,11 @@ class GymnasiumPlant(EpisodePlant):
         env, disturbance = self._make(), "none"
         observation, _ = env.reset(seed=int(digits))
         initial = hashed(scene, observation, env.unwrapped.np_random.bit_generator.state)
-        told: Mapping[str, Any] = {}
+        facts: Mapping[str, Any] = {}
         if self._setup:
             rng = generator("environment/setup", scene, 0)
-            told = self._setup(env, rng) or {}
-            disturbance = hashed((sorted(told.items()), rng.bit_generator.state))
+            facts = self._setup(env, rng) or {}
+            disturbance = hashed((sorted(facts.items()), rng.bit_generator.state))
         if self._on_step:  # its draws are addressed by scene and seed, which so decide it
             disturbance = hashed(disturbance, scene, seed)
 
@@ -136,7 +134,7 @@ class GymnasiumPlant(EpisodePlant):
                 ) from None
             return env.step(row[()])
 
-        return World(observation, told, initial, disturbance, step, lambda: env, env.close)
+        return World(observation, facts, initial, disturbance, step, lambda: env, env.close)
 
     def _make(self) -> Any:
         if not isinstance(self._environment, str):
@@ -148,17 +146,17 @@ class GymnasiumPlant(EpisodePlant):
 def _identity(env: Any) -> str:
     """Return how an environment is made, and the packages that its class computes with."""
     places = [sys.modules.get(kind.__module__) for kind in type(env.unwrapped).__mro__]
-    held = [value for place in places if place for value in vars(place).values()]
-    used = {each.__name__.partition(".")[0] for each in held if isinstance(each, ModuleType)}
-    versions = {name: found for name in sorted(used) if (found := release(name))}
+    values = [value for place in places if place for value in vars(place).values()]
+    used = {value.__name__.partition(".")[0] for value in values if isinstance(value, ModuleType)}
+    versions = {name: version for name in sorted(used) if (version := release(name))}
     return f"{_PLACE.sub('', str(env.spec))} {versions}"
 
 
 def _code(env: Any) -> tuple[str, ...]:
     """Return the classes of an environment and its wrappers that are not Gymnasium's own.
 
-    What is registered under an id is imported by nobody, and its code counts all the same. The
-    file of a system counts already.
+    Nobody imports an environment that is registered under an id, but its code decides trials all
+    the same. The file of a system is counted elsewhere.
     """
     parts: list[Any] = [env]
     while hasattr(parts[-1], "env"):

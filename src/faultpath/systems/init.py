@@ -19,16 +19,16 @@ TEMPLATES = {
 def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
     """Write `NAME.py` and `test_NAME.py` into a folder and return their paths.
 
-    Raises `UserError` for a name that is none in Python or begins with `test_`, that something
-    else is imported by, an unknown template, and for files that are there.
+    Raises `UserError` for a name that is no Python name, begins with `test_` or already belongs to
+    another module, for an unknown template, and for files that exist.
     """
     if not name.isidentifier() or not name.islower() or name.startswith("test_"):
         raise UserError(
             f"{name!r} cannot name a system and its file: take small letters, digits and '_', such "
             "as my_rover."
         )
-    found = None if iskeyword(name) else find_spec(name)
-    places = [] if found is None else [*(found.submodule_search_locations or ()), found.origin]
+    spec = None if iskeyword(name) else find_spec(name)
+    places = [] if spec is None else [*(spec.submodule_search_locations or ()), spec.origin]
     here = all(Path(place).resolve().is_relative_to(folder.resolve()) for place in places if place)
     taken = ""
     if iskeyword(name):

@@ -14,7 +14,7 @@ from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
 from faultpath.systems.tapped import Made
 
 MEMORY = "memory"
-"""The argument that is no channel."""
+"""Name of the argument that is no channel."""
 
 
 def writes(
@@ -36,9 +36,9 @@ def writes(
     is read there are ports too.
 
     Args:
-        source: What it writes.
+        source: Source that it writes.
         past: Arguments that get the value of the step before.
-        before: What `source` holds before the first step, of one scene, for who reads its past.
+        before: Value of `source` before the first step, of one scene, for readers of its past.
         of: Makes the objects of one scene.
 
     Raises:
@@ -57,38 +57,38 @@ class FunctionModule(Module):
         source: str,
         past: Sequence[str],
         before: Any,
-        given: dict[str, Any],
+        values: dict[str, Any],
         of: Callable[[], Any] | None,
     ) -> None:
         self.name, self.writes = function.__name__, (source,)
-        self._function, self._past, self._before, self._given = function, past, before, given
+        self._function, self._past, self._before, self._given = function, past, before, values
         self._of = of
         parameters = dict(signature(function).parameters)
         if of is not None:  # the first argument are the objects
             parameters.pop(next(iter(parameters), ""), None)
-            made = Made(of)
-            made.check()
-            self.at_read = made.ports
+            sample = Made(of)
+            sample.check()
+            self.at_read = sample.ports
             if MEMORY in parameters:
                 raise SystemMistake(
                     f"module '{self.name}' has objects and a memory: let the objects keep it"
                 )
         if odd := [
-            each.name
-            for each in parameters.values()
-            if each.kind not in (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
+            parameter.name
+            for parameter in parameters.values()
+            if parameter.kind not in (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
         ]:
             raise SystemMistake(
                 f"module '{self.name}': its argument '{odd[0]}' has no name to hand it over by: "
                 "give each channel an argument of its own"
             )
-        for name in (*past, *given):
+        for name in (*past, *values):
             if name not in parameters:
                 raise SystemMistake(
                     f"module '{self.name}': {unknown('argument', name, list(parameters))}"
                 )
         self._remembers = MEMORY in parameters
-        read = {Port(name, name) for name in parameters if name not in (MEMORY, *given)}
+        read = {Port(name, name) for name in parameters if name not in (MEMORY, *values)}
         self.reads_past = frozenset(port for port in read if port.channel in past)
         self.reads = frozenset(read - self.reads_past) | self.at_read
 
@@ -101,8 +101,8 @@ class FunctionModule(Module):
     def __str__(self) -> str:
         """Return its name and the numbers that it was given."""
         numbers = {n: v for n, v in self._given.items() if isinstance(v, int | float)}
-        told = [f"{name} {value:g}" for name, value in numbers.items()]
-        return f"{self.name} ({', '.join(told)})" if told else self.name
+        words = [f"{name} {value:g}" for name, value in numbers.items()]
+        return f"{self.name} ({', '.join(words)})" if words else self.name
 
     @override
     def before(self, batch: Batch) -> Outputs:
@@ -140,9 +140,9 @@ class FunctionModule(Module):
 def row_wise(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return a function, such as a torch module, that takes the rows of a batch one at a time.
 
-    A product of matrices rounds otherwise for another number of rows; called row by row it gives
-    each scene the same bits, whatever the scenes beside it. Arrays are `[B, ...]`, and so is each
-    that is returned; all else is handed on.
+    A matrix product rounds differently for another number of rows; row by row it gives each scene
+    the same bits, whatever the other scenes. Arrays are `[B, ...]`, also those returned; all other
+    arguments are passed on unchanged.
     """
 
     def each(*values: Any) -> Any:

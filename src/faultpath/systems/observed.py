@@ -1,4 +1,4 @@
-"""What environments give to observe, made a batch or a hash: arrays, and what holds such."""
+"""Observations of environments, nested or plain arrays, stacked into a batch or hashed."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ def stacked(rows: Sequence[Any]) -> Any:
             key: stacked([row[key] for row in rows]) for key in cast("Mapping[Any, Any]", first)
         }
     if isinstance(first, tuple):
-        return tuple(stacked(each) for each in zip(*rows, strict=True))
+        return tuple(stacked(column) for column in zip(*rows, strict=True))
     return np.stack(rows)
 
 
@@ -36,7 +36,7 @@ def hashed(*parts: Any) -> str:
             items = cast("Mapping[Any, Any]", part).items()
             return str({str(key): exact(value) for key, value in items})
         if isinstance(part, tuple | list):
-            return str([exact(each) for each in cast("Sequence[Any]", part)])
+            return str([exact(element) for element in cast("Sequence[Any]", part)])
         if isinstance(part, np.ndarray | np.generic):
             array = cast("HostArray", part)
             return f"{array.dtype}{array.shape}{array.tobytes().hex()}"

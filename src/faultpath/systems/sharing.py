@@ -18,12 +18,12 @@ _LEAVES = (str, bytes, bool, int, float, complex, type, ModuleType, type(None), 
 
 @dataclass(frozen=True)
 class Shared:
-    """What several parts read: a candidate for a channel with a consumer a part."""
+    """A value that several parts read: a candidate for a channel with a consumer in each part."""
 
     what: str
     """The class of an object, or the value of a number."""
     places: tuple[str, ...]
-    """Where it is, `observer.par`; at least one in each of two parts."""
+    """Places such as `observer.par`; at least one in each of two parts."""
     alias: bool
     """Whether it is one object; else each part keeps an equal number under one name."""
     written: tuple[str, ...]
@@ -31,8 +31,8 @@ class Shared:
 
     def __str__(self) -> str:
         """Return a sentence."""
-        said = f"{self.what} {'is one object ' if self.alias else ''}at {listed(self.places)}"
-        return f"{said}; the run wrote {listed(self.written)}" if self.written else said
+        sentence = f"{self.what} {'is one object ' if self.alias else ''}at {listed(self.places)}"
+        return f"{sentence}; the run wrote {listed(self.written)}" if self.written else sentence
 
 
 def shared_objects(
@@ -40,10 +40,10 @@ def shared_objects(
 ) -> tuple[Shared, ...]:
     """Return what several parts of a program share, objects first.
 
-    It follows attributes, keys, items, bound methods and what functions close over; compiled code
-    is not seen. What lies within a shared object is listed again only beside a copy of it. A number
-    that two parts keep under one name may be a copy that each took of one source. Zeros, whole
-    numbers and truths are left out.
+    It follows attributes, keys, items, bound methods and closures, but not compiled code. The
+    contents of a shared object are listed only together with a copy outside of it. A number that
+    two parts keep under one name may be copied from one source. Zeros, whole numbers and booleans
+    are left out.
 
     Args:
         parts: The objects that read, by a name for each.
@@ -54,7 +54,7 @@ def shared_objects(
     for walk in walks:
         for key in walk.objects:
             reached.setdefault(key, []).append(walk)
-    aliases = {key: by for key, by in reached.items() if len(by) > 1}
+    aliases = {key: walkers for key, walkers in reached.items() if len(walkers) > 1}
     copies: dict[tuple[str, bytes], list[str]] = {}
     within = {place for walk in walks for place in walk.inside(aliases)}
     for walk in walks:
@@ -69,31 +69,31 @@ def shared_objects(
         again = [Walk(part, root) for part, root in parts.items()]
         after = {place: value for walk in again for place, value in walk.numbers.items()}
     changed = [p for p, v in before.items() if p not in after or v.tobytes() != after[p].tobytes()]
-    found: list[Shared] = []
-    for key, by in aliases.items():
-        if all(walk.objects[key].parent in aliases for walk in by):
+    shared: list[Shared] = []
+    for key, walkers in aliases.items():
+        if all(walk.objects[key].parent in aliases for walk in walkers):
             continue
-        places = tuple(walk.objects[key].place for walk in by)
-        held = tuple(p for p in changed if p == places[0] or p.startswith(f"{places[0]}."))
-        found.append(Shared(type(by[0].objects[key].found).__name__, places, True, held))
+        places = tuple(walk.objects[key].place for walk in walkers)
+        written = tuple(p for p in changed if p == places[0] or p.startswith(f"{places[0]}."))
+        shared.append(Shared(type(walkers[0].objects[key].value).__name__, places, True, written))
     for places in copies.values():
         parts_of = {place.partition(".")[0] for place in places}
         if len(parts_of) > 1 and not within.issuperset(places):
-            said = f"{places[0].rpartition('.')[2]} = {before[places[0]]}"
-            held = tuple(p for p in changed if p in places)
-            found.append(Shared(said, tuple(places), False, held))
-    return tuple(found)
+            number = f"{places[0].rpartition('.')[2]} = {before[places[0]]}"
+            written = tuple(p for p in changed if p in places)
+            shared.append(Shared(number, tuple(places), False, written))
+    return tuple(shared)
 
 
 @dataclass(frozen=True)
 class _Object:
-    found: Any
+    value: Any
     place: str
     parent: int
 
 
 class Walk:
-    """What can be reached from one part, by the shortest way."""
+    """Objects and numbers that can be reached from one part, by the shortest way."""
 
     def __init__(self, part: str, root: Any) -> None:
         self.objects: dict[int, _Object] = {}
@@ -103,54 +103,54 @@ class Walk:
         seen: set[int] = set()
         waiting = deque([_Object(root, part, 0)])
         while waiting and len(seen) < _MOST:
-            each = waiting.popleft()
-            found = each.found
-            if isinstance(found, float | complex | np.floating):
-                self.numbers[each.place] = np.array(found)
-            if isinstance(found, _LEAVES) or id(found) in seen:
+            node = waiting.popleft()
+            value = node.value
+            if isinstance(value, float | complex | np.floating):
+                self.numbers[node.place] = np.array(value)
+            if isinstance(value, _LEAVES) or id(value) in seen:
                 continue
-            key = id(cast("object", found))
+            key = id(cast("object", value))
             seen.add(key)
-            if not isinstance(found, tuple | FunctionType | MethodType):
-                self.objects[key] = each
-            if isinstance(found, np.ndarray):
-                array = cast("HostArray", found)
+            if not isinstance(value, tuple | FunctionType | MethodType):
+                self.objects[key] = node
+            if isinstance(value, np.ndarray):
+                array = cast("HostArray", value)
                 if array.dtype.kind in "fc":
-                    self.numbers[each.place] = array.copy()
+                    self.numbers[node.place] = array.copy()
                 continue
-            waiting += [_Object(f, f"{each.place}.{n}", key) for n, f in _held(found)]
+            waiting += [_Object(f, f"{node.place}.{n}", key) for n, f in _members(value)]
 
     def inside(self, shared: Mapping[int, Any]) -> Iterator[str]:
         """Yield the places of numbers that lie in shared objects."""
-        tops = [each.place for key, each in self.objects.items() if key in shared]
+        tops = [node.place for key, node in self.objects.items() if key in shared]
         for place in self.numbers:
             if any(place == top or place.startswith(f"{top}.") for top in tops):
                 yield place
 
 
-def _held(found: Any) -> Iterator[tuple[str, Any]]:
-    """Yield what an object holds, by name."""
-    if isinstance(found, MethodType):
-        yield "__self__", found.__self__
-    elif isinstance(found, FunctionType):
-        for name, cell in zip(found.__code__.co_freevars, found.__closure__ or (), strict=True):
+def _members(holder: Any) -> Iterator[tuple[str, Any]]:
+    """Yield the values that an object holds, with their names."""
+    if isinstance(holder, MethodType):
+        yield "__self__", holder.__self__
+    elif isinstance(holder, FunctionType):
+        for name, cell in zip(holder.__code__.co_freevars, holder.__closure__ or (), strict=True):
             try:
                 yield name, cell.cell_contents
             except ValueError:  # not filled yet
                 continue
-    elif isinstance(found, dict):  # of a stand-in what it holds, not what is delivered
-        for key, value in cast("Any", dict).items(found):
+    elif isinstance(holder, dict):  # of a stand-in what it holds, not what is delivered
+        for key, value in cast("Any", dict).items(holder):
             yield str(key), value
-    elif isinstance(found, Mapping):
-        for key, value in cast("Mapping[Any, Any]", found).items():
+    elif isinstance(holder, Mapping):
+        for key, value in cast("Mapping[Any, Any]", holder).items():
             yield str(key), value
-    elif isinstance(found, list | tuple | set | frozenset | deque):
-        for index, value in enumerate(cast("list[Any]", found)):
+    elif isinstance(holder, list | tuple | set | frozenset | deque):
+        for index, value in enumerate(cast("list[Any]", holder)):
             yield str(index), value
     else:
-        yield from getattr(found, "__dict__", {}).items()
-        for kind in type(found).__mro__:
+        yield from getattr(holder, "__dict__", {}).items()
+        for kind in type(holder).__mro__:
             slots = kind.__dict__.get("__slots__", ())
             for name in (slots,) if isinstance(slots, str) else slots:
-                if not name.startswith("__") and hasattr(found, name):
-                    yield name, getattr(found, name)
+                if not name.startswith("__") and hasattr(holder, name):
+                    yield name, getattr(holder, name)

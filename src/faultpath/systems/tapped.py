@@ -18,15 +18,15 @@ _MADE: ContextVar[list["Reads"] | None] = ContextVar("_MADE", default=None)
 
 
 class Reads:
-    """What one stand-in reads, and what delivers it at present."""
+    """The reads of one stand-in, and what delivers them at present."""
 
     def __init__(self, at: str, what: Any, channels: Mapping[str, str]) -> None:
         self.at, self.what, self.kind = at, what, type(what).__name__
         # Consumers are in small letters, which attributes need not be.
         self.ports = {n: Port(channel, f"{at}.{n.lower()}") for n, channel in channels.items()}
         self.own: dict[str, Any] = {}
-        """What its reader wrote itself. From there on that is what it reads, as it would of an
-        object of its own; who stands elsewhere goes on reading what is delivered."""
+        """Values that its reader wrote itself. From there on it reads these, as it would from an
+        object of its own; readers elsewhere go on reading what is delivered."""
         self.inputs: Inputs | None = None
         self.row = 0
 
@@ -77,8 +77,8 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
 
     Each of them is a channel, by default of the same name, with the consumer `at.name` in small
     letters. All else is the object's own and stays shared with it: the stand-in is of a class made
-    from the object's, and has the object's own attributes. What its reader writes into a tapped
-    attribute is that reader's from there on, and no fault reaches it there any more.
+    from the object's, and has the object's own attributes. Once its reader writes into a tapped
+    attribute, the reader gets what it wrote, and no fault reaches it there any more.
 
     Make stand-ins in the function that `writes(..., of=make)` calls for each scene. An object that
     has handed out its own methods leads past its taps; `writes` refuses it and says where.
@@ -97,20 +97,20 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
     kind = cast("type[Any]", type(what))
     reads = Reads(at, what, {name: name for name in names} | channels)
     keyed = isinstance(what, dict)
-    found = list(cast("dict[Any, Any]", what)) if keyed else dir(what)
+    known = list(cast("dict[Any, Any]", what)) if keyed else dir(what)
     for name in reads.ports:
-        if name not in found:
+        if name not in known:
             word = "key" if keyed else "attribute"
-            raise SystemMistake(f"tapped {kind.__name__}: {unknown(word, name, map(str, found))}")
+            raise SystemMistake(f"tapped {kind.__name__}: {unknown(word, name, map(str, known))}")
     if keyed:
-        made: Any = type(kind.__name__, (_Keys,), {"reads": reads})()
-        cast("Any", dict).update(made, what)
+        stand_in: Any = type(kind.__name__, (_Keys,), {"reads": reads})()
+        cast("Any", dict).update(stand_in, what)
     else:
         places: dict[str, Any] = {name: _delivered(reads, name) for name in reads.ports}
         try:
-            stand_in = new_class(kind.__name__, (kind,), exec_body=lambda body: body.update(places))
-            made = cast("Any", object.__new__(stand_in))
-            object.__setattr__(made, "__dict__", vars(what))
+            derived = new_class(kind.__name__, (kind,), exec_body=lambda body: body.update(places))
+            stand_in = cast("Any", object.__new__(derived))
+            object.__setattr__(stand_in, "__dict__", vars(what))
         except TypeError as error:
             raise SystemMistake(
                 f"tapped {kind.__name__}: it keeps its attributes in slots, a tuple or compiled "
@@ -119,7 +119,7 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
             ) from error
     if (collected := _MADE.get()) is not None:
         collected.append(reads)
-    return made
+    return stand_in
 
 
 def _delivered(reads: Reads, name: str) -> property:
@@ -141,30 +141,32 @@ class Made:
             _MADE.reset(token)
         self.reads = tuple(collected)
         self.last: Any = None
-        """What the module returned of this scene."""
+        """Value that the module returned last for this scene."""
 
     @property
     def ports(self) -> frozenset[Port]:
-        """Where its stand-ins read."""
-        return frozenset(port for each in self.reads for port in each.ports.values())
+        """Ports at which its stand-ins read."""
+        return frozenset(port for reads in self.reads for port in reads.ports.values())
 
     def check(self) -> None:
         """Raise `SystemMistake` where what a tapped object holds leads back to it."""
-        for each in self.reads:
-            found = Walk(each.kind, getattr(each.what, "__dict__", {})).objects.get(id(each.what))
-            if found is not None:
+        for reads in self.reads:
+            inner = Walk(reads.kind, getattr(reads.what, "__dict__", {})).objects.get(
+                id(reads.what)
+            )
+            if inner is not None:
                 raise SystemMistake(
-                    f"'{each.at}' reads past its taps: {found.place} is the {each.kind} that is "
+                    f"'{reads.at}' reads past its taps: {inner.place} is the {reads.kind} that is "
                     "not tapped; after tapping, put the stand-in or its method there"
                 )
 
     @contextmanager
     def reading(self, inputs: Inputs, row: int) -> Generator[Any]:
         """Let the stand-ins read what is delivered at a step, and give the objects."""
-        for each in self.reads:
-            each.inputs, each.row = inputs, row
+        for reads in self.reads:
+            reads.inputs, reads.row = inputs, row
         try:
             yield self.objects
         finally:
-            for each in self.reads:
-                each.inputs = None
+            for reads in self.reads:
+                reads.inputs = None

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import StringConstraints
 
-from faultpath.core.renamed import tells_renames
 from faultpath.core.results import Frozen
 from faultpath.interface.model import Words
 from faultpath.trials.declared import shown
@@ -58,7 +57,6 @@ class Status(StrEnum):
     says nothing and voids every pair it is part of."""
 
 
-@tells_renames
 @dataclass(frozen=True)
 class Outcome:
     """The result of one closed-loop trial in one scene.

@@ -23,7 +23,6 @@ from typing import Any
 from faultpath.core.error_source import described, note_system, ours
 from faultpath.core.error_source import place as where
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.core.renamed import of_module
 from faultpath.core.text import extra
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
@@ -244,9 +243,11 @@ def _loading(name: str) -> Generator[None]:
                 del sys.modules[module_name]
                 if module_name in modules:
                     sys.modules[module_name] = modules[module_name]
-        if not isinstance(error, ModuleNotFoundError) or of_module(error.name or ""):
+        if not isinstance(error, ModuleNotFoundError):
             raise
         package = (error.name or "").partition(".")[0]
+        if package == "faultpath":  # a module of ours that there is not
+            raise
         hint = extra(package) if package in _EXTRAS else f"install {package!r}"
         mistake = SystemMistake(
             f"{name!r} needs the package {package!r}, not installed here: {hint}"

@@ -49,11 +49,11 @@ def provenance_path(path: Path) -> Path:
 
 @cache
 def code_of(*modules: str) -> str:
-    """Return a hash of some modules of the quadrotor and of all that they import.
+    """Return a hash of some modules, by their full names, and of all that they import.
 
     What they made is made anew where one of these files has changed.
     """
-    return read_code([Root(f"faultpath_quadrotor.{module}") for module in modules]).state.contents
+    return read_code([Root(module) for module in modules]).state.contents
 
 
 def rows_sha256(data: Path, pools: Iterable[str]) -> dict[str, str]:

@@ -94,7 +94,9 @@ def recipe() -> Recipe:
     spec = SystemSpec(name=Quadrotor.name, options={"clearance": "true"})
     state = system_code(Quadrotor.parse(**spec.options), spec).state
     settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORM.hash)
-    content = repr((state.contents, code_of("training.trajectories"), *settings))
+    content = repr(
+        (state.contents, code_of("faultpath_quadrotor.training.trajectories"), *settings)
+    )
     code = hashlib.sha256(content.encode()).hexdigest()
     return Recipe(pool=POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code)
 

@@ -1,1 +1,1 @@
-"""What a careful reviewer runs on a system: checks of what it promises, traces of its reads."""
+"""Checks of a system's promises and traces of its reads, as a careful reviewer runs them."""

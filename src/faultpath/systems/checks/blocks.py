@@ -33,7 +33,7 @@ MISTAKES: dict[str, tuple[type[Exception], ...]] = {
     "shape and unit": (MalformedReading, NotFinite),
     "fault delivery": (NotDelivered, FaultedElsewhere),
 }
-"""What taps refuse, by the check that reports it; all else keeps trials from their end."""
+"""Errors of taps, by the check that reports them; any other error keeps trials from their end."""
 TRIALS = "trials end"
 
 
@@ -54,16 +54,16 @@ class Block:
 
 @dataclass(frozen=True)
 class RecordedBlock:
-    """What came of a block."""
+    """The result of a block."""
 
     outcomes: tuple[Outcome, ...] = ()
     """One a scene; fewer where it was stopped or an error ended it."""
     counts: tuple[TapCount, ...] = ()
     reads: tuple[Read, ...] = ()
     signals: tuple[tuple[Signal, ...], ...] = ()
-    """Of each scene."""
+    """Signals of each scene."""
     error: str = ""
-    """What stopped it, or kept a scene from its end."""
+    """Error that stopped it, or kept a scene from its end."""
     fails: str = ""
     """The check that reports the error."""
 
@@ -108,30 +108,30 @@ def run_blocks(
 def run_block(system: System, block: Block) -> RecordedBlock:
     """Run in blocks of the system's size; an error ends it."""
     outcomes, counts, reads = list[Outcome](), list[TapCount](), list[Read]()
-    found_signals = list[tuple[Signal, ...]]()
+    signals_by_scene = list[tuple[Signal, ...]]()
     error = fails = ""
     for first in range(0, len(block.scenes), system.block_size):
         scenes = block.scenes[first : first + system.block_size]
         recording = Recording(() if block.signals else scenes, block.steps)
-        shown, found = _with_plant(system, recording) if block.signals else system, None
+        shown, result = _with_plant(system, recording) if block.signals else system, None
         with suppress(Enough):
-            found = attempt(shown, block.arm, scenes, observer=recording)
+            result = attempt(shown, block.arm, scenes, observer=recording)
         reads += () if block.signals else recording.reads.values()
-        if isinstance(found, Done):
-            outcomes += found.outcomes
-            counts += found.taps
+        if isinstance(result, Done):
+            outcomes += result.outcomes
+            counts += result.taps
             if block.signals:
-                found_signals += signals(system, recording, found)
-            elif lost := next((o for o in found.outcomes if o.failed), None):
+                signals_by_scene += signals(system, recording, result)
+            elif lost := next((o for o in result.outcomes if o.failed), None):
                 error, fails = f"{lost.error} in scene {lost.scene!r}", TRIALS
-        elif isinstance(found, Raised):
-            kind, _, text = found.error.partition(": ")
-            error, fails = found.error, TRIALS
+        elif isinstance(result, Raised):
+            kind, _, text = result.error.partition(": ")
+            error, fails = result.error, TRIALS
             if kind == NotFinite.__name__:
                 error, fails = text, "shape and unit"
-        elif isinstance(found, Wrong):
-            error = str(found.error)
-            failing = (name for name, kinds in MISTAKES.items() if isinstance(found.error, kinds))
+        elif isinstance(result, Wrong):
+            error = str(result.error)
+            failing = (name for name, kinds in MISTAKES.items() if isinstance(result.error, kinds))
             fails = next(failing, TRIALS)
         if error:
             break
@@ -139,7 +139,7 @@ def run_block(system: System, block: Block) -> RecordedBlock:
         () if error else tuple(outcomes),
         tuple(counts),
         tuple(reads),
-        tuple(found_signals),
+        tuple(signals_by_scene),
         error,
         fails,
     )
@@ -154,18 +154,18 @@ def _with_plant(system: System, recording: Recording) -> System:
     def recorded(variant: str, seed: int | None) -> Loop:
         loop = inner(variant, seed)
         plant = copy.copy(loop.graph.plant)
-        sense, step = plant.sense, iter(range(plant.steps + 1))
+        sense, steps = plant.sense, iter(range(plant.steps + 1))
 
         def sensed(state: Any) -> Mapping[str, Any]:
-            outputs, now = sense(state), next(step)
+            outputs, step = sense(state), next(steps)
             drawn = plant.drawn(state) if isinstance(plant, EpisodePlant) else None
             if drawn is not None:
-                recording.sources.setdefault(DRAWN, {})[now] = drawn.reshape(len(drawn), -1)
+                recording.sources.setdefault(DRAWN, {})[step] = drawn.reshape(len(drawn), -1)
             for name, value in outputs.items():
                 # What a plant shows to estimators alone is named after the plant.
                 shown = plant.name if isinstance(value, Mapping) else name
                 if not isinstance(value, Query):
-                    recording.source(shown, value, now)
+                    recording.source(shown, value, step)
             return outputs
 
         vars(plant)["sense"] = sensed

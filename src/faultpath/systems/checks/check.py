@@ -17,8 +17,8 @@ from faultpath.trials.question import CheckQuestion
 from faultpath.trials.work.processes import local
 
 MOST = 4
-"""So many variants are all checked unless some are named; of more the first two, or as many as the
-user has named parts: a system puts those first that run with them."""
+"""Most variants of which all are checked unless some are named; of more, the first two or as many
+as the user has named parts: a system lists those first that run with them."""
 _AFTER = 20
 """Control steps for which a tap is faulted."""
 
@@ -38,11 +38,14 @@ class Report(Result):
     @property
     def failures(self) -> tuple[str, ...]:
         """The sentences of all checks that failed."""
-        return tuple(said for check in self.checks for said in check.failures)
+        return tuple(sentence for check in self.checks for sentence in check.failures)
 
 
 def check_system(
-    system: System, spec: SystemSpec, asked: CheckQuestion, note: Callable[[int, int | None], None]
+    system: System,
+    spec: SystemSpec,
+    question: CheckQuestion,
+    note: Callable[[int, int | None], None],
 ) -> Report:
     """Check a system: what it promises, what it reads, and that faults reach it.
 
@@ -50,27 +53,27 @@ def check_system(
     a variant, library or number of scenes that there is not, and where the system cannot be built
     in a worker process.
     """
-    library = library_of(system, asked.library)
-    if not 1 <= asked.scenes <= len(library.scenes):
+    library = library_of(system, question.library)
+    if not 1 <= question.scenes <= len(library.scenes):
         raise UserError(
-            f"cannot check {asked.scenes} scenes of library '{library.name}': choose 1 to "
+            f"cannot check {question.scenes} scenes of library '{library.name}': choose 1 to "
             f"{len(library.scenes)}."
         )
-    scenes = tuple(scene.id for scene in library.scenes[: asked.scenes])
-    variants = chosen_variants(system, asked.variants)
-    workers = (2 if system.parallel else 1) if asked.workers is None else asked.workers
-    seen = Seen(system, variants, scenes, asked.seed, workers > 0)
-    built = Built.of(system, spec, asked.library)
+    scenes = tuple(scene.id for scene in library.scenes[: question.scenes])
+    variants = chosen_variants(system, question.variants)
+    workers = (2 if system.parallel else 1) if question.workers is None else question.workers
+    seen = Seen(system, variants, scenes, question.seed, workers > 0)
+    built = Built.of(system, spec, question.library)
 
     def run(blocks: Sequence[Block], known: int | None) -> None:
-        def settle(block: Block, found: RecordedBlock) -> None:
-            seen.runs[block.arm.variant, block.why, block.tap] = found
+        def settle(block: Block, result: RecordedBlock) -> None:
+            seen.runs[block.arm.variant, block.why, block.tap] = result
             note(len(seen.runs), known)
 
         with local(workers) as executor:
             run_blocks(executor, built, blocks, settle)
 
-    run([Block(Arm(variant=v.name, seed=asked.seed), scenes, "first") for v in variants], None)
+    run([Block(Arm(variant=v.name, seed=question.seed), scenes, "first") for v in variants], None)
     again = [block for name, first in seen.firsts() for block in _again(seen, name, first)]
     run(again, len(variants) + len(again))  # in new processes: they share nothing with the first
     rounded = [block for name, first in seen.firsts() for block in _rounded(seen, name, first)]
@@ -82,7 +85,7 @@ def check_system(
         variants=tuple(variant.name for variant in variants),
         library=library.name,
         scenes=scenes,
-        seed=asked.seed,
+        seed=question.seed,
         checks=judged(seen),
     )
 
@@ -146,9 +149,9 @@ def _faulted(
 ) -> Arm:
     interface, present = seen.system.interface, seen.system.variants[variant].consumers
     faults = [
-        each
+        part
         for channel, consumers in readers.items()
-        for each in Fault(channel=channel, intervention=doing, consumers=tuple(consumers)).resolved(
+        for part in Fault(channel=channel, intervention=doing, consumers=tuple(consumers)).resolved(
             interface, present
         )
     ]

@@ -1,4 +1,4 @@
-"""What the runs of a check say of a system: seven checks, each a verdict and its sentences."""
+"""Verdicts on a system from the runs of a check: seven checks, each with its sentences."""
 
 import math
 from collections.abc import Iterator
@@ -16,9 +16,9 @@ from faultpath.trials.pairing import Mismatch, Side, mismatch_words, unlike
 from faultpath.trials.table import unproven, unread
 
 _SEVERAL = 10.0
-"""So many times what a last digit of the readings does may be rounding."""
+"""A difference up to this multiple of what a last digit of the readings does may be rounding."""
 _FAR = 100.0
-"""So many times the typical magnitude is another unit."""
+"""A reading beyond this multiple of the typical magnitude is in another unit."""
 
 
 class Check(Result):
@@ -26,16 +26,16 @@ class Check(Result):
 
     name: str
     says: str
-    """What was seen, or why nothing could be, in a line."""
+    """One line on what was seen, or on why nothing could be."""
     failures: tuple[str, ...] = ()
     """A sentence each: what is wrong, where, and what to do."""
     remarks: tuple[str, ...] = ()
-    """What may be a mistake and may be none."""
+    """Sentences on what may be a mistake and may be none."""
     judged: bool = True
 
     @property
     def status(self) -> Literal["passed", "failed", "not judged"]:
-        """How it ended."""
+        """The verdict of the check."""
         if self.failures:
             return "failed"
         return "passed" if self.judged else "not judged"
@@ -79,12 +79,12 @@ class Seen:
         odd = [key for key, digest in again.readings(dt_s).items() if then.get(key) != digest]
         by_scene = {outcome.scene: outcome for outcome in first.outcomes}
         before = [by_scene[outcome.scene] for outcome in again.outcomes]
-        said = difference(before, Done(again.outcomes, ()))
+        words = difference(before, Done(again.outcomes, ()))
         if odd:
             scene, step, channel, consumer = min(odd, key=lambda key: key[1])
-            said = said or "differs in its readings alone"
-            said += f", first at step {step} in tap {channel} -> {consumer}, scene {scene!r}"
-        return said
+            words = words or "differs in its readings alone"
+            words += f", first at step {step} in tap {channel} -> {consumer}, scene {scene!r}"
+        return words
 
 
 def judged(seen: Seen) -> tuple[Check, ...]:
@@ -98,11 +98,11 @@ def judged(seen: Seen) -> tuple[Check, ...]:
         "fault delivery": _delivery,
         "shape and unit": _readings,
     }
-    found = [Check(name=TRIALS, says=f"{count} under correct inputs")]
+    checks = [Check(name=TRIALS, says=f"{count} under correct inputs")]
     for name, judge in judges.items():
         none = Check(name=name, says="no variant ran to its end", judged=False)
-        found.append(judge(name, seen) if count else none)
-    for at, check in enumerate(found):
+        checks.append(judge(name, seen) if count else none)
+    for at, check in enumerate(checks):
         stopped = {
             run.error: variant
             for (variant, why, _), run in reversed(seen.runs.items())
@@ -113,12 +113,12 @@ def judged(seen: Seen) -> tuple[Check, ...]:
             f"Variant '{variant}': {error}{'' if check.name in MISTAKES else remedy}."
             for error, variant in stopped.items()
         )
-        found[at] = check.model_copy(update={"failures": (*errors, *check.failures)})
-    return tuple(found)
+        checks[at] = check.model_copy(update={"failures": (*errors, *check.failures)})
+    return tuple(checks)
 
 
 def _determinism(name: str, seen: Seen) -> Check:
-    """The same scenes twice give the same bits."""
+    """Check that the same scenes twice give the same bits."""
     failures = tuple(
         f"Variant '{variant}' run twice over the same scenes {differs}; take random numbers from "
         "faultpath.generator, and look for threads, hash(), clocks and what is kept between calls."
@@ -130,7 +130,7 @@ def _determinism(name: str, seen: Seen) -> Check:
 
 
 def _independence(name: str, seen: Seen) -> Check:
-    """A scene's result depends neither on the others nor on their order."""
+    """Check that a scene's result depends neither on the others nor on their order."""
     if any(seen.differs(variant, "again") for variant, _ in seen.firsts()):
         return Check(name=name, says="results do not repeat in any order", judged=False)
     if len(seen.scenes) < 2:
@@ -140,22 +140,22 @@ def _independence(name: str, seen: Seen) -> Check:
     for variant, first in seen.firsts():
         if not (differs := seen.differs(variant, "part")):
             continue
-        said = f"Variant '{variant}' run in another order, without some of the scenes beside it,"
+        lead = f"Variant '{variant}' run in another order, without some of the scenes beside it,"
         gap, rounding = (_gap(first, seen.of(variant, why), dt_s) for why in ("part", "rounded"))
         if gap > _SEVERAL * max(rounding, coarsest(first)):
             failures.append(
-                f"{said} {differs}; let nothing that scenes of one call of run() share decide a "
+                f"{lead} {differs}; let nothing that scenes of one call of run() share decide a "
                 "result, draw by scene, and wrap a torch module in faultpath.systems.row_wise."
             )
         elif math.isinf(gap):
             open_ended = True
             remarks.append(
-                f"{said} {differs}; but so it does where readings change in their last digits, and "
+                f"{lead} {differs}; but so it does where readings change in their last digits, and "
                 "rounding cannot be told from dependence: use faultpath.systems.row_wise."
             )
         else:
             remarks.append(
-                f"{said} differs by rounding alone, at most {gap:.1g} of a number's size, as it "
+                f"{lead} differs by rounding alone, at most {gap:.1g} of a number's size, as it "
                 "does where readings change in their last digits: only with blocks of the same "
                 "scenes does an audit repeat to the bit."
             )
@@ -163,8 +163,8 @@ def _independence(name: str, seen: Seen) -> Check:
     says = f"in another order and without some others, the same {bits}"
     if open_ended and not failures:
         says = "a last digit decides how scenes end"
-    said = {"failures": tuple(failures), "remarks": tuple(remarks)}
-    return Check(name=name, says=says, judged=not open_ended, **said)
+    sentences = {"failures": tuple(failures), "remarks": tuple(remarks)}
+    return Check(name=name, says=says, judged=not open_ended, **sentences)
 
 
 def coarsest(run: RecordedBlock) -> float:
@@ -178,7 +178,7 @@ def _gap(first: RecordedBlock, again: RecordedBlock, dt_s: float) -> float:
 
     Numbers are metrics, and the sums of readings. Nothing that ran differs from nothing.
     """
-    by_scene = {each.scene: each for each in first.outcomes}
+    by_scene = {outcome.scene: outcome for outcome in first.outcomes}
     for two in again.outcomes:
         one = by_scene[two.scene]
         if (one.status, one.time_s) != (two.status, two.time_s) or unlike(one, two):
@@ -186,9 +186,9 @@ def _gap(first: RecordedBlock, again: RecordedBlock, dt_s: float) -> float:
 
     def numbers(run: RecordedBlock) -> dict[tuple[Any, ...], float]:
         read = run.readings(dt_s, "sums")
-        found = {((channel, at), scene, step): v for (scene, step, channel, at), v in read.items()}
-        metrics = ((each.scene, each.metrics.items()) for each in run.outcomes)
-        return found | {(name, scene): v or 0.0 for scene, named in metrics for name, v in named}
+        sums = {((channel, at), scene, step): v for (scene, step, channel, at), v in read.items()}
+        metrics = ((outcome.scene, outcome.metrics.items()) for outcome in run.outcomes)
+        return sums | {(name, scene): v or 0.0 for scene, named in metrics for name, v in named}
 
     then, sizes = numbers(first), dict[Any, float]()
     for (what, *_), value in then.items():
@@ -201,21 +201,21 @@ def _gap(first: RecordedBlock, again: RecordedBlock, dt_s: float) -> float:
 
 
 def _pairing(name: str, seen: Seen) -> Check:
-    """Two arms meet the same conditions in each scene."""
+    """Check that two arms meet the same conditions in each scene."""
     firsts = list(seen.firsts())
     sides = [(Side(variant, "correct inputs"), run) for variant, run in firsts]
     faulted = ((variant, seen.of(variant, "faulted")) for variant, _ in firsts)
     sides += [(Side(variant, "a fault"), run) for variant, run in faulted if run.outcomes]
     (one, base), *others = sides
     mismatches = [
-        Mismatch(one, two, a.scene, seen.seed, found)
+        Mismatch(one, two, a.scene, seen.seed, causes)
         for two, run in others
         for a, b in zip(base.outcomes, run.outcomes, strict=True)
-        if (found := unlike(a, b))
+        if (causes := unlike(a, b))
     ]
     remedy = "draw what a scene meets by scene and seed, whatever the variant and the fault."
     failures = [
-        f"{said[0].upper()}{said[1:].rstrip('.')}; {remedy}" for said in mismatch_words(mismatches)
+        f"{text[0].upper()}{text[1:].rstrip('.')}; {remedy}" for text in mismatch_words(mismatches)
     ]
     failures += unproven([outcome for _, run in firsts for outcome in run.outcomes])
     says = f"{len(sides)} arms, the same initial states, disturbances and planner noise"
@@ -223,45 +223,45 @@ def _pairing(name: str, seen: Seen) -> Check:
 
 
 def _reads(name: str, seen: Seen) -> Check:
-    """What is declared to be read is read."""
+    """Check that what is declared to be read is read."""
     failures = tuple(unread((v, count) for v, run in seen.firsts() for count in run.counts))
     taps = sum(len({read.tap for read in run.reads}) for _, run in seen.firsts())
     return Check(name=name, says=f"{taps} taps declared and read", failures=failures)
 
 
 def _delivery(name: str, seen: Seen) -> Check:
-    """A fault at a tap alters what its consumer gets, and has an effect."""
+    """Check that a fault at a tap alters what its consumer gets, and has an effect."""
     failures, remarks, altered, dt_s = list[str](), list[str](), 0, seen.system.control_dt_s
     alone = {key: run for key, run in seen.runs.items() if key[1] == "tap"}
     for (variant, _, tap), run in alone.items():
-        said = f"Tap {tap[0]} -> {tap[1]} of variant '{variant}', faulted in {len(seen.scenes)} "
-        said += "trials,"
+        lead = f"Tap {tap[0]} -> {tap[1]} of variant '{variant}', faulted in {len(seen.scenes)} "
+        lead += "trials,"
         here = [read for read in run.reads if read.tap == tap]
         count = sum(read.given[scene] != read.got[scene] for read in here for scene in read.given)
         altered += count
         first = seen.of(variant, "first")
-        then = first.readings(dt_s)
-        now = {key: value for key, value in run.readings(dt_s).items() if key in then}
-        ends = tuple(replace(each, faulted_steps=0, altered_steps=0) for each in run.outcomes)
+        clean = first.readings(dt_s)
+        faulted = {key: value for key, value in run.readings(dt_s).items() if key in clean}
+        ends = tuple(replace(outcome, faulted_steps=0, altered_steps=0) for outcome in run.outcomes)
         if run.fails == name:
-            failures.append(f"{said} is not reached: {run.error}.")
+            failures.append(f"{lead} is not reached: {run.error}.")
         elif not here:
             failures.append(
-                f"{said} delivered nothing, though it did without the fault; deliver at every "
+                f"{lead} delivered nothing, though it did without the fault; deliver at every "
                 "step that reads, and keep nothing from one call of run() to the next."
             )
         elif not count:
             failures.append(
-                f"{said} altered none of its readings; let the source hold numbers that a fault "
+                f"{lead} altered none of its readings; let the source hold numbers that a fault "
                 "can change."
             )
         elif (
             not run.error
-            and all(then[key] == value for key, value in now.items())
+            and all(clean[key] == value for key, value in faulted.items())
             and not (ends and difference(first.outcomes, Done(ends, ())))
         ):
             remarks.append(
-                f"{said} changed nothing else, in no outcome and at no other tap; a consumer that "
+                f"{lead} changed nothing else, in no outcome and at no other tap; a consumer that "
                 "is indifferent to it in these scenes looks like this, and so does one that uses "
                 "something else than deliver() returned."
             )
@@ -270,7 +270,7 @@ def _delivery(name: str, seen: Seen) -> Check:
 
 
 def _readings(name: str, seen: Seen) -> Check:
-    """Each source gives finite numbers of its unit; taps refuse other shapes by themselves."""
+    """Check that sources give finite numbers of their unit; taps refuse other shapes themselves."""
     failures: dict[str, str] = {}
     spans: dict[str, tuple[float, float]] = {}
     for variant, run in seen.firsts():

@@ -1,4 +1,4 @@
-"""What an arm's taps and its plant say while it runs: who read what, and named signals.
+"""Recordings of an arm's taps and plant while it runs: who read what, and named signals.
 
 Nothing that runs knows of it: an observer sees what taps deliver, and the plant of a loop senses
 what it senses. Signals are small arrays of numbers: what a source held, what a consumer got where
@@ -34,7 +34,7 @@ Steps: TypeAlias = dict[int, Values]
 """By control step, `[B, P]`."""
 
 _MOST_NUMBERS = 9
-"""Of a scene's reading, a rotation matrix; images and candidates are no signals."""
+"""Largest size of a signal, that of a rotation matrix; images and candidates are no signals."""
 
 
 class Enough(BaseException):
@@ -42,7 +42,7 @@ class Enough(BaseException):
 
 
 class Read(Result):
-    """What one consumer got of one channel in one control step."""
+    """A delivery of one channel to one consumer in one control step."""
 
     step: int
     consumer: str
@@ -58,13 +58,13 @@ class Read(Result):
     dtype: str = Field(default="", exclude=True)
     low: float = Field(default=math.inf, exclude=True)
     high: float = Field(default=-math.inf, exclude=True)
-    """Of the finite numbers of all scenes."""
+    """Largest of the finite numbers of all scenes, as `low` is the smallest."""
     lost: str = Field(default="", exclude=True)
     """A scene with a number that is not finite."""
     given: Mapping[str, bytes] = Field(default={}, exclude=True)
     """A digest of what the source held, by scene."""
     sums: Mapping[str, float] = Field(default={}, exclude=True)
-    """Of the finite numbers that the source held, by scene."""
+    """Sum of the finite numbers that the source held, by scene."""
     got: Mapping[str, bytes] = Field(default={}, exclude=True)
     """A digest of what the consumer got, by scene."""
 
@@ -75,10 +75,10 @@ class Read(Result):
 
 
 class Recording(Observer):
-    """What the taps of a run deliver.
+    """The deliveries of the taps of a run.
 
     Args:
-        scenes: Of the run, for the digests of its reads; none where only signals are wanted.
+        scenes: Scenes of the run, for digests of its reads; none where only signals are wanted.
         steps: After so many it raises `Enough`; `None`: never.
     """
 
@@ -91,7 +91,7 @@ class Recording(Observer):
         self.got: dict[tuple[str, str], Steps] = {}
         """By channel and consumer."""
         self.given: dict[tuple[str, str], Steps] = {}
-        """What the source had held, where it was delivered."""
+        """Numbers that the source had held, where they were delivered."""
         self.force: dict[int, Any] = {}
         """Scenes in which a fault was in force at some tap."""
         self.queries: dict[str, dict[int, Query]] = {}
@@ -119,10 +119,10 @@ class Recording(Observer):
         if new and self._scenes:
             self._note(key, reading.value, got, asks=0)
         self.source(reading.source, reading.value, reading.step)
-        given, had = _numbers(reading.value), _numbers(got)
-        if given is not None and had is not None:
-            self.given.setdefault(key[1:], {})[step] = given
-            self.got.setdefault(key[1:], {})[step] = had
+        clean, received = _numbers(reading.value), _numbers(got)
+        if clean is not None and received is not None:
+            self.given.setdefault(key[1:], {})[step] = clean
+            self.got.setdefault(key[1:], {})[step] = received
 
     @override
     def answered(
@@ -134,22 +134,22 @@ class Recording(Observer):
             self._note(key, query.value(answer), query.value(got), asks=1)
 
     @override
-    def faulted(self, step: int, held: Any) -> None:
-        mask = np.array(to_numpy(held) if is_array(held) else held)
+    def faulted(self, step: int, in_force: Any) -> None:
+        mask = np.array(to_numpy(in_force) if is_array(in_force) else in_force)
         self.force[step] = self.force.get(step, False) | mask
 
     def source(self, name: str, value: Any, step: int) -> None:
         """Note what a source holds at a step, or its parts, where that is a few numbers."""
         if isinstance(value, Mapping):
-            for part, each in cast("Mapping[str, Any]", value).items():
-                self.source(f"{name}.{part}", each, step)
+            for key, part in cast("Mapping[str, Any]", value).items():
+                self.source(f"{name}.{key}", part, step)
             return
-        held = self.sources.setdefault(name, {})
-        if step >= 0 and step not in held and (numbers := _numbers(value)) is not None:
-            held[step] = numbers
+        by_step = self.sources.setdefault(name, {})
+        if step >= 0 and step not in by_step and (numbers := _numbers(value)) is not None:
+            by_step[step] = numbers
 
-    def _note(self, key: tuple[int, str, str], given: Any, got: Any, asks: int) -> None:
-        read, values = self.reads[key], to_numpy(given)
+    def _note(self, key: tuple[int, str, str], clean: Any, got: Any, asks: int) -> None:
+        read, values = self.reads[key], to_numpy(clean)
         numbers, finite = values.astype(np.float64), np.isfinite(values)
         lost = np.flatnonzero(~finite.reshape(len(values), -1).all(axis=1))
         changed: dict[str, Any] = {
@@ -161,7 +161,7 @@ class Recording(Observer):
         }
         sums = np.where(finite, numbers, 0.0).reshape(len(values), -1).sum(axis=1).tolist()
         scenes = zip(self._scenes, sums, strict=False)
-        changed["sums"] = {scene: read.sums.get(scene, 0.0) + each for scene, each in scenes}
+        changed["sums"] = {scene: read.sums.get(scene, 0.0) + total for scene, total in scenes}
         for name, before, rows in (("given", read.given, values), ("got", read.got, to_numpy(got))):
             changed[name] = {
                 scene: blake2b(before.get(scene, b"") + row.tobytes(), digest_size=8).digest()
@@ -193,10 +193,10 @@ class Trial(Recorded):
     def got(self, channel: str, consumer: str) -> Values:
         return self.rows(self.recording.got[channel, consumer])
 
-    def rows(self, held: Mapping[int, Values]) -> Values:
+    def rows(self, by_step: Mapping[int, Values]) -> Values:
         """Return the scene's numbers by step, `[T, P]`, not a number where nothing was noted."""
-        values = np.full((self.steps, next(iter(held.values())).shape[1]), np.nan)
-        for step, rows in held.items():
+        values = np.full((self.steps, next(iter(by_step.values())).shape[1]), np.nan)
+        for step, rows in by_step.items():
             if step < self.steps:
                 values[step] = rows[self.scene]
         return values
@@ -205,7 +205,7 @@ class Trial(Recorded):
 def trials(recording: Recording, done: Done, dt_s: float) -> list[Trial]:
     """Return each trial of a recorded run."""
     steps = (math.ceil(outcome.time_s / dt_s - 1e-6) for outcome in done.outcomes)
-    return [Trial(recording, scene, each) for scene, each in enumerate(steps)]
+    return [Trial(recording, scene, count) for scene, count in enumerate(steps)]
 
 
 def signals(system: System, recording: Recording, done: Done) -> list[tuple[Signal, ...]]:
@@ -220,30 +220,30 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
     fed = {channel.name: channel.sources[0] for channel in interface.channels}
     parts = system.components if isinstance(system, ComposedSystem) else {}
     fixed = {s.name for s in interface.sources if s.provenance is Provenance.CONSTANT}
-    found: list[tuple[str, str, str, tuple[str, ...], Mapping[int, Values]]] = []
-    for name, held in recording.sources.items():
+    series: list[tuple[str, str, str, tuple[str, ...], Mapping[int, Values]]] = []
+    for name, by_step in recording.sources.items():
         if name in fixed:
             continue
         part = name.partition(".")[2]  # of a truth, which may be that of a channel
         topic = part if part in fed else topics.get(name, name)
         like = name if name in units else fed.get(part, "")
-        found.append((name, topic, units.get(like, ""), parts.get(like, ()), held))
+        series.append((name, topic, units.get(like, ""), parts.get(like, ()), by_step))
     for (channel, consumer), got in recording.got.items():
-        given = recording.given[channel, consumer]
-        if all(np.array_equal(got[step], given[step], equal_nan=True) for step in got):
+        clean = recording.given[channel, consumer]
+        if all(np.array_equal(got[step], clean[step], equal_nan=True) for step in got):
             continue
         unit, named_parts = units[fed[channel]], parts.get(fed[channel], ())
-        error = {step: got[step] - given[step] for step in got}
-        found.append((f"{channel} at {consumer}", channel, unit, named_parts, got))
+        error = {step: got[step] - clean[step] for step in got}
+        series.append((f"{channel} at {consumer}", channel, unit, named_parts, got))
         wrong = f"{channel} error"
-        found.append((f"{wrong} at {consumer}", wrong, unit, named_parts, error))
+        series.append((f"{wrong} at {consumer}", wrong, unit, named_parts, error))
     if recording.force:
         many = len(done.outcomes)
         force = {
             step: np.broadcast_to(mask, many)[:, None].astype(np.float64)
             for step, mask in recording.force.items()
         }
-        found.append((IN_FORCE, IN_FORCE, "1", (), force))
+        series.append((IN_FORCE, IN_FORCE, "1", (), force))
     every = trials(recording, done, system.control_dt_s)
     if system.more_signals:
         more: list[tuple[Signal, ...]] = named(system.more_signals)(system, recording, done)
@@ -255,11 +255,11 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
                 name,
                 topic,
                 unit,
-                values := trial.rows(held).astype(np.float32),
+                values := trial.rows(by_step).astype(np.float32),
                 named_parts if len(named_parts) == values.shape[1] else (),
             )
-            for name, topic, unit, named_parts, held in found
-            if held
+            for name, topic, unit, named_parts, by_step in series
+            if by_step
         )
         + beside
         for trial, beside in zip(every, more, strict=True)
@@ -282,7 +282,7 @@ def _error_signals(system: System, trial: Trial) -> tuple[Signal, ...]:
 
 def added(topic: str, unit: str, terms: Mapping[str, Values]) -> tuple[Signal, ...]:
     """Return two errors and their sum as signals of one topic."""
-    together = np.sum([np.asarray(each, np.float64) for each in terms.values()], axis=0)
+    together = np.sum([np.asarray(values, np.float64) for values in terms.values()], axis=0)
     return tuple(
         Signal(name, topic, unit, np.asarray(values, np.float32).reshape(len(together), 1))
         for name, values in {**terms, TOGETHER: together}.items()

@@ -1,4 +1,4 @@
-"""Who read what, when, over the first steps of a run, and where that is not as declared."""
+"""Trace of who read what, when, in the first steps of a run, and where that is not as declared."""
 
 from typing import Literal
 
@@ -43,14 +43,14 @@ def trace_system(
     seed: int = 0,
     fault: AnyFault | None = None,
 ) -> TraceReport:
-    """Run a variant for a few steps and tell what was read.
+    """Run a variant for a few steps and report what was read.
 
     Raises `UserError` for a variant, library or scene that there is not, a fault that
     reaches no consumer there, and a run that fails.
     """
     if variant not in system.variants:
         raise UserError(f"{system.name}: {unknown('variant', variant, system.variants)}")
-    known = [each.id for each in library_of(system, library).scenes]
+    known = [ref.id for ref in library_of(system, library).scenes]
     chosen = known[0] if scene is None else scene
     if chosen not in known:
         raise UserError(f"library '{library}': {unknown('scene', chosen, known)}")
@@ -60,29 +60,29 @@ def trace_system(
     run = run_block(system, Block(arm, (chosen,), steps=steps))
     if run.error and not run.reads:
         raise UserError(f"variant '{variant}' does not run: {run.error}")
-    read = {each.tap for each in run.reads}
+    taps = {read.tap for read in run.reads}
     findings = tuple(
         f"Variant '{variant}' declares that {consumer} reads '{channel.name}', but in the first "
         f"{steps} steps it did not; trace more --steps, or take it out of the variant's consumers."
         for channel in system.interface.channels
         for consumer in channel.consumers
-        if consumer in consumers and (channel.name, consumer) not in read
+        if consumer in consumers and (channel.name, consumer) not in taps
     )
     if run.error:
         findings = (f"The run ended early: {run.error}.",)
     words = {
-        (each.channel, consumer): each.intervention.words()
-        for each in faults
-        for consumer in each.consumers
+        (resolved.channel, consumer): resolved.intervention.words()
+        for resolved in faults
+        for consumer in resolved.consumers
     }
-    sources = {each.source for each in run.reads}
+    sources = {read.source for read in run.reads}
     readers: dict[str, list[str]] = {}
-    for each in run.reads:
-        readers.setdefault(each.consumer.partition(".")[0], []).append(each.channel)
+    for read in run.reads:
+        readers.setdefault(read.consumer.partition(".")[0], []).append(read.channel)
     permitted = {
-        each.consumer: each.source
-        for each in run.reads
-        if each.source in system.variants[variant].privileged
+        read.consumer: read.source
+        for read in run.reads
+        if read.source in system.variants[variant].privileged
     }
     reconstructed = {
         source: (module, tuple(dict.fromkeys(readers.get(module, ()))))
@@ -100,10 +100,10 @@ def trace_system(
         steps=steps,
         fault="" if fault is None else fault.describe(),
         reads=tuple(
-            each.model_copy(update={"altered_by": (words[each.tap],)})
-            if each.given != each.got
-            else each
-            for each in run.reads
+            read.model_copy(update={"altered_by": (words[read.tap],)})
+            if read.given != read.got
+            else read
+            for read in run.reads
         ),
         reconstructed=reconstructed,
         privileged=(

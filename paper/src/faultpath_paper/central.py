@@ -1,0 +1,171 @@
+"""The paper's central question, whether sharing the error reverses the ranking, and our answers.
+
+Audits that ask it besides the reproduction itself stand in a file that comes with the package.
+Sentences come from what was detected, never from an estimate.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from pydantic import TypeAdapter
+
+from faultpath.core.results import Frozen
+from faultpath.decisions import wording
+from faultpath.decisions.tables import Entry, Table, line
+from faultpath.statistics.estimate import Sign
+from faultpath_paper.answers import Reproduction
+from faultpath_paper.entries import bracket
+from faultpath_paper.pages.table_4 import NAMES, PAGE, paper_contrast
+from faultpath_paper.report import words
+
+CLAIM = "C26"
+BASELINE, REPAIR = "gru", "gru+dcc"
+ELSEWHERE = Path(__file__).parent / "data" / "reversal.json"
+COLUMNS = ("Wrong values at the wind estimator alone", "Wrong values shared", "Reversal")
+QUESTION = (
+    "The paper reports a reversal: a wind estimator that was retrained to tolerate wrong values of "
+    "mass and thrust flies better than the original while only the estimator gets wrong values, "
+    "and worse once the predictor gets the same ones."
+)
+QUICK_RUN = "This quick run is too small to answer the question."
+
+
+class Effect(Frozen):
+    """Success of the retrained estimator minus the original one."""
+
+    text: str
+    """Percentage points with their interval, such as `+6.7 [3.0, 11.0]`."""
+    sign: Sign
+    """Side of zero on which a difference is detected; 0 where none is."""
+
+    @classmethod
+    def of(cls, text: str, detected: bool) -> "Effect":
+        """Return the effect that a table prints."""
+        if not detected:
+            return cls(text=text, sign=0)
+        return cls(text=text, sign=-1 if text.startswith(wording.MINUS) else 1)
+
+
+class Case(Frozen):
+    """A run that asks the question, and what it detected."""
+
+    place: str
+    """Such as `300 scenes of confirmation, seeds 0, 1, 2`."""
+    isolated: Effect
+    shared: Effect
+    reversal: bool
+    """Whether the run decides that the ranking reverses."""
+
+
+CASES: TypeAdapter[tuple[Case, ...]] = TypeAdapter(tuple[Case, ...])
+
+
+def elsewhere() -> tuple[Case, ...]:
+    """Return what audits besides the reproduction detected."""
+    return CASES.validate_json(ELSEWHERE.read_bytes())
+
+
+def case_of(reproduction: Reproduction) -> Case | None:
+    """Return what a run of the paper detected, by the paper's rules; `None` without the claim."""
+    ledger = reproduction.ledger
+    claim = next((claim for claim in ledger.claims if claim.id == CLAIM), None)
+    table = next((table for table in reproduction.tables if table.name == PAGE.name), None)
+    if claim is None or table is None:
+        return None
+    labels = [row.label for row in table.lines]
+    at = labels.index(f"{NAMES[REPAIR]} minus {NAMES[BASELINE]}, success (pp)")
+    differences, intervals = table.lines[at + 1].entries, table.lines[at + 2].entries
+    isolated, shared = (
+        Effect.of(f"{difference.text} {ends.text}", difference.detected)
+        for difference, ends in zip(differences[1:], intervals[1:], strict=True)
+    )
+    return Case(
+        place=f"{ledger.scenes} scenes of {ledger.library}, {wording.seeds(ledger.seeds)}",
+        isolated=isolated,
+        shared=shared,
+        reversal=claim.parts[0].answer == "confirmed",
+    )
+
+
+def answer(cases: Sequence[Case]) -> str:
+    """Return our answer in a few words."""
+    if not cases:
+        return "No run here asked the paper's central question"
+    if any(case.reversal for case in cases):
+        return "The paper's reversal appeared here too"
+    return "We did not reproduce the paper's reversal"
+
+
+def detail(cases: Sequence[Case]) -> str:
+    """Return what the answer rests on: the last run that decides a reversal, else the last."""
+    reversing = [case for case in cases if case.reversal] or cases
+    if not reversing:
+        return ""
+    case = reversing[-1]
+    alone = clause("With wrong values at the wind estimator alone", case.isolated)
+    shared = clause("with the predictor sharing them", case.shared)
+    return f"{alone}; {shared} ({case.place})."
+
+
+def clause(where: str, effect: Effect) -> str:
+    """Return what was detected in a condition, as a clause."""
+    if not effect.sign:
+        return f"{where} no difference between the two was detected ({effect.text} pp)"
+    than = "more" if effect.sign > 0 else "less"
+    return f"{where} the retrained estimator succeeds {than} often ({effect.text} pp)"
+
+
+def by_training(reproduction: Reproduction) -> str:
+    """Return in how many trainings the estimates reverse, as the paper counts them."""
+    claim = next(claim for claim in reproduction.ledger.claims if claim.id == CLAIM)
+    counted = claim.parts[1]
+    seeds = len(reproduction.ledger.seeds)
+    if counted.estimate is None:
+        return ""
+    count = round(counted.estimate)
+    rank = "ranks" if count == 1 else "rank"
+    return (
+        f"By the estimates alone, {count} of {seeds} trained models {rank} the two as the paper "
+        "does; in the paper all three do."
+    )
+
+
+def table_of(cases: Sequence[Case]) -> Table:
+    """Return the question's numbers run by run, the paper's below."""
+    theirs = [paper_contrast(REPAIR, BASELINE, path) for path in ("reconstruction-only", "shared")]
+    printed = [f"{wording.signed(c.value)} {bracket(c.interval or ())}" for c in theirs]
+    rows = [
+        line(
+            case.place[:1].upper() + case.place[1:],
+            *(Entry(text=e.text, detected=bool(e.sign)) for e in (case.isolated, case.shared)),
+            "yes" if case.reversal else "not detected",
+        )
+        for case in cases
+    ]
+    return Table(
+        name="central",
+        title="Success of the retrained wind estimator minus the original one (pp), strong wind",
+        columns=COLUMNS,
+        lines=(*rows, line("The paper", *printed, "yes")),
+        words=COLUMNS[-1:],
+        notes=(
+            "Rows are separate tests; they are not compared with each other. Intervals of the "
+            "paper and of its reproduction are percentile bootstraps of scenes, those of audits "
+            "score intervals.",
+        ),
+    )
+
+
+def of_page(reproduction: Reproduction) -> tuple[str, str, Table] | None:
+    """Return our answer, what it rests on, and its table for the page of a run.
+
+    `None` where the run is not about the question; a quick run has only the answers of others.
+    """
+    if all(claim.id != CLAIM for claim in reproduction.ledger.claims):
+        return None
+    cases = elsewhere()
+    if reproduction.profile != words.QUICK:
+        own = case_of(reproduction)
+        cases = (*([own] if own else []), *cases)
+        return answer(cases), f"{detail(cases)} {by_training(reproduction)}", table_of(cases)
+    return answer(cases), f"{detail(cases)} {QUICK_RUN}", table_of(cases)

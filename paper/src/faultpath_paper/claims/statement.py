@@ -1,0 +1,255 @@
+"""A statement of a claim: what is looked at, and the rule that answers."""
+
+from dataclasses import dataclass
+from math import hypot
+from typing import Any, NamedTuple, Protocol, TypeAlias
+
+from faultpath.statistics.contrast import ROUNDING, Contrast, change
+from faultpath_paper.answers import ClaimVerdict, Part, Size
+from faultpath_paper.cells import Printed, PublishedClaim
+from faultpath_paper.claims.rules import (
+    CONFIRMED,
+    FEW_SCENES,
+    REFUTED,
+    Ends,
+    Judged,
+    Rule,
+    points_decide,
+)
+from faultpath_paper.quantities.differences import Pair, together
+from faultpath_paper.results import (
+    NotRun,
+    Quantity,
+    Results,
+    Undecidable,
+    decisive,
+    detection,
+)
+
+NO_EFFECT = {"pp": 0.0, "s": 0.0, "m": 0.0, "m/s^2": 0.0, "times": 1.0}
+"""By unit, its value. What has another unit, as a share of scenes has, has no sign."""
+
+
+def size(
+    value: float | None,
+    interval: Ends | None,
+    n_scenes: int,
+    paper: Printed | None,
+    no_effect: float | None,
+) -> Size:
+    """Set an estimate beside the paper's figure; `no_effect` is `None` where no sign is at stake.
+
+    Compatible: the 95 % interval of ours minus the paper's holds 0. Else a sign counts where a
+    whole interval shows it, ours and, where it prints one, the paper's.
+    """
+    if paper is None or value is None or interval is None or not points_decide(n_scenes):
+        return "not comparable"
+    theirs = paper.interval or (paper.value, paper.value)
+    if _compatible(value, interval, paper.value, theirs):
+        return "compatible"
+    if no_effect is None:
+        return "other size"
+    own, printed = _side(interval, no_effect), _side(theirs, no_effect)
+    if not (own and printed):
+        return "other size"
+    return "right sign, other size" if own == printed else "other sign"
+
+
+def _compatible(ours: float, interval: Ends, paper: float, theirs: Ends) -> bool:
+    """Return whether the interval of a difference of independent estimates holds 0.
+
+    It is made from both intervals without taking them to be symmetric (MOVER: Zou and Donner,
+    Statistics in Medicine 27, 2008).
+    """
+    difference = ours - paper
+    low = difference - hypot(ours - interval[0], theirs[1] - paper)
+    high = difference + hypot(interval[1] - ours, paper - theirs[0])
+    return low <= ROUNDING and high >= -ROUNDING
+
+
+def _side(interval: Ends, of: float) -> int:
+    return int(interval[0] > of) - int(interval[1] < of)
+
+
+class Stated(Protocol):
+    """One part of a claim."""
+
+    @property
+    def words(self) -> str:
+        """The statement."""
+        ...
+
+    @property
+    def paper(self) -> Printed | None:
+        """The paper's figure for it."""
+        ...
+
+    def part(self, results: Results) -> Part:
+        """Answer it from a run; raises `NotRun` or `Undecidable`."""
+        ...
+
+
+Statements: TypeAlias = tuple[Stated, ...]
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A part of a claim that a rule decides from one quantity."""
+
+    subject: str
+    """What is looked at, as the beginning of a sentence; differences are first minus second."""
+    quantity: Quantity
+    rule: Rule
+    paper: Printed | None = None
+    """The paper's figure for the quantity, in its unit; `None` where it prints none."""
+
+    @property
+    def words(self) -> str:
+        """The statement."""
+        return self.rule.words.format(self.subject)
+
+    def part(self, results: Results) -> Part:
+        """Answer it from a run."""
+        found = self.quantity(results)
+        no_effect = NO_EFFECT.get(found.unit) if self.rule.sided else None
+        judged = self.rule.judge(found.resampled())
+        return shown(self.words, judged, found, self.paper, no_effect)
+
+
+def shown(
+    words: str,
+    judged: Judged,
+    found: Contrast,
+    paper: Printed | None,
+    no_effect: float | None,
+    counts: str = "",
+) -> Part:
+    """Return an answer with the numbers that it rests on, and its size beside the paper's figure.
+
+    `no_effect` as in `size`; `counts` where the quantity has none of its own.
+    """
+    score = None if found.scenes is None else found.interval
+    found = found.resampled()
+    return Part(
+        words=words,
+        answer=judged.answer,
+        estimate=found.value,
+        interval=found.interval,
+        score=score,
+        unit=found.unit,
+        p_value=None if found.test is None else found.test.p_value,
+        test="" if found.test is None else found.test.name,
+        mde=found.least,
+        counts=str(found.counts or counts),
+        reason=judged.reason,
+        size=size(found.value, found.interval, found.n_scenes, paper, no_effect),
+        **beside(paper),
+    )
+
+
+def beside(paper: Printed | None) -> dict[str, Any]:
+    """Return the fields of a part that hold the paper's figure."""
+    return {} if paper is None else {"paper": paper.value, "paper_interval": paper.interval}
+
+
+_FIRST_WINS = ("refuted", "undecided", "confirmed")
+
+
+def verdict(claim: PublishedClaim, statements: Statements, results: Results) -> ClaimVerdict:
+    """Answer a claim: confirmed when every part is, refuted when any is.
+
+    Its numbers are those of the first part that has the answer of the whole.
+    """
+    parts = tuple(answered(statement, results) for statement in statements)
+    deciding = min(parts, key=lambda part: _FIRST_WINS.index(part.answer))
+    return ClaimVerdict(
+        id=claim.id,
+        kind=claim.kind,
+        verdict=deciding.answer,
+        estimate=deciding.estimate,
+        interval=deciding.interval,
+        mde=deciding.mde,
+        unit=deciding.unit,
+        paper=claim.paper,
+        claim=claim.claim,
+        parts=parts,
+    )
+
+
+def answered(statement: Stated, results: Results) -> Part:
+    """Answer a statement from a run; what was not run, or does not decide, leaves it undecided."""
+
+    def left_open(reason: str, **why: Any) -> Part:
+        why |= beside(statement.paper)
+        return Part(words=statement.words, answer="undecided", reason=reason, **why)
+
+    try:
+        return statement.part(results)
+    except NotRun as missing:
+        return left_open(f"not run: {missing}", not_run=True)
+    except Undecidable as why:
+        return left_open(str(why))
+
+
+ALL_SEEDS = 3
+"""Trainings that the paper speaks of."""
+
+
+class Turned(NamedTuple):
+    """The change of an effect, second condition minus first, with the effect in both."""
+
+    change: Contrast
+    before: Contrast
+    after: Contrast
+
+    def judge(self) -> Judged:
+        """Answer that the effect turns from above 0 to below 0: both are detected, each by itself.
+
+        That is an intersection-union test, whose level is that of each effect's. Refuted when the
+        change, or either effect, is detected on the other side.
+        """
+        moved, before, after = (detection(each.resampled()) for each in self)
+        if self.change.interval is None:
+            return FEW_SCENES
+        if moved > 0 or before < 0 or after > 0:
+            return REFUTED
+        if before and after:
+            return CONFIRMED
+        why = "the change is detected, but not both effects" if moved else ""
+        return Judged("undecided", why)
+
+
+@dataclass(frozen=True)
+class TurnsDown:
+    """The effect is detected above 0 before and below 0 after."""
+
+    subject: str
+    before: Pair
+    after: Pair
+    paper: Printed | None = None
+    """The change that the paper's figures give."""
+
+    @property
+    def words(self) -> str:
+        """The statement."""
+        return f"{self.subject} turns from above 0 to below 0"
+
+    def part(self, results: Results) -> Part:
+        """Answer it from a run."""
+        one, two = together(results, self.before, self.after)
+        turned = Turned(decisive(change(one, two)), one, two)
+        counts = f"{one.counts}, then {two.counts}"
+        return shown(self.words, turned.judge(), turned.change, self.paper, 0.0, counts)
+
+
+def seeds_that_turn(before: Pair, after: Pair) -> Quantity:
+    """Return in how many seeds the difference is above 0 before and below 0 after."""
+
+    def found(results: Results) -> Contrast:
+        one, two = together(results, before, after)
+        if one.n_seeds < ALL_SEEDS:
+            raise Undecidable(f"run with {one.n_seeds} of {ALL_SEEDS} seeds")
+        turning = sum(b > 0 > a for b, a in zip(one.per_seed, two.per_seed, strict=True))
+        return Contrast(float(turning), "seeds", one.n_scenes, against_zero=False)
+
+    return found

@@ -1,0 +1,118 @@
+"""C16 to C22, C43 and C45: wind that no sensor measures (paper, Table III and text)."""
+
+from dataclasses import replace
+
+from faultpath_paper.cells import Printed, published
+from faultpath_paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_GAIN, by_point
+from faultpath_paper.claims.statement import Statement, Statements
+from faultpath_paper.pages import in_text
+from faultpath_paper.pages.table_3 import (
+    ENVIRONMENTS,
+    GRU,
+    TRAJECTORY,
+    TRUE,
+    WITHHELD,
+    ZERO,
+    ZERO_OF_EVERY_SEED,
+    cell,
+    paper_rate,
+)
+from faultpath_paper.quantities.differences import success
+from faultpath_paper.quantities.windows import difference_of_quantiles
+
+L3 = "L3"
+OBSTACLES = "obstacles"
+
+_FROZEN = published("in_text", "freeze_reconstructed_wind_at_step_20")
+
+
+def _paper(first: str, second: str, environment: str = OBSTACLES, level: str = L3) -> Printed:
+    return Printed(paper_rate(first, environment, level) - paper_rate(second, environment, level))
+
+
+CLAIMS: dict[str, Statements] = {
+    "C16": tuple(
+        Statement(
+            f"median error of {low} minus that of {high}",
+            difference_of_quantiles((in_text.windy_error(first),), (in_text.windy_error(second),)),
+            by_point(-1),
+        )
+        for (low, first), (high, second) in (
+            (("ground-truth wind", f"wm-a-wind/{TRUE}"), ("the wind-withheld model", WITHHELD)),
+            (("the wind-withheld model", WITHHELD), ("zero wind", ZERO_OF_EVERY_SEED)),
+        )
+    ),
+    "C17": tuple(
+        Statement(
+            f"success of zero wind minus the wind-withheld model at {level}, {environment},",
+            success(cell(ZERO, environment, level), cell(WITHHELD, environment, level)),
+            NO_GAIN,
+            _paper(ZERO, WITHHELD, environment, level),
+        )
+        for environment in ENVIRONMENTS
+        for level in ("L2", L3)
+    ),
+    "C18": tuple(
+        Statement(
+            f"success of ground-truth wind minus zero wind at L3, {environment}",
+            success(cell(TRUE, environment, L3), cell(ZERO, environment, L3)),
+            ABOVE,
+            _paper(TRUE, ZERO, environment),
+        )
+        for environment in ENVIRONMENTS
+    ),
+    "C19": (
+        Statement(
+            "success of GRU minus ground-truth wind at L3",
+            success(cell(GRU, OBSTACLES, L3), cell(TRUE, OBSTACLES, L3)),
+            NO_DIFFERENCE,
+            _paper(GRU, TRUE),
+        ),
+        Statement(
+            "success of GRU minus zero wind at L3",
+            success(cell(GRU, OBSTACLES, L3), cell(ZERO, OBSTACLES, L3)),
+            ABOVE,
+            _paper(GRU, ZERO),
+        ),
+    ),
+    "C20": (
+        Statement(
+            "success of GRU minus zero wind at L3 with noise and delay",
+            success(in_text.noisy_wind(GRU), in_text.noisy_wind(ZERO)),
+            ABOVE,
+        ),
+    ),
+    "C21": (
+        Statement(
+            "success with the reconstructed wind frozen minus updated, free space at L3",
+            success(in_text.WIND_FROZEN, in_text.WIND_UPDATED),
+            BELOW,
+            Printed(_FROZEN["after"] - _FROZEN["before"]),
+        ),
+    ),
+    "C22": (
+        Statement(
+            "success of the trajectory-trained GRU minus the collection-trained one at L3",
+            success(cell(TRAJECTORY, OBSTACLES, L3), cell(GRU, OBSTACLES, L3)),
+            by_point(-1),
+            _paper(TRAJECTORY, GRU),
+        ),
+    ),
+    "C43": (
+        Statement(
+            "success of the trajectory-trained GRU minus zero wind at L0",
+            success(in_text.TRAJECTORY_STILL, cell(ZERO, OBSTACLES, "L0")),
+            by_point(-1),
+            _paper(TRAJECTORY, ZERO, level="L0"),
+        ),
+    ),
+    # The paper sets one flight of a frozen wind beside the mean over all seeds of the zero input.
+    "C45": (
+        Statement(
+            "success with the reconstructed wind frozen minus zero wind, free space at L3",
+            success(replace(in_text.WIND_FROZEN, fixed=True), cell(ZERO, "free-space", L3)),
+            by_point(-1),
+            Printed(_FROZEN["after"] - paper_rate(ZERO, "free-space", L3)),
+        ),
+    ),
+}

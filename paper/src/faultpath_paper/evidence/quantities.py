@@ -1,0 +1,186 @@
+"""The quantities of a measurement, each a number a window."""
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache, partial
+from pathlib import Path
+
+import torch
+from faultpath_quadrotor.device import arithmetic
+from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.predictors.kinematic import LinearDrag
+from faultpath_quadrotor.reconstruction import DisturbanceObserver
+from faultpath_quadrotor.training.parts import Part, Progress, make_missing
+from faultpath_quadrotor.training.provenance import code_of
+from faultpath_quadrotor.training.windows import HISTORY, Windows
+from torch import Tensor
+
+from faultpath.trials.store import atomic
+from faultpath.trials.store.atomic import locked, make_folder
+from faultpath_paper.evidence.inputs import Subject, with_shuffled_history
+from faultpath_paper.evidence.playback import Present
+from faultpath_paper.evidence.recording import Block, Recorded, blocks, quadrotor, recorded
+from faultpath_paper.evidence.table import (
+    EvidenceTable,
+    Measured,
+    Measurement,
+    Quantity,
+    read_evidence,
+    write_evidence,
+)
+
+
+@torch.inference_mode()
+def measured(asked: Measurement, recorded: Recorded) -> Measured:
+    """Measure on every window.
+
+    A window's number does not depend on the windows beside it, to the bit, unless a fault on the
+    history code exchanges them.
+    """
+    values = _QUANTITIES[asked.quantity](_subject(asked), asked, recorded.windows)
+    return Measured(recorded.scenes, recorded.steps, values.double().numpy())
+
+
+def _subject(asked: Measurement) -> Subject:
+    return Subject.load(quadrotor(asked.recording), asked.subject, asked.seed)
+
+
+def _present(subject: Subject, asked: Measurement, windows: Windows) -> Present:
+    return subject.at_present(windows, asked.faults, asked.recording.name)
+
+
+def _position_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
+    last = _present(subject, asked, windows).positions()[..., -1]
+    return (last - windows.position[:, -1]).norm(dim=0)
+
+
+def _position_response(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
+    correct = asked.model_copy(update={"faults": ()})
+    here, there = (
+        _present(subject, each, windows).positions()[..., -1] for each in (correct, asked)
+    )
+    return (there - here).norm(dim=0)
+
+
+def _shuffle_response(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
+    here, there = (
+        _present(subject, asked, each).positions()[..., -1]
+        for each in (windows, with_shuffled_history(windows, asked.seed))
+    )
+    return (there - here).norm(dim=0)
+
+
+def _acceleration_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
+    present = _present(subject, asked, windows)
+    told = {channel: present[channel, "predictor.dynamics"] for channel in windows.calibration}
+    believed = replace(windows, mass_kg=told["mass"], thrust_scale=told["thrust_scale"])
+    nominal = _nominal(believed) - _nominal(windows)
+    return (nominal + _wind_term_difference(present, windows)).norm(dim=0)
+
+
+def _wind_term_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
+    return _wind_term_difference(_present(subject, asked, windows), windows).norm(dim=0)
+
+
+_QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]] = {
+    "position-error": _position_error,
+    "position-response": _position_response,
+    "shuffle-response": _shuffle_response,
+    "acceleration-error": _acceleration_error,
+    "wind-term-error": _wind_term_error,
+}
+
+
+def _nominal(windows: Windows) -> Tensor:
+    """Return a_0 at the present, as the observer explains it, `[3, W]`, m/s^2.
+
+    Paper, Section "Calibration-Dependent Compensation": what the observer takes out of an
+    acceleration is put back here.
+    """
+    delivered = {
+        ("velocity", "velocity_difference"): windows.velocity[:, HISTORY],
+        ("attitude", "nominal_model"): windows.rotation[:, :, HISTORY],
+        ("action", "nominal_model"): windows.command[:, HISTORY - 1],
+        ("mass", "nominal_model"): windows.mass_kg,
+        ("thrust_scale", "nominal_model"): windows.thrust_scale,
+    }
+    return DisturbanceObserver(PLATFORM.drag_kgps).nominal(delivered)
+
+
+def _wind_term_difference(present: Present, windows: Windows) -> Tensor:
+    def term(map_mass_kg: Tensor, wind_mps: Tensor) -> Tensor:
+        force = LinearDrag(PLATFORM.drag_kgps).force(windows.rotation[:, :, HISTORY], wind_mps)
+        return force / map_mass_kg
+
+    believed = term(present["mass", "predictor.wind_map"], present.wind())
+    return believed - term(windows.mass_kg, windows.wind_mps[:, HISTORY])
+
+
+Blocks = tuple[Block, ...]
+
+
+def measure(
+    measurements: Sequence[Measurement],
+    scenes: int | None,
+    folder: Path,
+    workers: int = 0,
+    progress: Progress | None = None,
+) -> EvidenceTable:
+    """Record what is missing, measure what is missing, and return all of `measurements`.
+
+    Args:
+        measurements: What to measure; one that stands there twice is measured once.
+        scenes: The first N scenes of each library; `None`: all.
+        folder: Where recordings and measurements are kept, so that the next call goes on.
+        workers: Processes; 0: everything is done in this one.
+        progress: Is told how far it is.
+    """
+    asked = tuple(dict.fromkeys(measurements))
+    recordings = dict.fromkeys(measurement.recording for measurement in asked)
+    flown = {recording: blocks(recording, scenes) for recording in recordings}
+    # One recording after the other: a worker keeps the windows of the one that it is at.
+    paths = {
+        measurement: _path(measurement, flown[recording], folder)
+        for recording in recordings
+        for measurement in asked
+        if measurement.recording == recording
+    }
+    make_folder(folder)
+    with locked(folder, lambda text: None):
+        atomic.sweep(folder)
+        waiting = {found: path for found, path in paths.items() if not path.exists()}
+        flights = [
+            Part(block.rows(folder), partial(_fly, block, folder), len(block.scenes))
+            for recording in dict.fromkeys(measurement.recording for measurement in waiting)
+            for block in flown[recording]
+            if not block.rows(folder).exists()
+        ]
+        tables = [  # a measurement takes about as long as a flight
+            Part(path, partial(_measure, found, flown[found.recording], folder, path))
+            for found, path in waiting.items()
+        ]
+        make_missing((flights, tables), workers, progress)
+    return EvidenceTable({found: read_evidence(paths[found]).values(found) for found in asked})
+
+
+@arithmetic()
+def _fly(block: Block, folder: Path) -> None:
+    block.fly(folder)
+
+
+@arithmetic()
+def _measure(measurement: Measurement, flown: Blocks, folder: Path, path: Path) -> None:
+    found = measured(measurement, _recorded(flown, folder))
+    write_evidence(path, EvidenceTable({measurement: found}))
+
+
+def _path(measurement: Measurement, flown: Blocks, folder: Path) -> Path:
+    stems = tuple(block.stem for block in flown)
+    content = repr((measurement.key(), stems, code_of("faultpath_paper.evidence.quantities")))
+    return folder / f"{hashlib.sha256(content.encode()).hexdigest()[:24]}.measured.parquet"
+
+
+@lru_cache(maxsize=1)
+def _recorded(flown: Blocks, folder: Path) -> Recorded:
+    return recorded(flown, folder)

@@ -1,0 +1,107 @@
+"""Recorded flights, kept in a folder block by block, and the windows cut from them."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from faultpath_quadrotor.system import Quadrotor
+from faultpath_quadrotor.training.pool import FlightData, join_flights, write_flights
+from faultpath_quadrotor.training.provenance import code_of
+from faultpath_quadrotor.training.trajectories import record_flights
+from faultpath_quadrotor.training.windows import HISTORY, Windows, cut, places
+from numpy.typing import NDArray
+
+from faultpath.trials import SystemSpec, load_system
+from faultpath.trials.code import system_code
+from faultpath_paper.evidence.table import Recording
+
+BLOCK = 25
+"""Scenes flown together and stored together."""
+
+STRIDE = 5
+"""Least spacing of the windows of a flight, control steps. The paper has 1,461 windows of 100
+scenes; a quarter of a second between them gives about as many (derived)."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """Consecutive scenes of a recording, and the stem of the two files that hold their flights."""
+
+    recording: Recording
+    first: int
+    scenes: tuple[str, ...]
+    stem: str
+
+    def rows(self, folder: Path) -> Path:
+        """Return the file that is written last."""
+        return folder / f"{self.stem}.rows"
+
+    def fly(self, folder: Path) -> None:
+        """Fly the scenes and store the flights."""
+        recording = self.recording
+        system = quadrotor(recording)
+        system.library(recording.library)
+        flights = record_flights(system, recording.variant, self.scenes, recording.seed)
+        episodes = range(self.first, self.first + len(self.scenes))
+        write_flights(folder / self.stem, episodes, flights)
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """The windows of a recording, in the order of their scenes, then of their time."""
+
+    windows: Windows
+    scenes: tuple[str, ...]
+    """Scene of each window, `[W]`."""
+    steps: NDArray[np.int64]
+    """Control step of each window's present, `[W]`."""
+
+
+def _spec(recording: Recording) -> SystemSpec:
+    return SystemSpec(name=Quadrotor.name, options=dict(recording.options))
+
+
+def quadrotor(recording: Recording) -> Quadrotor:
+    """Return the system that a recording is flown with."""
+    system = load_system(_spec(recording))
+    assert isinstance(system, Quadrotor)
+    return system
+
+
+def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
+    """Return the blocks of the first `count` scenes of the recording's library, `None`: of all.
+
+    The stem is a hash of everything that decides the flights.
+    """
+    system = quadrotor(recording)
+    library = system.library(recording.library)
+    scenes = tuple(scene.id for scene in library.scenes[:count])
+    decisive = (
+        system_code(system, _spec(recording)).state.digest,
+        library.content_hash,
+        recording.variant,
+        recording.seed,
+        code_of("faultpath_quadrotor.training.trajectories", "faultpath_quadrotor.training.pool"),
+    )
+    found: list[Block] = []
+    for first in range(0, len(scenes), BLOCK):
+        part = scenes[first : first + BLOCK]
+        content = repr((*decisive, first, part))
+        stem = hashlib.sha256(content.encode()).hexdigest()[:24]
+        found.append(Block(recording, first, part, stem))
+    return tuple(found)
+
+
+def recorded(blocks: Sequence[Block], folder: Path) -> Recorded:
+    """Read stored blocks of one recording and cut their windows."""
+    files = join_flights([folder / block.stem for block in blocks])
+    flown = FlightData.decode(blocks[0].recording.name, *files)
+    place = places(flown, STRIDE)
+    scenes = [scene for block in blocks for scene in block.scenes]
+    return Recorded(
+        cut(flown, STRIDE),
+        tuple(scenes[episode] for episode in place[:, 0].tolist()),
+        place[:, 2] + HISTORY,
+    )

@@ -1,0 +1,110 @@
+"""From cells to trials: one study a setting, flown into one folder and laid out in one table."""
+
+import hashlib
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
+from faultpath.trials.execution.runner import RunResult
+from faultpath.trials.work.executor import Progress
+from faultpath_paper.cells import SYSTEM, Cell, Profile, Setting
+
+FLIGHTS = "flights"
+"""Folder, inside that of a run, with one folder a setting."""
+Run = Callable[..., RunResult]
+
+
+@dataclass(frozen=True)
+class Leg:
+    """All cells of one setting, ready to fly."""
+
+    setting: Setting
+    system: System
+    study: Study
+
+    @property
+    def folder(self) -> str:
+        """Name of the folder that keeps its trials."""
+        return re.sub(r"[^A-Za-z0-9.=-]+", "_", str(self.setting))
+
+    @property
+    def trials(self) -> int:
+        """Trials of all arms."""
+        return len(self.study.arms()) * len(self.study.scenes)
+
+
+@dataclass(frozen=True)
+class Flown:
+    """What the legs left."""
+
+    legs: tuple[Leg, ...]
+    results: tuple[RunResult, ...]
+
+    @property
+    def outcomes(self) -> OutcomeTable:
+        """All trials, leg by leg."""
+        return OutcomeTable(tuple(row for result in self.results for row in result.outcomes.rows))
+
+    @property
+    def fingerprint(self) -> str:
+        """Hash of the fingerprints of all legs."""
+        every = "".join(result.system_fingerprint for result in self.results)
+        return hashlib.sha256(every.encode()).hexdigest()[:16]
+
+
+def plan_legs(
+    cells: Iterable[Cell], profile: Profile, options: Mapping[str, str]
+) -> tuple[Leg, ...]:
+    """Return what a profile runs of `cells`, setting by setting in the order of the cells.
+
+    `options` are added to those of every setting. Raises `UserError` for an option that does not
+    exist.
+    """
+    by_setting: dict[Setting, list[Cell]] = {}
+    for cell in profile.cells(cells):
+        by_setting.setdefault(cell.setting, []).append(cell)
+    legs: list[Leg] = []
+    for setting, members in by_setting.items():
+        spec = SystemSpec(name=SYSTEM, options={**setting.options, **options})
+        system = load_system(spec)
+        scenes = system.library(setting.library).scenes[: profile.scenes]
+        study = Study(
+            name=str(setting),
+            system=spec,
+            library=setting.library,
+            scenes=tuple(scene.id for scene in scenes),
+            rows=tuple(_row(system, cell, seed) for cell in members for seed in cell.seeds),
+        )
+        legs.append(Leg(setting, system, study))
+    return tuple(legs)
+
+
+def fly(legs: Sequence[Leg], folder: Path, run: Run, show: Callable[[Progress], None]) -> Flown:
+    """Run the legs one after the other, keeping what the folder of a run already holds.
+
+    `run` is what runs a study of a system into a folder. Raises as `run_study` does.
+    """
+    before, total = 0, sum(leg.trials for leg in legs)
+    results: list[RunResult] = []
+    for leg in legs:
+
+        def progress(now: Progress, before: int = before, leg: Leg = leg) -> None:
+            show(now.within(total, before, leg.study.name))
+
+        place = folder / FLIGHTS / leg.folder
+        results.append(run(leg.study, leg.system, progress, place, shared=True, recheck=False))
+        before += leg.trials
+    return Flown(tuple(legs), tuple(results))
+
+
+def _row(system: System, cell: Cell, seed: int) -> Row:
+    consumers = system.variants[cell.variant].consumers
+    faults = tuple(
+        fault
+        for text in cell.faults
+        for fault in system.fault(text).resolved(system.interface, consumers)
+    )
+    arm = Arm(variant=cell.variant, faults=faults, seed=seed)
+    return Row(variant=cell.variant, path=cell.path, seed=seed, arm=arm)

@@ -1,0 +1,190 @@
+"""A page of the paper as data: its tables, row by row, and so what it needs flown and measured."""
+
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from faultpath.decisions import wording
+from faultpath.decisions.tables import Line, Table
+from faultpath_paper.answers import Sweep
+from faultpath_paper.cells import Cell
+from faultpath_paper.entries import Figure, Group, PublishedContrast, difference, success
+from faultpath_paper.evidence.table import Measured, Measurement
+from faultpath_paper.results import NotRun, Results
+
+INTERVALS = (
+    "Intervals, 95 %, for these trained models and recorded executions: percentile bootstrap of "
+    "scene-wise mean differences, as in the paper. Score intervals (Tango's; over seeds "
+    "cluster-robust) stand beside it and decide nothing here. Bold, differences in success alone: "
+    "the bootstrap's interval excludes 0, and for one seed exact McNemar rejects at 0.05 too."
+)
+WINS = "Wins:losses: scenes in which only the first, or only the second, succeeded, seed by seed."
+FLOWN_ONCE = (
+    "DOB, and zero and true wind with the predictor of seed 0, are not trained anew: they are "
+    "flown once, with the planner noise of seed 0, and paired with each trained seed."
+)
+WINDOWS = "Errors: median over all windows, 20 control steps ahead."
+
+
+def flown(results: Results, cells: Iterable[Cell]) -> str:
+    """Return scenes and seeds that a run holds of cells, library by library."""
+    held: dict[str, tuple[set[str], set[int]]] = {}
+    for cell in cells:
+        with suppress(NotRun):
+            run = results.seeds(cell)
+            library = cell.setting.library
+            scenes, seeds = held.setdefault(library, (set(), set()))
+            seeds.update(run)
+            rows = results.outcomes.arm(cell.variant, cell.path, run[0])
+            scenes.update(row.outcome.scene for row in rows)
+    if not held:
+        return "No trial of this table was run."
+    parts = (
+        f"{wording.counted(len(scenes), 'scene')} of the {library} library, "
+        f"{wording.seeds(tuple(sorted(seeds)))}"
+        for library, (scenes, seeds) in held.items()
+    )
+    return wording.sentence("; ".join(parts))
+
+
+def recorded(results: Results, measurements: Iterable[Measurement]) -> str:
+    """Return windows, scenes, library and seeds that a run holds of one recording."""
+    found: dict[Measurement, Measured] = {}
+    for measurement in measurements:
+        with suppress(NotRun):
+            found[measurement] = results.measured(measurement)
+    if not found:
+        return "No error of this table was measured."
+    measurement, windows = next(iter(found.items()))
+    library = measurement.recording.library
+    scenes = wording.counted(len(set(windows.scenes)), "scene")
+    seeds = wording.seeds(tuple(sorted({measurement.seed for measurement in found})))
+    return f"{len(windows):,} windows of {scenes} of the {library} library, {seeds}."
+
+
+Built: TypeAlias = tuple[Table | Sweep, ...]
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of a table; one without groups is a heading inside it."""
+
+    label: str
+    groups: tuple[Group, ...] = ()
+
+    def lines(self, results: Results) -> tuple[Line, ...]:
+        """Return the line as a run fills it."""
+        entries = tuple(entry for group in self.groups for entry in group.entries(results))
+        return (Line(label=self.label, entries=entries),)
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Lines whose entries are made column by column: a group a column, an entry a line."""
+
+    labels: tuple[str, ...]
+    """An empty one leaves its line out; entries beyond the labels are not shown."""
+    groups: tuple[Group, ...]
+
+    def lines(self, results: Results) -> tuple[Line, ...]:
+        """Return the lines as a run fills them."""
+        columns = [group.entries(results) for group in self.groups]
+        return tuple(
+            Line(label=label, entries=tuple(column[at] for column in columns))
+            for at, label in enumerate(self.labels)
+            if label
+        )
+
+
+Rows: TypeAlias = tuple[Row | Columns, ...]
+
+
+def rates(label: str, cells: Iterable[Cell], papers: Sequence[Figure]) -> Row:
+    """Return a row of success in percent."""
+    pairs = zip(cells, papers, strict=True)
+    return Row(label, tuple(success(cell, paper) for cell, paper in pairs))
+
+
+ROWS = ("Difference", "95 % interval", "Score interval", "Wins:losses")
+"""Headings of the first of what `difference` makes."""
+
+
+def differences(
+    pairs: Iterable[tuple[Cell, Cell]], published: Sequence[PublishedContrast]
+) -> Columns:
+    """Return the rows that `ROWS` names, with a column for each pair of cells."""
+    columns = zip(pairs, published, strict=True)
+    return Columns(ROWS, tuple(difference(*pair, paper) for pair, paper in columns))
+
+
+@dataclass(frozen=True)
+class TableSpec:
+    """A table: what stands in it, and where that comes from."""
+
+    name: str
+    """Such as `table-2`; several of one page are `table-6a`, `table-6b`."""
+    title: str
+    columns: tuple[str, ...]
+    rows: Rows
+    notes: tuple[str, ...] = ()
+    """`{flown}` and `{recorded}` stand for what a run holds of the cells and measurements."""
+
+    @property
+    def cells(self) -> tuple[Cell, ...]:
+        """Cells of all its entries."""
+        return tuple(cell for row in self.rows for group in row.groups for cell in group.cells)
+
+    @property
+    def measurements(self) -> tuple[Measurement, ...]:
+        """Measurements of all its entries."""
+        return tuple(m for row in self.rows for group in row.groups for m in group.measurements)
+
+    def build(self, results: Results) -> Table:
+        """Return the table as a run fills it."""
+        held = {
+            "flown": flown(results, self.cells),
+            "recorded": recorded(results, self.measurements),
+        }
+        return Table(
+            name=self.name,
+            title=self.title,
+            columns=self.columns,
+            lines=tuple(line for row in self.rows for line in row.lines(results)),
+            notes=tuple(note.format(**held) for note in self.notes),
+        )
+
+
+@dataclass(frozen=True)
+class FigureSpec:
+    """A figure of lines, and what they are made of."""
+
+    build: Callable[[Results], Sweep]
+    """Fills it with what was run."""
+    cells: tuple[Cell, ...]
+    measurements: tuple[Measurement, ...] = ()
+
+
+@dataclass(frozen=True)
+class Page:
+    """One table or figure of the paper, or its results in the text: what is shown of a run."""
+
+    name: str
+    """Such as `table-2`."""
+    title: str
+    parts: tuple[TableSpec | FigureSpec, ...] = ()
+    cells: tuple[Cell, ...] = ()
+    """What the page needs run; by default what its parts do."""
+    measurements: tuple[Measurement, ...] = ()
+    """What it needs measured; likewise."""
+
+    def __post_init__(self) -> None:
+        """Add what the parts need."""
+        cells = (*self.cells, *(cell for part in self.parts for cell in part.cells))
+        measurements = (*self.measurements, *(m for part in self.parts for m in part.measurements))
+        object.__setattr__(self, "cells", cells)
+        object.__setattr__(self, "measurements", measurements)
+
+    def build(self, results: Results) -> Built:
+        """Return tables and figures of what a run holds of the page; never raises `NotRun`."""
+        return tuple(part.build(results) for part in self.parts)

@@ -1,0 +1,156 @@
+"""Table I: prediction accuracy and closed-loop performance of four predictors."""
+
+from faultpath.decisions import wording
+from faultpath.trials import Status
+from faultpath_paper.cells import SEEDS, Cell, Setting, of_seed, published
+from faultpath_paper.entries import (
+    BLANK,
+    Group,
+    Made,
+    centimetres,
+    ended,
+    interval_of,
+    printed,
+    time,
+)
+from faultpath_paper.evidence.table import Measurement, Recording
+from faultpath_paper.page import WINDOWS, Page, Row, TableSpec
+from faultpath_paper.quantities import differences
+from faultpath_paper.results import Results
+
+STILL = Setting()
+SEEN_THROUGH = Setting(others=(("clearance", "true"),))
+"""Ground-truth clearance."""
+
+DKI = Cell(STILL, "dki")
+WM_A = Cell(STILL, "wm-a", seeds=SEEDS)
+WM_U = Cell(STILL, "wm-u", seeds=SEEDS)
+TRUE_PARAMETER = Cell(STILL, "true-parameter")
+PREDICTORS = (DKI, WM_A, WM_U, TRUE_PARAMETER)
+
+WM_A_SEEN = Cell(SEEN_THROUGH, "wm-a")
+TRUE_PARAMETER_SEEN = Cell(SEEN_THROUGH, "true-parameter")
+WITH_TRUE_CLEARANCE = (WM_A_SEEN, TRUE_PARAMETER_SEEN)
+
+
+def recording(cell: Cell) -> Recording:
+    """Return the flights of a cell's first seed, recorded."""
+    assert not cell.faults
+    return Recording(
+        library=cell.setting.library, variant=cell.variant, options=cell.setting.options
+    )
+
+
+COMMON = recording(TRUE_PARAMETER)
+"""Common trajectories: flown with the true-parameter model."""
+
+
+def common_error(cell: Cell) -> Measurement:
+    """Return the 20-step position error of a cell's predictor on the common trajectories."""
+    return Measurement(recording=COMMON, quantity="position-error", subject=cell.variant)
+
+
+def own_error(cell: Cell) -> Measurement:
+    """Return the same on the trajectories that the cell itself flew."""
+    return Measurement(recording=recording(cell), quantity="position-error", subject=cell.variant)
+
+
+TITLE = "Prediction accuracy and closed-loop performance of four predictors"
+_PAPER = published("table_1_prediction_accuracy")
+
+
+def _row(key: str, cell: Cell) -> Row:
+    paper = _PAPER[key]
+    ends = (Status.SUCCESS, Status.CRASH, Status.TIMEOUT)
+    return Row(
+        key.partition("/")[0].replace("true", "True"),
+        (
+            centimetres(common_error(cell), paper["error_common_cm"]),
+            centimetres(own_error(cell), paper["error_own_cm"]),
+            *(ended(cell, status, paper[status.value]) for status in ends),
+            time(cell, paper["time_s"]),
+        ),
+    )
+
+
+def _slower(cell: Cell) -> Group:
+    """Return a predictor's time minus WM-A's where both succeed, with the number of scenes."""
+    paper = _PAPER["paired_time_minus_WM-A_s"][cell.variant if cell != DKI else "DKI"]
+    pair = cell, of_seed(WM_A)
+
+    def make(results: Results) -> Made:
+        found = differences.time(*pair)(results)
+        return wording.signed(found.value, 2), interval_of(found, 2), str(found.n_scenes)
+
+    return Group(make, (wording.signed(paper["median"], 2), "", printed(paper["n"])), pair)
+
+
+def _over_seeds(cell: Cell, key: str) -> Group:
+    """Return the least and the most success of a model's seeds, percent."""
+
+    def make(results: Results) -> Made:
+        rates = [results.rate(of_seed(cell, seed)).value for seed in results.seeds(cell)]
+        return (_range(min(rates), max(rates)),)
+
+    return Group(make, (_range(*_PAPER["success_range_over_seeds"][key]),), (cell,))
+
+
+def _range(least: float, most: float) -> str:
+    return f"{wording.plain(least, 0)} to {wording.plain(most, 0)}"
+
+
+PAGE = Page(
+    "table-1",
+    TITLE,
+    (
+        TableSpec(
+            name="table-1",
+            title=f"{TITLE} (paper, Table I)",
+            columns=(
+                "Error, common (cm)",
+                "Error, own (cm)",
+                "Success (%)",
+                "Crash (%)",
+                "Timeout (%)",
+                "Time (s)",
+            ),
+            rows=(
+                _row("DKI", DKI),
+                _row("WM-A", WM_A),
+                _row("WM-U", WM_U),
+                _row("true-parameter", TRUE_PARAMETER),
+                Row("With ground-truth clearance"),
+                _row("WM-A/true-clearance", WM_A_SEEN),
+                _row("true-parameter/true-clearance", TRUE_PARAMETER_SEEN),
+            ),
+            notes=(
+                "{flown}",
+                f"{WINDOWS} Common: on trajectories flown with the true-parameter model; own: on "
+                "those that the row itself flew.",
+                "Common: {recorded}",
+                "Time: median over successful trials.",
+            ),
+        ),
+        TableSpec(
+            name="table-1b",
+            title="Time on common successes, and success over seeds (paper, below Table I)",
+            columns=(
+                "Time minus WM-A (s)",
+                "95 % interval",
+                "Common successes",
+                "Success over seeds (%)",
+            ),
+            rows=(
+                Row("DKI", (_slower(DKI), BLANK)),
+                Row("WM-A", (BLANK, BLANK, BLANK, _over_seeds(WM_A, "WM-A"))),
+                Row("WM-U", (BLANK, BLANK, BLANK, _over_seeds(WM_U, "WM-U"))),
+                Row("True-parameter", (_slower(TRUE_PARAMETER), BLANK)),
+            ),
+            notes=(
+                "{flown}",
+                "Time: median over scenes in which both succeed, of the differences within a "
+                "scene; seed 0.",
+            ),
+        ),
+    ),
+)

@@ -1,0 +1,124 @@
+"""Table III: success under wind, by what the predictor was trained with and what it is told.
+
+The paper averages some rows over three seeds at L3; all other entries use the first.
+"""
+
+from faultpath_paper.cells import SEEDS, Cell, Setting, of_seed, published
+from faultpath_paper.entries import Group, Made
+from faultpath_paper.page import FLOWN_ONCE, Page, Row, Rows, TableSpec, rates
+from faultpath_paper.results import Results
+
+LEVELS = ("L0", "L2", "L3")
+ENVIRONMENTS = ("free-space", "obstacles")
+
+WITHHELD, ZERO, TRAJECTORY, GRU, TRUE = (
+    "wm-a-nowind",
+    "zero-wind",
+    "gru-trajectory",
+    "gru",
+    "true-wind",
+)
+ZERO_OF_EVERY_SEED = "wm-a-wind/zero-wind"
+"""The zero input to the predictor of the arm's seed; `zero-wind` has that of seed 0."""
+
+
+UNMET = range(70, 100)
+"""Held-out scenes whose winds the trajectory GRU has not met: those of 0 to 69 recur from the
+selection scenes of its training."""
+
+AVERAGED = {"free-space": (WITHHELD, ZERO, TRAJECTORY), "obstacles": (TRAJECTORY, GRU)}
+"""Whose figure at L3 is a mean over three seeds, of the predictor or of the reconstruction."""
+
+
+def cell(variant: str, environment: str, level: str) -> Cell:
+    """Return a row's cell at a wind level; at L0 the true wind is the zero input."""
+    variant = ZERO if (variant, level) == (TRUE, "L0") else variant
+    setting = Setting(environment=environment, wind=level)
+    if level != "L3" or variant not in AVERAGED[environment]:
+        return Cell(setting, variant, fixed=variant in (ZERO, TRUE))
+    return Cell(setting, ZERO_OF_EVERY_SEED if variant == ZERO else variant, seeds=SEEDS)
+
+
+ROWS = {
+    WITHHELD: ("Wind-withheld, no input", "wind-withheld/none"),
+    ZERO: ("Wind-conditioned, zero", "wind-conditioned/zero"),
+    TRAJECTORY: ("Wind-conditioned, trajectory GRU", "wind-conditioned/trajectory-GRU"),
+    GRU: ("Wind-conditioned, GRU", "wind-conditioned/GRU"),
+    TRUE: ("Wind-conditioned, ground truth", "wind-conditioned/ground-truth"),
+}
+"""Label and published key of every variant."""
+
+TITLE = "Success under wind, with and without obstacles"
+_PAPER = published("table_3_wind")
+_HEADINGS = {"free-space": "Free space", "obstacles": "Obstacles"}
+
+
+def paper_rate(variant: str, environment: str, level: str) -> float:
+    """Return the success that the paper prints, percent."""
+    return _PAPER[environment.replace("-", "_")][ROWS[variant][1]][LEVELS.index(level)]
+
+
+def _levels(environment: str) -> Rows:
+    papers = _PAPER[environment.replace("-", "_")]
+    rows = (
+        rates(label, (cell(variant, environment, level) for level in LEVELS), papers[key])
+        for variant, (label, key) in ROWS.items()
+    )
+    return Row(_HEADINGS[environment]), *rows
+
+
+def _unmet(variant: str, key: str) -> Row:
+    papers = _PAPER["unseen_wind_subset_L3"][key]
+    groups = (
+        _won(cell(variant, environment, "L3"), papers[environment.replace("-", "_")])
+        for environment in ENVIRONMENTS
+    )
+    return Row(ROWS[variant][0], tuple(groups))
+
+
+def _won(asked: Cell, paper: int | list[int]) -> Group:
+    """Return successes among the unmet scenes, seed by seed where the paper has each seed's."""
+    every = isinstance(paper, list)
+    shown = asked if every else of_seed(asked)
+
+    def make(results: Results) -> Made:
+        seeds = (of_seed(shown, seed) for seed in results.seeds(shown))
+        pairs = (results.pairs(one, one, scenes=UNMET) for one in seeds)
+        return ("/".join(str(int(pair.first.success.sum())) for pair in pairs),)
+
+    return Group(make, ("/".join(map(str, paper)) if every else str(paper),), (shown,))
+
+
+PAGE = Page(
+    "table-3",
+    TITLE,
+    (
+        TableSpec(
+            name="table-3",
+            title=f"{TITLE} (paper, Table III)",
+            columns=tuple(f"{level} (%)" for level in LEVELS),
+            rows=(*_levels("free-space"), *_levels("obstacles")),
+            notes=(
+                "{flown}",
+                "A figure with a decimal is a mean over seeds; the others are of seed 0. "
+                f"{FLOWN_ONCE}",
+                "At L0 the true wind is zero; those entries are the zero-input runs.",
+            ),
+        ),
+        TableSpec(
+            name="table-3b",
+            title="Success at L3 in winds that the trajectory GRU has not met (paper, Table III)",
+            columns=("Free space", "Obstacles"),
+            rows=(
+                _unmet(TRAJECTORY, "trajectory-GRU_seeds"),
+                _unmet(ZERO, "zero"),
+                _unmet(TRUE, "ground-truth"),
+            ),
+            notes=(
+                f"Successes in {len(UNMET)} held-out scenes, indices {UNMET[0]} to {UNMET[-1]}, "
+                "from whose winds the trajectory GRU has not learned. Its row seed by seed; else "
+                "seed 0.",
+            ),
+        ),
+    ),
+)

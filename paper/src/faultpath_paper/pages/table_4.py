@@ -1,0 +1,160 @@
+"""Table IV: reconstructions of the wind under an isolated and under a shared calibration error."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from faultpath.decisions import wording
+from faultpath_paper.cells import SEEDS, Cell, Printed, Setting, calibration, published
+from faultpath_paper.entries import Group, bracket, of_quantity, published_contrasts
+from faultpath_paper.page import (
+    FLOWN_ONCE,
+    INTERVALS,
+    WINS,
+    Columns,
+    Page,
+    Row,
+    Rows,
+    TableSpec,
+    differences,
+    rates,
+)
+from faultpath_paper.quantities.differences import (
+    Effect,
+    combined,
+    succeeded,
+    terminal_distance,
+)
+from faultpath_paper.results import Quantity
+
+WINDY = Setting(wind="L3")
+NAMES = {"gru": "GRU", "gru+dcc": "GRU+DCC", "dob": "DOB"}
+"""Names in print."""
+METHODS = tuple(NAMES)
+ERROR = 0.1
+
+PATHS: dict[str, tuple[str, ...]] = {
+    "correct": (),
+    "reconstruction-only": (calibration(ERROR, "reconstruction"),),
+    "shared": (calibration(ERROR),),
+}
+"""Faults by interface: (e_R, e_P) = (0, 0), (+0.1, 0), (+0.1, +0.1)."""
+
+
+def cell(method: str, path: str) -> Cell:
+    """Return a method on an interface; the observer learns nothing and flies once."""
+    if method == "dob":
+        return Cell(WINDY, method, PATHS[path], fixed=True)
+    return Cell(WINDY, method, PATHS[path], seeds=SEEDS)
+
+
+def change(first: str, second: str, effect: Effect) -> Quantity:
+    """Return how much more an effect is under the shared error than under the isolated one."""
+    shared, alone = (_cells(first, second, path) for path in ("shared", "reconstruction-only"))
+    return combined((1, shared), (-1, alone), effect=effect)
+
+
+TITLE = "Wind reconstruction under an isolated and under a shared calibration error"
+_PAPER = published("table_4_shared_calibration")
+
+
+def paper_rate(method: str, path: str) -> float:
+    """Return the success that the paper prints, percent."""
+    return _PAPER[NAMES[method]][list(PATHS).index(path)]
+
+
+def paper_contrast(first: str, second: str, path: str) -> Printed:
+    """Return what the paper prints of one method minus another, pp."""
+    paper, at = _PAPER[f"{NAMES[first]}_minus_{NAMES[second]}"], list(PATHS).index(path)
+    low, high = paper["ci95"][at]
+    return Printed(paper["pp"][at], (low, high))
+
+
+def _cells(first: str, second: str, path: str) -> tuple[Cell, Cell]:
+    return cell(first, path), cell(second, path)
+
+
+def _contrast(first: str, second: str) -> Rows:
+    paper = _PAPER[f"{NAMES[first]}_minus_{NAMES[second]}"]
+    printed = published_contrasts(paper["pp"], paper["ci95"], paper["wins_losses"])
+    return (
+        Row(f"{NAMES[first]} minus {NAMES[second]}, success (pp)"),
+        differences((_cells(first, second, path) for path in PATHS), printed),
+    )
+
+
+def last_column(label: str, group: Group, *below: str) -> Columns:
+    """Return a change between the columns with its intervals, in the last of them."""
+    blank = Group(lambda results: ("",) * 3, ("",) * 3)
+    return Columns((label, "95 % interval", *below), (*[blank] * (len(PATHS) - 1), group))
+
+
+def _shown(
+    quantity: Quantity, cells: Iterable[Cell], mean: float, ends: Sequence[float], digits: int
+) -> Group:
+    texts = wording.signed(mean, digits), bracket(ends, digits)
+    return of_quantity(quantity, cells, texts, digits)
+
+
+def _changed(
+    first: str, second: str, effect: Effect, paper: Mapping[str, Any], digits: int = 1
+) -> Group:
+    cells = [cell(method, path) for method in (first, second) for path in list(PATHS)[1:]]
+    return _shown(change(first, second, effect), cells, paper["mean"], paper["ci95"], digits)
+
+
+_FARTHER = _PAPER["terminal_distance_GRU+DCC_minus_GRU_m"]
+"""What the paper prints of GRU+DCC minus GRU in terminal goal distance."""
+
+PAGE = Page(
+    "table-4",
+    TITLE,
+    (
+        TableSpec(
+            name="table-4",
+            title=f"{TITLE} (paper, Table IV)",
+            columns=("Correct (0, 0)", "Reconstruction-only (+0.1, 0)", "Shared (+0.1, +0.1)"),
+            rows=(
+                Row("Success (%)"),
+                *(
+                    rates(name, (cell(method, path) for path in PATHS), _PAPER[name])
+                    for method, name in NAMES.items()
+                ),
+                *_contrast("gru+dcc", "gru"),
+                *_contrast("dob", "gru"),
+                *_contrast("dob", "gru+dcc"),
+                last_column(
+                    "DOB minus GRU, shared minus reconstruction-only (pp)",
+                    _changed("dob", "gru", succeeded, _PAPER["DOB_GRU_interaction_pp"]),
+                    "Score interval",
+                ),
+                Row("Terminal distance, secondary, GRU+DCC minus GRU (m)"),
+                Columns(
+                    ("Mean difference", "95 % interval"),
+                    tuple(
+                        _shown(combined((1, pair), effect=terminal_distance), pair, mean, ends, 2)
+                        for path, mean, ends in zip(
+                            PATHS, _FARTHER["mean"], _FARTHER["ci95"], strict=True
+                        )
+                        for pair in [_cells("gru+dcc", "gru", path)]
+                    ),
+                ),
+                last_column(
+                    "Shared minus reconstruction-only (m)",
+                    _changed(
+                        "gru+dcc", "gru", terminal_distance, _FARTHER["shared_minus_isolated"], 2
+                    ),
+                ),
+            ),
+            notes=(
+                "{flown}",
+                "Columns: calibration error of the reconstruction and of the predictor. "
+                "Obstacles, wind L3. Predictor of seed 0 throughout; seeds are those of the "
+                "reconstruction.",
+                FLOWN_ONCE,
+                WINS,
+                INTERVALS,
+                "Terminal distance: all paired scenes at the end of the trial; lower is better.",
+            ),
+        ),
+    ),
+)

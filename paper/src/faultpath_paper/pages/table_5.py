@@ -1,0 +1,95 @@
+"""Table V: from which fault frequency on each repair pays."""
+
+from faultpath.decisions import wording
+from faultpath.statistics.breakeven import break_even
+from faultpath_paper.cells import published
+from faultpath_paper.entries import Group, Made, decided
+from faultpath_paper.page import INTERVALS, Page, Row, TableSpec
+from faultpath_paper.pages import table_2, table_4
+from faultpath_paper.quantities.crossing import Crossing, Repair, crossing
+from faultpath_paper.results import Results
+
+REPAIRS: dict[str, Repair] = {
+    **{
+        table_2.NAMES[baseline]: (
+            table_2.cell(repair, 0.0),
+            table_2.cell(baseline, 0.0),
+            table_2.cell(repair, 0.1),
+            table_2.cell(baseline, 0.1),
+        )
+        for repair, baseline in table_2.PAIRS
+    },
+    **{
+        f"GRU/{path}": (
+            table_4.cell("gru+dcc", "correct"),
+            table_4.cell("gru", "correct"),
+            table_4.cell("gru+dcc", path),
+            table_4.cell("gru", path),
+        )
+        for path in ("reconstruction-only", "shared")
+    },
+}
+"""Keys as published."""
+
+TITLE = "From which fault frequency on each repair pays"
+NO_CROSSING = "no crossing"
+ABOVE_NONE = "above none"
+
+
+def _row(label: str, key: str) -> Row:
+    paper = published("table_5_decision_record", key)
+    cells = REPAIRS[key]
+
+    def make(results: Results) -> Made:
+        found = crossing(results, cells)
+        inverted = break_even(found.correct, found.faulty)
+        undecided = " and ".join(
+            f"[{wording.last(low)}, {wording.first(high)}]" for low, high in inverted.pieces
+        )
+        effects = decided(found.correct), decided(found.faulty)
+        return *effects, _crossing(found), undecided or "none"
+
+    printed, p_star = NO_CROSSING, paper["p_star_percent"]
+    if p_star is not None:
+        low, high = paper["ci95"]
+        printed = f"{p_star} [{low}, {high}]"
+    effects = wording.signed(paper["delta_0_pp"]), wording.signed(paper["delta_f_pp"])
+    return Row(label, (Group(make, (*effects, printed, ""), cells),))
+
+
+def _crossing(found: Crossing) -> str:
+    if found.value is None:
+        return NO_CROSSING if found.behind_throughout else ABOVE_NONE
+    low, high = found.interval or (None, None)
+    ends = "" if low is None or high is None else f" [{low:.0f}, {high:.0f}]"
+    return f"{found.value:.0f}{ends}"
+
+
+PAGE = Page(
+    "table-5",
+    TITLE,
+    (
+        TableSpec(
+            name="table-5",
+            title=f"{TITLE} (paper, Table V)",
+            columns=("Δ0 (pp)", "Δf (pp)", "p* (%) [95 % interval]", "Undecided by score (%)"),
+            rows=(
+                _row("WM-A", "WM-A"),
+                _row("WM-U", "WM-U"),
+                _row("GRU: reconstruction only", "GRU/reconstruction-only"),
+                _row("GRU: shared with predictor", "GRU/shared"),
+            ),
+            notes=(
+                "{flown}",
+                "Success of the repair minus that of its baseline, under correct inputs (Δ0) and "
+                "under e = +0.1 (Δf). p* = −Δ0/(Δf − Δ0) is the fault frequency above which the "
+                "repair is ahead; 0 where it is nowhere behind; no crossing: behind throughout; "
+                "above none: ahead at low frequencies alone. In brackets: joint percentile "
+                "bootstrap, in which a resample without p* counts as 100. Undecided by score: "
+                "frequencies at which the score test does not tell who is ahead.",
+                "Predictors without wind, GRU at wind L3.",
+                INTERVALS,
+            ),
+        ),
+    ),
+)

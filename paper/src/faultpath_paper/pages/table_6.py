@@ -1,0 +1,174 @@
+"""Table VI: how reconstruction bias and calibration error compensate, and the negative offset."""
+
+from collections.abc import Callable
+
+from faultpath.decisions import wording
+from faultpath_paper.cells import SEEDS, Cell, calibration, published
+from faultpath_paper.entries import BLANK, Group, PublishedContrast, difference, measured
+from faultpath_paper.evidence.table import Measurement
+from faultpath_paper.page import Columns, Page, Row, TableSpec, rates
+from faultpath_paper.pages.table_1 import recording
+from faultpath_paper.pages.table_4 import ERROR, METHODS, NAMES, PATHS, WINDY
+
+INTERFACES: dict[str, tuple[str, ...]] = {
+    "correct": PATHS["correct"],
+    "reconstruction-only": PATHS["reconstruction-only"],
+    "predictor-only": (calibration(ERROR, "predictor"),),
+    "shared": PATHS["shared"],
+}
+"""(e_R, e_P) = (0, 0), (+0.1, 0), (0, +0.1), (+0.1, +0.1)."""
+
+NEGATIVE: dict[str, tuple[str, ...]] = {
+    "correct": (),
+    "reconstruction-only": (calibration(-ERROR, "reconstruction"),),
+    "shared": (calibration(-ERROR),),
+}
+"""(e_R, e_P) = (0, 0), (-0.1, 0), (-0.1, -0.1)."""
+
+WINDOWS = recording(Cell(WINDY, "gru"))
+"""Common windows: recorded with the reference reconstruction of seed 0 under correct inputs."""
+
+
+def seeds(method: str) -> tuple[int, ...]:
+    """Return the seeds of a method: the observer learns nothing."""
+    return (0,) if method == "dob" else SEEDS
+
+
+def acceleration_error(method: str, interface: str, seed: int) -> Measurement:
+    """Return the analytic acceleration error of a method."""
+    return _measure("acceleration-error", method, interface, seed)
+
+
+def wind_term_error(method: str, interface: str, seed: int) -> Measurement:
+    """Return the error of the wind's part of that acceleration alone."""
+    return _measure("wind-term-error", method, interface, seed)
+
+
+def position_error(method: str, interface: str, seed: int) -> Measurement:
+    """Return the 20-step position error of the predictor with a method's wind."""
+    return _measure("position-error", method, interface, seed)
+
+
+def by_seed(
+    measure: Callable[[str, str, int], Measurement], method: str, interface: str
+) -> tuple[Measurement, ...]:
+    """Return one measurement for each seed of a method."""
+    return tuple(measure(method, interface, seed) for seed in seeds(method))
+
+
+def _measure(quantity: str, method: str, interface: str, seed: int) -> Measurement:
+    return Measurement.model_validate(
+        {
+            "recording": WINDOWS,
+            "quantity": quantity,
+            "subject": method,
+            "seed": seed,
+            "faults": INTERFACES[interface],
+        }
+    )
+
+
+def negative(method: str, path: str) -> Cell:
+    """Return a method under the negative offset, seed 0."""
+    return Cell(WINDY, method, NEGATIVE[path])
+
+
+TITLE = "How reconstruction bias and calibration error compensate"
+_ERRORS, _OFFSET = published("table_6_compensation").values()
+_WIND_TERM = _ERRORS["GRU_wind_term_only"]
+
+
+def paper_acceleration(method: str, interface: str) -> float:
+    """Return the analytic acceleration error that the paper prints, m/s²."""
+    return _ERRORS[NAMES[method]][list(INTERFACES).index(interface)]
+
+
+def paper_negative(method: str, path: str) -> float:
+    """Return the success under the negative offset that the paper prints, percent."""
+    return _OFFSET[NAMES[method]][list(NEGATIVE).index(path)]
+
+
+def _accelerations(method: str) -> Row:
+    groups = (
+        measured(by_seed(acceleration_error, method, interface), paper)
+        for interface, paper in zip(INTERFACES, _ERRORS[NAMES[method]], strict=True)
+    )
+    return Row(NAMES[method], tuple(groups))
+
+
+def _wind_term(interface: str, key: str) -> Group:
+    return measured(by_seed(wind_term_error, "gru", interface), _WIND_TERM[key])
+
+
+def _negative_rates(method: str) -> Row:
+    cells = (negative(method, path) for path in NEGATIVE)
+    return rates(f"{NAMES[method]} (%)", cells, _OFFSET[NAMES[method]])
+
+
+def _negative_difference(path: str) -> Group:
+    at = list(NEGATIVE).index(path)
+    p_value = wording.p_value(_OFFSET["mcnemar_exact_p"][at])
+    paper = PublishedContrast(wins_losses=_OFFSET["dcc_only_gru_only"][at], p_value=p_value)
+    return difference(negative("gru+dcc", path), negative("gru", path), paper)
+
+
+PAGE = Page(
+    "table-6",
+    TITLE,
+    (
+        TableSpec(
+            name="table-6a",
+            title="Error of the analytic acceleration (paper, Table VI (a))",
+            columns=(
+                "(0, 0) (m/s²)",
+                "(+0.1, 0) (m/s²)",
+                "(0, +0.1) (m/s²)",
+                "(+0.1, +0.1) (m/s²)",
+            ),
+            rows=(
+                *map(_accelerations, METHODS),
+                Row(
+                    "GRU, wind term alone",
+                    (
+                        BLANK,
+                        _wind_term("reconstruction-only", "isolated"),
+                        BLANK,
+                        _wind_term("shared", "shared"),
+                    ),
+                ),
+            ),
+            notes=(
+                "Columns: calibration error of the reconstruction and of the predictor.",
+                "Mean over reconstruction seeds of the median over windows; DOB has nothing to "
+                "train. Windows: flights with the GRU of seed 0 under correct inputs, obstacles at "
+                "L3. {recorded}",
+                "Wind term alone: error of the part that the wind adds to the acceleration.",
+            ),
+        ),
+        TableSpec(
+            name="table-6b",
+            title="Success under the negative offset (paper, Table VI (b))",
+            columns=("(0, 0)", "(−0.1, 0)", "(−0.1, −0.1)"),
+            rows=(
+                _negative_rates("gru"),
+                _negative_rates("gru+dcc"),
+                Columns(
+                    (
+                        "",
+                        "GRU+DCC minus GRU, 95 % interval (pp)",
+                        "Score interval (pp)",
+                        "GRU+DCC only:GRU only",
+                        "Exact McNemar p",
+                        "Least detectable difference (pp)",
+                    ),
+                    tuple(map(_negative_difference, NEGATIVE)),
+                ),
+            ),
+            notes=(
+                "{flown}",
+                "Columns: calibration error of the reconstruction and of the predictor, both of "
+                "seed 0; obstacles at L3.",
+            ),
+        ),
+    ),
+)

@@ -1,0 +1,68 @@
+"""From which fault frequency on a repair pays, as the paper works it out (Table V)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from faultpath.statistics.contrast import Contrast, percentile_interval
+from faultpath.statistics.inputs import Floats
+from faultpath_paper.cells import Cell
+from faultpath_paper.quantities.differences import together
+from faultpath_paper.results import Quantity, Results, decisive
+
+Repair = tuple[Cell, Cell, Cell, Cell]
+"""Repair and baseline under correct inputs, then both under the fault."""
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """What a repair changes under correct inputs and under the fault, and where it breaks even."""
+
+    correct: Contrast
+    faulty: Contrast
+    value: float | None
+    """Fault frequency in percent above which the repair is ahead; `None` without one."""
+    interval: tuple[float, float] | None
+    """Percentile interval over joint resamples; one without such a frequency counts as 100."""
+
+    @property
+    def behind_throughout(self) -> bool:
+        """Whether the estimates say so of the repair, at every frequency."""
+        return max(self.correct.value, self.faulty.value) < 0
+
+
+def crossing(results: Results, repair: Repair) -> Crossing:
+    """Return where a repair breaks even, over the same resamples of paired scenes."""
+    own, baseline, faulty_own, faulty_baseline = repair
+    correct, faulty = together(results, (own, baseline), (faulty_own, faulty_baseline))
+    value = float(_break_even(np.array([correct.value]), np.array([faulty.value]))[0])
+    drawn = np.nan_to_num(_break_even(correct.draws, faulty.draws), nan=100.0)
+    return Crossing(
+        correct=correct,
+        faulty=faulty,
+        value=None if np.isnan(value) else value,
+        interval=percentile_interval(drawn) if correct.enough else None,
+    )
+
+
+def _break_even(correct: Floats, faulty: Floats) -> Floats:
+    """Return -Δ0 / (Δf - Δ0) in percent, 0 where neither is negative, and NaN without a crossing
+    above which the repair is ahead."""
+    found = np.full(correct.shape, np.nan)
+    found[(correct >= 0) & (faulty >= 0)] = 0.0
+    crosses = (correct < 0) & (faulty > 0)
+    found[crosses] = 100.0 * correct[crosses] / (correct[crosses] - faulty[crosses])
+    return found
+
+
+def greater_effect(repair: Repair) -> Quantity:
+    """Return the greater of a repair's two effects: with it the repair is behind throughout."""
+
+    def found(results: Results) -> Contrast:
+        both = crossing(results, repair)
+        value = max(both.correct.value, both.faulty.value)
+        draws = np.maximum(both.correct.draws, both.faulty.draws)
+        n_scenes = both.correct.n_scenes
+        return decisive(Contrast(value, "pp", n_scenes, draws=draws, against_zero=False))
+
+    return found

@@ -1,0 +1,139 @@
+"""Quantities of paired trials: differences between cells, and differences of differences."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.statistics.contrast import Contrast, weighted_sum
+from faultpath.statistics.decisions import with_test
+from faultpath.statistics.effects import mean_effect, median_effect, success_effect, success_rate
+from faultpath.statistics.resamples import Resamples
+from faultpath.trials import Pairs
+from faultpath.trials.pairing import Trials
+from faultpath_paper.cells import Cell
+from faultpath_paper.results import NotRun, Quantity, Results, decisive
+
+Pair: TypeAlias = tuple[Cell, Cell]
+Bools: TypeAlias = NDArray[np.bool_]
+Effect: TypeAlias = Callable[[Pairs, Resamples], Contrast]
+"""What of paired trials is compared."""
+
+TELLING_PP = 20.0
+"""A difference in success that a run must be able to detect for its absence to say anything."""
+
+
+def ended(ends: Callable[[Trials], Bools]) -> Effect:
+    """Return the difference in how many trials end in a way, with the paper's test."""
+
+    def effect(pairs: Pairs, resamples: Resamples) -> Contrast:
+        return with_test(success_effect(ends(pairs.first), ends(pairs.second), resamples), "exact")
+
+    return effect
+
+
+succeeded = ended(lambda trials: trials.success)
+
+
+def terminal_distance(pairs: Pairs, resamples: Resamples) -> Contrast:
+    """Return the mean difference in distance to the goal at the end, m, over all paired scenes."""
+    first, second = (
+        side.metrics.get("terminal_distance_m") for side in (pairs.first, pairs.second)
+    )
+    if first is None or second is None:
+        raise NotRun("a trial without a terminal distance")
+    return mean_effect(first, second, resamples, "m")
+
+
+def contrast(
+    results: Results,
+    first: Cell,
+    second: Cell,
+    effect: Effect = succeeded,
+    *,
+    other_noise: bool = False,
+) -> Contrast:
+    """Return what differs between two cells; `other_noise` as in `Results.pairs`."""
+    pairs = results.pairs(first, second, other_noise=other_noise)
+    return effect(pairs, results.resamples(pairs))
+
+
+def success(
+    first: Cell, second: Cell, effect: Effect = succeeded, *, other_noise: bool = False
+) -> Quantity:
+    """Return the difference in success, or other ends; `other_noise` as in `Results.pairs`."""
+
+    def found(results: Results) -> Contrast:
+        shown = contrast(results, first, second, effect, other_noise=other_noise)
+        return decisive(shown, TELLING_PP)
+
+    return found
+
+
+def rate(cell: Cell) -> Quantity:
+    """Return the success of a cell in percent."""
+
+    def found(results: Results) -> Contrast:
+        pairs = results.pairs(cell, cell)
+        return decisive(success_rate(pairs.first.success, results.resamples(pairs)))
+
+    return found
+
+
+def crashes(first: Cell, second: Cell) -> Quantity:
+    """Return the difference in crashes."""
+    return success(first, second, ended(lambda trials: trials.crash))
+
+
+def timeouts(first: Cell, second: Cell) -> Quantity:
+    """Return the difference in timeouts."""
+    return success(first, second, ended(lambda trials: ~(trials.success | trials.crash)))
+
+
+def time(first: Cell, second: Cell) -> Quantity:
+    """Return the median difference in time over jointly successful scenes."""
+
+    def found(results: Results) -> Contrast:
+        pairs = results.pairs(first, second)
+        one, two = pairs.first, pairs.second
+        both = one.success & two.success
+        if not both.any():
+            raise NotRun(f"a scene in which both {first} and {second} succeed")
+        return decisive(median_effect(one.time_s, two.time_s, both, results.resamples(pairs)))
+
+    return found
+
+
+def combined(*terms: tuple[float, Pair], effect: Effect = succeeded) -> Quantity:
+    """Return a weighted sum of differences over common scenes, on shared resamples."""
+
+    def found(results: Results) -> Contrast:
+        contrasts = together(results, *(pair for _, pair in terms), effect=effect)
+        summed = weighted_sum([weight for weight, _ in terms], contrasts)
+        return decisive(summed, TELLING_PP if summed.unit == "pp" else None)
+
+    return found
+
+
+def together(results: Results, *pairs: Pair, effect: Effect = succeeded) -> tuple[Contrast, ...]:
+    """Return contrasts over the seeds and the scenes that all of them have, so that they join.
+
+    `NotRun` when there is no such seed or scene.
+    """
+    joined = joint(results, *pairs)
+    return tuple(effect(each, results.resamples(each)) for each in joined)
+
+
+def joint(results: Results, *pairs: Pair) -> tuple[Pairs, ...]:
+    """Return pairs over the seeds and the scenes that all of them have; `NotRun` without any."""
+    seeds = results.common_seeds(*(cell for pair in pairs for cell in pair))
+    cut = [(_cut(first, seeds), _cut(second, seeds)) for first, second in pairs]
+    first, *others = (results.pairs(*pair).scene_indices for pair in cut)
+    kept = [scene for scene in first if all(scene in other for other in others)]
+    return tuple(results.pairs(*pair, scenes=kept) for pair in cut)
+
+
+def _cut(cell: Cell, seeds: tuple[int, ...]) -> Cell:
+    return cell if cell.fixed else replace(cell, seeds=seeds)

@@ -1,0 +1,148 @@
+"""Quantities of recorded windows: quantiles of errors and responses, compared on common windows."""
+
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import replace
+from functools import lru_cache
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.statistics.contrast import Contrast, weighted_sum
+from faultpath.statistics.effects import WindowQuantiles
+from faultpath_paper.evidence.table import QUANTITIES, EvidenceTable, Measured, Measurement
+from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive
+
+Subject: TypeAlias = tuple[Measurement, ...]
+"""A measurement of each seed: the quantile is taken seed by seed, and then the mean."""
+
+TELLING_SHARE = 0.2
+"""A share of a median whose change a run must be able to detect for its absence to say anything."""
+
+
+def median(subject: Subject) -> Quantity:
+    """Return the median of a subject."""
+
+    def found(results: Results) -> Contrast:
+        (one,) = quantiles(results, 0.5, subject)
+        return decisive(replace(one, against_zero=False))
+
+    return found
+
+
+def difference_of_quantiles(first: Subject, second: Subject, q: float = 0.5) -> Quantity:
+    """Return a quantile of `first` minus that of `second`."""
+
+    def found(results: Results) -> Contrast:
+        one, two = quantiles(results, q, first, second)
+        return decisive(weighted_sum([1, -1], [one, two]), TELLING_SHARE * two.value)
+
+    return found
+
+
+def difference_of_changes(
+    first: tuple[Subject, Subject], second: tuple[Subject, Subject], *, size: bool
+) -> Quantity:
+    """Return how much more the median changes over `first`, from one to the next, than `second`.
+
+    `size`: changes are compared whatever their sign.
+    """
+
+    def found(results: Results) -> Contrast:
+        ends = quantiles(results, 0.5, *first, *second)
+        changes = [weighted_sum([-1, 1], ends[:2]), weighted_sum([-1, 1], ends[2:])]
+        if size:
+            changes = [replace(c, value=abs(c.value), draws=np.abs(c.draws)) for c in changes]
+        return decisive(weighted_sum([1, -1], changes))
+
+    return found
+
+
+def ratio(first: Subject, second: Subject) -> Quantity:
+    """Return the median of `first` over that of `second`."""
+
+    def found(results: Results) -> Contrast:
+        one, two = quantiles(results, 0.5, first, second)
+        if not (two.value > 0 and bool((two.draws > 0).all())):
+            raise Undecidable("the median that is divided by is 0")
+        draws = one.draws / two.draws
+        value = one.value / two.value
+        return decisive(replace(one, value=value, draws=draws, unit="times", against_zero=False))
+
+    return found
+
+
+def quantiles(results: Results, q: float, *subjects: Subject) -> list[Contrast]:
+    """Return a quantile of each subject on shared resamples, over the seeds that all have.
+
+    A subject of one seed stands beside all seeds of the others. `NotRun` when a subject was not
+    measured, or on other windows.
+    """
+    several = [_run(results, subject) for subject in subjects]
+    fixed = [len(subject) == 1 for subject in subjects]
+    seeds = [{m.seed for m in run} for run, one in zip(several, fixed, strict=True) if not one]
+    kept = [
+        tuple(m for m in run if one or all(m.seed in others for others in seeds))
+        for run, one in zip(several, fixed, strict=True)
+    ]
+    if not all(kept):
+        raise NotRun(f"a seed that all measurements beside {subjects[0][0].subject} share")
+    _check_windows(results, [m for subject in kept for m in subject])
+    return [_mean(results.evidence, subject, q) for subject in kept]
+
+
+def quantile(results: Results, measurement: Measurement, q: float = 0.5) -> float:
+    """Return a quantile over windows; `NotRun` without any."""
+    values = results.measured(measurement).values
+    if not len(values):
+        raise NotRun(f"a window for {measurement.subject}")
+    # As `statistics.effects` takes it, so that tables and claims agree to the bit.
+    return float(np.quantile(values, q, method="averaged_inverted_cdf"))
+
+
+def mean_of_medians(results: Results, by_seed: Iterable[Measurement]) -> float:
+    """Return the mean over seeds of their window medians, over the seeds that were measured."""
+    medians: list[float] = []
+    for measurement in by_seed:
+        with suppress(NotRun):
+            medians.append(quantile(results, measurement))
+    if not medians:
+        raise NotRun("a measurement of any seed")
+    return float(np.mean(medians))
+
+
+def _run(results: Results, subject: Subject) -> Subject:
+    run = tuple(each for each in subject if each in results.evidence)
+    if not run:
+        results.measured(subject[0])  # says what is missing
+    return run
+
+
+def _check_windows(results: Results, measurements: list[Measurement]) -> None:
+    first = results.measured(measurements[0])
+    if not len(first):
+        raise NotRun(f"a window of {measurements[0].subject}")
+    for each in measurements:
+        if not results.measured(each).same_windows(first):
+            raise NotRun(f"{each.subject} on the windows of {measurements[0].subject}")
+
+
+@lru_cache(maxsize=512)
+def _mean(evidence: EvidenceTable, subject: Subject, q: float) -> Contrast:
+    effects = [_quantile(evidence, measurement, q) for measurement in subject]
+    mean = weighted_sum([1 / len(effects)] * len(effects), effects)
+    per_seed = tuple(effect.value for effect in effects)
+    return replace(mean, per_seed=per_seed, n_seeds=len(effects))
+
+
+@lru_cache(maxsize=512)
+def _quantile(evidence: EvidenceTable, measurement: Measurement, q: float) -> Contrast:
+    found: Measured = evidence.values(measurement)
+    values: NDArray[np.float64] = found.values
+    return _resampled(found.scenes).value(values, q, QUANTITIES[measurement.quantity])
+
+
+@lru_cache(maxsize=8)
+def _resampled(scenes: tuple[str, ...]) -> WindowQuantiles:
+    return WindowQuantiles(scenes)

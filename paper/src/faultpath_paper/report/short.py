@@ -1,0 +1,65 @@
+"""A ledger in short: verdicts by kind, sizes by subject, and what did not come out."""
+
+from collections.abc import Iterator
+
+from faultpath.decisions.tables import Entry, Line, Table, line
+from faultpath_paper.answers import ClaimVerdict, Ledger, Part
+from faultpath_paper.claims import SUBJECTS
+from faultpath_paper.report.words import (
+    ANSWERS,
+    KINDS,
+    SIZES,
+    estimate,
+    figure,
+    is_non_detection,
+    typeset,
+)
+
+
+def by_kind(ledger: Ledger) -> Table:
+    """Return how many claims of each kind got which answer, with their ids.
+
+    An asterisk marks what is confirmed by a difference that was not detected.
+    """
+    lines: list[Line] = []
+    for kind, name in KINDS.items():
+        claims = [claim for claim in ledger.claims if claim.kind == kind]
+        lines.append(line(name, *(_ids(claims, answer) for answer in ANSWERS)))
+    return Table(corner="The paper's", columns=ANSWERS, words=ANSWERS, lines=tuple(lines))
+
+
+def _ids(claims: list[ClaimVerdict], answer: str) -> str:
+    ids = [f"{c.id}{'*' * is_non_detection(c)}" for c in claims if c.verdict == answer]
+    return f"{len(ids)}: {', '.join(ids)}" if ids else "0"
+
+
+def by_subject(ledger: Ledger) -> Table:
+    """Return of each subject how the figures that the paper prints stand to ours."""
+    lines = [
+        line(subject, *_sizes([claim for claim in ledger.claims if claim.id in claims]))
+        for subject, claims in SUBJECTS.items()
+    ]
+    lines.append(line("All", *_sizes(list(ledger.claims))))
+    return Table(corner="Figures of", columns=("figures", *SIZES), lines=tuple(lines))
+
+
+def _sizes(claims: list[ClaimVerdict]) -> Iterator[Entry]:
+    parts = [part for claim in claims for part in claim.parts if part.paper is not None]
+    sizes = [part.size for part in parts]
+    yield Entry(text=str(len(parts)))
+    yield from (Entry(text=str(sizes.count(size))) for size in SIZES)
+
+
+def apart(ledger: Ledger) -> Iterator[tuple[str, str]]:
+    """Yield of each claim that is not confirmed its id and verdict, and the part that decides."""
+    for claim in ledger.claims:
+        if claim.verdict != "confirmed":
+            part = next(part for part in claim.parts if part.answer == claim.verdict)
+            yield f"{claim.id}, {claim.verdict}", _decisive(part)
+
+
+def _decisive(part: Part) -> str:
+    said = typeset(part.words.removesuffix(", by the point estimate"))
+    paper = figure(part.model_copy(update={"estimate": part.paper})) if part.unit else ""
+    shown = f"{said}: {estimate(part) or 'no estimate'}"
+    return "; ".join(filter(None, (shown, paper and f"the paper {paper}", part.reason)))

@@ -1,0 +1,108 @@
+"""The ledger as a table, for the terminal and as Markdown."""
+
+from collections.abc import Iterable, Sequence
+
+from rich.align import AlignMethod
+from rich.console import Group, RenderableType
+from rich.padding import Padding
+from rich.text import Text
+
+from faultpath.decisions import wording
+from faultpath.decisions.tables import MISSING, Entry, Table, line
+from faultpath.decisions.tables.escapes import markdown
+from faultpath.decisions.tables.markdown import grid
+from faultpath.decisions.tables.model import Tone
+from faultpath.decisions.tables.terminal import STYLES
+from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size
+from faultpath_paper.report import words
+
+_TONES: dict[Answer, Tone] = {"confirmed": "good", "refuted": "bad", "undecided": "faint"}
+_SHOWN: dict[str, AlignMethod] = {
+    "Claim": "left",
+    "Verdict": "left",
+    "Estimate": "right",
+    "Size": "left",
+    "Detectable": "right",
+}
+_PRINTED = ("What is claimed", "Kind", "Verdict", "Estimate", "Sizes", "Detectable", "The paper")
+_IN_SHORT: dict[Size, str] = {
+    "right sign, other size": "right sign only",
+    "not comparable": MISSING,
+}
+_FARTHEST = (
+    "Sizes: how the estimate stands to the paper's figure, for the statement of a claim that is "
+    "farthest from it, and how many of those that can be compared stand so. No verdict depends on "
+    "it."
+)
+
+
+def ledger_view(ledger: Ledger, profile: str) -> RenderableType:
+    """Return headline, the claims, each with its words below what came of it, and counts.
+
+    A quick run has neither counts nor sizes.
+    """
+    title = Text(f"{words.headline(ledger, profile)}.", style="bold")
+    blank = Text("")
+    below = (Text(words.sizes(ledger)),) if words.sizes(ledger) else ()
+    about, claims = Text(_about(ledger)), _claims(ledger)
+    if profile == words.QUICK:
+        return Group(title, Text(words.VERDICTS), about, blank, *claims)
+    return Group(title, about, blank, *claims, blank, title, *below)
+
+
+def _claims(ledger: Ledger) -> Iterable[RenderableType]:
+    rows = [[Text(claim.id), *_shown(claim)] for claim in ledger.claims]
+    heads = [Text(head) for head in _SHOWN]
+    widths = [max(map(len, column)) for column in zip(heads, *rows, strict=True)]
+
+    def aligned(cells: Sequence[Text]) -> Text:
+        for cell, side, width in zip(cells, _SHOWN.values(), widths, strict=True):
+            cell.align(side, width)
+        return Text("  ").join(cells)
+
+    yield aligned(heads)
+    for claim, row in zip(ledger.claims, rows, strict=True):
+        yield aligned(row)
+        said = Text(words.typeset(claim.claim), "dim")
+        yield Padding(said, (0, 0, 0, widths[0] + 2))
+
+
+def _shown(claim: ClaimVerdict) -> Iterable[Text]:
+    entries = _entries(claim)
+    for column in list(_SHOWN)[1:]:
+        entry = entries[column]
+        yield Text(entry) if isinstance(entry, str) else Text(entry.text, STYLES[entry.tone])
+
+
+def ledger_markdown(ledger: Ledger, profile: str) -> str:
+    """Return the ledger as a Markdown table, the counts above it."""
+    lines = (
+        line(claim.id, *(entries[column] for column in _PRINTED))
+        for claim in ledger.claims
+        for entries in [_entries(claim)]
+    )
+    texts = ("Kind", "Verdict", "Sizes", "The paper", "What is claimed")
+    table = grid(Table(corner="Claim", columns=_PRINTED, lines=tuple(lines), words=texts))
+    sizes = [markdown(f"{words.sizes(ledger)} {_FARTHEST}")] if words.sizes(ledger) else []
+    head = f"{words.headline(ledger, profile)}.", markdown(f"{_about(ledger)}.")
+    return "\n\n".join([*head, table, *sizes]) + "\n"
+
+
+def _about(ledger: Ledger) -> str:
+    scenes = wording.counted(ledger.scenes, "scene")
+    return f"{ledger.library}, {scenes}, {wording.seeds(ledger.seeds)}"
+
+
+def _entries(claim: ClaimVerdict) -> dict[str, str | Entry]:
+    verdict = f"{words.SIGNS[claim.verdict]} {claim.verdict}"
+    size, _, _ = words.farthest(claim)
+    return {
+        "Kind": claim.kind,
+        "Verdict": Entry(text=verdict, tone=_TONES[claim.verdict]),
+        "Estimate": words.estimate(claim) or MISSING,
+        "Size": _IN_SHORT.get(size, size),
+        "Sizes": words.size(claim) or MISSING,
+        "Detectable": words.least_detectable(claim) or MISSING,
+        "The paper": words.typeset(claim.paper),
+        "What is claimed": words.typeset(claim.claim),
+    }

@@ -1,0 +1,164 @@
+"""How the figures of claims are written, on the page and in the terminal."""
+
+import re
+
+from faultpath.decisions import wording
+from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Part, Size
+
+QUICK = "quick"
+"""The profile whose runs are too small to be held against the paper."""
+VERDICTS = (
+    "The verdicts of the run that comes with faultpath: faultpath reproduce --judge, "
+    "docs/reproduction.md."
+)
+SIGNS: dict[Answer, str] = {"confirmed": "✓", "refuted": "✕", "undecided": "○"}
+ANSWERS: tuple[Answer, ...] = ("confirmed", "refuted", "undecided")
+
+SIZES: tuple[Size, ...] = ("compatible", "right sign, other size", "other size", "other sign")
+"""From the nearest to the paper's figure to the farthest."""
+_HYPHEN_FOR_MINUS = re.compile(r"(?<![\w.)\]])-(?=\d)")
+_SIGNS_IN_TEXT = ((">=", "≥"), ("<=", "≤"), ("->", "→"))
+_DIGITS = {"pp": 1, "percent": 1, "cm": 1, "errors": 0, "seeds": 0}
+_COUNTED = ("errors", "seeds")
+_DIFFERENCES = ("pp", "s", "m")
+_SHARES = {"times": "×", "percent": " %"}
+"""Units that are not those of a difference, as written behind a number."""
+
+
+def typeset(text: str) -> str:
+    """Return a claim's words with the signs that plain text has no letters for."""
+    for plain, sign in _SIGNS_IN_TEXT:
+        text = text.replace(plain, sign)
+    return _HYPHEN_FOR_MINUS.sub(wording.MINUS, text)
+
+
+def figure(of: ClaimVerdict | Part) -> str:
+    """Return the estimate with its unit, nothing without one; differences carry their sign."""
+    if of.estimate is None:
+        return ""
+    write = wording.signed if of.unit in _DIFFERENCES else wording.plain
+    if of.unit in _COUNTED:
+        return wording.counted(round(of.estimate), of.unit.removesuffix("s"))
+    return f"{write(of.estimate, _DIGITS.get(of.unit, 2))}{behind(of.unit)}"
+
+
+def interval(of: ClaimVerdict | Part) -> str:
+    """Return `[48.3, 66.3]`, or nothing without an interval."""
+    if of.interval is None:
+        return ""
+    return f"[{', '.join(wording.plain(end, _DIGITS.get(of.unit, 2)) for end in of.interval)}]"
+
+
+def estimate(of: ClaimVerdict | Part) -> str:
+    """Return estimate and interval; nothing where there is no estimate."""
+    return f"{figure(of)} {interval(of)}".rstrip() if figure(of) else ""
+
+
+def least_detectable(of: ClaimVerdict | Part) -> str:
+    """Return the minimum detectable difference from 0; nothing where there is none."""
+    if of.mde is None or of.unit in _SHARES:
+        return ""
+    return f"{wording.plain(of.mde, _DIGITS.get(of.unit, 2))}{behind(of.unit)}"
+
+
+def evidence(part: Part) -> tuple[str, ...]:
+    """Return what stands behind a part, phrase by phrase."""
+    p_value = "" if part.p_value is None else wording.p_value(part.p_value)
+    p_value = p_value and f"p {p_value if p_value.startswith('<') else f'= {p_value}'}"
+    detectable = least_detectable(part)
+    phrases = (
+        f"{p_value} ({part.test})" if p_value and part.test else p_value or part.test,
+        detectable and f"least detectable {detectable}",
+        part.score
+        and f"score interval {interval(part.model_copy(update={'interval': part.score}))}",
+        part.counts and f"only one succeeds in {part.counts}",
+        papers(part) and f"the paper {papers(part)}: {part.size}",
+        part.reason,
+    )
+    return tuple(phrase for phrase in phrases if phrase)
+
+
+def papers(part: Part) -> str:
+    """Return the paper's figure for a part as ours is written; nothing where it prints none."""
+    theirs = {"estimate": part.paper, "interval": part.paper_interval}
+    return estimate(part.model_copy(update=theirs)) if part.unit else ""
+
+
+def farthest(claim: ClaimVerdict) -> tuple[Size, int, int]:
+    """Return the size that is farthest from the paper's figure, of the parts that can be compared.
+
+    With it, how many parts have it, of how many that can be compared.
+    """
+    compared = [part.size for part in claim.parts if part.size in SIZES]
+    worst = SIZES[max(map(SIZES.index, compared))] if compared else "not comparable"
+    return worst, compared.count(worst), len(compared)
+
+
+def size(claim: ClaimVerdict) -> str:
+    """Return `right sign, other size, 2 of 3`; nothing where the paper prints no figure."""
+    worst, count, compared = farthest(claim)
+    if not compared:
+        return worst if any(part.paper is not None for part in claim.parts) else ""
+    return worst if compared == 1 else f"{worst}, {count} of {compared}"
+
+
+def sizes(ledger: Ledger) -> str:
+    """Return in one sentence how many figures of the paper ours are compatible with."""
+    parts = [part for claim in ledger.claims for part in claim.parts]
+    printed = [part.size for part in parts if part.paper is not None]
+    compared = [each for each in printed if each in SIZES]
+    if not printed:
+        return ""
+    figures = wording.counted(len(printed), "figure")
+    if not compared:
+        return f"The paper prints {figures} for these claims; this run can be compared with none."
+    found = "; ".join(f"{compared.count(each)} {each}" for each in SIZES if each in compared)
+    return (
+        f"The paper prints {figures} for these claims, of which {len(compared)} can be compared: "
+        f"{found}."
+    )
+
+
+KINDS = {
+    "finding": "findings",
+    "platform": "properties that the simulator was matched to",
+}
+"""What claims of a kind are called: findings come out by themselves, matched properties do not."""
+
+
+def headline(ledger: Ledger, profile: str) -> str:
+    """Return the outcome of all claims in one sentence, kind by kind; a quick run has none."""
+    if profile == QUICK:
+        return "The quick profile tests the pipeline and decides nothing about the paper’s claims"
+    clauses = [tally(ledger, kind) for kind in KINDS if any(c.kind == kind for c in ledger.claims)]
+    return "; ".join(clauses) or "This run is about none of the paper’s claims"
+
+
+def tally(ledger: Ledger, kind: str) -> str:
+    """Return how many claims of a kind got which answer, as a clause."""
+    verdicts = [claim.verdict for claim in ledger.claims if claim.kind == kind]
+    confirmed, refuted, undecided = map(verdicts.count, ANSWERS)
+    about = " that this run is about" if ledger.left_out else ""
+    if kind == "finding":
+        return (
+            f"Of the paper’s {len(verdicts)} findings{about}, {confirmed} came out, {refuted} "
+            f"{'was' if refuted == 1 else 'were'} refuted and {undecided} stayed undecided"
+        )
+    return f"of {len(verdicts)} {KINDS[kind]}, {confirmed} hold on these scenes"
+
+
+def is_non_detection(claim: ClaimVerdict) -> bool:
+    """Return whether a claim is confirmed by differences that were looked for and not detected."""
+    return claim.verdict == "confirmed" and all(NOT_DETECTED in p.words for p in claim.parts)
+
+
+NOT_DETECTED = "is not detected"
+NON_DETECTION = (
+    "An asterisk marks a claim that is confirmed because no difference was detected: that is no "
+    "proof that there is none."
+)
+
+
+def behind(unit: str) -> str:
+    """Return a unit as written behind a number."""
+    return _SHARES.get(unit, f" {unit}" if unit else "")

@@ -1,0 +1,135 @@
+"""What the studies' runs left, as tables, figures and claims ask for it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from faultpath.statistics.contrast import Contrast
+from faultpath.statistics.effects import success_rate
+from faultpath.statistics.estimate import Estimate, Sign
+from faultpath.statistics.resamples import Resamples
+from faultpath.trials import Outcome, OutcomeTable, PairingRefused, Pairs, pair
+from faultpath_paper.cells import Cell
+from faultpath_paper.evidence.table import EvidenceTable, Measured, Measurement
+
+
+class NotRun(Exception):
+    """The run holds no trial of a cell, or no value of a measurement, that was asked for."""
+
+
+class Undecidable(Exception):
+    """The run holds everything that was asked for, and yet nothing that decides."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """A run of studies: its outcome table, and what was measured on recorded windows."""
+
+    outcomes: OutcomeTable
+    evidence: EvidenceTable
+    library_hash: str
+    """Names the bootstrap's stream, so that intervals do not depend on where they are made."""
+
+    def seeds(self, cell: Cell) -> tuple[int, ...]:
+        """Return the seeds of a cell that were run; `NotRun` without any."""
+        run = [s for s in self.outcomes.seeds(cell.variant, cell.path) if s in cell.seeds]
+        if not run:
+            raise NotRun(cell)
+        return tuple(run)
+
+    def common_seeds(self, *cells: Cell) -> tuple[int, ...]:
+        """Return the seeds that several cells pair over; fixed ones pair with any.
+
+        `NotRun` when there are none.
+        """
+        run = {cell: self.seeds(cell) for cell in cells}
+        trained = [seeds for cell, seeds in run.items() if not cell.fixed] or list(run.values())
+        common = tuple(seed for seed in trained[0] if all(seed in other for other in trained))
+        if not common:
+            raise NotRun(f"a seed that {cells[0]} and all it is compared with share")
+        return common
+
+    def has(self, cell: Cell) -> bool:
+        """Return whether any trial of a cell was run."""
+        return bool(self.outcomes.seeds(cell.variant, cell.path))
+
+    def pairs(
+        self,
+        first: Cell,
+        second: Cell,
+        *,
+        scenes: Sequence[int] | None = None,
+        other_noise: bool = False,
+    ) -> Pairs:
+        """Pair two cells over their common seeds; `scenes` keeps some indices.
+
+        `other_noise` pairs planners that differ in how they draw: their noise cannot agree. Raises
+        `PairingRefused` where two trials met different conditions: these systems are our own.
+        """
+        seeds = self.common_seeds(first, second)
+        pairs = pair(self.outcomes, first.side, second.side, seeds, other_noise=other_noise)
+        if pairs.mismatches:
+            raise PairingRefused(str(pairs.mismatches[0]))
+        if scenes is not None:
+            kept = zip(pairs.scenes, pairs.scene_indices, strict=True)
+            pairs = pairs.only([scene for scene, index in kept if index in scenes])
+        if not pairs.scenes:
+            raise NotRun(f"a scene of {first} and {second} to compare")
+        return pairs
+
+    def rate(self, cell: Cell) -> Estimate:
+        """Return the success of a cell in percent, mean over its seeds."""
+        pairs = self.pairs(cell, cell)
+        return success_rate(pairs.first.success, self.resamples(pairs)).estimate()
+
+    def first(self, cell: Cell) -> list[Outcome]:
+        """Return how the trials of seed 0 ended, failed ones apart; `NotRun` without any."""
+        if 0 not in self.seeds(cell):
+            raise NotRun(f"{cell}, seed 0")
+        ends = [row.outcome for row in self.outcomes.arm(cell.variant, cell.path, 0)]
+        ended = [each for each in ends if not each.failed]
+        if not ended:
+            raise NotRun(f"a trial of {cell} that did not fail")
+        return ended
+
+    def measured(self, measurement: Measurement) -> Measured:
+        """Return the values of a measurement; `NotRun` when it was not made."""
+        if measurement not in self.evidence:
+            raise NotRun(f"{measurement.quantity} of {measurement.subject}")
+        return self.evidence.values(measurement)
+
+    def resamples(self, pairs: Pairs) -> Resamples:
+        """Return the scene resamples that every contrast over so many scenes shares."""
+        return _drawn(self.library_hash, len(pairs.scenes))
+
+
+@lru_cache(maxsize=16)
+def _drawn(library_hash: str, n_scenes: int) -> Resamples:
+    """Draw once: hundreds of contrasts are of as many scenes."""
+    return Resamples.draw(library_hash, n_scenes)
+
+
+Quantity = Callable[[Results], Contrast]
+"""Works a number out of a run, for tables and claims; raises `NotRun` or `Undecidable`."""
+
+
+def detection(contrast: Contrast) -> Sign:
+    """Return the side of 0 on which the paper detects a difference, or 0.
+
+    The whole interval lies there, of one seed's success with exact McNemar on its side.
+    """
+    if contrast.n_seeds == 1:
+        return contrast.detected
+    return contrast.side if contrast.enough else 0
+
+
+def decisive(contrast: Contrast, notable: float | None = None) -> Contrast:
+    """Return a contrast without its interval where too few scenes give it.
+
+    `notable` as in `Contrast`.
+    """
+    if contrast.enough:
+        return replace(contrast, notable=notable)
+    return replace(contrast, notable=notable, draws=np.empty(0), scenes=None)

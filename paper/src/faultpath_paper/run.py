@@ -1,0 +1,195 @@
+"""A reproduction from start to end: run, measure, conclude, and keep what was found."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.plain import Misread, model_of
+from faultpath.decisions.tables import Table
+from faultpath.trials import Deliveries, OutcomeTable, System, SystemSpec, load_system
+from faultpath.trials.code import system_code
+from faultpath.trials.execution.runner import RunResult
+from faultpath.trials.provenance import RunProvenance
+from faultpath.trials.store.atomic import write_text
+from faultpath.trials.store.folder import (
+    OUTCOMES,
+    RunFolder,
+    keyed,
+    read_outcomes,
+    read_regular,
+    unseal,
+)
+from faultpath_paper.answers import Reproduction, Sweep
+from faultpath_paper.cells import HELD_OUT, PROFILES, SYSTEM, Profile
+from faultpath_paper.claims import ledger
+from faultpath_paper.evidence.table import (
+    EvidenceTable,
+    Measurement,
+    read_evidence,
+    write_evidence,
+)
+from faultpath_paper.flights import Flown, Leg, plan_legs
+from faultpath_paper.page import Page
+from faultpath_paper.pages import PAGES
+from faultpath_paper.results import Results
+
+EVIDENCE = "evidence.parquet"
+CONCLUSIONS = "reproduction.json"
+RESULTS = (CONCLUSIONS, OUTCOMES, EVIDENCE)
+"""The files that `read_results` reads."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is to be reproduced, of how much, and with what."""
+
+    pages: tuple[Page, ...]
+    profile: Profile
+    options: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Options of the system beside those of the settings, such as the device."""
+
+    @property
+    def whole(self) -> bool:
+        """Whether this is every page of the paper."""
+        return self.pages == PAGES
+
+    @property
+    def place(self) -> str:
+        """Folder, inside that of the run, for what these pages conclude."""
+        return "." if self.whole else "+".join(page.name for page in self.pages)
+
+    def legs(self) -> tuple[Leg, ...]:
+        """Return what there is to run."""
+        cells = [cell for page in self.pages for cell in page.cells]
+        return plan_legs(cells, self.profile, self.options)
+
+    def measurements(self) -> dict[Measurement, Measurement]:
+        """Return what there is to measure, each with the one that this run makes for it."""
+        asked = (m for page in self.pages for m in page.measurements)
+        found: dict[Measurement, Measurement] = {}
+        for measurement in asked:
+            if measurement.seed in self.profile.seeds:
+                given = measurement.recording
+                recording = given.model_copy(update={"options": {**given.options, **self.options}})
+                found[measurement] = measurement.model_copy(update={"recording": recording})
+        return found
+
+    @cached_property
+    def system(self) -> System:
+        """The system in its first setting, for what does not depend on the setting."""
+        return load_system(SystemSpec(name=SYSTEM, options=dict(self.options)))
+
+    def folder(self, name: str) -> Path:
+        """Return the run folder of that name for the code as it is."""
+        spec = SystemSpec(name=SYSTEM, options=dict(self.options))
+        return keyed(Path("runs"), name, system_code(self.system, spec).state)
+
+    def results(self, outcomes: OutcomeTable, evidence: EvidenceTable) -> Results:
+        """Return what was run and measured, as pages and claims ask for it."""
+        return Results(outcomes, evidence, self.system.library(HELD_OUT).content_hash)
+
+
+def plan(names: Sequence[str], profile: str, options: Mapping[str, str] | None = None) -> Plan:
+    """Return the plan for some pages, or for all; `UserError` for a name that does not exist."""
+    known = {page.name: page for page in PAGES}
+    for name in names:
+        if name not in known:
+            raise UserError(f"the paper has no page '{name}'; choose from {', '.join(known)}.")
+    if profile not in PROFILES:
+        raise UserError(f"unknown profile '{profile}'; choose one of {', '.join(PROFILES)}.")
+    pages = tuple(page for page in PAGES if page.name in names) if names else PAGES
+    return Plan(pages, PROFILES[profile], options or {})
+
+
+def measure_all(
+    plan: Plan, folder: Path, workers: int, progress: Callable[[float, float], None]
+) -> EvidenceTable:
+    """Measure on recorded windows what `folder` does not hold yet.
+
+    Raises as `measure` does.
+    """
+    from faultpath_paper.evidence.quantities import measure  # it loads torch
+
+    wanted = plan.measurements()
+    made = tuple(dict.fromkeys(wanted.values()))
+    found = measure(made, plan.profile.scenes, folder / "windows", workers, progress)
+    return EvidenceTable({asked: found.values(own) for asked, own in wanted.items()})
+
+
+def conclude(plan: Plan, results: Results) -> Reproduction:
+    """Evaluate pages and claims."""
+    library = plan.system.library(HELD_OUT)
+    built = [part for page in plan.pages for part in page.build(results)]
+    rows = results.outcomes.rows
+    return Reproduction(
+        profile=plan.profile.name,
+        ledger=ledger(
+            results,
+            library.name,
+            library.content_hash,
+            len(library.scenes[: plan.profile.scenes]),
+            plan.profile.seeds,
+            only_run=not plan.whole,
+        ),
+        tables=tuple(part for part in built if isinstance(part, Table)),
+        figures=tuple(part for part in built if isinstance(part, Sweep)),
+        trials=len(rows),
+        failed_trials=sum(row.outcome.failed for row in rows),
+    )
+
+
+def save(folder: Path, flown: Flown, results: Results, found: Reproduction) -> RunResult:
+    """Write outcomes, evidence and conclusions; return the run as one result, without traces."""
+    folder.mkdir(parents=True, exist_ok=True)
+    slim = (replace(row, outcome=replace(row.outcome, trace=None)) for row in results.outcomes.rows)
+    deliveries = Deliveries(
+        rows=tuple(row for result in flown.results for row in result.deliveries.rows),
+        findings=tuple(dict.fromkeys(said for result in flown.results for said in result.findings)),
+    )
+    digest = RunFolder(folder).save_tables(OutcomeTable(tuple(slim)), deliveries)
+    write_evidence(folder / EVIDENCE, results.evidence)
+    write_text(folder / CONCLUSIONS, found.model_dump_json(indent=1) + "\n", folder)
+    return RunResult(
+        outcomes=results.outcomes,
+        deliveries=deliveries,
+        traces={},
+        blocks_computed=sum(result.blocks_computed for result in flown.results),
+        blocks_kept=sum(result.blocks_kept for result in flown.results),
+        failures=tuple(failure for result in flown.results for failure in result.failures),
+        outcomes_sha256=digest,
+        system_fingerprint=flown.fingerprint,
+        code=tuple(code for result in flown.results for code in result.code),
+        library_hash=results.library_hash,
+        rechecks=tuple(again for result in flown.results for again in result.rechecks),
+    )
+
+
+def read_results(folder: Path) -> tuple[Results, Reproduction]:
+    """Read what `save` wrote; `UserError` for a folder without a finished reproduction.
+
+    Where the run left its provenance, the files are compared with the digests in it first.
+    """
+    place = folder / "provenance.json"
+    if place.exists():
+        try:
+            made = model_of(read_regular(place), RunProvenance)
+        except Misread:
+            raise UserError(
+                f"{place} is damaged or from another version of faultpath: reproduce the paper "
+                "again."
+            ) from None
+        named = {name: digest for name, digest in made.files.items() if name in RESULTS}
+        unseal(folder, {OUTCOMES: made.outcomes_sha256, **named}, ())
+    try:
+        found = model_of(contents(folder / CONCLUSIONS, LARGEST_TEXT), Reproduction)
+    except (OSError, Misread):
+        raise UserError(
+            f"{folder} holds no finished reproduction: give the folder of one, or make it with "
+            "`faultpath reproduce`."
+        ) from None
+    outcomes = read_outcomes(folder / OUTCOMES)
+    evidence = read_evidence(folder / EVIDENCE)
+    return Results(outcomes, evidence, found.ledger.library_hash), found
