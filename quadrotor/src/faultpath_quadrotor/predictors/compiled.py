@@ -57,7 +57,7 @@ _LAYERS = ("embed", "gates", "candidate", "remembered", "first", "second", "last
 
 
 class _Kind(IntEnum):
-    """What a step is made of; `Kind` of `rollout.cpp`."""
+    """Kind of step; `Kind` of `rollout.cpp`."""
 
     KINEMATIC = 0
     ANCHORED = 1
@@ -83,7 +83,7 @@ _ROWS: Mapping[Read, tuple[int, ...]] = MappingProxyType(
         ("history_code", "latent"): (LATENT,),
     }
 )
-"""The rows of each reading, in the order of `Inputs` of `rollout.cpp`."""
+"""Rows of each reading, in the order of `Inputs` of `rollout.cpp`."""
 
 
 class Rolled(NamedTuple):
@@ -179,10 +179,10 @@ class HorizonLoop:
         ends = commands.new_empty(12, scenes, candidates)
         state = inputs.state
         motion = (state.position, state.velocity, state.rotation, state.rate)
-        given = {**dict(zip(_ROWS, motion, strict=False)), **inputs.delivered}
+        readings = {**dict(zip(_ROWS, motion, strict=False)), **inputs.delivered}
         self._kernels.call(
             "faultpath_roll",
-            *(self._model, _Inputs(*self._lent(given, scenes))),
+            *(self._model, _Inputs(*self._lent(readings, scenes))),
             lend("commands", commands.contiguous(), horizon, ACTION_FEATURES, scenes, candidates),
             *(horizon, scenes, candidates),
             lend("positions", positions, 3, scenes, horizon, candidates),
@@ -191,18 +191,18 @@ class HorizonLoop:
         )
         return Rolled(positions, velocities, ends[:9].unflatten(0, (3, 3)), ends[9:])
 
-    def _lent(self, given: Delivered, scenes: int) -> Iterable[Lent | None]:
+    def _lent(self, readings: Delivered, scenes: int) -> Iterable[Lent | None]:
         for read, rows in _ROWS.items():
             channel, place = read
             if place not in self._reads:
                 yield None
-            elif read not in given:
+            elif read not in readings:
                 raise ValueError(
                     f"compiled rollout: the predictor reads {channel} at {place!r} and was told "
                     "none"
                 )
             else:
-                yield lend(channel, given[read].contiguous(), *rows, scenes, 1)
+                yield lend(channel, readings[read].contiguous(), *rows, scenes, 1)
 
 
 def _integrator(integrator: KinematicIntegrator) -> str:
