@@ -77,7 +77,7 @@ class Block(ctypes.Structure):
     """A structure that a kernel reads; it holds on to what its addresses point to."""
 
     def __init__(self, *values: object, **named: object) -> None:
-        self._held = (values, named)
+        self._values = (values, named)
         super().__init__(
             *map(_written, values), **{name: _written(value) for name, value in named.items()}
         )

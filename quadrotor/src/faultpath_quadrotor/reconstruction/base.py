@@ -1,4 +1,4 @@
-"""What recovers a channel that no sensor supplies."""
+"""Reconstructions of a channel that no sensor supplies."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from torch import Tensor
 from faultpath_quadrotor.lanes import Delivered, Read
 
 Memory: TypeAlias = Any
-"""What a reconstruction carries from step to step; opaque to everybody else."""
+"""State that a reconstruction carries from step to step; opaque to everybody else."""
 
 
 class Reconstruction(ABC):
@@ -26,7 +26,7 @@ class Reconstruction(ABC):
 
     reads: frozenset[Read]
     data_files: Sequence[str | PathLike[str]] | None = None
-    """Of one that a user brings: the files that it reads, of every seed, such as weights."""
+    """Files that a user's own reconstruction reads, of every seed, such as weights."""
 
     def consumers(self, module: str = "reconstruction") -> frozenset[str]:
         """Return the names `module.place` under which the interface lists the reads."""
