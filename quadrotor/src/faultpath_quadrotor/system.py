@@ -141,9 +141,9 @@ class Quadrotor(LoopSystem):
         needed = {name: known[name] for name in SENSORS if name in reads}
 
         def world(scenes: Sequence[str]) -> World:
-            flown, winds = self._records(scenes), PLATFORM.winds
-            flies = TorchPlant if own is None else own.load(None)
-            return World(flown, options.wind, free, place, flies, winds, sampled=bool(needed))
+            records, winds = self._records(scenes), PLATFORM.winds
+            plant = TorchPlant if own is None else own.load(None)
+            return World(records, options.wind, free, place, plant, winds, sampled=bool(needed))
 
         def camera(scenes: Sequence[str]) -> DepthRenderer:
             return _renderer(self._records(scenes), free, place)

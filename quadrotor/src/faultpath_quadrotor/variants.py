@@ -1,9 +1,9 @@
 """The ways to wire the quadrotor: which predictor plans, and what feeds its wind input.
 
 A variant is named by its wind input (`zero-wind`, `gru`, `dob`, `true-wind`), by its predictor
-(`wm-a+dcc`), or by both (`wm-a-wind/gru`). What a variant names takes the seed of its arm as the
-seed of its training; a predictor that it does not name is that of the options. The user's own
-parts stand beside those that ship, under the names by which they were named; a planner makes a
+(`wm-a+dcc`), or by both (`wm-a-wind/gru`). The parts that it names are loaded with the seed of the
+arm as their training seed; a variant that names no predictor has that of the options. The user's
+own parts come beside the shipped ones, under the names that the user gave them; a planner makes a
 variant with the predictor of the options.
 """
 

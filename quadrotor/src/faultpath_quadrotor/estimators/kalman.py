@@ -4,7 +4,7 @@ The state is carried by the inertial samples; the filter holds the covariance of
 order position, velocity (world frame), rotation vector (body frame, R = R^ exp(error)), gyroscope
 bias, accelerometer bias (Sola, "Quaternion kinematics for the error-state Kalman filter", 2017;
 increments as in Forster et al., "On-manifold preintegration", 2017). Everything has lanes last and
-is made of sums over the components before them, so that a lane keeps its bits in any company.
+is made of sums over the components before them, so that a lane's bits do not depend on the others.
 """
 
 from __future__ import annotations

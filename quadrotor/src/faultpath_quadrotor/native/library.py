@@ -64,10 +64,9 @@ _choice: ContextVar[str] = ContextVar("kernels", default="")
 
 @contextmanager
 def using(choice: str) -> Iterator[None]:
-    """Let an instruction set, or `portable`, run what is built and called inside.
+    """Use an instruction set, or `portable`, for everything built and called inside.
 
-    What models learn from is made on the portable path: a pool has the same bytes with kernels and
-    without.
+    Training data are made on the portable path: a pool has the same bytes with kernels and without.
     """
     before = _choice.set(choice)
     try:
@@ -126,7 +125,7 @@ def whole_vectors(count: int) -> bool:
 
 
 def numerics() -> str:
-    """Return what decides the last bits of a run here; results of two never mix in a folder."""
+    """Return the name of the rounding here; results of two are never mixed in a folder."""
     built = kernels()
     return PORTABLE if built is None else built.numerics
 

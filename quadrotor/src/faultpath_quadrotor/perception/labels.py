@@ -61,8 +61,8 @@ def triangles(z: Array) -> Array:
     corners = np.moveaxis(_RAYS * z, 0, -1)
     a, b = corners[:-1, :-1], corners[:-1, 1:]
     c, d = corners[1:, :-1], corners[1:, 1:]
-    corner_triples = np.stack((np.stack((a, b, c), 2), np.stack((d, c, b), 2))).reshape(-1, 3, 3)
-    return corner_triples[(corner_triples[:, :, 0] < RANGE_M).any(1)]
+    every = np.stack((np.stack((a, b, c), 2), np.stack((d, c, b), 2))).reshape(-1, 3, 3)
+    return every[(every[:, :, 0] < RANGE_M).any(1)]
 
 
 def _surface_distance(z: Array, points: Array) -> Array:

@@ -105,8 +105,8 @@ class PlantState:
 class Plant(ABC):
     """A batch of vehicles under commands: rigid bodies, rate loops, motors, drag and wind.
 
-    Pure: states go in and new states come out. A lane's flight is the same in any company, bit for
-    bit, in batches of whole groups of lanes (`state.padded_lanes`).
+    Pure: states go in and new states come out. A lane's flight does not depend on the others, bit
+    for bit, in batches of whole groups of lanes (`state.padded_lanes`).
     """
 
     mark: ClassVar[str] = ""

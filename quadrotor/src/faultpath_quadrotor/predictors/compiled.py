@@ -1,7 +1,7 @@
 """The horizon loop, compiled: all steps of a predictor for one tile of candidates at a time.
 
-It stands for the shipped predictors exactly, of its sizes. A subclass of one may step as it likes,
-so it flies as it is, on the portable path.
+It replaces exactly the shipped predictors, at its sizes. A subclass may step differently, so it
+runs as it is, on the portable path.
 """
 
 import ctypes
@@ -104,7 +104,7 @@ class _Layer(Block):
 
 
 class _Model(Block):
-    """`Predictor` of `rollout.cpp`; what a kind has no use for stays zero."""
+    """`Predictor` of `rollout.cpp`; fields that a kind does not use stay zero."""
 
     _fields_ = (
         *fields(ctypes.c_int64, "kind windy dragging"),
@@ -122,7 +122,7 @@ class _Inputs(Block):
 
 
 def uncovered(predictor: Predictor) -> str:
-    """Return in words why no compiled loop stands for `predictor`; empty where one does."""
+    """Return in words why no compiled loop may replace `predictor`; empty where one may."""
     if is_exactly(predictor, UnanchoredPredictor):
         return _network(predictor.network, UnanchoredNetwork, _Kind.UNANCHORED)
     if is_exactly(predictor, AnchoredPredictor):

@@ -51,7 +51,7 @@ def ports(places: Collection[str]) -> frozenset[Port]:
 
 
 def check_places(name: str, places: Collection[str]) -> None:
-    """Raise `SystemMistake` for a user's predictor that reads at no such places together."""
+    """Raise `SystemMistake` for a user's predictor whose places do not exist or go together."""
     for place in places:
         if place not in PLACES:
             known = "; ".join(f"{at} ({', '.join(channels)})" for at, channels in PLACES.items())
@@ -106,10 +106,9 @@ def _start(state: State) -> State:
     of the projection changed by rounding only, so it is left alone.
     """
     rotation = state.rotation
-    off = so3.compose(rotation.transpose(0, 1), rotation)
-    off = (off - torch.eye(3, device=off.device).view(3, 3, *(1 for _ in state.batch))).abs().amax(
-        (0, 1)
-    ) > 1e-4
+    product = so3.compose(rotation.transpose(0, 1), rotation)
+    identity = torch.eye(3, device=product.device).view(3, 3, *(1 for _ in state.batch))
+    off = (product - identity).abs().amax((0, 1)) > 1e-4
     if not host_readable(off.device) or off.any():
         rotation = torch.where(off, so3.project(rotation), rotation)
     parts = (state.position, state.velocity, rotation, state.rate)

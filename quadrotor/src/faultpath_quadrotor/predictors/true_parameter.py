@@ -88,7 +88,7 @@ class TrueParameter(Predictor):
     def _followed(self, start: _Memory, code: Tensor) -> _Memory:
         """Return the memory with motors that have followed the last commands.
 
-        They start as they would be had the oldest command been held for long.
+        They start as if the oldest command had been held for long.
         """
         past = code[: 7 * FOLLOWED].unflatten(0, (7, FOLLOWED)).unbind(1)
         thrust, torque = past[0][3], start.torque

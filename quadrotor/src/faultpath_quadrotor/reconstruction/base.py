@@ -16,9 +16,9 @@ Memory: TypeAlias = Any
 class Reconstruction(ABC):
     """Estimates the current wind from completed intervals; it never sees a candidate action.
 
-    `reads` is all that it may know. Whoever calls it takes exactly these from the taps, so a
-    variant's consumers follow from it, and a read that is not declared has no entry to find. The
-    same channel at two places is two reads, for a fault may reach one of them alone.
+    `reads` is all that it may know. The caller takes exactly these from the taps, so a variant's
+    consumers follow from it, and an undeclared read has no entry. The same channel at two places is
+    two reads, because a fault may reach only one of them.
 
     The channel `action` holds the command executed over the interval that has just ended, N and
     rad/s; at `begin` the one under which the vehicle hovered before its flight.

@@ -90,10 +90,10 @@ class DisturbanceObserver(Reconstruction):
 
 
 class InertialObserver(DisturbanceObserver):
-    """The same from the accelerometer: its innovation, what it reads beside what was expected.
+    """The same from the accelerometer's innovation: its reading minus the expected one.
 
-    It takes the last 10 ms, by when the motors have followed the command best. Its bias and the
-    attitude's error go into the wind.
+    It uses the last 10 ms of the interval, when the motors have followed the command best. The
+    sensor's bias and the attitude's error enter the wind.
     """
 
     reads = DisturbanceObserver.reads | {("accelerometer", "innovation")}
