@@ -26,11 +26,11 @@ class ModelCard(Card):
     data_sha256: dict[str, JsonValue]
     """Digest of each pool of data."""
     config: dict[str, JsonValue]
-    """Everything else the task says of itself."""
+    """Everything else that the task describes."""
     order_key: str
     """Stream of the minibatch order."""
     platform: str
-    """`PLATFORM.weights_hash`: what decided the data, as far as a platform does."""
+    """`PLATFORM.weights_hash` of the platform that the data were made for."""
     torch_version: str
     faultpath_version: str
 
@@ -68,5 +68,5 @@ def load_checkpoint(module: "nn.Module", path: Path) -> ModelCard:
 def ship(path: Path) -> None:
     """Copy a checkpoint and its card into the package; `UserError` when that is not writable."""
     make_folder(shipped_folder())
-    for each in (path, path.with_suffix(".json")):
-        write_file(shipped_folder() / each.name, each.read_bytes())
+    for file in (path, path.with_suffix(".json")):
+        write_file(shipped_folder() / file.name, file.read_bytes())

@@ -1,4 +1,4 @@
-"""What a user chooses of the quadrotor. Nothing here needs torch, so that asking is quick.
+"""Options that a user chooses. Nothing here needs torch, so that listing them is quick.
 
 A new option is one field of `QuadrotorChoices`: flags, help and messages follow from it.
 """
@@ -132,7 +132,7 @@ class QuadrotorChoices(BaseModel):
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """Everything of the user's own that is named, each once.
+        """The user's own parts that these options name, without repetition.
 
         A reconstruction may be named with the predictor that it feeds, `wm-a-wind/my.py:create`.
         """
@@ -178,16 +178,18 @@ def mount(angle: float) -> Coupled:
 
     It acts on gyroscope and accelerometer alike.
     """
-    turned = Rotate(by=(0.0, angle, 0.0))
-    faults = (Fault(channel=each, intervention=turned) for each in ("gyroscope", "accelerometer"))
-    return Coupled(name="mount", faults=tuple(faults))
+    turn = Rotate(by=(0.0, angle, 0.0))
+    channels = ("gyroscope", "accelerometer")
+    faults = tuple(Fault(channel=channel, intervention=turn) for channel in channels)
+    return Coupled(name="mount", faults=faults)
 
 
 def noisy_state(size: float) -> Coupled:
     """Return Gaussian noise of `size` times `STATE_NOISE_STD`, and a delay, on the whole state.
 
-    Channels draw apart; every reader of one gets the same noise, for it is the estimator's (paper,
-    Section IV-A: the supplementary evaluation). Raises `UserError` for a negative size.
+    Channels draw independently; all readers of a channel get the same noise, since it is the
+    estimator's (paper, Section IV-A: the supplementary evaluation). Raises `UserError` for a
+    negative size.
     """
     if size < 0:
         raise UserError(f"noisy_state={size:g}: choose a size of 0 or more; 1 is the standard.")

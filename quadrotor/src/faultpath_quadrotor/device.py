@@ -25,7 +25,7 @@ def device_of(name: DeviceName) -> torch.device:
 def host_readable(device: torch.device) -> bool:
     """Return whether the host may look at values on `device` during a control step.
 
-    What is done in one way on the CPU and in another on an accelerator asks this and nothing else.
+    Code that differs between the CPU and an accelerator asks this and nothing else.
     """
     return device.type in HOST_READABLE
 

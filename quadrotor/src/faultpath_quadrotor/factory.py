@@ -1,4 +1,4 @@
-"""What builds the quadrotor. Torch loads when it is built, not when its options are asked for."""
+"""Factory of the quadrotor. Torch loads when it is built, not when its options are listed."""
 
 from faultpath.trials import System
 from faultpath_quadrotor.choices import QuadrotorChoices

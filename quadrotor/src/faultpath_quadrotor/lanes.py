@@ -16,7 +16,7 @@ Read: TypeAlias = tuple[str, str]
 """A channel and the place in the module where it enters: one tap."""
 
 Delivered: TypeAlias = Mapping[Read, Tensor]
-"""What each tap delivered at this step, `[..., *batch]`: one entry for each read."""
+"""Readings that the taps delivered at this step, `[..., *batch]`: one entry for each read."""
 
 CHUNK = 13
 """Most scenes planned at once on the CPU: they share the cost of each kernel's start, and their
@@ -49,14 +49,14 @@ class Chunk:
 
     @property
     def rows(self) -> slice | Tensor:
-        """What picks them from a block: a slice where they lie together, which copies nothing."""
+        """Index of the scenes in a block: a slice where they are adjacent, which copies nothing."""
         first, last = self.scenes[0], self.scenes[-1]
         whole = last - first + 1 == len(self.scenes)
         return slice(first, last + 1) if whole else self.index
 
 
 def chunks(running: Sequence[int], device: torch.device) -> tuple[Chunk, ...]:
-    """Split scenes into as few chunks as may be, of nearly equal size; an accelerator takes all."""
+    """Split scenes into as few chunks as possible, of nearly equal size; one on an accelerator."""
     count = -(-len(running) // CHUNK) if host_readable(device) else 1
     ends = [len(running) * i // count for i in range(count + 1)]
     parts = (tuple(running[a:b]) for a, b in pairwise(ends))

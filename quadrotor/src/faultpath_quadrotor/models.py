@@ -1,4 +1,4 @@
-"""What can stand at each place of the controller, by name, and its trained weights."""
+"""Parts that can take each place of the controller, by name, and their trained weights."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -33,14 +33,16 @@ Model = TypeVar("Model", Predictor, Reconstruction)
 
 
 def fill(network: nn.Module, name: str, seed: int) -> None:
-    """Fill a network with its shipped weights; `UserError` where they are missing or were fitted
-    for another platform."""
-    wanted = PLATFORM.weights_hash(name)
+    """Fill a network with its shipped weights.
+
+    Raises `UserError` where they are missing or were fitted for another platform.
+    """
+    platform = PLATFORM.weights_hash(name)
     card = load_checkpoint(network, checkpoint_path(name, seed))
-    if card.platform != wanted:
+    if card.platform != platform:
         raise UserError(
             f"the weights of {card.stem} were fitted for another platform ({card.platform}) than "
-            f"the one that is flown ({wanted}): fit them again"
+            f"the one that is flown ({platform}): fit them again"
         )
 
 
@@ -50,7 +52,7 @@ class Kind(Generic[Model]):
 
     description: str
     build: Callable[[], Model]
-    """Makes it, with blank weights where it has any: enough to know what it reads."""
+    """Builds it with blank weights, which is enough to know what it reads."""
 
     def load(self, name: str, seed: int | None) -> Model:
         """Return it as trained with a seed; blank for `None`.
@@ -58,10 +60,10 @@ class Kind(Generic[Model]):
         Raises `UserError` where there is no checkpoint, it cannot be read, or is of another
         platform.
         """
-        made = self.build()
-        if seed is not None and isinstance(made, _LEARNED):
-            fill(made.network, name, seed)
-        return made
+        model = self.build()
+        if seed is not None and isinstance(model, _LEARNED):
+            fill(model.network, name, seed)
+        return model
 
 
 _LEARNED = (AnchoredPredictor, UnanchoredPredictor, RecurrentReconstruction)
@@ -114,7 +116,7 @@ PREDICTORS: Mapping[str, Kind[Predictor]] = MappingProxyType(
 )
 
 INERTIAL = "dob-inertial"
-"""The one that reads a raw sensor: a variant where a filter that ships has the sensors read."""
+"""The one that reads a raw sensor: a variant only with a shipped filter, which reads them too."""
 RECONSTRUCTIONS: Mapping[str, Kind[Reconstruction]] = MappingProxyType(
     {
         "dob": Kind(

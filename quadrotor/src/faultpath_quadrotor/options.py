@@ -1,4 +1,4 @@
-"""What a user chose of the quadrotor, and the frozen settings behind it."""
+"""A user's choices for the quadrotor, and the frozen settings behind them."""
 
 from typing import Self
 
@@ -28,11 +28,11 @@ from faultpath_quadrotor.platform import PLATFORM
 
 
 class QuadrotorOptions(QuadrotorChoices):
-    """One configuration of the quadrotor: what a user chose, and what is behind it."""
+    """One configuration of the quadrotor: a user's choices, and the defaults that follow."""
 
     @classmethod
     def of(cls, choices: QuadrotorChoices) -> Self:
-        """Return the options behind some choices. A filter that ships reads sensors that err.
+        """Return the options behind some choices. A shipped filter reads sensors that err.
 
         Trials in free space have ground-truth clearance, those among obstacles the depth model,
         unless `clearance` says otherwise (paper, Section IV-A).
@@ -40,15 +40,15 @@ class QuadrotorOptions(QuadrotorChoices):
         Raises:
             UserError: There is no such device, or the plant does not fly on it.
         """
-        given = choices.model_dump(include=choices.model_fields_set)
+        options = choices.model_dump(include=choices.model_fields_set)
         if choices.bring and not all(part.strip() for part in choices.bring.split(",")):
             raise UserError(
                 f"bring '{choices.bring}' holds an empty name: part names by one comma each."
             )
         if choices.environment is Environment.FREE_SPACE:
-            given.setdefault("clearance", ClearanceName.TRUE)
+            options.setdefault("clearance", ClearanceName.TRUE)
         if choices.estimator in FILTERS:
-            given.setdefault("sensor_noise", 1.0)
+            options.setdefault("sensor_noise", 1.0)
         if choices.plant != "torch" and choices.device is not DeviceName.CPU:
             raise UserError(
                 f"plant '{choices.plant}' flies on the CPU only: leave --device out, or --plant."
@@ -59,16 +59,16 @@ class QuadrotorOptions(QuadrotorChoices):
                 "apart: leave --sampler out, or plan with mppi."
             )
         require(choices.device)
-        return cls.model_validate(given)
+        return cls.model_validate(options)
 
     @classmethod
     def parse(cls, **options: str) -> Self:
-        """Read options as the command line gives them; `UserError` names what there is."""
+        """Read options as the command line gives them; `UserError` names the valid ones."""
         return call(cls.of, options, "the quadrotor")
 
     @property
     def filtered(self) -> bool:
-        """Whether a filter that ships estimates the state; all of them are variants then."""
+        """Whether a shipped filter estimates the state; all shipped filters are variants then."""
         return self.estimator in FILTERS
 
     @property
@@ -78,7 +78,7 @@ class QuadrotorOptions(QuadrotorChoices):
 
     @property
     def place(self) -> torch.device:
-        """Where tensors are made."""
+        """Device of the tensors."""
         return device_of(self.device)
 
     @property
@@ -89,7 +89,7 @@ class QuadrotorOptions(QuadrotorChoices):
         return PLATFORM.planner.sampler.model_copy(update={"candidates": candidates})
 
     def build_planner(self) -> Planner:
-        """Return the planner that ships."""
+        """Return the shipped planner of these options."""
         planner = PLATFORM.planner
         cost = NavigationCost(planner.weights)
         if self.planner == "cem":

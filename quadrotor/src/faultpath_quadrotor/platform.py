@@ -25,10 +25,10 @@ class ControllerSettings(BaseModel):
     waypoints: int = 16
     """More than an episode of 6 s uses; the last one is kept."""
     speed_mps: Range = (1.0, 4.8)
-    """Per waypoint: most that is asked for. The planner's limit is 3.4 m/s (paper, Section IV-A);
+    """Per waypoint: highest speed commanded. The planner's limit is 3.4 m/s (paper, Section IV-A);
     legs are too short to reach all of it, and a wind may push beyond it."""
     leg_s: Range = (0.6, 3.0)
-    """Per waypoint: time after which the next one is taken, reached or not."""
+    """Per waypoint: time after which the next one follows, reached or not."""
     arrival_m: float = 0.4
     heading_offset_rad: float = 0.8
     """Per waypoint: largest angle between the heading and the direction of travel."""
@@ -55,7 +55,7 @@ class PerturbationSettings(BaseModel):
     rate_sigma_radps: tuple[float, float, float] = (1.0, 1.0, 0.4)
     """Largest standard deviations of the body rates."""
     correlation: tuple[float, float] = (0.6, 0.85)
-    """Of neighbouring steps."""
+    """Range of the correlation between neighbouring steps."""
     clean_share: float = 0.15
     """Share of the episodes whose strength is at most `clean_strength`; else it is up to 1."""
     clean_strength: float = 0.1
@@ -113,9 +113,9 @@ def _about(kgps: float) -> tuple[float, float]:
 
 
 _DRAG_SPREAD = 0.9
-"""Of training vehicles about nominal drag; the paper gives no range."""
+"""Spread of training vehicles about nominal drag, a fraction; the paper gives no range."""
 _DATA = {"drag_kgps", "ranges", "collection", "wind_collection"}
-"""What decides the data that models are fitted on, beside the winds."""
+"""Fields that decide the data that models are fitted on, beside the winds."""
 
 
 class Platform(_Frozen):
@@ -128,12 +128,12 @@ class Platform(_Frozen):
     own_drag: float = 0.0
     """Share of the drag drawn for a scene's vehicle that it flies with; the rest is nominal."""
     ranges: VehicleRanges = VehicleRanges(drag_kgps=(_about(0.6), _about(0.6), _about(1.2)))
-    """What the vehicles of training episodes are drawn from."""
+    """Ranges that the vehicles of training episodes are drawn from."""
     perception: PerceptionSettings = PerceptionSettings()
     collection: FlightSettings = FlightSettings()
     """How the episodes in still air fly."""
     wind_collection: FlightSettings = FlightSettings()
-    """How those of the pool with wind fly."""
+    """How the episodes in wind fly."""
 
     @property
     def hash(self) -> str:

@@ -1,4 +1,4 @@
-"""What a recorded flight of the quadrotor adds to its readings: errors, predictions and thrust."""
+"""Signals of a recorded flight beside its readings: errors, predictions and thrust."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -15,7 +15,7 @@ from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.system import Quadrotor
 
 _CANDIDATES = 8
-"""Equal ones, for the compiled rollout, which works along them."""
+"""Identical candidates, since the compiled rollout works along them."""
 _MOTION = "predicted_motion"
 
 
@@ -30,25 +30,25 @@ def quadrotor_signals(
     Along the thrust they have a sign, so that it shows whether they cancel (paper, Eq. 2). What a
     learned predictor adds to its analytic dynamics is in none of them.
     """
-    ahead = _predicted(recording)
-    found: list[tuple[Signal, ...]] = []
+    predictions = _predicted(recording)
+    by_trial: list[tuple[Signal, ...]] = []
     for trial in trials(recording, done, system.control_dt_s):
         thrust = trial.got("action", "vehicle.actuators")[:, :1].astype(np.float32)
-        named = [Signal("commanded thrust", "commanded thrust", "N", thrust), *_errors(trial)]
-        for horizon, positions in ahead.items():
-            said = f"position predicted {horizon * system.control_dt_s:g} s before"
+        signals = [Signal("commanded thrust", "commanded thrust", "N", thrust), *_errors(trial)]
+        for horizon, positions in predictions.items():
+            name = f"position predicted {horizon * system.control_dt_s:g} s before"
             values = trial.rows(positions).astype(np.float32)
-            named.append(Signal(said, "position", "m", values, ("east", "north", "up")))
-        found.append(tuple(named))
-    return found
+            signals.append(Signal(name, "position", "m", values, ("east", "north", "up")))
+        by_trial.append(tuple(signals))
+    return by_trial
 
 
 def _errors(trial: Trial) -> list[Signal]:
-    def told(channel: str, place: str) -> Values:
+    def delivered(channel: str, place: str) -> Values:
         return trial.got(channel, f"predictor.{place}")
 
-    true, read = trial.held, trial.recording.got.keys()
-    if not {("mass", "predictor.dynamics"), ("mass", "predictor.wind_map")} <= read:
+    true, reads = trial.held, trial.recording.got.keys()
+    if not {("mass", "predictor.dynamics"), ("mass", "predictor.wind_map")} <= reads:
         return []
     drag = LinearDrag(PLATFORM.drag_kgps)
     rotation = true("vehicle.attitude").reshape(-1, 3, 3)
@@ -62,58 +62,64 @@ def _errors(trial: Trial) -> list[Signal]:
         return (rotation[:, :, 2] * scale * thrust + force(-true("vehicle.velocity"))) / mass
 
     mass, scale = true("vehicle.mass"), true("vehicle.thrust_scale")
-    first = nominal(told("mass", "dynamics"), told("thrust_scale", "dynamics")) - nominal(
-        mass, scale
-    )
-    pairs, along = {"nominal": first}, ()
-    if ("wind", "predictor.wind_map") in read:
-        believed = force(told("wind", "wind_map")) / told("mass", "wind_map")
-        second = believed - force(true("true_wind")) / mass
-        pairs["combined"] = first + second
-        errors = {"predictor: wrong mass and thrust": first, "reconstruction: wrong wind": second}
+    believed = nominal(delivered("mass", "dynamics"), delivered("thrust_scale", "dynamics"))
+    calibration_error = believed - nominal(mass, scale)
+    errors, along = {"nominal": calibration_error}, ()
+    if ("wind", "predictor.wind_map") in reads:
+        reconstructed = force(delivered("wind", "wind_map")) / delivered("mass", "wind_map")
+        wind_error = reconstructed - force(true("true_wind")) / mass
+        errors["combined"] = calibration_error + wind_error
+        shares = {
+            "predictor: wrong mass and thrust": calibration_error,
+            "reconstruction: wrong wind": wind_error,
+        }
         along = added(
             "error of the predictor's analytic acceleration along the thrust",
             "m/s^2",
             {
-                name: np.einsum("tp,tp->t", error, rotation[:, :, 2])
-                for name, error in errors.items()
+                name: np.einsum("tp,tp->t", share, rotation[:, :, 2])
+                for name, share in shares.items()
             },
         )
-    sizes = {
-        name: np.linalg.norm(error, axis=1, keepdims=True).astype(np.float32)
-        for name, error in pairs.items()
-    }
-    said = "acceleration error"
-    return [*(Signal(f"{n} {said}", said, "m/s^2", size) for n, size in sizes.items()), *along]
+    quantity = "acceleration error"
+    signals = [
+        Signal(
+            f"{name} {quantity}",
+            quantity,
+            "m/s^2",
+            np.linalg.norm(error, axis=1, keepdims=True).astype(np.float32),
+        )
+        for name, error in errors.items()
+    ]
+    return [*signals, *along]
 
 
 @arithmetic()
 @torch.inference_mode()
 def _predicted(recording: Recording) -> Mapping[int, Mapping[int, Values]]:
-    """Ask the predictor of every step where the commands that were then flown would lead.
+    """Return where the predictor of each step expects the commands then flown to lead.
 
-    By horizon in steps and by the step that is spoken of, `[B, 3]`, metres. It is asked again after
-    the flight, and answers from what it was told at its step.
+    Positions `[B, 3]`, metres, by horizon in steps and by the step that they are predicted for. The
+    predictor is queried after the flight, and answers from the readings of its step.
     """
     request = recording.asked.get(_MOTION)
     if request is None:
         return {}
     flown = recording.got["action", "vehicle.actuators"]
     horizon = request.commands[0].shape[0]
-    found: dict[int, Values] = {}
+    by_step: dict[int, Values] = {}
     for step, query in recording.queries[_MOTION].items():
         if step + horizon not in flown:
             continue
-        actions = np.stack([flown[step + h] for h in range(horizon)])
-        every = torch.from_numpy(actions).movedim(-1, 1).to(request.commands[0])
+        stacked = np.stack([flown[step + h] for h in range(horizon)])
+        actions = torch.from_numpy(stacked).movedim(-1, 1).to(request.commands[0])
         commands = tuple(
-            every[:, :, list(part.scenes)][..., None].expand(-1, -1, -1, _CANDIDATES).contiguous()
+            actions[:, :, list(part.scenes)][..., None].expand(-1, -1, -1, _CANDIDATES).contiguous()
             for part in request.parts
         )
-        asked = replace(request, commands=commands)
-        positions = np.full((len(actions[0]), 3), np.nan)
-        answer = query.answer(asked)
+        positions = np.full((len(stacked[0]), 3), np.nan)
+        answer = query.answer(replace(request, commands=commands))
         for part, rollout in zip(answer.parts, answer.rollouts, strict=True):
             positions[list(part.scenes)] = rollout.positions[:, :, -1, 0].T.double().numpy()
-        found[step + horizon] = positions
-    return {horizon: found} if found else {}
+        by_step[step + horizon] = positions
+    return {horizon: by_step} if by_step else {}

@@ -1,4 +1,4 @@
-"""What a fault of a sensor does to a filter's estimates, recorded to be delivered elsewhere."""
+"""Errors that sensor faults cause in a filter's estimates, recorded to be delivered elsewhere."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -25,7 +25,7 @@ _FILTER, _PRESENT = f"{ErrorStateFilter.name}.{AT}", "predictor.initial_state"
 
 
 class _Seen(Observer):
-    """Keeps what came to the filter before any fault, and what it said of the state."""
+    """Keeps the filter's readings before any fault, and its estimates of the state."""
 
     def __init__(self) -> None:
         self.steps: list[dict[str, torch.Tensor]] = []
@@ -42,9 +42,9 @@ def state_errors(
 ) -> Record:
     """Fly scenes under faults of the sensors, and return the errors of the filter by channel.
 
-    An error is the filter's estimate beside what the same filter would have said at that moment of
-    the same flight had no sensor been faulty: its usual errors are not part of it. A scene's record
-    ends with its flight. Deliver it with the fault `state:recorded=FILE@CONSUMER`.
+    An error is the difference between the filter's estimate and the one that the same filter would
+    have made at that step of the same flight without faults: its usual errors are not part of it. A
+    scene's record ends with its flight. Deliver it with the fault `state:recorded=FILE@CONSUMER`.
 
     Raises `UserError` for a variant whose state no filter of ours estimates.
     """
@@ -54,31 +54,32 @@ def state_errors(
             f"variant '{variant}' has no filter whose errors could be recorded: choose "
             "--estimator eskf"
         )
-    seen = _Seen()
-    found = resolve(faults, system.interface, system.variants[variant].consumers)
-    arm = Arm(variant=variant, faults=found, seed=seed)
-    outcomes = system.run(variant, scenes, taps_of(system, arm, scenes, observer=seen), seed)
-    apart = _apart(filter_, seen.steps)
+    consumers = system.variants[variant].consumers
+    arm = Arm(variant=variant, faults=resolve(faults, system.interface, consumers), seed=seed)
+    observer = _Seen()
+    outcomes = system.run(variant, scenes, taps_of(system, arm, scenes, observer=observer), seed)
+    errors = _errors(filter_, observer.steps)
     ends = [max(1, round(outcome.time_s / system.control_dt_s)) for outcome in outcomes]
     return {
-        Address(channel, scene, seed): errors[:end, index]
-        for channel, errors in apart.items()
+        Address(channel, scene, seed): values[:end, index]
+        for channel, values in errors.items()
         for index, (scene, end) in enumerate(zip(scenes, ends, strict=True))
     }
 
 
 @torch.inference_mode()
-def _apart(
+def _errors(
     filter_: ErrorStateFilter, steps: Sequence[dict[str, torch.Tensor]]
 ) -> dict[str, np.ndarray]:
-    """Return estimates beside those from readings without a fault, `[T, B, ...]` by channel."""
+    """Return estimates minus those from readings without a fault, `[T, B, ...]` by channel."""
     past: Filtered | None = None
-    apart: dict[str, list[torch.Tensor]] = {channel: [] for channel in STATE_SOURCES}
-    for step, held in enumerate(steps):
-        read = {name: held[name].movedim(0, -1).contiguous() for name in SENSORS}
-        past = filter_.begun(read) if past is None else filter_.taken(past, read, step)
-        for channel, clean in filter_.said(past, read).items():
-            known, said = clean.movedim(-1, 0), held[channel]
-            turning = channel in TURNING
-            apart[channel].append(known.transpose(1, 2) @ said if turning else said - known)
-    return {channel: torch.stack(each).float().numpy() for channel, each in apart.items()}
+    errors: dict[str, list[torch.Tensor]] = {channel: [] for channel in STATE_SOURCES}
+    for step, values in enumerate(steps):
+        readings = {name: values[name].movedim(0, -1).contiguous() for name in SENSORS}
+        past = filter_.begun(readings) if past is None else filter_.taken(past, readings, step)
+        for channel, clean in filter_.said(past, readings).items():
+            expected, estimate = clean.movedim(-1, 0), values[channel]
+            errors[channel].append(
+                expected.transpose(1, 2) @ estimate if channel in TURNING else estimate - expected
+            )
+    return {channel: torch.stack(series).float().numpy() for channel, series in errors.items()}

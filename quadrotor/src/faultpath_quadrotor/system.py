@@ -67,7 +67,7 @@ class Quadrotor(LoopSystem):
 
     @property
     def interface(self) -> Interface:
-        """See `System.interface`; the clearance is asked for along the planner's candidates."""
+        """See `System.interface`; the clearance is queried along the planner's candidates."""
         sampling = self.options.sampling
         horizon, candidates = sampling.horizon, sampling.candidates
         clearance = dict.fromkeys(("estimated_clearance", "true_clearance"), (horizon, candidates))
@@ -83,7 +83,7 @@ class Quadrotor(LoopSystem):
 
     @property
     def _sensing(self) -> Sequence[Part]:
-        """All that may read raw sensors."""
+        """Parts that may read raw sensors."""
         own = [part.blank for part in self.user_parts.values()]
         estimators = [part for part in own if isinstance(part, Estimator)]
         if not self.options.filtered:
@@ -92,7 +92,7 @@ class Quadrotor(LoopSystem):
         return (filtering(self.options.estimator), inertial, *estimators)
 
     def library(self, name: str) -> Library:
-        """See `System.library`; a file's library keeps its path for a name, to be found again."""
+        """See `System.library`; a library from a file is named by its path, to be loaded again."""
         library = load_library(name)
         self._scenes |= {s.id: PLATFORM.scene(s) for s in library.scenes}
         refs = tuple(SceneRef(s.id, s.index, s.topology) for s in library.scenes)
@@ -136,14 +136,14 @@ class Quadrotor(LoopSystem):
     def plant(self) -> Plant:
         options, free, place = self.options, self.options.free_space, self.options.place
         own = self.user_parts.get(options.plant)
-        read = {port.channel for each in self._sensing for port in each.ports}
+        reads = {port.channel for reader in self._sensing for port in reader.ports}
         known = sensors(options.fixes)
-        needed = {name: known[name] for name in SENSORS if name in read}
+        needed = {name: known[name] for name in SENSORS if name in reads}
 
         def world(scenes: Sequence[str]) -> World:
-            flown, winds = self._records(scenes), PLATFORM.winds
-            flies = TorchPlant if own is None else own.load(None)
-            return World(flown, options.wind, free, place, flies, winds, sampled=bool(needed))
+            records, winds = self._records(scenes), PLATFORM.winds
+            plant = TorchPlant if own is None else own.load(None)
+            return World(records, options.wind, free, place, plant, winds, sampled=bool(needed))
 
         def camera(scenes: Sequence[str]) -> DepthRenderer:
             return _renderer(self._records(scenes), free, place)
@@ -158,17 +158,20 @@ class Quadrotor(LoopSystem):
     @override
     def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
         setup, place = self.setups[variant], self.options.place
-        predictor = setup.load_predictor(seed, place)
-        reconstruction = setup.load_reconstruction(seed, place)
-        found = modelled(predictor, reconstruction, place, setup.load_estimator(seed, self.options))
-        found.append(Planning(setup.load_planner(seed, self.options), place, self._held))
+        modules = modelled(
+            setup.load_predictor(seed, place),
+            setup.load_reconstruction(seed, place),
+            place,
+            setup.load_estimator(seed, self.options),
+        )
+        modules.append(Planning(setup.load_planner(seed, self.options), place, self._hover))
         if self.options.clearance is not ClearanceName.TRUE:
-            found.append(
+            modules.append(
                 Perception(
                     lambda: DepthClearance(clearance_model(place), place, PLATFORM.perception)
                 )
             )
-        return found
+        return modules
 
     @arithmetic()
     @torch.inference_mode()
@@ -178,15 +181,15 @@ class Quadrotor(LoopSystem):
     ) -> list[Outcome]:
         return super().execute(loop, scenes, taps, seed)
 
-    def _held(self, scenes: Sequence[str]) -> torch.Tensor:
-        """Return the command that holds each scene's vehicle, `[B, 4]`."""
+    def _hover(self, scenes: Sequence[str]) -> torch.Tensor:
+        """Return the command under which each scene's vehicle hovers, `[B, 4]`."""
         return Vehicle.stack([s.vehicle for s in self._records(scenes)]).hover_command().T
 
     def _records(self, scenes: Sequence[str]) -> tuple[Scene, ...]:
         return tuple(self.scene(scene) for scene in scenes)
 
     def scene(self, scene: str) -> Scene:
-        """Return a scene of a library that was asked for before, or of a frozen one."""
+        """Return a scene of a library that was loaded before, or of a frozen one."""
         if scene not in self._scenes:
             self.library(scene.rpartition("/")[0])
         if scene not in self._scenes:

@@ -1,9 +1,9 @@
 """The ways to wire the quadrotor: which predictor plans, and what feeds its wind input.
 
 A variant is named by its wind input (`zero-wind`, `gru`, `dob`, `true-wind`), by its predictor
-(`wm-a+dcc`), or by both (`wm-a-wind/gru`). What a variant names takes the seed of its arm as the
-seed of its training; a predictor that it does not name is that of the options. The user's own
-parts stand beside those that ship, under the names by which they were named; a planner makes a
+(`wm-a+dcc`), or by both (`wm-a-wind/gru`). The parts that it names are loaded with the seed of the
+arm as their training seed; a variant that names no predictor has that of the options. The user's
+own parts come beside the shipped ones, under the names that the user gave them; a planner makes a
 variant with the predictor of the options.
 """
 
@@ -47,7 +47,7 @@ _FIXED = {
 
 @dataclass(frozen=True)
 class Setup:
-    """What a variant puts where."""
+    """Parts that a variant flies with, by the place that they take."""
 
     name: str
     predictor: str
@@ -63,7 +63,7 @@ class Setup:
 
     @property
     def uses(self) -> set[str | None]:
-        """The parts that it flies with."""
+        """Names of the parts that it flies with."""
         return {self.predictor, self.wind, self.planner, self.estimator}
 
     def load_predictor(self, seed: int | None, device: torch.device = CPU) -> Predictor:
@@ -99,26 +99,26 @@ class Setup:
         return self.user_parts[self.estimator].load(seed, options.place)
 
     def wiring(self, options: QuadrotorOptions) -> Wiring:
-        """Describe the setup to an audit: in words, and which sources it takes."""
-        seen = options.clearance is not ClearanceName.TRUE
+        """Return the setup as audits show it: described in words, with the sources it takes."""
+        estimated = options.clearance is not ClearanceName.TRUE
         bindings = {
-            "clearance": "estimated_clearance" if seen else "true_clearance",
+            "clearance": "estimated_clearance" if estimated else "true_clearance",
             "wind": "zero_wind",
         }
-        words = f"Prediction: {self._said(self.predictor, PREDICTORS)}"
+        words = f"Prediction: {self._description(self.predictor, PREDICTORS)}"
         if self.wind is not None:
-            bindings["wind"], said = _FIXED.get(self.wind) or (
+            bindings["wind"], source = _FIXED.get(self.wind) or (
                 "reconstructed_wind",
-                self._said(self.wind, RECONSTRUCTIONS),
+                self._description(self.wind, RECONSTRUCTIONS),
             )
-            words = f"{words}. Wind: {said}"
+            words = f"{words}. Wind: {source}"
         if self.planner is not None:
             words = f"{words}. Planning: {self.user_parts[self.planner].description}"
         if self.estimator is not None:
-            words = f"{words}. Estimating: {self._said(self.estimator, FILTERS)}"
+            words = f"{words}. Estimating: {self._description(self.estimator, FILTERS)}"
         return Wiring(f"{words}.", bindings)
 
-    def _said(self, name: str, shipped: Mapping[str, Kind[Any] | Tuned]) -> str:
+    def _description(self, name: str, shipped: Mapping[str, Kind[Any] | Tuned]) -> str:
         return (self.user_parts.get(name) or shipped[name]).description
 
 
@@ -127,7 +127,7 @@ def setups(
 ) -> Iterator[Setup]:
     """Yield every way to wire the quadrotor under these options, with the user's own parts.
 
-    First come those that fly with what the options name: as many as there are such parts cover all.
+    First come the few that together fly with the predictor of the options and every user part.
     """
     every = list(_setups(options, user_parts or {}))
     first: dict[str, Setup] = {}
@@ -141,33 +141,33 @@ def setups(
     yield from (setup for setup in every if setup.name not in first)
 
 
-def _setups(options: QuadrotorOptions, mine: Mapping[str, UserPart]) -> Iterator[Setup]:
+def _setups(options: QuadrotorOptions, user_parts: Mapping[str, UserPart]) -> Iterator[Setup]:
     chosen, seed = options.predictor, options.predictor_seed
-    shipped = [each for each in RECONSTRUCTIONS if options.filtered or each != INERTIAL]
-    winds = (ZERO_WIND, *shipped, *_of(Reconstruction, mine), TRUE_WIND)
+    shipped = [name for name in RECONSTRUCTIONS if options.filtered or name != INERTIAL]
+    winds = (ZERO_WIND, *shipped, *_of(Reconstruction, user_parts), TRUE_WIND)
     base = Setup(
         chosen,
         chosen,
         seed,
         None,
-        planner=options.planner if options.planner in mine else None,
+        planner=options.planner if options.planner in user_parts else None,
         estimator=None if options.estimator == "exact" else options.estimator,
-        user_parts=mine,
+        user_parts=user_parts,
     )
-    if _has_wind(chosen, mine):
+    if _has_wind(chosen, user_parts):
         for wind in winds:
             yield replace(base, name=wind, wind=wind)
     named = [
         replace(base, name=name, predictor=name, predictor_seed=None)
-        for name in (*PREDICTORS, *_of(Predictor, mine))
+        for name in (*PREDICTORS, *_of(Predictor, user_parts))
     ]
-    named += [replace(base, name=name, planner=name) for name in _of(Planner, mine)]
+    named += [replace(base, name=name, planner=name) for name in _of(Planner, user_parts)]
     filters = FILTERS if options.filtered else ()
     named += [
-        replace(base, name=name, estimator=name) for name in (*filters, *_of(Estimator, mine))
+        replace(base, name=name, estimator=name) for name in (*filters, *_of(Estimator, user_parts))
     ]
     for setup in named:
-        windy = _has_wind(setup.predictor, mine)
+        windy = _has_wind(setup.predictor, user_parts)
         yield replace(setup, wind=ZERO_WIND if windy else None)
         for wind in winds if windy else ():
             yield replace(setup, name=f"{setup.name}/{wind}", wind=wind)
@@ -192,10 +192,13 @@ def modelled(
 
     A flight has them before its planner, a recorded window before what was executed.
     """
-    found: list[Module] = [] if estimator is None else [estimator]
-    found += [ExactEstimator(estimator.writes if estimator else ()), Prediction(predictor, device)]
+    modules: list[Module] = [] if estimator is None else [estimator]
+    modules += [
+        ExactEstimator(estimator.writes if estimator else ()),
+        Prediction(predictor, device),
+    ]
     if reconstruction is not None:
-        found.append(WindReconstruction(reconstruction, device))
+        modules.append(WindReconstruction(reconstruction, device))
     if "history" in predictor.reads:
-        found.append(HistoryEncoder(predictor, device))
-    return found
+        modules.append(HistoryEncoder(predictor, device))
+    return modules

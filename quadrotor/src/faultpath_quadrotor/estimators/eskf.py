@@ -31,16 +31,16 @@ _INERTIAL, _AIDING = SENSORS[:2], SENSORS[2:]
 
 @dataclass(frozen=True)
 class Filtered:
-    """The belief of some steps ago, and what has been read since."""
+    """The belief of some steps ago, and the readings since."""
 
     belief: Belief
-    """Of the step whose fix may have arrived by now; before that of the start."""
+    """Belief at the step whose fix may have arrived by now, at first that at the start."""
     inertial: tuple[tuple[Tensor, Tensor], ...]
-    """Of the intervals since: gyroscope and accelerometer."""
+    """Readings of gyroscope and accelerometer over the intervals since."""
     aiding: tuple[Mapping[str, Tensor], ...]
     """Altitude and heading of the belief's step and of those since."""
     innovations: tuple[Innovation, ...] = ()
-    """Of what was last taken in."""
+    """Innovations of the last correction."""
 
     def now(self) -> tuple[Tensor, Tensor, Tensor]:
         """Return position, velocity and attitude of the last reading's step."""
@@ -58,10 +58,10 @@ class Filtered:
 class ErrorStateFilter(Estimator):
     """Position, velocity, attitude and body rate from the raw sensors of `estimators.sensors`.
 
-    A fix is of some steps ago when it arrives. The filter therefore stands at that step: whatever
-    it reads is kept until then and taken in at its own moment, and the present follows from the
-    inertial samples since, as in PX4's EKF2. It knows rates and latencies as declared; a fault that
-    makes a fix later still is not known to it. The vehicle starts at rest on level ground.
+    A fix is some steps old when it arrives. The filter's belief therefore stays at that step: other
+    readings are kept and taken in at their own step, and the present follows from the inertial
+    samples since, as in PX4's EKF2. Rates and latencies are the declared ones; the filter does not
+    know of a fault that delays fixes further. The vehicle starts at rest on level ground.
     """
 
     reads = frozenset(Port(name, AT) for name in SENSORS)
@@ -75,12 +75,14 @@ class ErrorStateFilter(Estimator):
         return lanes_of(batch, self._device), len(batch.scenes), None
 
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
-        """Take the step's readings in and return what they say of the state, `[B, ...]`."""
+        """Take the step's readings in and return the estimates of the state, `[B, ...]`."""
         lanes, count, past = memory
         read = {name: lanes_last(inputs[Port(name, AT)], lanes) for name in SENSORS}
         known = self.begun(read) if past is None else self.taken(past, read, inputs.step)
-        said = self.said(known, read)
-        outputs = {STATE_SOURCES[name]: scenes_first(each, count) for name, each in said.items()}
+        outputs = {
+            STATE_SOURCES[name]: scenes_first(estimate, count)
+            for name, estimate in self.said(known, read).items()
+        }
         return outputs, (lanes, count, known)
 
     def said(self, known: Filtered, read: Mapping[str, Tensor]) -> Mapping[str, Tensor]:
@@ -88,8 +90,7 @@ class ErrorStateFilter(Estimator):
         position, velocity, attitude = known.now()
         *_, before, last = read["gyroscope"]  # means over 10 ms: the present is half of that ahead
         rate = last + 0.5 * (last - before) - known.belief.gyroscope_bias
-        found = (position, velocity, attitude, rate)
-        return dict(zip(STATE_SOURCES, found, strict=True))
+        return dict(zip(STATE_SOURCES, (position, velocity, attitude, rate), strict=True))
 
     def begun(self, read: Mapping[str, Tensor]) -> Filtered:
         """Return the memory after the first readings, `[..., L]` by channel."""
@@ -109,13 +110,13 @@ class ErrorStateFilter(Estimator):
         due = {name: aiding[1][name] for name in ("altitude", "heading")}
         if fix.sampled(step - fix.late):
             due["position_fix"] = read["position_fix"]
-        belief, seen = corrected(predicted(belief, by, self.trust), due, self.trust)
-        return Filtered(belief, tuple(later), aiding[1:], tuple(seen))
+        belief, innovations = corrected(predicted(belief, by, self.trust), due, self.trust)
+        return Filtered(belief, tuple(later), aiding[1:], tuple(innovations))
 
 
 @dataclass(frozen=True)
 class Tuned:
-    """A filter that ships."""
+    """A shipped filter."""
 
     description: str
     biases: bool = True
@@ -133,12 +134,12 @@ FILTERS: Mapping[str, Tuned] = MappingProxyType(
         ),
     }
 )
-"""By the names of `choices.FILTERS`."""
+"""The shipped filters, by the names in `choices.FILTERS`."""
 
 
 def filtering(
     name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CPU
 ) -> ErrorStateFilter:
-    """Return a filter that ships."""
+    """Return a shipped filter."""
     tuned = FILTERS[name]
     return ErrorStateFilter(Trust(sensors(fixes), tuned.biases, tuned.doubt), device)

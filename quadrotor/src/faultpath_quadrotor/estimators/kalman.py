@@ -4,7 +4,7 @@ The state is carried by the inertial samples; the filter holds the covariance of
 order position, velocity (world frame), rotation vector (body frame, R = R^ exp(error)), gyroscope
 bias, accelerometer bias (Sola, "Quaternion kinematics for the error-state Kalman filter", 2017;
 increments as in Forster et al., "On-manifold preintegration", 2017). Everything has lanes last and
-is made of sums over the components before them, so that a lane keeps its bits in any company.
+is made of sums over the components before them, so that a lane's bits do not depend on the others.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Increment:
 
     @classmethod
     def of(cls, rate: Tensor, force: Tensor) -> Increment:
-        """Return that of samples without bias, `[SAMPLES, 3, *b]` each, rad/s and m/s^2."""
+        """Return the increment of bias-free samples, `[SAMPLES, 3, *b]` each, rad/s and m/s^2."""
         half = so3.exp(0.5 * SAMPLE_DT_S * rate.transpose(0, 1))  # [3, 3, SAMPLES, *b]
         full = so3.compose(half, half)
         turn = torch.zeros_like(half[:, :, 0])
@@ -60,7 +60,7 @@ class Increment:
 
 @dataclass(frozen=True)
 class Belief:
-    """What the filter holds of each lane."""
+    """Estimate of each lane's state, and the covariance of its error."""
 
     position: Tensor
     velocity: Tensor
@@ -68,7 +68,7 @@ class Belief:
     gyroscope_bias: Tensor
     accelerometer_bias: Tensor
     covariance: Tensor
-    """Of the error, `[15, 15, L]`."""
+    """Covariance of the error, `[15, 15, L]`."""
 
     @classmethod
     def at_rest(cls, fix: Tensor, heading: Tensor, trust: Trust) -> Belief:
@@ -104,16 +104,16 @@ def carried(
 
 @dataclass(frozen=True)
 class Trust:
-    """What the filter takes for its sensors' errors."""
+    """Errors that the filter assumes of its sensors."""
 
     sensors: Mapping[str, Sensor]
     biases: bool = True
-    """Whether it estimates those of gyroscope and accelerometer; else it takes them for zero."""
+    """Whether it estimates those of gyroscope and accelerometer; otherwise they count as zero."""
     doubt: float = 1.0
-    """Factor on the noise of what corrects it: fixes, altitude and heading."""
+    """Factor on the noise of readings that correct it: fixes, altitude and heading."""
 
     def noise(self, name: str) -> float:
-        """Return the standard deviation of what corrects it."""
+        """Return the standard deviation assumed of readings that correct the filter."""
         return self.sensors[name].noise * self.doubt
 
 
@@ -154,10 +154,10 @@ def predicted(belief: Belief, by: Increment, trust: Trust) -> Belief:
 
 
 def _diffused(sensor: Sensor, mean: Tensor) -> Tensor:
-    """Return the variance that an interval adds to what a sensor's samples add up to, `[L]`.
+    """Return the variance that an interval adds to the sum of a sensor's samples, `[L]`.
 
-    Scale errors and misalignment stay, but motion turns their effect about: they count as noise
-    that lasts as long as a manoeuvre.
+    Scale errors and misalignment are constant, but motion changes the direction of their effect:
+    they count as noise that lasts as long as a manoeuvre.
     """
     turned = sensor.scale**2 * mean.square().sum(0) * (_MANOEUVRE_S * CONTROL_DT_S)
     return turned + SAMPLES * (sensor.noise * SAMPLE_DT_S) ** 2
@@ -165,7 +165,7 @@ def _diffused(sensor: Sensor, mean: Tensor) -> Tensor:
 
 @dataclass(frozen=True)
 class Innovation:
-    """What a reading says beside what was expected of it, and the variance of that, `[L]` each."""
+    """Difference between a reading and its expected value, and its variance, `[L]` each."""
 
     value: Tensor
     variance: Tensor
@@ -178,31 +178,31 @@ def corrected(
 
     `read` may hold `position_fix`, `altitude` and `heading`.
     """
-    wanted: list[tuple[Tensor, Tensor, float]] = []
+    measurements: list[tuple[Tensor, Tensor, float]] = []
     for axis in range(3 if "position_fix" in read else 0):
-        said = read["position_fix"][axis] - belief.position[axis]
-        wanted.append((said, _row(belief, {axis: 1.0}), trust.noise("position_fix")))
+        residual = read["position_fix"][axis] - belief.position[axis]
+        measurements.append((residual, _row(belief, {axis: 1.0}), trust.noise("position_fix")))
     if "altitude" in read:
-        said = read["altitude"] - belief.position[2]
-        wanted.append((said, _row(belief, {2: 1.0}), trust.noise("altitude")))
+        residual = read["altitude"] - belief.position[2]
+        measurements.append((residual, _row(belief, {2: 1.0}), trust.noise("altitude")))
     if "heading" in read:
         r = belief.rotation
-        apart = read["heading"] - so3.heading(r)
-        said = torch.atan2(apart.sin(), apart.cos())
+        difference = read["heading"] - so3.heading(r)
+        residual = torch.atan2(difference.sin(), difference.cos())
         level = (r[0, 0].square() + r[1, 0].square()).clamp_min(1e-3)
         about = {
             7: (r[1, 0] * r[0, 2] - r[0, 0] * r[1, 2]) / level,
             8: (r[0, 0] * r[1, 1] - r[1, 0] * r[0, 1]) / level,
         }
-        wanted.append((said, _row(belief, about), trust.noise("heading")))
+        measurements.append((residual, _row(belief, about), trust.noise("heading")))
     error, covariance = torch.zeros_like(belief.covariance[0]), belief.covariance
-    seen: list[Innovation] = []
-    for said, row, noise in wanted:
+    innovations: list[Innovation] = []
+    for residual, row, noise in measurements:
         spread = (covariance * row).sum(1)
         variance = (row * spread).sum(0) + noise**2
         gain = spread / variance
-        seen.append(Innovation(said - (row * error).sum(0), variance))
-        error = error + gain * seen[-1].value
+        innovations.append(Innovation(residual - (row * error).sum(0), variance))
+        error = error + gain * innovations[-1].value
         covariance = covariance - gain[:, None] * spread
     return (
         Belief(
@@ -213,7 +213,7 @@ def corrected(
             belief.accelerometer_bias + error[_A],
             0.5 * (covariance + covariance.transpose(0, 1)),
         ),
-        seen,
+        innovations,
     )
 
 

@@ -1,4 +1,4 @@
-"""What an estimator is to the loop, and the exact one."""
+"""Estimators as the loop runs them, and the exact one."""
 
 from collections.abc import Collection, Iterable, Sequence
 from os import PathLike
@@ -18,7 +18,7 @@ STATE_SOURCES = {
 }
 CALIBRATION_SOURCES = {"mass": "mass_estimate", "thrust_scale": "thrust_scale_estimate"}
 SOURCES = CALIBRATION_SOURCES | STATE_SOURCES
-"""What the controller knows of the vehicle, by the name of the truth."""
+"""Sources of what the controller knows of the vehicle, by the name of the truth."""
 
 
 class Estimator(Module):
@@ -31,7 +31,7 @@ class Estimator(Module):
     name = "estimator"
     writes = tuple(STATE_SOURCES.values())
     data_files: Sequence[str | PathLike[str]] | None = None
-    """Of one that a user brings: the files that it reads, of every seed, such as weights."""
+    """Files that a user's own estimator reads, of every seed, such as weights."""
 
 
 def with_estimators(
@@ -39,7 +39,7 @@ def with_estimators(
 ) -> Interface:
     """Return the interface with the raw sensors that some modules read, and those consumers.
 
-    Estimators are shown at all that they read.
+    Estimators are added as consumers of every channel that they read.
     """
     known = sensors(fixes)
     consumers: dict[str, set[str]] = {}
@@ -48,10 +48,10 @@ def with_estimators(
             if port.channel in known or isinstance(reader, Estimator):
                 consumers.setdefault(port.channel, set()).add(reader.consumer(port))
     channels = [
-        each.model_copy(
-            update={"consumers": (*each.consumers, *sorted(consumers.pop(each.name, ())))}
+        channel.model_copy(
+            update={"consumers": (*channel.consumers, *sorted(consumers.pop(channel.name, ())))}
         )
-        for each in interface.channels
+        for channel in interface.channels
     ]
     sources = list(interface.sources)
     for name in sorted(consumers.keys() & known.keys()):

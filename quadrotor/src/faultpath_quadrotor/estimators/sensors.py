@@ -33,11 +33,11 @@ class Sensor:
     bias: float = 0.0
     """Standard deviation of the offset that a trial begins with."""
     walk: float = 0.0
-    """Standard deviation of what a second adds to that."""
+    """Standard deviation of the change of that offset in a second."""
     scale: float = 0.0
     """Standard deviation of an axis's scale error, and of the angles between axes, rad."""
     rate_hz: float = float(CONTROL_RATE_HZ)
-    """Of its readings."""
+    """Rate of its readings."""
     latency_s: float = 0.0
 
     @property
@@ -105,7 +105,7 @@ def readings(passed: Sequence[State]) -> Mapping[str, Tensor]:
     `passed` holds the states of the last control interval at the ends of its `SAMPLES` parts, the
     present one last. Its samples are the means that lead from each to the next.
     """
-    now = passed[-1]
+    present = passed[-1]
     rotation = torch.stack([state.rotation for state in passed], 2)
     velocity = torch.stack([state.velocity for state in passed], 1)
     before, after = rotation[:, :, :-1], rotation[:, :, 1:]
@@ -116,9 +116,9 @@ def readings(passed: Sequence[State]) -> Mapping[str, Tensor]:
     return {
         "gyroscope": (turn / SAMPLE_DT_S).transpose(0, 1),
         "accelerometer": force.transpose(0, 1),
-        "position_fix": now.position,
-        "altitude": now.position[2],
-        "heading": so3.heading(now.rotation),
+        "position_fix": present.position,
+        "altitude": present.position[2],
+        "heading": so3.heading(present.rotation),
     }
 
 
@@ -132,9 +132,9 @@ class Errors:
         self._drawn = {
             name: [
                 torch.from_numpy(np.stack(part))
-                for part in zip(*(_draw(name, each, s, seed, steps) for s in scenes), strict=True)
+                for part in zip(*(_draw(name, sensor, s, seed, steps) for s in scenes), strict=True)
             ]
-            for name, each in (known.items() if size else ())
+            for name, sensor in (known.items() if size else ())
         }
 
     def on(self, name: str, step: int, exact: Tensor) -> Tensor:

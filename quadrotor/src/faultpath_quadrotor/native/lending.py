@@ -1,8 +1,8 @@
-"""Memory lent to a compiled kernel: what it takes for granted is checked here, in code.
+"""Memory lent to a compiled kernel: what the kernel assumes is checked here, in code.
 
-A kernel is told an address and believes the rest. A tensor of another size, precision, device or
-layout than it believes would be read as garbage, or past its end. So every function and object of
-this package raises `ValueError` for a tensor that its kernel does not take.
+A kernel gets an address and trusts the rest: a tensor of another size, precision, device or layout
+would be read as garbage, or past its end. So every function and object of this package raises
+`ValueError` for a tensor that its kernel does not take.
 """
 
 import ctypes
@@ -77,7 +77,7 @@ class Block(ctypes.Structure):
     """A structure that a kernel reads; it holds on to what its addresses point to."""
 
     def __init__(self, *values: object, **named: object) -> None:
-        self._held = (values, named)
+        self._values = (values, named)
         super().__init__(
             *map(_written, values), **{name: _written(value) for name, value in named.items()}
         )
@@ -109,14 +109,14 @@ def pack(weights: Tensor, block: int) -> Tensor:
 def is_exactly(value: object, kind: type[T]) -> TypeGuard[T]:
     """Return whether `value` is of `kind`, no subclass, with none of its methods replaced.
 
-    A subclass may compute anything; a kernel that stood for its parent would fly in its place.
+    A subclass may compute something else, so its parent's kernel must not replace it.
     """
     own = vars(value) if hasattr(value, "__dict__") else {}
     return type(value) is kind and not any(callable(getattr(kind, n, None)) for n in own)
 
 
 def covered(value: object, kind: type) -> bool:
-    """Return whether a kernel of `kind` stands for `value`; say so where it does not."""
+    """Return whether a kernel of `kind` may replace `value`; warn where it may not."""
     if is_exactly(value, kind):
         return True
     tell_portable(f"The {type(value).__name__}", unlike(kind, value))
@@ -124,7 +124,7 @@ def covered(value: object, kind: type) -> bool:
 
 
 def unlike(kind: type, value: object) -> str:
-    """Return in words why a kernel of `kind` does not stand for `value`."""
+    """Return in words why a kernel of `kind` may not replace `value`."""
     if type(value) is kind:
         return f"methods of this {kind.__name__} were replaced"
     return f"there is a kernel of {kind.__name__} itself, not of {type(value).__name__}"

@@ -45,7 +45,7 @@ class Kernels:
 
     @property
     def numerics(self) -> str:
-        """What decides the last bits: sets that fuse multiply and add agree to the bit."""
+        """Name of its rounding; sets that fuse multiply and add agree to the bit."""
         return "fused" if self.isa in _FUSING else self.isa
 
 
@@ -59,21 +59,20 @@ def _argument(value: object) -> object:
     return ctypes.c_int64(value) if isinstance(value, int) else value
 
 
-_asked: ContextVar[str] = ContextVar("kernels", default="")
+_choice: ContextVar[str] = ContextVar("kernels", default="")
 
 
 @contextmanager
 def using(choice: str) -> Iterator[None]:
-    """Let an instruction set, or `portable`, run what is built and called inside.
+    """Use an instruction set, or `portable`, for everything built and called inside.
 
-    What models learn from is made on the portable path: a pool has the same bytes with kernels and
-    without.
+    Training data are made on the portable path: a pool has the same bytes with kernels and without.
     """
-    before = _asked.set(choice)
+    before = _choice.set(choice)
     try:
         yield
     finally:
-        _asked.reset(before)
+        _choice.reset(before)
 
 
 def kernels() -> Kernels | None:
@@ -85,17 +84,17 @@ def kernels() -> Kernels | None:
         UserError: It names something else, a set that was not built or does not run here, or the
             kernels are older than their sources.
     """
-    return _chosen(_asked.get() or os.environ.get(VARIABLE) or AUTO)
+    return _chosen(_choice.get() or os.environ.get(VARIABLE) or AUTO)
 
 
 @cache
-def _chosen(wanted: str) -> Kernels | None:
-    if wanted == PORTABLE:
+def _chosen(choice: str) -> Kernels | None:
+    if choice == PORTABLE:
         return None
-    if wanted not in (AUTO, *SETS):
-        choices = ", ".join((AUTO, *SETS, PORTABLE))
-        raise UserError(f"{VARIABLE} is '{wanted}': it takes one of {choices}.")
-    for isa in available() if wanted == AUTO else (wanted,):
+    if choice not in (AUTO, *SETS):
+        names = ", ".join((AUTO, *SETS, PORTABLE))
+        raise UserError(f"{VARIABLE} is '{choice}': it takes one of {names}.")
+    for isa in available() if choice == AUTO else (choice,):
         return load(isa)
     return None
 
@@ -126,7 +125,7 @@ def whole_vectors(count: int) -> bool:
 
 
 def numerics() -> str:
-    """Return what decides the last bits of a run here; results of two never mix in a folder."""
+    """Return the name of the rounding here; results of two are never mixed in a folder."""
     built = kernels()
     return PORTABLE if built is None else built.numerics
 

@@ -1,4 +1,4 @@
-"""Depth perception: the camera, what it sees, and the clearance that can be told from it."""
+"""Depth perception: the camera, its images, and the clearance that they show."""
 
 from faultpath_quadrotor.perception.camera import CaptureFrame, mounted
 from faultpath_quadrotor.perception.clearance import ClearanceModel

@@ -44,16 +44,16 @@ def features(points: Tensor) -> Tensor:
     x, y, z = points.unbind(0)
     distance = (x * x).add_(y * y).add_(z * z).sqrt_()
     inverse = x.clamp_min(0).add_(0.25).reciprocal_()
-    found = points.new_empty(9, *x.shape)
-    torch.mul(points, 0.5, out=found[:3])
-    found[0] -= 0.5
-    torch.mul(distance, 0.5, out=found[3]).sub_(0.7)
-    torch.sub(inverse, 0.7, out=found[4])
-    torch.mul(points[1:], inverse, out=found[5:7]).clamp_(-1.5, 1.5)
+    rows = points.new_empty(9, *x.shape)
+    torch.mul(points, 0.5, out=rows[:3])
+    rows[0] -= 0.5
+    torch.mul(distance, 0.5, out=rows[3]).sub_(0.7)
+    torch.sub(inverse, 0.7, out=rows[4])
+    torch.mul(points[1:], inverse, out=rows[5:7]).clamp_(-1.5, 1.5)
     distance.add_(0.25).reciprocal_()
-    torch.sub(distance, 0.7, out=found[7])
-    found[8] = 1
-    return found
+    torch.sub(distance, 0.7, out=rows[7])
+    rows[8] = 1
+    return rows
 
 
 class ClearanceModel(nn.Module):
@@ -156,7 +156,7 @@ class ClearanceModel(nn.Module):
         return torch.bmm(last, hidden)[:, 0]
 
     def makers(self) -> list[tuple[nn.Linear, tuple[int, int]]]:
-        """Return what makes each layer of the query network, and its outputs and inputs.
+        """Return the map that makes each layer of the query network, and its outputs and inputs.
 
         The constant unit of a hidden layer is no output of it, and the last input of the next.
         """
@@ -171,11 +171,11 @@ class ClearanceModel(nn.Module):
         count = code.shape[1]
         padded = code.new_zeros(CODE, -(-count // _COLUMNS) * _COLUMNS)
         padded[:, :count] = code
-        found = []
-        for layer, (rows, columns) in self.makers():
-            made = torch.mm(layer.weight, padded).add_(layer.bias[:, None])[:, :count].T
-            found.append(made.reshape(count, rows, columns).contiguous())
-        return found
+        layers = []
+        for maker, (rows, columns) in self.makers():
+            weights = torch.mm(maker.weight, padded).add_(maker.bias[:, None])[:, :count].T
+            layers.append(weights.reshape(count, rows, columns).contiguous())
+        return layers
 
 
 def _with_constant(weights: Tensor) -> Tensor:

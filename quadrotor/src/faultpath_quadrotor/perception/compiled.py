@@ -12,7 +12,7 @@ from faultpath_quadrotor.native.library import WIDEST, Kernels
 
 HEIGHT, WIDTH, CODE = 36, 64, 64
 ENCODER_SHAPES = ((16, 2, 5, 5), (32, 16, 3, 3), (48, 32, 3, 3), (128, 48 * 5 * 8), (CODE, 128))
-"""Of the weights: three convolutions and two dense layers; fixed in `encoder.cpp`, as is `CODE`."""
+"""Weights of three convolutions and two dense layers; fixed in `encoder.cpp`, as is `CODE`."""
 
 _SUMMED = 32
 """Outputs of a dense layer that the kernel sums at once."""
@@ -42,7 +42,7 @@ class CompiledEncoder:
 
         Args:
             kernels: What encodes.
-            weights: Of `ENCODER_SHAPES`.
+            weights: Weights of the shapes in `ENCODER_SHAPES`.
             biases: One for each output of each layer.
             inputs: A range r, a nearest depth n and a scale s: an image of depths d enters as d / r
                 and as s / max(d, n).
@@ -85,7 +85,7 @@ _NUMBERS = (FEATURES + 1 + HIDDEN + 1 + 1) * (HIDDEN + 1)
 
 
 class Bounds(NamedTuple):
-    """Between what the answer lies, and where the image covers what is asked."""
+    """Bounds of the answer, and of the space that the image covers."""
 
     lowest_m: float
     highest_m: float
@@ -108,7 +108,7 @@ class CompiledClearance:
     """Capture frame, features, query network and field of view in one pass."""
 
     def __init__(self, kernels: Kernels, makers: Sequence[Tensor], bounds: Bounds) -> None:
-        """Copy what makes a query network from a code.
+        """Copy the maps that make a query network from a code.
 
         Args:
             kernels: What answers.
@@ -119,11 +119,11 @@ class CompiledClearance:
         self._kernels = kernels
         self._bounds = _Bounds(*bounds._replace(near_m=bounds.near_m**2))
         rows: list[Tensor] = []
-        for made, (outputs, inputs) in zip(makers, QUERY_SHAPES, strict=True):
-            lend("makers", made.detach().contiguous(), outputs * inputs, CODE + 1)
+        for maker, (outputs, inputs) in zip(makers, QUERY_SHAPES, strict=True):
+            lend("makers", maker.detach().contiguous(), outputs * inputs, CODE + 1)
             # Numbers stand in the order of `Query`: hidden layers in blocks of outputs, biases
             # first, padded with zeros; the last layer as it is.
-            whole = made.detach().unflatten(0, (outputs, inputs))
+            whole = maker.detach().unflatten(0, (outputs, inputs))
             if outputs > 1:
                 whole = pack(whole.roll(1, dims=1), BLOCK)
             rows.append(whole.reshape(-1, CODE + 1))
@@ -137,7 +137,7 @@ class CompiledClearance:
         Args:
             codes: `[64, S]`.
             eye: Where the images were taken from, `[S, 3]`, m.
-            axes: And the camera's attitudes, `[S, 3, 3]`.
+            axes: The camera's attitudes there, `[S, 3, 3]`.
             points: World frame, `[3, S, N]`, m.
         """
         _, scenes, count = points.shape

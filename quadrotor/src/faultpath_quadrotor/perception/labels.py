@@ -1,8 +1,8 @@
-"""What a depth image says about clearance: signed distance to the edge of the space known free.
+"""Clearance labels of a depth image: signed distance to the edge of the space known to be free.
 
-The image is read as a surface: neighbouring pixels are joined by triangles. Where their depths go
-together a triangle lies on what is seen; where they part it spans the gap along the rays, the
-frontier between what is seen to be free and what is hidden. The two need no telling apart: the
+The image is read as a surface: neighbouring pixels are joined by triangles. Where their depths are
+close a triangle lies on a visible surface; where they jump it spans the gap along the rays, the
+frontier between space seen to be free and hidden space. The two need no distinction: the
 surface bounds the known free space. Behind it space counts as occupied, as in sdf-nmpc
 (ntnu-arl/sdf-nmpc: a signed distance truncated to [-0.3, 1] m over one depth image). Triangles
 whose corners all read the range are no surface: beyond the range space is free.
@@ -61,8 +61,8 @@ def triangles(z: Array) -> Array:
     corners = np.moveaxis(_RAYS * z, 0, -1)
     a, b = corners[:-1, :-1], corners[:-1, 1:]
     c, d = corners[1:, :-1], corners[1:, 1:]
-    found = np.stack((np.stack((a, b, c), 2), np.stack((d, c, b), 2))).reshape(-1, 3, 3)
-    return found[(found[:, :, 0] < RANGE_M).any(1)]
+    every = np.stack((np.stack((a, b, c), 2), np.stack((d, c, b), 2))).reshape(-1, 3, 3)
+    return every[(every[:, :, 0] < RANGE_M).any(1)]
 
 
 def _surface_distance(z: Array, points: Array) -> Array:
@@ -73,37 +73,37 @@ def _surface_distance(z: Array, points: Array) -> Array:
     """
     from scipy.spatial import cKDTree  # slow to load, and only those who label need it
 
-    found = triangles(z)
+    surface = triangles(z)
     far = np.full(points.shape[1], np.inf)
-    if not len(found):
+    if not len(surface):
         return far
-    samples, owner = _samples(found)
+    samples, owner = _samples(surface)
     tree = cKDTree(samples, balanced_tree=False, compact_nodes=False)
     reach = HIGHEST_M + 2 * _SAMPLE_M
     index = np.asarray(
         tree.query(points.T, k=_NEIGHBOURS, distance_upper_bound=reach)[1], dtype=np.int64
     )
     query, slot = np.nonzero(index < len(samples))
-    near = _triangle_distance(found[owner[index[query, slot]]], points.T[query])
+    near = _triangle_distance(surface[owner[index[query, slot]]], points.T[query])
     np.minimum.at(far, query, near)
     return far
 
 
-def _samples(found: Array) -> tuple[Array, NDArray[np.int64]]:
-    edges = np.roll(found, -1, 1) - found
+def _samples(corners: Array) -> tuple[Array, NDArray[np.int64]]:
+    edges = np.roll(corners, -1, 1) - corners
     length = np.linalg.norm(edges, axis=2)
     longest = length.argmax(1)
-    each = np.arange(len(found))
-    count = np.ceil(length[each, longest] / _SAMPLE_M).astype(np.int64).clip(1)
-    owner = np.repeat(each, count)
+    triangle = np.arange(len(corners))
+    count = np.ceil(length[triangle, longest] / _SAMPLE_M).astype(np.int64).clip(1)
+    owner = np.repeat(triangle, count)
     place = np.arange(len(owner)) - np.repeat(count.cumsum() - count, count)
     along = ((place + 0.5) / count[owner])[:, None]
-    return found[owner, longest[owner]] + along * edges[owner, longest[owner]], owner
+    return corners[owner, longest[owner]] + along * edges[owner, longest[owner]], owner
 
 
-def _triangle_distance(found: Array, points: Array) -> Array:
-    edges = np.roll(found, -1, 1) - found
-    toward = points[:, None] - found
+def _triangle_distance(corners: Array, points: Array) -> Array:
+    edges = np.roll(corners, -1, 1) - corners
+    toward = points[:, None] - corners
     along = (toward * edges).sum(2) / np.maximum((edges * edges).sum(2), 1e-18)
     rest = toward - along.clip(0, 1)[..., None] * edges
     nearest = (rest * rest).sum(2).min(1)

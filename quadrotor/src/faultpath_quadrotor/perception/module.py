@@ -21,10 +21,10 @@ Measure = Callable[[Tensor, Chunk], Tensor]
 def clearance_query(measure: Measure) -> Query:
     """Return the query that answers with the clearance along all candidates, `[B, H, K]`."""
 
-    def answer(asked: Predicted) -> Tensor:
-        first = asked.rollouts[0].positions
-        clearance = first.new_zeros(asked.count, *first.shape[2:])
-        for part, rollout in zip(asked.parts, asked.rollouts, strict=True):
+    def answer(predicted: Predicted) -> Tensor:
+        first = predicted.rollouts[0].positions
+        clearance = first.new_zeros(predicted.count, *first.shape[2:])
+        for part, rollout in zip(predicted.parts, predicted.rollouts, strict=True):
             points = rollout.positions
             clearance[part.rows] = measure(points.flatten(2), part).view(points.shape[1:])
         return clearance

@@ -139,20 +139,20 @@ class DepthRenderer:
         return _View(eye, axes, g.half, g.rounding, seen)
 
     def _draw(self, view: _View) -> Tensor:
-        """Return the images of some scenes; every solid is drawn, and what is out of view left out.
+        """Return the images of some scenes: every solid is drawn, then masked where out of view.
 
-        How many are in view only the device knows.
+        Only the device knows how many are in view.
         """
         image = self._background(view).clamp_(0, RANGE_M)
         solids = view.numbers().float().flatten(1)[..., None, None]
         pillar = view.rounding > 0
-        for wanted, interval in (
+        for visible, interval in (
             (view.seen & ~pillar, self._box),
             (view.seen & pillar, self._pillar),
         ):
             enter, leave = interval(solids)
-            hidden = (enter.clamp_(min=0) > leave) | ~wanted.flatten()[:, None, None]
-            nearest = enter.masked_fill_(hidden, RANGE_M).unflatten(0, wanted.shape).amin(0)
+            hidden = (enter.clamp_(min=0) > leave) | ~visible.flatten()[:, None, None]
+            nearest = enter.masked_fill_(hidden, RANGE_M).unflatten(0, visible.shape).amin(0)
             torch.minimum(image, nearest, out=image)
         return image
 
@@ -211,9 +211,9 @@ class DepthRenderer:
 
 
 def _within_arena(geometry: Geometry) -> tuple[Tensor, Tensor]:
-    """Return from which to which height above its centre each solid can be seen, `[K, B]`, m.
+    """Return the least and greatest height above its centre at which each solid can be seen.
 
-    Solids go on beyond floor and ceiling; no camera inside the arena sees that.
+    Both are `[K, B]`, m. Solids go on beyond floor and ceiling; no camera in the arena sees that.
     """
     middle, half = geometry.offset[2], geometry.half[2]
     floor, ceiling = middle[0] - half[0], middle[0] + half[0]

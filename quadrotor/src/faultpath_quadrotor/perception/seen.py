@@ -17,13 +17,13 @@ from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
 
 class PerceptionSettings(BaseModel):
-    """What perception makes of its images (derived, docs/design/perception.md)."""
+    """Settings of perception (derived, docs/design/perception.md)."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     unseen_m: float = 0.3
-    """Most clearance that space outside the field of view is said to have: the collision radius
-    and 10 cm. A planner may go there where nothing better offers, and would rather look first."""
+    """Most clearance of space outside the field of view: the collision radius and 10 cm. A planner
+    may go there where there is nothing better, but would rather look first."""
     near_m: float = 0.4
     """Around the camera the field of view does not matter: the vehicle has just come through."""
 
@@ -52,14 +52,14 @@ class _Captured:
 class DepthClearance:
     """The clearance that the latest depth images show, for planners that ask about many points.
 
-    It sees what it is given and nothing else: images and the poses they were taken from. Points
-    that no pixel can show have a clearance of at most `PerceptionSettings.unseen_m`.
+    It knows nothing but the images and the poses that they were taken from. Points that no pixel
+    can show have a clearance of at most `PerceptionSettings.unseen_m`.
     """
 
     encoder: CompiledEncoder | None = None
-    """What encodes images for the model, if any: with the weights that it had then."""
+    """Compiled encoder of the images, if any, with the weights that the model had then."""
     queries: CompiledClearance | None = None
-    """What answers for it."""
+    """Compiled queries of the model, if any."""
 
     def __init__(
         self,
@@ -104,13 +104,13 @@ class DepthClearance:
             raise RuntimeError("nothing was captured yet: call `capture` before `query`")
         return self._shown(self._captured.take(torch.as_tensor(scenes)), points)
 
-    def _shown(self, by: _Captured, points: Tensor) -> Tensor:
+    def _shown(self, captured: _Captured, points: Tensor) -> Tensor:
         if self.queries is not None:
-            return self.queries(by.code, by.position, by.rotation, points)
-        local = by.frame().from_world(points)
-        seen, asked = self._model.query(by.code, local), self._settings
-        known = in_view(local) | near(local, asked.near_m)
-        return torch.where(known, seen, seen.clamp(max=asked.unseen_m))
+            return self.queries(captured.code, captured.position, captured.rotation, points)
+        local = captured.frame().from_world(points)
+        clearance, settings = self._model.query(captured.code, local), self._settings
+        known = in_view(local) | near(local, settings.near_m)
+        return torch.where(known, clearance, clearance.clamp(max=settings.unseen_m))
 
 
 def in_view(points: Tensor) -> Tensor:
@@ -135,8 +135,8 @@ def _misfit(model: ClearanceModel) -> str:
     parts = list(model.modules())
     if len(parts) != len(kinds) or not all(map(is_exactly, parts, kinds)):
         return "its layers are others"
-    theirs = {name: part.shape for name, part in known.state_dict().items()}
-    if str(model) != str(known) or theirs != {n: p.shape for n, p in model.state_dict().items()}:
+    shapes = {name: part.shape for name, part in known.state_dict().items()}
+    if str(model) != str(known) or shapes != {n: p.shape for n, p in model.state_dict().items()}:
         return "its layers have other sizes"
     if any(p.dtype != torch.float32 or not host_readable(p.device) for p in model.parameters()):
         return "its weights are not float32 on the CPU"
@@ -159,5 +159,5 @@ def _queries(model: ClearanceModel, settings: PerceptionSettings) -> CompiledCle
         return None
     left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
     bounds = Bounds(LOWEST_M, HIGHEST_M, settings.unseen_m, settings.near_m, left, up)
-    makers = [torch.cat((each.weight, each.bias[:, None]), 1) for each, _ in model.makers()]
+    makers = [torch.cat((layer.weight, layer.bias[:, None]), 1) for layer, _ in model.makers()]
     return CompiledClearance(kernels, makers, bounds)

@@ -31,7 +31,7 @@ class CEM(Planner):
     elites: float = 0.1
     """Share of the candidates that are kept."""
     momentum: float = 0.1
-    """What plan and spread keep of themselves in an update."""
+    """Share of the old plan and spread that an update keeps."""
 
     def __init__(self, sampler: AutoregressiveSampler, cost: NavigationCost) -> None:
         super().__init__(sampler)

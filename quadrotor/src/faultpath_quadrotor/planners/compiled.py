@@ -14,8 +14,8 @@ TERMS = (
     *("running", "goal", "risk", "hit", "margin_m", "radius_m", "speed", "v_max_mps", "heading"),
     *("rate_effort", "thrust_effort"),
 )
-"""What a cost weighs, and the distances and speeds that it weighs against. `running` is the share
-of the mean distance along the horizon; the rest is the distance at its end."""
+"""Weights of a cost, and the distances and speeds that they refer to. `running` is the share of the
+mean distance along the horizon; the rest is the distance at its end."""
 
 
 class _Weights(ctypes.Structure):
@@ -25,7 +25,7 @@ class _Weights(ctypes.Structure):
 
 
 class Paths(NamedTuple):
-    """What is scored: K candidates of S scenes over H steps."""
+    """Candidates to score: K of S scenes over H steps."""
 
     positions: Tensor
     """`[3, S, H, K]`, m."""
@@ -49,7 +49,7 @@ def cost(kernels: Kernels, terms: Mapping[str, float], paths: Paths) -> Tensor:
     Args:
         kernels: Compiled kernels.
         terms: A number for each of `TERMS`.
-        paths: What is scored; at least one step, and K in whole vectors.
+        paths: The candidates; at least one step, and K in whole vectors.
 
     Raises:
         ValueError: A term is missing, or a tensor is not what the kernel takes; see `lend`.
@@ -86,7 +86,7 @@ def noise(
 
     Args:
         kernels: Compiled kernels.
-        keys: Of the Philox stream of each scene, `[S, 2]`, uint64.
+        keys: Keys of the scenes' Philox streams, `[S, 2]`, uint64.
         step: Which part of the streams.
         size: Steps of the horizon H and candidates K; whole vectors.
         correlation: What a step keeps of the one before, and how much of it is drawn afresh.

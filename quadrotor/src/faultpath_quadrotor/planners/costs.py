@@ -1,4 +1,4 @@
-"""What the planner minimises: goal, clearance risk, speed, heading and effort."""
+"""Cost that the planner minimises: goal, clearance risk, speed, heading and effort."""
 
 from dataclasses import dataclass
 
@@ -40,7 +40,7 @@ class CostWeights(BaseModel):
 
 @dataclass(frozen=True)
 class Scored:
-    """What a cost may look at, batch `[S, K]`."""
+    """Everything that a cost may depend on, batch `[S, K]`."""
 
     rollout: Rollout
     commands: Tensor

@@ -22,7 +22,7 @@ CLEARANCE = Port("clearance", "risk_cost")
 
 @dataclass(frozen=True)
 class _Plans:
-    """What the planner holds between steps."""
+    """Plan that the planner keeps between steps."""
 
     batch: Batch
     lanes: Tensor
@@ -37,12 +37,12 @@ class Planning(Module):
     reads = frozenset({ROLLOUT, HOVER, GOAL, CLEARANCE})
 
     def __init__(
-        self, planner: Planner, device: torch.device, held: Callable[[Sequence[str]], Tensor]
+        self, planner: Planner, device: torch.device, hover: Callable[[Sequence[str]], Tensor]
     ) -> None:
-        """`held` gives the command `[B, 4]` under which the scenes' vehicles hover."""
+        """`hover` gives the command `[B, 4]` under which the scenes' vehicles hover."""
         self._planner = planner
         self._device = device
-        self._held = held
+        self._hover = hover
         self._chunks = lru_cache(maxsize=2)(partial(chunks, device=device))
 
     def begin(self, batch: Batch) -> Memory:
@@ -51,7 +51,7 @@ class Planning(Module):
 
     def before(self, batch: Batch) -> Outputs:
         """Return the command that was executed before the flight: the vehicles hovered."""
-        return {"commanded_action": self._held(batch.scenes).to(self._device)}
+        return {"commanded_action": self._hover(batch.scenes).to(self._device)}
 
     def noise_hashes(self, batch: Batch) -> tuple[str, ...]:
         """Return, for each scene, a hash of the noise that its first replan drew."""
@@ -73,7 +73,7 @@ class Planning(Module):
         parts = self._chunks(tuple(_planned(inputs)))
         searches = [planner.init(plan[..., part.rows], hover[part.rows]) for part in parts]
         for iteration in range(planner.iterations):
-            asked = Candidates(
+            candidates = Candidates(
                 len(known.batch.scenes),
                 parts,
                 tuple(
@@ -81,7 +81,7 @@ class Planning(Module):
                     for search, part in zip(searches, parts, strict=True)
                 ),
             )
-            predicted: Predicted = inputs[ROLLOUT](asked)
+            predicted: Predicted = inputs[ROLLOUT](candidates)
             clearance = inputs[CLEARANCE](predicted)
             searches = [
                 planner.update(
@@ -91,7 +91,7 @@ class Planning(Module):
                     ),
                 )
                 for search, part, rollout, commands in zip(
-                    searches, parts, predicted.rollouts, asked.commands, strict=True
+                    searches, parts, predicted.rollouts, candidates.commands, strict=True
                 )
             ]
         command = idle[0]

@@ -33,7 +33,7 @@ class Planner(ABC):
     iterations: int = 1
     """Proposals and updates of one step."""
     data_files: Sequence[str | PathLike[str]] | None = None
-    """Of one that a user brings: the files that it reads, of every seed, such as weights."""
+    """Files that a user's own planner reads, of every seed, such as weights."""
 
     def __init__(self, sampler: AutoregressiveSampler) -> None:
         self.sampler = sampler

@@ -68,7 +68,7 @@ class _Trial(Block):
 
 @dataclass(frozen=True)
 class Watched:
-    """What `CompiledPlant.fly` brings up to date, and what it looks at for that."""
+    """Trials that `CompiledPlant.fly` brings up to date, and their number of lanes."""
 
     trial: _Trial
     lanes: int
@@ -81,19 +81,19 @@ def watch(
     *,
     radius_m: float,
     every: int,
-    made: int,
+    steps: int,
     rate_hz: int,
 ) -> Watched:
-    """Return what lets `CompiledPlant.fly` bring the trials' `standing` up to date.
+    """Return the trials whose `standing` `CompiledPlant.fly` is to bring up to date.
 
     Args:
-        solids: What there is to touch, `[K, 10, L]`, rows as `Solid` of `plant_contact.hpp`.
+        solids: Prisms that may be touched, `[K, 10, L]`, rows as `Solid` of `plant_contact.hpp`.
         goal: Where trials should end, `[3, L]`, m.
         standing: Running, crashed, time, distance to the goal and least clearance, `[L]` each;
             written to.
-        radius_m: Of the vehicle.
+        radius_m: The vehicle's radius.
         every: Plant steps between two looks.
-        made: Plant steps before the call.
+        steps: Plant steps before the call.
         rate_hz: Plant steps a second.
 
     Raises:
@@ -106,7 +106,7 @@ def watch(
         lend("solids", solids, len(solids), _SOLID, lanes, dtype=torch.float64),
         len(solids),
         lend("goal", goal, 3, lanes, dtype=torch.float64),
-        *(radius_m, every, made, rate_hz),
+        *(radius_m, every, steps, rate_hz),
         *(
             lend(name, value, lanes, dtype=dtype)
             for (name, dtype), value in zip(_STANDING.items(), standing, strict=True)
@@ -119,7 +119,7 @@ class CompiledPlant:
     """Flies one batch of vehicles in float64 on the CPU."""
 
     def __init__(self, kernels: Kernels, airframes: Tensor, dt_s: float) -> None:
-        """Take what the vehicles are: `airframes` `[15, L]`, rows as `Airframe` of `plant.hpp`."""
+        """Take the vehicles: `airframes` `[15, L]`, rows as `Airframe` of `plant.hpp`."""
         self._kernels = kernels
         lanes = airframes.shape[-1]
         whole = airframes.contiguous()
@@ -135,7 +135,7 @@ class CompiledPlant:
         winds: Tensor,
         watched: Watched | None = None,
     ) -> tuple[Tensor, ...]:
-        """Return what `before` has become after one step for each of `winds`.
+        """Return the parts in `before` after one step for each of `winds`.
 
         Args:
             before: Position, velocity and rate `[3, L]`, rotation `[3, 3, L]` and motor thrusts

@@ -33,9 +33,9 @@ class Flying:
     world: World
     camera: DepthRenderer | None
     clearance: Query | None
-    """Of the geometry itself."""
+    """Clearance of the geometry itself; `None` where nothing reads it."""
     errors: Errors
-    """Of the raw sensors."""
+    """Errors of the raw sensors."""
 
 
 class VehiclePlant(Plant):
@@ -114,13 +114,13 @@ class VehiclePlant(Plant):
 
     @override
     def progress(self, state: Flying) -> Progress:
-        now, count = state.world.progress, state.world.count
+        progress, count = state.world.progress, state.world.count
         return Progress(
-            running=now.running[:count],
-            succeeded=now.succeeded[:count],
-            crashed=now.crashed[:count],
-            time_s=now.time_s[:count],
-            metrics={name: getattr(now, name)[:count] for name in VEHICLE},
+            running=progress.running[:count],
+            succeeded=progress.succeeded[:count],
+            crashed=progress.crashed[:count],
+            time_s=progress.time_s[:count],
+            metrics={name: getattr(progress, name)[:count] for name in VEHICLE},
         )
 
     def over(self, state: Flying, step: int) -> bool:

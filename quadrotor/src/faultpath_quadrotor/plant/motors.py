@@ -35,7 +35,7 @@ def acceleration_per_thrust(vehicle: Vehicle) -> Tensor:
     """Return realised acceleration per newton of each motor, [4, 4, *b].
 
     Row 0 is m/s^2 along body z and carries the thrust scale, rows 1-3 are rad/s^2 and carry the
-    torque scale: each multiplies what is realised, not what is asked for.
+    torque scale: each multiplies the realised value, not the commanded one.
     """
     thrust = vehicle.thrust_scale / vehicle.mass_kg
     torque = vehicle.torque_scale / vehicle.inertia_kgm2
@@ -84,7 +84,7 @@ def turn(
 class RateLoop:
     """Proportional rate control with gyroscopic feed-forward, a mixer and per-motor limits.
 
-    Wanted torque: I K (command - rate) + rate x I rate. The controller knows the vehicle's
+    The torque commanded is I K (command - rate) + rate x I rate. The controller knows the vehicle's
     inertia but neither its scales nor its motor lag, so the loop's true gain is the torque scale
     times K. Where motors cannot give it all, yaw gives way first, as its motor strokes are the
     longest (Faessler et al. 2017, "Thrust Mixing, Saturation, and Body-Rate Control"); then each
@@ -92,7 +92,7 @@ class RateLoop:
     """
 
     per_acceleration: Tensor
-    """Thrust of each motor per wanted angular acceleration about each axis, [3, 4, *b]."""
+    """Thrust of each motor per angular acceleration about each axis, [3, 4, *b]."""
 
     def __init__(self, vehicle: Vehicle) -> None:
         like = vehicle.mass_kg
@@ -118,8 +118,8 @@ class RateLoop:
         `target`, `rate` [3, *b] is the body rate and `gyroscopic` [3, *b] the angular
         acceleration that it causes by itself, rad/s^2.
         """
-        wanted = torch.addcmul(target, self._gain, rate, value=-1.0).sub_(gyroscopic)
-        roll, pitch, yaw = wanted.unbind(0)
+        acceleration = torch.addcmul(target, self._gain, rate, value=-1.0).sub_(gyroscopic)
+        roll, pitch, yaw = acceleration.unbind(0)
         thrusts = torch.addcmul(level, self._roll, roll).addcmul_(self._pitch, pitch)
         thrusts = thrusts.clamp_(0.0, MOTOR_THRUST_MAX_N)
         room = torch.minimum(thrusts, self._ceiling - thrusts).amin(0)

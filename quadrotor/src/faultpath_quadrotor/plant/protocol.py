@@ -1,4 +1,4 @@
-"""What a plant is to the world, whatever integrates it."""
+"""Plants as the world flies them, whatever integrates the motion."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class Contact:
-    """What each lane's vehicle may touch, and where its trial should end."""
+    """Solids that each lane's vehicle may touch, and the goal where its trial should end."""
 
     geometry: Geometry
     goal: Tensor
@@ -63,20 +63,22 @@ class Contact:
             min_clearance_m=self._clearance(state),
         )
 
-    def look(self, now: Progress, state: State, made: int) -> Progress:
-        """Return the progress once `made` plant steps of the trials have led to `state`."""
+    def look(self, progress: Progress, state: State, steps: int) -> Progress:
+        """Return the progress once `steps` plant steps of the trials have led to `state`."""
         clearance = self._clearance(state)
-        hit = now.running & (clearance <= 0)
+        hit = progress.running & (clearance <= 0)
         return replace(
-            now,
-            running=now.running & ~hit,
-            crashed=now.crashed | hit,
-            time_s=torch.where(now.running, made / PLANT_RATE_HZ, now.time_s),
+            progress,
+            running=progress.running & ~hit,
+            crashed=progress.crashed | hit,
+            time_s=torch.where(progress.running, steps / PLANT_RATE_HZ, progress.time_s),
             terminal_distance_m=torch.where(
-                now.running, self._remaining(state), now.terminal_distance_m
+                progress.running, self._remaining(state), progress.terminal_distance_m
             ),
             min_clearance_m=torch.where(
-                now.running, torch.minimum(now.min_clearance_m, clearance), now.min_clearance_m
+                progress.running,
+                torch.minimum(progress.min_clearance_m, clearance),
+                progress.min_clearance_m,
             ),
         )
 
@@ -89,7 +91,7 @@ class Contact:
 
 @dataclass(frozen=True)
 class PlantState:
-    """What a plant carries from step to step."""
+    """State that a plant carries from step to step."""
 
     state: State
     thrusts: Tensor
@@ -103,12 +105,12 @@ class PlantState:
 class Plant(ABC):
     """A batch of vehicles under commands: rigid bodies, rate loops, motors, drag and wind.
 
-    Pure: states go in and new states come out. A lane's flight is the same in any company, bit for
-    bit, in batches of whole groups of lanes (`state.padded_lanes`).
+    Pure: states go in and new states come out. A lane's flight does not depend on the others, bit
+    for bit, in batches of whole groups of lanes (`state.padded_lanes`).
     """
 
     mark: ClassVar[str] = ""
-    """What tells this plant's trials from those of the reference plant, which has none."""
+    """Text that tells this plant's trials from those of the reference plant, which has none."""
 
     def __init__(self, vehicle: Vehicle) -> None:
         self._hover_n = 0.25 * vehicle.hover_thrust_n
@@ -118,7 +120,7 @@ class Plant(ABC):
         return PlantState(state, self._hover_n.expand(4, *self._hover_n.shape).clone())
 
     @abstractmethod
-    def advance(self, now: PlantState, command: Tensor, winds: Tensor) -> PlantState:
+    def advance(self, plant_state: PlantState, command: Tensor, winds: Tensor) -> PlantState:
         """Advance under a held `command` [4, *b], one 2 ms step for each of `winds` [n, 3, *b].
 
         Winds are in the world frame, m/s. Commands beyond the vehicle's limits are clipped.
@@ -126,20 +128,20 @@ class Plant(ABC):
 
     def fly(
         self,
-        now: PlantState,
+        plant_state: PlantState,
         command: Tensor,
         winds: Tensor,
         contact: Contact,
         progress: Progress,
-        made: int,
+        steps: int,
     ) -> tuple[PlantState, Progress]:
         """Advance as `advance` does, and look for contact on the way.
 
-        `made` plant steps of the trials came before. A plant that has a faster way to the same
+        `steps` plant steps of the trials came before. A plant that has a faster way to the same
         states and progress overrides this.
         """
         for block in winds.split(contact.every):
-            now = self.advance(now, command, block)
-            made += len(block)
-            progress = contact.look(progress, now.state, made)
-        return now, progress
+            plant_state = self.advance(plant_state, command, block)
+            steps += len(block)
+            progress = contact.look(progress, plant_state.state, steps)
+        return plant_state, progress

@@ -25,7 +25,7 @@ from faultpath_quadrotor.vehicle import (
 )
 
 _WATCHED = ("running", "crashed", "time_s", "terminal_distance_m", "min_clearance_m")
-"""What the compiled contact checks change, in the order in which `watch` takes it."""
+"""Fields of `Progress` that the compiled contact checks change, in the order of `watch`."""
 
 
 class TorchPlant(Plant):
@@ -59,27 +59,27 @@ class TorchPlant(Plant):
         if kernels is not None and fits and covered(self, TorchPlant):
             self._compiled = CompiledPlant(kernels, self._airframes(), dt_s)
 
-    def advance(self, now: PlantState, command: Tensor, winds: Tensor) -> PlantState:
+    def advance(self, plant_state: PlantState, command: Tensor, winds: Tensor) -> PlantState:
         """Advance as every plant does; with a kernel in one call."""
         if self._compiled is not None:
-            return _state(self._compiled.fly(_parts(now), command, winds))
+            return _state(self._compiled.fly(_parts(plant_state), command, winds))
         level, target = self._limit(command)
         for wind_mps in winds.unbind(0):
-            now = self._step(now, level, target, wind_mps)
-        return now
+            plant_state = self._step(plant_state, level, target, wind_mps)
+        return plant_state
 
     def fly(
         self,
-        now: PlantState,
+        plant_state: PlantState,
         command: Tensor,
         winds: Tensor,
         contact: Contact,
         progress: Progress,
-        made: int,
+        steps: int,
     ) -> tuple[PlantState, Progress]:
         """Fly as every plant does; with a kernel in one call, contact checks among its steps."""
         if self._compiled is None:
-            return super().fly(now, command, winds, contact, progress, made)
+            return super().fly(plant_state, command, winds, contact, progress, steps)
         standing = {name: getattr(progress, name).clone() for name in _WATCHED}
         watched = watch(
             contact.solids,
@@ -87,10 +87,10 @@ class TorchPlant(Plant):
             tuple(standing.values()),
             radius_m=COLLISION_RADIUS_M,
             every=contact.every,
-            made=made,
+            steps=steps,
             rate_hz=PLANT_RATE_HZ,
         )
-        flown = self._compiled.fly(_parts(now), command, winds, watched)
+        flown = self._compiled.fly(_parts(plant_state), command, winds, watched)
         return _state(flown), replace(progress, **standing)
 
     def _airframes(self) -> Tensor:
@@ -104,12 +104,14 @@ class TorchPlant(Plant):
         rate = torch.clamp(command[1:], -self._rate_limit, self._rate_limit)
         return level, self._loop.target(rate)
 
-    def _step(self, now: PlantState, level: Tensor, target: Tensor, wind_mps: Tensor) -> PlantState:
-        state, dt_s = now.state, self._dt_s
+    def _step(
+        self, plant_state: PlantState, level: Tensor, target: Tensor, wind_mps: Tensor
+    ) -> PlantState:
+        state, dt_s = plant_state.state, self._dt_s
         free = motors.gyroscopic(self._coupling, state.rate)
         commands = self._loop.motor_commands(level, target, state.rate, free)
-        thrusts = motors.respond(now.thrusts, commands, self._left_end)
-        mean = motors.respond(now.thrusts, commands, self._left_mean)
+        thrusts = motors.respond(plant_state.thrusts, commands, self._left_end)
+        mean = motors.respond(plant_state.thrusts, commands, self._left_mean)
         kick_and_torque = (self._acceleration * mean).sum(1)
 
         rotation, rate = motors.turn(
@@ -124,9 +126,9 @@ class TorchPlant(Plant):
         return PlantState(State(position, velocity, rotation, rate), thrusts)
 
 
-def _parts(now: PlantState) -> tuple[Tensor, ...]:
-    state = now.state
-    return state.position, state.velocity, state.rotation, state.rate, now.thrusts
+def _parts(plant_state: PlantState) -> tuple[Tensor, ...]:
+    state = plant_state.state
+    return state.position, state.velocity, state.rotation, state.rate, plant_state.thrusts
 
 
 def _state(parts: tuple[Tensor, ...]) -> PlantState:

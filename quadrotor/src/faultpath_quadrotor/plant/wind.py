@@ -45,7 +45,7 @@ class Winds(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     means_mps: tuple[float, float, float, float] = (0.0, 0.782, 1.653, 2.667)
-    """Of L0 to L3: matched to the paper's success without a wind input."""
+    """Sustained speeds of L0 to L3, matched to the paper's success without a wind input."""
     pool_mean_mps: tuple[float, float] = (0.0, 15.0)
     """Sustained speeds of the training pool: beyond L3, as a shared fault asks the reconstruction
     for apparent winds that add to the true one."""

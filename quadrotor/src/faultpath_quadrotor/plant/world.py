@@ -48,7 +48,7 @@ class World:
     ) -> None:
         order = padded_lanes(len(scenes))
         lanes = [scenes[i] for i in order.tolist()]
-        blown = _wind_series(scenes, winds or Winds(), level)[..., order]
+        series = _wind_series(scenes, winds or Winds(), level)[..., order]
         start = State.hover(
             _points([scene.start_m for scene in lanes]),
             torch.tensor([scene.start_yaw_rad for scene in lanes], dtype=torch.float64),
@@ -57,7 +57,7 @@ class World:
         self.lanes = order.to(device)
         self.vehicle = Vehicle.stack([scene.vehicle for scene in lanes]).to(device)
         self.goal = _points([scene.goal_m for scene in lanes]).to(device)
-        self._winds = blown.to(device)
+        self._winds = series.to(device)
         self._contact = Contact(Geometry.stack(lanes, free_space, device=device), self.goal)
         self._plant = plant(self.vehicle)
         self.plant_state = self._plant.start(start.to(device))
@@ -70,7 +70,7 @@ class World:
             _hash(_row(start, i), scene.content_hash + self._plant.mark)
             for i, scene in enumerate(scenes)
         )
-        self.wind_hashes = tuple(_hash(blown[..., i].numpy()) for i in range(len(scenes)))
+        self.wind_hashes = tuple(_hash(series[..., i].numpy()) for i in range(len(scenes)))
 
     @property
     def state(self) -> State:
@@ -84,24 +84,26 @@ class World:
 
     def advance(self, command: Tensor) -> None:
         """Fly one control interval under `command` `[4, L]` and see whose trial ended."""
-        made = self.step * STEPS_PER_CONTROL
-        winds = self._winds[made : made + STEPS_PER_CONTROL]
+        steps = self.step * STEPS_PER_CONTROL
+        winds = self._winds[steps : steps + STEPS_PER_CONTROL]
         passed, progress = [self.state], self.progress
         for part in winds.split(self._part):
             self.plant_state, progress = self._plant.fly(
-                self.plant_state, command, part, self._contact, progress, made
+                self.plant_state, command, part, self._contact, progress, steps
             )
-            made += len(part)
+            steps += len(part)
             passed.append(self.state)
         self.passed = tuple(passed)
         self.step += 1
-        self.progress = _arrival(progress)
+        self.progress = _with_arrivals(progress)
 
 
-def _arrival(now: Progress) -> Progress:
-    """Arrival is looked for once a control step, at the rate at which the planner acts."""
-    there = now.running & (now.terminal_distance_m <= GOAL_RADIUS_M)
-    return replace(now, running=now.running & ~there, succeeded=now.succeeded | there)
+def _with_arrivals(progress: Progress) -> Progress:
+    """Return the progress with arrivals: checked once a control step, as the planner acts."""
+    arrived = progress.running & (progress.terminal_distance_m <= GOAL_RADIUS_M)
+    return replace(
+        progress, running=progress.running & ~arrived, succeeded=progress.succeeded | arrived
+    )
 
 
 def _wind_series(scenes: Sequence[Scene], winds: Winds, level: str) -> Tensor:

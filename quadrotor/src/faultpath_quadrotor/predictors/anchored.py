@@ -65,14 +65,13 @@ class AnchoredPredictor(Predictor):
             inputs["mass", "normalise_thrust"],
         )
 
-    def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
+    def step(self, state: State, command: Tensor, memory: _Memory) -> tuple[State, Memory]:
         """Advance one interval; see `Predictor.step`."""
-        now: _Memory = memory
-        latent, outputs = now.network.roll(now.latent, state, command, now.mass_kg)
+        latent, outputs = memory.network.roll(memory.latent, state, command, memory.mass_kg)
         bounded = outputs.tanh()
         residual = Residual(
             bounded[:3] * LINEAR_BOUND_MPS2,
             bounded[3:] * ANGULAR_BOUND_RADPS2,
         )
-        ahead = self.kinematics.advance(state, command, now.constants, residual)
-        return ahead, _Memory(now.network, latent, now.constants, now.mass_kg)
+        ahead = self.kinematics.advance(state, command, memory.constants, residual)
+        return ahead, _Memory(memory.network, latent, memory.constants, memory.mass_kg)

@@ -1,4 +1,4 @@
-"""What the planner, training and probes need of a predictor."""
+"""Predictors as the planner, training and probes use them."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
 
 Memory = Any
-"""What a predictor carries from step to step; opaque to everybody else."""
+"""State that a predictor carries from step to step; opaque to everybody else."""
 
 
 @dataclass(frozen=True)
@@ -48,9 +48,9 @@ class PredictorInputs:
     """Everything a predictor reads at a replan, as its taps delivered it; batch `[S, 1]`."""
 
     state: State
-    """At `initial_state`; its attitudes are rotations."""
+    """State at `initial_state`; its attitudes are rotations."""
     delivered: Delivered
-    """By channel and place, of the other places at which the predictor reads now."""
+    """Readings by channel and place, at the other places where the predictor reads now."""
 
     def __getitem__(self, read: Read) -> Tensor:
         """Return what a tap delivered; `SystemMistake` where the predictor does not read."""
@@ -88,7 +88,7 @@ class Predictor(ABC):
     reads: frozenset[str]
     """Places at which it reads its channels: its consumers in the interface."""
     data_files: Sequence[str | PathLike[str]] | None = None
-    """Of one that a user brings: the files that it reads, of every seed, such as weights."""
+    """Files that a user's own predictor reads, of every seed, such as weights."""
 
     def consumers(self, module: str = "predictor") -> frozenset[str]:
         """Return the names `module.place` under which the interface lists its places."""

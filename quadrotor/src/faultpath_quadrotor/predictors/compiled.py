@@ -1,7 +1,7 @@
 """The horizon loop, compiled: all steps of a predictor for one tile of candidates at a time.
 
-It stands for the shipped predictors exactly, of its sizes. A subclass of one may step as it likes,
-so it flies as it is, on the portable path.
+It replaces exactly the shipped predictors, at its sizes. A subclass may step differently, so it
+runs as it is, on the portable path.
 """
 
 import ctypes
@@ -57,7 +57,7 @@ _LAYERS = ("embed", "gates", "candidate", "remembered", "first", "second", "last
 
 
 class _Kind(IntEnum):
-    """What a step is made of; `Kind` of `rollout.cpp`."""
+    """Kind of step; `Kind` of `rollout.cpp`."""
 
     KINEMATIC = 0
     ANCHORED = 1
@@ -83,7 +83,7 @@ _ROWS: Mapping[Read, tuple[int, ...]] = MappingProxyType(
         ("history_code", "latent"): (LATENT,),
     }
 )
-"""The rows of each reading, in the order of `Inputs` of `rollout.cpp`."""
+"""Rows of each reading, in the order of `Inputs` of `rollout.cpp`."""
 
 
 class Rolled(NamedTuple):
@@ -104,7 +104,7 @@ class _Layer(Block):
 
 
 class _Model(Block):
-    """`Predictor` of `rollout.cpp`; what a kind has no use for stays zero."""
+    """`Predictor` of `rollout.cpp`; fields that a kind does not use stay zero."""
 
     _fields_ = (
         *fields(ctypes.c_int64, "kind windy dragging"),
@@ -122,7 +122,7 @@ class _Inputs(Block):
 
 
 def uncovered(predictor: Predictor) -> str:
-    """Return in words why no compiled loop stands for `predictor`; empty where one does."""
+    """Return in words why no compiled loop may replace `predictor`; empty where one may."""
     if is_exactly(predictor, UnanchoredPredictor):
         return _network(predictor.network, UnanchoredNetwork, _Kind.UNANCHORED)
     if is_exactly(predictor, AnchoredPredictor):
@@ -179,10 +179,10 @@ class HorizonLoop:
         ends = commands.new_empty(12, scenes, candidates)
         state = inputs.state
         motion = (state.position, state.velocity, state.rotation, state.rate)
-        given = {**dict(zip(_ROWS, motion, strict=False)), **inputs.delivered}
+        readings = {**dict(zip(_ROWS, motion, strict=False)), **inputs.delivered}
         self._kernels.call(
             "faultpath_roll",
-            *(self._model, _Inputs(*self._lent(given, scenes))),
+            *(self._model, _Inputs(*self._lent(readings, scenes))),
             lend("commands", commands.contiguous(), horizon, ACTION_FEATURES, scenes, candidates),
             *(horizon, scenes, candidates),
             lend("positions", positions, 3, scenes, horizon, candidates),
@@ -191,18 +191,18 @@ class HorizonLoop:
         )
         return Rolled(positions, velocities, ends[:9].unflatten(0, (3, 3)), ends[9:])
 
-    def _lent(self, given: Delivered, scenes: int) -> Iterable[Lent | None]:
+    def _lent(self, readings: Delivered, scenes: int) -> Iterable[Lent | None]:
         for read, rows in _ROWS.items():
             channel, place = read
             if place not in self._reads:
                 yield None
-            elif read not in given:
+            elif read not in readings:
                 raise ValueError(
                     f"compiled rollout: the predictor reads {channel} at {place!r} and was told "
                     "none"
                 )
             else:
-                yield lend(channel, given[read].contiguous(), *rows, scenes, 1)
+                yield lend(channel, readings[read].contiguous(), *rows, scenes, 1)
 
 
 def _integrator(integrator: KinematicIntegrator) -> str:

@@ -1,4 +1,4 @@
-"""What a learned predictor remembers of the executed flight: its last intervals, encoded."""
+"""Memory of the executed flight for learned predictors: its last intervals, encoded."""
 
 from dataclasses import dataclass
 
@@ -39,9 +39,9 @@ class HistoryEncoder(Module):
         self._predictor = predictor
         self._device = device
         places = {"history", "features"} & predictor.reads
-        wanted = ports(places)
-        self.reads_past = frozenset(port for port in wanted if port.channel == "action")
-        self.reads = wanted - self.reads_past
+        reads = ports(places)
+        self.reads_past = frozenset(port for port in reads if port.channel == "action")
+        self.reads = reads - self.reads_past
 
     def begin(self, batch: Batch) -> Memory:
         """Return a memory without an interval."""
@@ -51,8 +51,8 @@ class HistoryEncoder(Module):
         """Take the step's readings in and return the code `[B, 32]`."""
         past: _Past = memory
         take = taking(inputs, past.lanes)
-        now = _recall(past, take)
-        motions, commands = zip(*now.intervals, strict=True)
+        record = _recall(past, take)
+        motions, commands = zip(*record.intervals, strict=True)
 
         def recalled(channel: str, place: str) -> Tensor:
             if channel == "mass" or place != "history":
@@ -65,7 +65,7 @@ class HistoryEncoder(Module):
 
         code = self._predictor.encode(history(self._predictor.reads, recalled))
         assert code is not None
-        return {"history_encoding": scenes_first(code, past.count)}, now
+        return {"history_encoding": scenes_first(code, past.count)}, record
 
 
 def _recall(past: _Past, take: Take) -> _Past:

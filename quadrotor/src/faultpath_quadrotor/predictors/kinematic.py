@@ -35,9 +35,10 @@ class LinearDrag:
         body = so3.rotate_back(rotation, force)
         return so3.rotate(rotation, self._along_axes(body, torch.div))
 
-    def _along_axes(self, body: Tensor, how: Callable[[Tensor, float], Tensor]) -> Tensor:
-        # Numbers, no tensor of them: laid on a device at every step, that would wait for the host.
-        return torch.stack([how(*each) for each in zip(body, self.coefficients_kgps, strict=True)])
+    def _along_axes(self, body: Tensor, scale: Callable[[Tensor, float], Tensor]) -> Tensor:
+        # Numbers, not a tensor: copying one to a device at every step would wait for the host.
+        pairs = zip(body, self.coefficients_kgps, strict=True)
+        return torch.stack([scale(component, coefficient) for component, coefficient in pairs])
 
 
 RATE_LAG_S = 0.05
@@ -46,7 +47,7 @@ RATE_LAG_S = 0.05
 
 @dataclass(frozen=True)
 class Constants:
-    """What stays the same over the horizon, batch `[S, 1]`."""
+    """Constants of the horizon, batch `[S, 1]`."""
 
     thrust_gain: Tensor
     """T~/m~."""
@@ -151,7 +152,7 @@ class KinematicIntegrator(Predictor):
         return State(position, velocity, rotation, rate)
 
     def _air_velocity(self, state: State, constants: Constants) -> Tensor:
-        """The air's velocity over the mass: the wind term alone, or wind and drag together."""
+        """Return the air's velocity over the mass: the wind term alone, or with that of drag."""
         air = constants.wind_acceleration
         assert air is not None
         if self.drag:

@@ -11,7 +11,7 @@ from faultpath_quadrotor.predictors.rollout import Candidates, Predicted, rollin
 
 
 class Prediction(Module):
-    """Says where commands lead, and which thrust it believes to hold the vehicle."""
+    """Answers where commands lead, and gives the thrust that it believes holds the vehicle."""
 
     name, writes = "predictor", ("predicted_motion", "hover_thrust")
 
@@ -29,17 +29,17 @@ class Prediction(Module):
         )
 
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
-        """Take in what the predictor is told; its answers follow from that."""
+        """Take the predictor's readings in; its answers follow from them."""
         lanes, count, roll = memory
         known = predictor_inputs(self._predictor.reads, taking(inputs, lanes))
         hover = hover_thrust(known.delivered, "trim")[:, 0]
 
-        def predict(asked: Candidates) -> Predicted:
+        def predict(candidates: Candidates) -> Predicted:
             rollouts = (
                 roll(known.take(part.index), commands)
-                for part, commands in zip(asked.parts, asked.commands, strict=True)
+                for part, commands in zip(candidates.parts, candidates.commands, strict=True)
             )
-            return Predicted(asked.count, asked.parts, tuple(rollouts))
+            return Predicted(candidates.count, candidates.parts, tuple(rollouts))
 
         motion = Query(predict, Predicted.motion, Predicted.moved)
         return {"predicted_motion": motion, "hover_thrust": scenes_first(hover, count)}, memory

@@ -59,17 +59,17 @@ class GatedCell(nn.Module):
     def forward(self, x: Tensor, latent: Tensor) -> Tensor:
         """Return the next latent `[latent, N]`."""
         split = 2 * self.latent
-        given = self.from_input(x)
+        projected = self.from_input(x)
         weight, bias = self.from_latent.weight, self.from_latent.bias
-        gates = torch.addmm(given[:split] + bias[:split], weight[:split], latent).sigmoid()
+        gates = torch.addmm(projected[:split] + bias[:split], weight[:split], latent).sigmoid()
         reset, update = gates[: self.latent], gates[self.latent :]
         remembered = torch.addmm(bias[split:], weight[split:], latent)
-        candidate = torch.addcmul(given[split:], reset, remembered).tanh()
+        candidate = torch.addcmul(projected[split:], reset, remembered).tanh()
         return torch.lerp(candidate, latent, update)
 
     def _has_kernel(self, sequence: Tensor) -> bool:
         layers = (self.from_input, self.from_latent)
-        if not (covered(self, GatedCell) and all(covered(each, Affine) for each in layers)):
+        if not (covered(self, GatedCell) and all(covered(layer, Affine) for layer in layers)):
             return False
         if not fits(sequence.shape[1], self.latent):
             size = f"{sequence.shape[1]} inputs and a latent of {self.latent}"
@@ -81,10 +81,10 @@ class GatedCell(nn.Module):
         """Return the latent `[latent, N]` after a sequence `[T, inputs, N]`, from zero."""
         compiled = None if torch.is_grad_enabled() else kernels_on(sequence.device)
         if compiled is not None and self._has_kernel(sequence):
-            given, kept = (
+            from_input, from_latent = (
                 (layer.weight, layer.bias) for layer in (self.from_input, self.from_latent)
             )
-            return recur(compiled, given, kept, sequence)
+            return recur(compiled, from_input, from_latent, sequence)
         latent = sequence.new_zeros(self.latent, sequence.shape[-1])
         for step in sequence:
             latent = self(step, latent)
@@ -139,19 +139,24 @@ class LatentNetwork(nn.Module):
         embed = _folded(
             self.embed.weight, self.embed.bias, self.feature_mean[acted], inverse[acted]
         )
-        given, kept = self.cell.from_input, self.cell.from_latent
+        from_input, from_latent = self.cell.from_input, self.cell.from_latent
         split = 2 * LATENT
         # Columns of the gates: embedded action, one, latent.
         gates = torch.cat(
-            (given.weight[:split], given.bias[:split] + kept.bias[:split], kept.weight[:split]), 1
+            (
+                from_input.weight[:split],
+                from_input.bias[:split] + from_latent.bias[:split],
+                from_latent.weight[:split],
+            ),
+            1,
         )
         latent, weight = self.first.weight[:, :LATENT], self.first.weight[:, LATENT:]
         first = _folded(weight, self.first.bias, self.feature_mean, inverse)
         return FoldedNetwork(
             embed=_with_one(embed),
             gates=gates,
-            candidate=torch.cat((given.weight[split:], given.bias[split:]), 1),
-            remembered=torch.cat((kept.bias[split:], kept.weight[split:]), 1),
+            candidate=torch.cat((from_input.weight[split:], from_input.bias[split:]), 1),
+            remembered=torch.cat((from_latent.bias[split:], from_latent.weight[split:]), 1),
             first=_with_one(torch.cat((latent, first), 1)),
             second=_with_one(torch.cat((self.second.weight, self.second.bias), 1)),
             last=torch.cat((self.last.weight, self.last.bias), 1),
@@ -185,11 +190,11 @@ class FoldedNetwork:
         """Advance a latent `[32, S, 1 or K]` under `command` `[4, S, K]`; return it and outputs."""
         batch = command.shape[1:]
         motion = (state.velocity, state.rotation, state.rate)
-        given = features(*motion, command, mass_kg, conditioning).flatten(1)
-        ones = given.new_ones(1, given.shape[1])
+        inputs = features(*motion, command, mass_kg, conditioning).flatten(1)
+        ones = inputs.new_ones(1, inputs.shape[1])
         latent = latent.expand(LATENT, *batch).flatten(1)
 
-        action = torch.cat((given[STATE_FEATURES:BASE_FEATURES], ones))
+        action = torch.cat((inputs[STATE_FEATURES:BASE_FEATURES], ones))
         known = torch.cat(((self.embed @ action).relu_(), latent))
         reset, update = (self.gates @ known).sigmoid_().split(LATENT)
         split = ACTION_EMBEDDING + 1
@@ -197,7 +202,7 @@ class FoldedNetwork:
         candidate = torch.addcmul(self.candidate @ known[:split], reset, remembered).tanh_()
         latent = torch.lerp(candidate, latent, update)
 
-        hidden = (self.first @ torch.cat((latent, given, ones))).relu_()
+        hidden = (self.first @ torch.cat((latent, inputs, ones))).relu_()
         outputs = self.last @ (self.second @ hidden).relu_()
         return latent.unflatten(1, batch), outputs.unflatten(1, batch)
 

@@ -1,6 +1,6 @@
 """Which channel enters a predictor at which place: the one such map.
 
-Flights, training and probes all build what a predictor is told here; they differ only in where a
+Flights, training and probes all build a predictor's inputs here; they differ only in where a
 delivered value comes from.
 """
 
@@ -37,7 +37,7 @@ Take = Callable[[str, str], Tensor]
 
 
 def taking(inputs: Inputs, lanes: Tensor) -> Take:
-    """Return what gives a predictor the readings of a step, lanes last, single precision."""
+    """Return the function that takes a step's readings, lanes last, single precision."""
 
     def take(channel: str, place: str) -> Tensor:
         return lanes_last(inputs[Port(channel, place)], lanes).float()
@@ -51,7 +51,7 @@ def ports(places: Collection[str]) -> frozenset[Port]:
 
 
 def check_places(name: str, places: Collection[str]) -> None:
-    """Raise `SystemMistake` for a user's predictor that reads at no such places together."""
+    """Raise `SystemMistake` for a user's predictor whose places do not exist or go together."""
     for place in places:
         if place not in PLACES:
             known = "; ".join(f"{at} ({', '.join(channels)})" for at, channels in PLACES.items())
@@ -71,18 +71,18 @@ def check_places(name: str, places: Collection[str]) -> None:
 
 
 def predictor_inputs(reads: Collection[str], take: Take) -> PredictorInputs:
-    """Return what a predictor that reads at these places is told, batch `[*lanes, 1]`.
+    """Return the inputs of a predictor that reads at these places, batch `[*lanes, 1]`.
 
-    `take` gives `[..., *lanes]`; of the places in `reads`, only that of the history is not asked.
+    `take` gives `[..., *lanes]`; it is called for all places in `reads` but `history`.
     """
     state = _start(State(*(take(channel, "initial_state") for channel in STATE)))
-    now = [place for place in reads if place not in ("initial_state", "history")]
-    known = {read: value[..., None] for read, value in delivered(now, take).items()}
+    places = [place for place in reads if place not in ("initial_state", "history")]
+    known = {read: value[..., None] for read, value in delivered(places, take).items()}
     return PredictorInputs(state, known)
 
 
 def history(reads: Collection[str], take: Take) -> Delivered:
-    """Return the history that a predictor is told, batch `[*lanes]`.
+    """Return the history that a predictor reads, batch `[*lanes]`.
 
     `take` gives motion and commands with their intervals before the lanes, `[..., T, *lanes]`.
     """
@@ -106,10 +106,9 @@ def _start(state: State) -> State:
     of the projection changed by rounding only, so it is left alone.
     """
     rotation = state.rotation
-    off = so3.compose(rotation.transpose(0, 1), rotation)
-    off = (off - torch.eye(3, device=off.device).view(3, 3, *(1 for _ in state.batch))).abs().amax(
-        (0, 1)
-    ) > 1e-4
+    product = so3.compose(rotation.transpose(0, 1), rotation)
+    identity = torch.eye(3, device=product.device).view(3, 3, *(1 for _ in state.batch))
+    off = (product - identity).abs().amax((0, 1)) > 1e-4
     if not host_readable(off.device) or off.any():
         rotation = torch.where(off, so3.project(rotation), rotation)
     parts = (state.position, state.velocity, rotation, state.rate)

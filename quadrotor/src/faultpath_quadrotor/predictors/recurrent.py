@@ -19,16 +19,16 @@ def fits(inputs: int, latent: int) -> bool:
 
 def recur(
     kernels: Kernels,
-    given: tuple[Tensor, Tensor],
-    kept: tuple[Tensor, Tensor],
+    from_input: tuple[Tensor, Tensor],
+    from_latent: tuple[Tensor, Tensor],
     sequence: Tensor,
 ) -> Tensor:
     """Return the latent `[32, N]` after a sequence, from zero.
 
     Args:
         kernels: Compiled kernels.
-        given: Weights `[96, inputs]` and biases of the inputs' layer; at most 32 inputs.
-        kept: Weights `[96, 32]` and biases of the latent's layer.
+        from_input: Weights `[96, inputs]` and biases of the inputs' layer; at most 32 inputs.
+        from_latent: Weights `[96, 32]` and biases of the latent's layer.
         sequence: `[T, inputs, N]`, float32.
 
     Raises:
@@ -39,7 +39,7 @@ def recur(
         raise ValueError(f"the recurrent kernel takes 1 to {MOST_INPUTS} inputs, not {inputs}")
     latent = torch.empty(LATENT, columns)
     (weights, biases), (kept_weights, kept_biases) = (
-        (weight.detach(), bias.detach()) for weight, bias in (given, kept)
+        (weight.detach(), bias.detach()) for weight, bias in (from_input, from_latent)
     )
     kernels.call(
         "faultpath_recur",

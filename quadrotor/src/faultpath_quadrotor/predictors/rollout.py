@@ -57,16 +57,16 @@ Roll = Callable[[PredictorInputs, Tensor], Rollout]
 
 
 def rolling(predictor: Predictor, device: torch.device = CPU) -> Roll:
-    """Return what rolls a predictor out on `device`: compiled where a kernel stands for it.
+    """Return the function that rolls a predictor out on `device`, compiled where possible.
 
     A compiled one keeps the weights that the predictor has now. It works along the candidates of a
-    scene: of one alone there is nothing to work along, so torch takes all scenes at once.
+    scene; where there is only one, torch takes all scenes at once.
     """
     built = native.kernels_on(device)
     if built is None:
         return partial(rollout, predictor)
     if why := uncovered(predictor):
-        if not is_exactly(predictor, TrueParameter):  # of which there never was a kernel
+        if not is_exactly(predictor, TrueParameter):  # which never had a kernel
             tell_portable(f"The predictor {type(predictor).__name__}", why)
         return partial(rollout, predictor)
     loop = HorizonLoop(built, predictor)

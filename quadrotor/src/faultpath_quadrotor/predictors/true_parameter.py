@@ -88,61 +88,60 @@ class TrueParameter(Predictor):
     def _followed(self, start: _Memory, code: Tensor) -> _Memory:
         """Return the memory with motors that have followed the last commands.
 
-        They start as they would be had the oldest command been held for long.
+        They start as if the oldest command had been held for long.
         """
         past = code[: 7 * FOLLOWED].unflatten(0, (7, FOLLOWED)).unbind(1)
         thrust, torque = past[0][3], start.torque
-        for now in past:
-            rate, command = now[:3], now[3:]
+        for interval in past:
+            rate, command = interval[:3], interval[3:]
             for _ in range(SUBSTEPS):
                 thrust = torch.lerp(command[0], thrust, start.keep)
                 rate, torque = self._turn(rate, command[1:], torque, start)
         return replace(start, thrust=thrust, torque=torque)
 
-    def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
+    def step(self, state: State, command: Tensor, memory: _Memory) -> tuple[State, Memory]:
         """Advance one interval; see `Predictor.step`."""
-        now: _Memory = memory
-        thrust, torque = now.thrust, now.torque
+        thrust, torque = memory.thrust, memory.torque
         for _ in range(SUBSTEPS):
             lag = thrust - command[0]
-            average = torch.addcmul(command[0], lag, now.mean)  # over the substep: exact
-            thrust = torch.addcmul(command[0], lag, now.keep)
-            state, torque = self._substep(state, command[1:], average, torque, now)
+            average = torch.addcmul(command[0], lag, memory.mean)  # over the substep: exact
+            thrust = torch.addcmul(command[0], lag, memory.keep)
+            state, torque = self._substep(state, command[1:], average, torque, memory)
         return state, _Memory(
-            now.physics,
-            now.thrust_gain,
-            now.inverse_mass,
-            now.wind,
-            now.stiffness,
-            now.keep,
-            now.mean,
+            memory.physics,
+            memory.thrust_gain,
+            memory.inverse_mass,
+            memory.wind,
+            memory.stiffness,
+            memory.keep,
+            memory.mean,
             thrust,
             torque,
         )
 
     def _substep(
-        self, state: State, target: Tensor, thrust: Tensor, torque: Tensor, now: _Memory
+        self, state: State, target: Tensor, thrust: Tensor, torque: Tensor, memory: _Memory
     ) -> tuple[State, Tensor]:
         h = self._h
-        physics = now.physics
-        rate, torque = self._turn(state.rate, target, torque, now)
+        physics = memory.physics
+        rate, torque = self._turn(state.rate, target, torque, memory)
         rotation = so3.compose(state.rotation, so3.exp(0.5 * h * (state.rate + rate)))
 
-        acceleration = rotation[:, 2] * (now.thrust_gain * thrust)
-        body = so3.rotate_back(rotation, now.wind - state.velocity)
+        acceleration = rotation[:, 2] * (memory.thrust_gain * thrust)
+        body = so3.rotate_back(rotation, memory.wind - state.velocity)
         air = so3.rotate(rotation, physics.drag_kgps * body)
-        acceleration = torch.addcmul(acceleration, air, now.inverse_mass)
+        acceleration = torch.addcmul(acceleration, air, memory.inverse_mass)
         acceleration[2] -= GRAVITY_MPS2
         velocity = torch.add(state.velocity, acceleration, alpha=h)
         position = torch.add(state.position, state.velocity + velocity, alpha=0.5 * h)
         return State(position, velocity, rotation, rate), torque
 
     def _turn(
-        self, rate: Tensor, target: Tensor, torque: Tensor, now: _Memory
+        self, rate: Tensor, target: Tensor, torque: Tensor, memory: _Memory
     ) -> tuple[Tensor, Tensor]:
-        inertia = now.physics.inertia_kgm2
+        inertia = memory.physics.inertia_kgm2
         gyroscopic = torch.linalg.cross(rate, inertia * rate, dim=0)
-        wanted = now.stiffness * (target - rate) + gyroscopic
-        torque = torch.lerp(wanted, torque, now.keep)
-        turned = now.physics.torque_scale * torque - gyroscopic
+        demand = memory.stiffness * (target - rate) + gyroscopic
+        torque = torch.lerp(demand, torque, memory.keep)
+        turned = memory.physics.torque_scale * torque - gyroscopic
         return rate + self._h * turned / inertia, torque

@@ -70,11 +70,10 @@ class UnanchoredPredictor(Predictor):
             (inputs["mass", "features"], inputs["thrust_scale", "features"]),
         )
 
-    def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
+    def step(self, state: State, command: Tensor, memory: _Memory) -> tuple[State, Memory]:
         """Advance one interval; see `Predictor.step`."""
-        now: _Memory = memory
-        latent, outputs = now.network.roll(
-            now.latent, state, command, now.mass_kg, now.conditioning
+        latent, outputs = memory.network.roll(
+            memory.latent, state, command, memory.mass_kg, memory.conditioning
         )
         scale = self.network.increment_std.reshape(-1, *(1,) * (outputs.ndim - 1))
         moved, pushed, spun, turned = (outputs * scale).split(3)
@@ -84,4 +83,4 @@ class UnanchoredPredictor(Predictor):
             so3.compose(state.rotation, so3.exp(turned)),
             state.rate + spun,
         )
-        return ahead, _Memory(now.network, latent, now.mass_kg, now.conditioning)
+        return ahead, _Memory(memory.network, latent, memory.mass_kg, memory.conditioning)

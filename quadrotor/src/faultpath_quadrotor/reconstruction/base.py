@@ -1,4 +1,4 @@
-"""What recovers a channel that no sensor supplies."""
+"""Reconstructions of a channel that no sensor supplies."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -10,15 +10,15 @@ from torch import Tensor
 from faultpath_quadrotor.lanes import Delivered, Read
 
 Memory: TypeAlias = Any
-"""What a reconstruction carries from step to step; opaque to everybody else."""
+"""State that a reconstruction carries from step to step; opaque to everybody else."""
 
 
 class Reconstruction(ABC):
     """Estimates the current wind from completed intervals; it never sees a candidate action.
 
-    `reads` is all that it may know. Whoever calls it takes exactly these from the taps, so a
-    variant's consumers follow from it, and a read that is not declared has no entry to find. The
-    same channel at two places is two reads, for a fault may reach one of them alone.
+    `reads` is all that it may know. The caller takes exactly these from the taps, so a variant's
+    consumers follow from it, and an undeclared read has no entry. The same channel at two places is
+    two reads, because a fault may reach only one of them.
 
     The channel `action` holds the command executed over the interval that has just ended, N and
     rad/s; at `begin` the one under which the vehicle hovered before its flight.
@@ -26,7 +26,7 @@ class Reconstruction(ABC):
 
     reads: frozenset[Read]
     data_files: Sequence[str | PathLike[str]] | None = None
-    """Of one that a user brings: the files that it reads, of every seed, such as weights."""
+    """Files that a user's own reconstruction reads, of every seed, such as weights."""
 
     def consumers(self, module: str = "reconstruction") -> frozenset[str]:
         """Return the names `module.place` under which the interface lists the reads."""

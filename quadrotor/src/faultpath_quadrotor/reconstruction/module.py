@@ -16,7 +16,7 @@ class _Known:
     lanes: Tensor
     count: int
     memory: Any = None
-    """Of the reconstruction; `None` before the first step."""
+    """Memory of the reconstruction; `None` before the first step."""
 
 
 class WindReconstruction(Module):

@@ -76,10 +76,10 @@ class WindNetwork(nn.Module):
         self, intervals: Tensor, latest: Tensor, calibration: Tensor | None = None
     ) -> Tensor:
         """Return the wind `[3, N]`, m/s, of standardised inputs, the latest interval last."""
-        given = [self.encoder.last(intervals.movedim(1, 0)), latest]
+        parts = [self.encoder.last(intervals.movedim(1, 0)), latest]
         if calibration is not None:
-            given.append(calibration)
-        return self.head(functional.gelu(self.hidden(torch.cat(given))))
+            parts.append(calibration)
+        return self.head(functional.gelu(self.hidden(torch.cat(parts))))
 
     def estimate(self, states: Tensor, commands: Tensor, calibration: Tensor | None) -> Tensor:
         """Return the wind `[3, N]`, m/s, world frame; it is never clipped.
@@ -107,9 +107,9 @@ class RecurrentMemory:
     """The last 12 intervals, the latest last; nothing else is carried on."""
 
     states: Tensor
-    """At the end of each, `[18, 12, *batch]`."""
+    """State at the end of each, `[18, 12, *batch]`."""
     commands: Tensor
-    """Executed over each, `[4, 12, *batch]`."""
+    """Command executed over each, `[4, 12, *batch]`."""
     calibration: Tensor | None
     """m~ and T~ as last delivered, `[2, *batch]`."""
 

@@ -59,14 +59,13 @@ class DisturbanceObserver(Reconstruction):
         return ObserverMemory(torch.zeros_like(velocity), velocity)
 
     @override
-    def update(self, memory: Memory, delivered: Delivered) -> Memory:
-        now: ObserverMemory = memory
+    def update(self, memory: ObserverMemory, delivered: Delivered) -> Memory:
         velocity = delivered["velocity", "velocity_difference"]
-        residual = self.observed(now, delivered) - self.nominal(delivered)
+        residual = self.observed(memory, delivered) - self.nominal(delivered)
         raw = self._air.inverse(
             delivered["attitude", "nominal_model"], residual * delivered["mass", "wind_map"]
         )
-        return ObserverMemory(torch.lerp(now.wind_mps, raw, self._alpha), velocity)
+        return ObserverMemory(torch.lerp(memory.wind_mps, raw, self._alpha), velocity)
 
     def observed(self, memory: ObserverMemory, delivered: Delivered) -> Tensor:
         """Return the acceleration of the last interval, `[3, *batch]`, m/s^2."""
@@ -78,7 +77,7 @@ class DisturbanceObserver(Reconstruction):
         return memory.wind_mps
 
     def nominal(self, delivered: Delivered) -> Tensor:
-        """Acceleration a_0 that thrust, gravity and drag explain, `[3, *batch]`, m/s^2."""
+        """Return the acceleration a_0 of thrust, gravity and drag, `[3, *batch]`, m/s^2."""
         attitude, mass_kg, thrust_scale = (
             delivered[channel, "nominal_model"] for channel in ("attitude", "mass", "thrust_scale")
         )
@@ -91,10 +90,10 @@ class DisturbanceObserver(Reconstruction):
 
 
 class InertialObserver(DisturbanceObserver):
-    """The same from the accelerometer: its innovation, what it reads beside what was expected.
+    """The same from the accelerometer's innovation: its reading minus the expected one.
 
-    It takes the last 10 ms, by when the motors have followed the command best. Its bias and the
-    attitude's error go into the wind.
+    It uses the last 10 ms of the interval, when the motors have followed the command best. The
+    sensor's bias and the attitude's error enter the wind.
     """
 
     reads = DisturbanceObserver.reads | {("accelerometer", "innovation")}

@@ -96,8 +96,8 @@ def _read(file: Traversable | Path, what: str) -> Library:
         scenes = tuple(_scene(place, entry) for place, entry in enumerate(entries))
         library, promised = Library.of(str(content["name"]), scenes), content["content_hash"]
     except (OSError, ValueError, KeyError, TypeError) as error:
-        said = error.strerror if isinstance(error, OSError) else str(error)
-        reason = (str(said).splitlines() or [type(error).__name__])[0]
+        cause = error.strerror if isinstance(error, OSError) else str(error)
+        reason = (str(cause).splitlines() or [type(error).__name__])[0]
         raise UserError(f"The {what} cannot be read as a library ({reason}): {remedy}.") from error
     if library.content_hash != promised:
         raise UserError(
@@ -113,8 +113,9 @@ def _scene(place: int, entry: object) -> Scene:
     try:
         return Scene.model_validate_json(json.dumps(entry), strict=True)
     except ValidationError as error:
-        found = misfit_of(error, Scene)
-        raise ValueError(f"scene {place}, {f'field {found}' if found.where else found}") from None
+        misfit = misfit_of(error, Scene)
+        field = f"field {misfit}" if misfit.where else misfit
+        raise ValueError(f"scene {place}, {field}") from None
 
 
 def _refusal(library: Library) -> str:

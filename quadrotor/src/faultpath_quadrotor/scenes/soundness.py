@@ -11,7 +11,7 @@ from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 MOST_OBSTACLES = 256
 """Boxes and pillars of a scene: all scenes of a block are padded to as many."""
 FURTHEST_M = 1000.0
-"""Of any coordinate: single precision then still counts tenths of a millimetre."""
+"""Largest coordinate: single precision still resolves tenths of a millimetre there."""
 MOST_CELLS = 2**22
 """Cells of 0.1 m in an arena: 16 MB of baked distance a scene."""
 CELL_M = 0.1

@@ -53,7 +53,7 @@ class Job:
         return f"{self.entry.name}-{self.seed}"
 
     def task(self, data: Path) -> ModelTask:
-        """Return what is to be fitted, with data from a folder."""
+        """Return the task of fitting it, with data from a folder."""
         return self.entry.factory(self.entry.name, self.seed, data)
 
 
@@ -120,17 +120,17 @@ def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[Job, ...]:
     Without names: everything. Without seeds: the default seeds of each model. Raises `UserError`
     for a name that is not known.
     """
-    wanted: set[str] = set()
+    chosen: set[str] = set()
     for name in names or ("all",):
-        found = GROUPS.get(name) or [entry for entry in ALL if entry.name == name]
-        if not found:
+        matches = GROUPS.get(name) or [entry for entry in ALL if entry.name == name]
+        if not matches:
             known = ", ".join(entry.name for entry in ALL)
             raise UserError(
                 f"the quadrotor has no model '{name}' to train; it has {known}, and the groups "
                 f"{', '.join(GROUPS)}."
             )
-        wanted |= {entry.name for entry in found}
-    entries = [entry for entry in ALL if entry.name in wanted]
+        chosen |= {entry.name for entry in matches}
+    entries = [entry for entry in ALL if entry.name in chosen]
     return tuple(Job(entry, s) for entry in entries for s in dict.fromkeys(seeds or entry.seeds))
 
 

@@ -44,7 +44,7 @@ PER_METRE = 10_000
 
 
 class Recipe(Frozen):
-    """What decides every number of the data set."""
+    """Settings that decide every number of the data set."""
 
     format: int = FORMAT
     library: str = "training"
@@ -103,15 +103,15 @@ def collect(
 ) -> Path:
     """Make the data set below `folder` and return its provenance file.
 
-    What is there already is kept. Raises `UserError` when the folder holds a data set of another
+    Files that exist are kept. Raises `UserError` when the folder holds a data set of another
     recipe or cannot be written.
     """
     recipe = recipe or Recipe()
     library = load_library(recipe.library)
     path = provenance_path(folder)
-    asked = _provenance(recipe, library)
+    provenance = _provenance(recipe, library)
     if path.exists():
-        if _read_provenance(path) == asked:
+        if _read_provenance(path) == provenance:
             return path
         raise UserError(
             f"{path} was made by another recipe or other code: choose another folder, or delete "
@@ -125,7 +125,7 @@ def collect(
             atomic.sweep(place)
             parts = [Part(shard, partial(_make, recipe, scene, shard)) for scene, shard in shards]
             make_missing([parts], workers, progress)
-        atomic.write_text(path, json.dumps(asked, indent=2, sort_keys=True) + "\n")
+        atomic.write_text(path, json.dumps(provenance, indent=2, sort_keys=True) + "\n")
     except OSError as error:
         raise UserError(
             f"cannot write to {folder} ({error.strerror}): choose a folder that you may write to."
@@ -178,12 +178,12 @@ def _poses(recipe: Recipe, scene: Scene, random: np.random.Generator) -> State:
     low, high = np.array(scene.bounds.low_m), np.array(scene.bounds.high_m)
     low[2], high[2] = recipe.height_m
     geometry = Geometry.stack([scene])
-    found = torch.empty(3, 0, dtype=torch.float64)
-    while found.shape[1] < recipe.images:
+    positions = torch.empty(3, 0, dtype=torch.float64)
+    while positions.shape[1] < recipe.images:
         drawn = torch.from_numpy(random.uniform(low, high, (recipe.images, 3)).T.copy())
         free = geometry.distance(drawn[:, None])[0] > COLLISION_RADIUS_M
-        found = torch.cat((found, drawn[:, free]), 1)
-    position = found[:, : recipe.images]
+        positions = torch.cat((positions, drawn[:, free]), 1)
+    position = positions[:, : recipe.images]
     rotation = so3.from_yaw(torch.from_numpy(random.random(recipe.images)) * 2 * np.pi)
     return State(position, torch.zeros_like(position), rotation, torch.zeros_like(position))
 
@@ -213,8 +213,8 @@ def _shards(folder: Path, recipe: Recipe, library: Library) -> list[tuple[Scene,
 
 
 def _make(recipe: Recipe, scene: Scene, shard: Path) -> None:
-    made = draw(recipe, scene)
-    parts = {"depth": made.depth, "points": made.points, "clearance": made.clearance}
+    samples = draw(recipe, scene)
+    parts = {"depth": samples.depth, "points": samples.points, "clearance": samples.clearance}
     atomic.write(shard, save(parts))
 
 

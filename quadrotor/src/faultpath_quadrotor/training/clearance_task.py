@@ -124,11 +124,11 @@ def censored_loss(estimate: Tensor, truth: Tensor) -> Tensor:
 @torch.no_grad()
 def predict(model: ClearanceModel, samples: Samples) -> Tensor:
     """Return the model's clearance at all points of all images, `[I, Q]`, m."""
-    found = []
+    estimates = []
     for first in range(0, len(samples), _CHUNK):
         part = samples.take(torch.arange(first, min(first + _CHUNK, len(samples))))
-        found.append(model.query(model.encode(part.depth_m()), part.points.movedim(1, 0)))
-    return torch.cat(found)
+        estimates.append(model.query(model.encode(part.depth_m()), part.points.movedim(1, 0)))
+    return torch.cat(estimates)
 
 
 def _mirror(depth: Tensor, points: Tensor, mirrored: Tensor) -> tuple[Tensor, Tensor]:

@@ -43,7 +43,7 @@ class Batch:
     """Episodes that are flown together."""
 
     name: str
-    """Of its files."""
+    """Name of its files."""
     episodes: range
     fly: Callable[[], Flights]
     """A function of a module bound to its arguments, so that a worker process can call it."""
@@ -63,16 +63,16 @@ def collect(
 ) -> dict[str, Path]:
     """Collect `pools` into `folder` and return the file of each pool.
 
-    A pool that is there already is kept, one that was begun is finished. `episodes` gives the
-    number of episodes of a pool where it is not the paper's; `workers` is the number of processes,
-    0 for this one. `progress` is called with the episodes done and those in all of a pool. Raises
-    `UserError` for a pool that does not exist, for one that was collected by another recipe, and
-    when `folder` cannot be written.
+    A finished pool is kept, an unfinished one is completed. `episodes` gives the number of episodes
+    of a pool where it is not the paper's; `workers` is the number of processes, 0 for this one.
+    `progress` is called with the episodes done and the total of a pool. Raises `UserError` for a
+    pool that does not exist, for one that was collected by another recipe, and when `folder` cannot
+    be written.
     """
-    recipes = [recipe(name, (episodes or {}).get(name), seed) for name in pools]
+    recipes = {pool: recipe(pool, (episodes or {}).get(pool), seed) for pool in pools}
     return {
-        asked.pool: make_pool(folder, asked, _batches(asked), workers, progress)
-        for asked in recipes
+        pool: make_pool(folder, pool_recipe, _batches(pool_recipe), workers, progress)
+        for pool, pool_recipe in recipes.items()
     }
 
 
@@ -87,17 +87,17 @@ def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> Recipe:
     return Recipe(pool=pool, episodes=count, seed=seed, code_sha256=code)
 
 
-def is_there(path: Path, asked: Recipe) -> bool:
-    """Say whether a pool is finished; `UserError` for one of another recipe."""
-    found = read_provenance(path)
-    if found is None:
+def is_there(path: Path, expected: Recipe) -> bool:
+    """Return whether a pool is finished; `UserError` for one of another recipe."""
+    provenance = read_provenance(path)
+    if provenance is None:
         return False
     for field in Recipe.model_fields:
-        if getattr(found, field) != getattr(asked, field):
+        if getattr(provenance, field) != getattr(expected, field):
             how = "by other code" if field == "code_sha256" else f"with another '{field}'"
             raise UserError(
                 f"the pool at {path} was collected {how}, with faultpath "
-                f"{found.faultpath_version}: choose another folder, or delete its "
+                f"{provenance.faultpath_version}: choose another folder, or delete its "
                 f"{path.stem}.json to collect it again."
             )
     return True
@@ -105,7 +105,7 @@ def is_there(path: Path, asked: Recipe) -> bool:
 
 def make_pool(
     folder: Path,
-    asked: Recipe,
+    recipe: Recipe,
     batches: Sequence[Batch],
     workers: int,
     progress: Progress | None = None,
@@ -113,26 +113,26 @@ def make_pool(
     """Fly the batches of a pool that are missing, join them, and return the file of its rows.
 
     The batches' folder changes with anything that decides them. The number of episodes does not: a
-    pool that is asked for larger uses what is there.
+    larger pool uses the batches that are there.
     """
-    path = folder / f"{asked.pool}.parquet"
-    content = json.dumps([asked.model_dump(mode="json", exclude={"episodes"}), packages()])
-    place = folder / f".{asked.pool}-{hashlib.sha256(content.encode()).hexdigest()[:16]}"
+    path = folder / f"{recipe.pool}.parquet"
+    content = json.dumps([recipe.model_dump(mode="json", exclude={"episodes"}), packages()])
+    place = folder / f".{recipe.pool}-{hashlib.sha256(content.encode()).hexdigest()[:16]}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with locked(folder, _log.warning):
             atomic.sweep(folder)
-            if is_there(path, asked):
+            if is_there(path, recipe):
                 return path
             place.mkdir(exist_ok=True)
             atomic.sweep(place)
             parts = [
-                Part(place / f"{each.name}.rows", partial(each.make, place), len(each.episodes))
-                for each in batches
+                Part(place / f"{batch.name}.rows", partial(batch.make, place), len(batch.episodes))
+                for batch in batches
             ]
             make_missing([parts], workers, progress)
-            _join(path, asked, [place / batch.name for batch in batches])
-            for old in folder.glob(f".{asked.pool}-*"):  # also of recipes that are no more
+            _join(path, recipe, [place / batch.name for batch in batches])
+            for old in folder.glob(f".{recipe.pool}-*"):  # also of outdated recipes
                 shutil.rmtree(old)
     except OSError as error:
         raise UserError(
@@ -157,9 +157,10 @@ def _join(path: Path, recipe: Recipe, stems: Sequence[Path]) -> None:
     atomic.write(provenance_path(path), provenance.encode())
 
 
-def _batches(asked: Recipe) -> list[Batch]:
-    every = range(asked.episodes)
+def _batches(recipe: Recipe) -> list[Batch]:
+    every = range(recipe.episodes)
     parts = (every[first : first + BATCH] for first in every[::BATCH])
     return [
-        Batch(f"{m.start:06d}+{len(m)}", m, partial(fly, asked.pool, m, asked.seed)) for m in parts
+        Batch(f"{part.start:06d}+{len(part)}", part, partial(fly, recipe.pool, part, recipe.seed))
+        for part in parts
     ]

@@ -36,7 +36,7 @@ class Perturbation(NamedTuple):
 
     offset: Array
     """[4, N]: thrust as a fraction of the hover thrust, body rates in rad/s."""
-    held: NDArray[np.bool_]
+    holds: NDArray[np.bool_]
     """[N]: whether the controller's command of the step before is used again, below the offset."""
 
 
@@ -63,15 +63,15 @@ def draw(stream: np.random.Generator, steps: int, settings: PerturbationSettings
         pulses[axis, first : first + width] += height
         if stream.uniform() < 0.5:
             pulses[axis, first + width : first + 2 * width] -= height
-    held = np.zeros(steps, dtype=bool)
+    holds = np.zeros(steps, dtype=bool)
     for _ in range(stream.poisson(high * settings.holds_per_s * steps / CONTROL_RATE_HZ)):
         first = stream.integers(1, steps)
-        held[first : first + stream.integers(*settings.hold_steps, endpoint=True)] = True
-    return Perturbation(sigma[:, None] * (noise + jitter + pulses), held)
+        holds[first : first + stream.integers(*settings.hold_steps, endpoint=True)] = True
+    return Perturbation(sigma[:, None] * (noise + jitter + pulses), holds)
 
 
 LEAST_LIFT = 0.3
-"""The wanted vertical specific force is at least this part of gravity: the vehicle never turns
+"""The commanded vertical specific force is at least this part of gravity: the vehicle never turns
 over to fall faster."""
 _TINY = 1e-12
 """Added to norms that divide: their quotients are then zero at zero."""
@@ -79,7 +79,7 @@ _TINY = 1e-12
 
 @dataclass(frozen=True)
 class Course:
-    """What the controller does in a batch of episodes; M waypoints, N control steps, *b lanes."""
+    """Plan of the controller for a batch of episodes; M waypoints, N control steps, *b lanes."""
 
     waypoint_m: Tensor
     """[3, M, *b]"""
@@ -92,13 +92,13 @@ class Course:
     gains: Tensor
     """Position, velocity, attitude and heading gain in 1/s, [4, *b]."""
     tilt_slope: Tensor
-    """Tangent of the largest tilt asked for, [*b]."""
+    """Tangent of the largest tilt commanded, [*b]."""
     drag_share: Tensor
     """[*b]"""
     offset: Tensor
     """`Perturbation.offset`, [4, N, *b]."""
-    held: Tensor
-    """`Perturbation.held`, [N, *b]."""
+    holds: Tensor
+    """`Perturbation.holds`, [N, *b]."""
 
     @classmethod
     def draw(
@@ -123,7 +123,7 @@ class Course:
             "tilt_slope": np.tan(np.radians(stream.uniform(*settings.tilt_limit_deg))),
             "drag_share": np.array(stream.uniform(*settings.drag_share)),
             "offset": perturbation.offset,
-            "held": perturbation.held,
+            "holds": perturbation.holds,
         }
         return cls(**{name: torch.as_tensor(value) for name, value in values.items()})
 
@@ -161,7 +161,7 @@ class WaypointController:
         It is rounded to single precision, so that what is recorded is what was flown.
         """
         fresh = self._feedback(state, wind_mps)
-        self._last = torch.where(self._course.held[step], self._last, fresh)
+        self._last = torch.where(self._course.holds[step], self._last, fresh)
         offset = self._course.offset[:, step]
         thrust = self._last[0] + offset[0] * self._vehicle.hover_thrust_n
         rate = torch.clamp(self._last[1:] + offset[1:], -self._limit, self._limit)
@@ -185,14 +185,14 @@ class WaypointController:
         lift = (state.rotation[:, 2] * force).sum(0)
         thrust = lift * vehicle.mass_kg / vehicle.thrust_scale
 
-        wanted = so3.rotate_back(state.rotation, force)
-        sine = (wanted[0] * wanted[0] + wanted[1] * wanted[1]).sqrt() + _TINY
-        tilt = course.gains[2] * torch.atan2(sine, wanted[2]) / sine
+        direction = so3.rotate_back(state.rotation, force)
+        sine = (direction[0] * direction[0] + direction[1] * direction[1]).sqrt() + _TINY
+        tilt = course.gains[2] * torch.atan2(sine, direction[2]) / sine
         travel = torch.atan2(velocity[1], velocity[0])
         heading = torch.atan2(state.rotation[1, 0], state.rotation[0, 0])
         error = travel + self._at_leg(course.heading_offset_rad) - heading
         error = error - 2 * math.pi * torch.round(error / (2 * math.pi))
-        rate = torch.stack((-wanted[1] * tilt, wanted[0] * tilt, course.gains[3] * error))
+        rate = torch.stack((-direction[1] * tilt, direction[0] * tilt, course.gains[3] * error))
         return torch.cat((thrust[None], torch.clamp(rate, -self._limit, self._limit)))
 
     def _way(self, position: Tensor) -> Tensor:

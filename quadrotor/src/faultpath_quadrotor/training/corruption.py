@@ -56,26 +56,26 @@ def corrupted(
     seed: int,
     readings: Mapping[str, Tensor],
 ) -> DeliveredInputs:
-    """Return what each consumer gets of each window's readings, by (channel, consumer), `[W]`.
+    """Return each window's readings as each consumer gets them, by (channel, consumer), `[W]`.
 
     Windows are the scenes of the taps: each has one draw for the whole fit, held throughout it,
     keyed by its id and the model's seed (paper, Section IV-B). The draws come from streams of the
     faults' own, so initial weights and the order of minibatches are untouched.
 
     Args:
-        faults: What is done to the readings; none: every consumer gets the readings themselves.
+        faults: Faults of the readings; without any, every consumer gets the readings themselves.
         consumers: Consumers that the model under training has.
         windows: Ids, one a row of every reading.
         seed: Seed of the model.
         readings: Values by channel, `[W, ...]`.
 
     Raises:
-        UserError: A name is unknown, or a fault acts on nobody here.
+        UserError: A name is unknown, or a fault reaches none of these consumers.
         NotDelivered: A fault missed a consumer that it names.
     """
     interface = quadrotor_interface()
-    found = resolve(faults, interface, consumers)
-    taps = window_taps(interface, found, windows, CONTROL_DT_S, seed, 0, consumers)
+    resolved = resolve(faults, interface, consumers)
+    taps = window_taps(interface, resolved, windows, CONTROL_DT_S, seed, 0, consumers)
     delivered = {
         (channel, consumer): taps.deliver(
             channel, consumer, Reading(value, taps.bindings[channel], 0), 0

@@ -49,7 +49,7 @@ class ModelTask(Task):
 
     @abstractmethod
     def describe(self) -> Mapping[str, Any]:
-        """Return what decides the result, as JSON values, for the model card.
+        """Return the settings that decide the result, as JSON values, for the model card.
 
         A finished model is fitted again when it changes. Two keys have a place of their own in
         the card: `description`, a sentence, and `data_sha256`, a digest for each pool.
@@ -122,7 +122,7 @@ def journal_path(weights: Path) -> Path:
 
 
 def _is_finished(path: Path, recipe: Mapping[str, Any], notice: Callable[[str], None]) -> bool:
-    """Say whether the checkpoint is there and of this very task."""
+    """Return whether the checkpoint exists and is of this very task."""
     if not path.exists():
         return False
     try:
@@ -130,8 +130,8 @@ def _is_finished(path: Path, recipe: Mapping[str, Any], notice: Callable[[str], 
     except UserError as error:
         notice(f"{path.stem} is fitted again: {error}")
         return False
-    found = card.model_dump(mode="json", include=set(recipe))
-    changed = [key for key, value in recipe.items() if found[key] != value]
+    stored = card.model_dump(mode="json", include=set(recipe))
+    changed = [key for key, value in recipe.items() if stored[key] != value]
     if math.isclose(card.first_loss, recipe["first_loss"], rel_tol=_SAME_LOSS):
         changed = [key for key in changed if key != "first_loss"]
     if changed:

@@ -1,4 +1,4 @@
-"""Training episodes: what is drawn for each, and how a batch of them flies."""
+"""Training episodes: the draws for each, and the flight of a batch."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ EPISODE_STEPS = round(EPISODE_S * CONTROL_RATE_HZ)
 
 @dataclass(frozen=True)
 class _Start:
-    """What is drawn for one episode."""
+    """Draws for one episode."""
 
     vehicle: VehicleParameters
     course: Course
@@ -46,10 +46,10 @@ class _Start:
 def fly(
     pool: str, episodes: Sequence[int], seed: int, settings: FlightSettings | None = None
 ) -> Flights:
-    """Fly some episodes of a pool together; each comes out the same in any company, bit for bit.
+    """Fly some episodes of a pool together; the bits of each do not depend on the others.
 
     The draws of an episode are keyed by pool, episode and seed, and lanes are padded to whole
-    vectors. All fly in free air for as long, diverged or not; nothing passes a tap.
+    vectors. All fly in free air for the same time, diverged or not; nothing passes a tap.
     """
     if settings is None:
         settings = PLATFORM.wind_collection if pool == "wind" else PLATFORM.collection
@@ -60,7 +60,7 @@ def fly(
     plant, winds = TorchPlant(vehicle), _winds(starts)
     controller = WaypointController(vehicle, course, settings.controller.arrival_m)
     parts = zip(*(vars(start.state).values() for start in starts), strict=True)
-    now = plant.start(State(*(torch.stack(part, -1) for part in parts)).take(lanes))
+    plant_state = plant.start(State(*(torch.stack(part, -1) for part in parts)).take(lanes))
     running = torch.ones(len(lanes), dtype=torch.bool)
     steps = torch.zeros(len(lanes), dtype=torch.long)
     values = blank_values(EPISODE_STEPS, len(starts))
@@ -71,20 +71,19 @@ def fly(
 
     for step in range(EPISODE_STEPS):
         wind_mps = blown(step, 1)[0]
-        command = controller.command(step, now.state, wind_mps)
-        record(values, step, now, wind_mps, command)
-        now = plant.advance(now, command, blown(step, STEPS_PER_CONTROL))
-        running &= _in_bounds(now.state, settings)
+        command = controller.command(step, plant_state.state, wind_mps)
+        record(values, step, plant_state, wind_mps, command)
+        plant_state = plant.advance(plant_state, command, blown(step, STEPS_PER_CONTROL))
+        running &= _in_bounds(plant_state.state, settings)
         steps += running
-    record(values, EPISODE_STEPS, now, blown(EPISODE_STEPS, 1)[0])
+    record(values, EPISODE_STEPS, plant_state, blown(EPISODE_STEPS, 1)[0])
     vehicles = tuple(start.vehicle for start in starts)
     return Flights(values, steps[: len(starts)].numpy(), vehicles)
 
 
 def _draw(pool: str, episode: int, seed: int, settings: FlightSettings) -> _Start:
-
-    def stream(what: str) -> np.random.Generator:
-        return generator(f"collection/{pool}/{what}", str(episode), seed)
+    def stream(purpose: str) -> np.random.Generator:
+        return generator(f"collection/{pool}/{purpose}", str(episode), seed)
 
     disturbed = perturbation.draw(stream("perturbation"), EPISODE_STEPS, settings.perturbation)
     winds = None
@@ -99,7 +98,7 @@ def _draw(pool: str, episode: int, seed: int, settings: FlightSettings) -> _Star
 
 
 def _draw_state(stream: np.random.Generator, settings: FlightSettings) -> State:
-    """A start in the arena with any heading, some tilt, speed and rates; no batch axes."""
+    """Draw a start in the arena with any heading, some tilt, speed and rates; no batch axes."""
     lows, highs = np.array(settings.controller.arena_m).T
     position = stream.uniform(lows, highs)
     direction = stream.standard_normal(3)

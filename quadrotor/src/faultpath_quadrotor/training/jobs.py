@@ -1,7 +1,7 @@
 """Fit many models on several worker processes, each with one thread.
 
-Models are independent, so that the weights do not depend on the number of workers. What is finished
-of one, epoch by epoch, is in the folder.
+Models are independent, so that the weights do not depend on the number of workers. The folder holds
+the finished epochs of each.
 """
 
 import time
@@ -37,8 +37,8 @@ def check_pools(jobs: Sequence[Job], data: Path) -> None:
     for pool in dict.fromkeys(pool for job in jobs for pool in job.entry.pools):
         there = provenance_path(data / pool).is_file()
         if there and pool != CLEARANCE_POOL:  # the depth images are checked where they are read
-            asked = trajectories.recipe() if pool == trajectories.POOL else recipe(pool)
-            is_there(data / f"{pool}.parquet", asked)
+            expected = trajectories.recipe() if pool == trajectories.POOL else recipe(pool)
+            is_there(data / f"{pool}.parquet", expected)
 
 
 def check_pilots(jobs: Sequence[Job]) -> None:
@@ -56,7 +56,7 @@ def collect_missing(
 ) -> None:
     """Collect the pools that are missing: training flights, closed-loop flights, depth images.
 
-    `progress` is called with the name of a pool, what is done of it and what was asked for.
+    `progress` is called with the name of a pool, the amount done and the whole amount.
     """
     for pool in missing_pools(jobs, data):
         report = partial(progress, pool)
@@ -82,12 +82,12 @@ class Failure:
 
 @dataclass(frozen=True)
 class Overview:
-    """How far all models together are."""
+    """Progress of all models together."""
 
     done: int
     total: int
     fraction: float
-    """Part of the work that is done, by the costs in the catalogue."""
+    """Fraction of the work done, by the costs in the catalogue."""
     running: Mapping[str, Moment | None]
     """Models at work, as `<name>-<seed>`; `None` until the first minibatch."""
 
@@ -103,7 +103,7 @@ def run_jobs(
 ) -> tuple[ModelCard | Failure, ...]:
     """Fit models, the longest first, from wherever an earlier call left them, into a folder.
 
-    Returns what came of the jobs, in their order. `workers` is the number of processes; 0 fits in
+    Returns the results of the jobs, in their order. `workers` is the number of processes; 0 fits in
     this one. `progress` is called a few times a second, `notice` with sentences for the user.
     `shipped` copies each finished model into the package.
 
@@ -123,7 +123,7 @@ def run_jobs(
         whole = sum(job.entry.cost for job in order)
         progress(Overview(len(results), len(order), done / whole, dict(running)))
 
-    def told(place: int, message: Moment | str | None) -> None:
+    def receive(place: int, message: Moment | str | None) -> None:
         if isinstance(message, str):
             notice(message)
         else:
@@ -134,7 +134,7 @@ def run_jobs(
         with locked(out, notice), executor:
             sweep(out)
             for place, end in run_each(
-                executor, [partial(fit_job, j, data, out) for j in order], told
+                executor, [partial(fit_job, j, data, out) for j in order], receive
             ):
                 job = order[place]
                 running.pop(job.stem, None)
@@ -155,7 +155,7 @@ def run_jobs(
                     results[job.stem] = Failure(job, error, details)
                 show()
     except KeyboardInterrupt:
-        done = sum(isinstance(found, ModelCard) for found in results.values())
+        done = sum(isinstance(result, ModelCard) for result in results.values())
         raise Stopped(
             f"interrupted with {done} of {len(jobs)} models finished; they and the finished "
             f"epochs of the others are kept in {out}; run the same command again to resume."
@@ -165,14 +165,14 @@ def run_jobs(
 
 @native.using(native.PORTABLE)
 def fit_job(job: Job, data: Path, out: Path) -> Path:
-    """Fit a model and return its file; a few times a second it tells how far it is."""
+    """Fit a model and return its file; report progress a few times a second."""
     tell(None)  # it has begun: its data may take a while
-    told = 0.0
+    reported_s = 0.0
 
     def advance(moment: Moment) -> None:
-        nonlocal told
-        if time.monotonic() - told > _TELL_EVERY_S:
-            told = time.monotonic()
+        nonlocal reported_s
+        if time.monotonic() - reported_s > _TELL_EVERY_S:
+            reported_s = time.monotonic()
             tell(moment)
 
     return fit(job.task(data), out, advance, tell)

@@ -8,18 +8,18 @@ from faultpath.trials.work.executor import run_all
 from faultpath.trials.work.processes import local
 
 Progress = Callable[[float, float], None]
-"""Called with what is done and what all comes to; its first call counts what was there."""
+"""Called with the amount done and the total; its first call counts existing files."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """A file and what makes it. It is made when the file is there, so that is written last."""
+    """A file and the function that makes it; it counts as made once the file exists."""
 
     path: Path
     make: Callable[[], None]
     """A function of a module bound to its arguments, so that a worker process can call it."""
     size: int = 1
-    """What it counts for in the progress."""
+    """Its weight in the progress."""
 
 
 def make_missing(stages: Sequence[Sequence[Part]], workers: int, progress: Progress | None) -> None:

@@ -42,7 +42,7 @@ PARTS = ("position", "velocity", "rotation", "rate")
 
 @dataclass(frozen=True)
 class Recipe:
-    """What a predictor learns from, and for how long (paper, Section IV-A)."""
+    """Data that a predictor learns from, and for how long (paper, Section IV-A)."""
 
     pools: tuple[str, ...]
     epochs: int
@@ -135,14 +135,14 @@ class PredictorTask(ModelTask):
         }
 
     def _blank(self) -> AnchoredPredictor | UnanchoredPredictor:
-        made = PREDICTORS[self.order_key].build()
-        assert isinstance(made, AnchoredPredictor | UnanchoredPredictor)
-        return made
+        predictor = PREDICTORS[self.order_key].build()
+        assert isinstance(predictor, AnchoredPredictor | UnanchoredPredictor)
+        return predictor
 
     def _predictor(self, network: nn.Module) -> Predictor:
-        made: Any = self._blank()
-        made.network = network
-        return made
+        predictor: Any = self._blank()
+        predictor.network = network
+        return predictor
 
 
 def scales(windows: Windows) -> dict[str, Tensor]:
@@ -174,11 +174,10 @@ def _equal_mix(pools: list[Windows]) -> tuple[Windows, Windows]:
 
 def _measure(network: LatentNetwork, windows: Windows) -> None:
     """Store the training windows' statistics, under true calibration, in the network."""
-    now = windows.state(HISTORY)
+    state = windows.state(HISTORY)
     known = (windows.mass_kg, windows.thrust_scale) if network.conditioned else None
-    raw = features(
-        now.velocity, now.rotation, now.rate, windows.command[:, HISTORY], windows.mass_kg, known
-    )
+    motion = (state.velocity, state.rotation, state.rate)
+    raw = features(*motion, windows.command[:, HISTORY], windows.mass_kg, known)
     network.feature_mean.copy_(raw.mean(1, keepdim=True))
     network.feature_std.copy_(raw.std(1, keepdim=True))
     if isinstance(network, UnanchoredNetwork):
@@ -186,8 +185,8 @@ def _measure(network: LatentNetwork, windows: Windows) -> None:
 
 
 def _increments(windows: Windows) -> Tensor:
-    now, then = windows.state(HISTORY), windows.state(HISTORY + 1)
-    turned = so3.log(so3.compose(now.rotation.transpose(0, 1), then.rotation))
+    old, new = windows.state(HISTORY), windows.state(HISTORY + 1)
+    turned = so3.log(so3.compose(old.rotation.transpose(0, 1), new.rotation))
     return torch.cat(
-        [then.position - now.position, then.velocity - now.velocity, then.rate - now.rate, turned]
+        [new.position - old.position, new.velocity - old.velocity, new.rate - old.rate, turned]
     )

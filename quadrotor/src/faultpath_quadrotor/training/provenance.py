@@ -1,4 +1,4 @@
-"""Where a pool comes from: what decides every number of it, and what came of it."""
+"""Provenance of a pool: what decides its numbers, and the digests of the result."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ FORMAT = 2
 
 
 class Recipe(Frozen):
-    """What decides every number of a pool."""
+    """Settings that decide every number of a pool."""
 
     format: int = FORMAT
     pool: str
     episodes: int
     seed: int
     code_sha256: str
-    """Of the code that draws and flies the episodes, with all its settings."""
+    """Hash of the code that draws and flies the episodes, with all its settings."""
 
 
 class Provenance(Recipe):
-    """A recipe, what it was cooked with, and what came of it."""
+    """A recipe, the versions it was made with, and the digests of the result."""
 
     faultpath_version: str
     packages: dict[str, str]
@@ -51,15 +51,15 @@ def provenance_path(path: Path) -> Path:
 def code_of(*modules: str) -> str:
     """Return a hash of some modules, by their full names, and of all that they import.
 
-    What they made is made anew where one of these files has changed.
+    Data that they made are made again when one of these files changes.
     """
     return read_code([Root(module) for module in modules]).state.contents
 
 
 def rows_sha256(data: Path, pools: Iterable[str]) -> dict[str, str]:
     """Return the digest of the rows of each pool in a folder, as far as it is finished."""
-    found = (read_provenance(data / f"{name}.parquet") for name in pools)
-    return {each.pool: each.rows_sha256 for each in found if each is not None}
+    sources = (read_provenance(data / f"{name}.parquet") for name in pools)
+    return {source.pool: source.rows_sha256 for source in sources if source is not None}
 
 
 def read_provenance(path: Path) -> Provenance | None:

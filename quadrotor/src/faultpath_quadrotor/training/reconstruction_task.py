@@ -34,13 +34,13 @@ TRAJECTORY_POOL = "trajectory"
 
 @dataclass(frozen=True)
 class Model:
-    """What tells the models apart."""
+    """Settings in which the models differ."""
 
     description: str
     pool: str = "wind"
     calibrated: bool = True
     half_range: float | None = None
-    """Of the noise on the head's calibration; `None`: the values are delivered as they are."""
+    """Half range of the noise on the head's calibration; `None`: there is no noise."""
     moves: bool = False
     """Whether there is noise on the motion in the history."""
 
@@ -67,7 +67,7 @@ closed-loop flights, which has no calibration input (paper, Section V-A and V-B)
 
 @dataclass(frozen=True)
 class _Samples:
-    """Windows as the network wants them, standardised once; N windows."""
+    """Windows as the network takes them, standardised once; N windows."""
 
     intervals: Tensor  # [22, 12, N]
     latest: Tensor  # [18, N]
@@ -148,25 +148,25 @@ class ReconstructionTask(ModelTask):
         }
 
     def _errors(self, windows: Windows) -> Tensor:
-        """Return what is added to the state of every interval of a window, `[18, 1, N]`."""
+        """Return the noise on the state of every interval of a window, `[18, 1, N]`."""
         latest = (
             part[..., HISTORY, :].movedim(-1, 0)
             for part in (windows.position, windows.velocity, windows.rotation, windows.rate)
         )
-        given = dict(zip(STATE_STD, latest, strict=True))
-        got = corrupted([state_noise(PAST)], [PAST], windows.ids, self.seed, given)
-        apart = [(got[name, PAST] - value).flatten(1) for name, value in given.items()]
-        return torch.cat(apart, 1).T[:, None]
+        readings = dict(zip(STATE_STD, latest, strict=True))
+        noisy = corrupted([state_noise(PAST)], [PAST], windows.ids, self.seed, readings)
+        errors = [(noisy[name, PAST] - value).flatten(1) for name, value in readings.items()]
+        return torch.cat(errors, 1).T[:, None]
 
     def _calibration(self, windows: tuple[str, ...]) -> Tensor:
-        """Return what the head gets of the calibration, standardised, `[2, N]`."""
+        """Return the calibration that the head gets, standardised, `[2, N]`."""
         half_range = self._model.half_range
         faults = () if half_range is None else (dcc([HEAD], half_range),)
         mass, scale = self._training.calibration
         readings = {"mass": mass, "thrust_scale": scale}
         delivered = corrupted(faults, [HEAD], windows, self.seed, readings)
-        got = torch.stack([delivered["mass", HEAD], delivered["thrust_scale", HEAD]])
-        return self._scaled.calibration(got)
+        supplied = torch.stack([delivered["mass", HEAD], delivered["thrust_scale", HEAD]])
+        return self._scaled.calibration(supplied)
 
 
 def _history(windows: Windows) -> tuple[Tensor, Tensor]:

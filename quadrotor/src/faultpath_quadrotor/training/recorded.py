@@ -1,4 +1,4 @@
-"""What a flight leaves behind at every control instant, whoever flew it."""
+"""Records of flights at every control instant, whoever flew them."""
 
 from dataclasses import dataclass
 
@@ -20,13 +20,13 @@ SIGNALS = {
     "wind_mps": ("wind_x_mps", "wind_y_mps", "wind_z_mps"),
     "motor_thrust_n": ("motor_thrust_n",),
 }
-"""What is recorded at each control instant, and the names of its components."""
+"""Signals recorded at each control instant, and the names of their components."""
 COMPONENTS = tuple(name for names in SIGNALS.values() for name in names)
 
 
 @dataclass(frozen=True)
 class Flights:
-    """What a batch of episodes left behind."""
+    """Records of a batch of episodes."""
 
     values: np.ndarray
     """float32 [C, N + 1, B] at the control instants, in the order of `COMPONENTS`; a command
@@ -45,7 +45,7 @@ def blank_values(steps: int, count: int) -> NDArray[np.float32]:
 def record(
     values: NDArray[np.float32],
     step: int,
-    now: PlantState,
+    plant_state: PlantState,
     wind_mps: Tensor,
     command: Tensor | None = None,
 ) -> None:
@@ -53,7 +53,7 @@ def record(
 
     `wind_mps` is `[3, L]`, `command` `[4, L]`; `None` where none acts any more.
     """
-    state = now.state
+    state = plant_state.state
     parts = (
         state.position,
         state.velocity,
@@ -61,6 +61,6 @@ def record(
         state.rate,
         torch.full_like(wind_mps[:1], torch.nan).expand(4, -1) if command is None else command,
         wind_mps,
-        now.thrusts.sum(0, keepdim=True),
+        plant_state.thrusts.sum(0, keepdim=True),
     )
     values[:, step] = torch.cat(parts).float()[:, : values.shape[2]].to(CPU).numpy()

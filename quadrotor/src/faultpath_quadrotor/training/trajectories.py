@@ -1,4 +1,4 @@
-"""Closed-loop flights as a pool: what the trajectory-trained reconstruction learns from.
+"""Closed-loop flights as a pool, for the trajectory-trained reconstruction to learn from.
 
 The wind-conditioned predictor, given the true wind, flies selection scenes 0 to 69 among their
 obstacles at every windy level (paper, Section IV-B: selection scenes 0-69). Clearance is the
@@ -33,10 +33,10 @@ from faultpath_quadrotor.vehicle import CONTROL_RATE_HZ
 
 @torch.inference_mode()
 def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed: int) -> Flights:
-    """Fly a block of scenes under correct inputs and return what it left behind.
+    """Fly a block of scenes under correct inputs and return the records.
 
     Scene by scene in their order. `seed` is that of the planner's noise and of the variant's
-    training. A scene's flight is the same in any company, bit for bit.
+    training. A scene's flight does not depend on the others, bit for bit.
     """
     wired = system.variants[variant]
     taps = Taps(
@@ -50,11 +50,11 @@ def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed:
     )
     batch = loop.Batch(tuple(scenes), seed, system.control_dt_s)
     values, world = blank_values(CONTROL_STEPS, len(scenes)), None
-    for now in system.loop(variant, seed).execute(batch, taps):
-        flying: Flying = now.state
+    for instant in system.loop(variant, seed).execute(batch, taps):
+        flying: Flying = instant.state
         world = flying.world
-        command = now.inputs[ACTION].T[:, world.lanes] if ACTION in now.inputs else None
-        recorded.record(values, now.step, world.plant_state, world.wind_mps, command)
+        command = instant.inputs[ACTION].T[:, world.lanes] if ACTION in instant.inputs else None
+        recorded.record(values, instant.step, world.plant_state, world.wind_mps, command)
     assert world is not None
     time_s = world.progress.to(CPU).time_s.numpy()[: len(scenes)]
     # A flight ends with the last instant before its trial did.

@@ -127,7 +127,7 @@ class Windows:
 def windows_of(pool_path: Path) -> Windows:
     """Return a pool's windows; `UserError` when there is no finished pool to read.
 
-    A pool of the paper's has the paper's number, spread evenly over those that it could have.
+    A pool of the paper gets the paper's number of windows, spread evenly over all possible ones.
     """
     windows = cut(read_pool(pool_path))
     count, every = COUNTS.get(pool_path.stem, len(windows)), len(windows)
@@ -153,12 +153,12 @@ def starts(steps: int, stride: int = STRIDE, length: int = COMMANDS) -> list[int
 
 def places(pool: FlightData, stride: int = STRIDE, length: int = COMMANDS) -> np.ndarray:
     """Return where the windows of a pool stand, [W, 3]: episode, number in it, first step."""
-    found = [
+    rows = [
         (episode, i, first)
         for episode, steps in enumerate(pool.steps.tolist())
         for i, first in enumerate(starts(steps, stride, length))
     ]
-    return np.array(found, dtype=np.int64).reshape(-1, 3)
+    return np.array(rows, dtype=np.int64).reshape(-1, 3)
 
 
 def cut(pool: FlightData, stride: int = STRIDE, length: int = COMMANDS) -> Windows:
@@ -210,11 +210,11 @@ def predict(predictor: Predictor, windows: Windows, delivered: DeliveredInputs) 
     The true wind of the present is held over the horizon.
     """
     past = _taking(windows, delivered, slice(0, HISTORY))
-    now = _taking(windows, delivered, HISTORY)
+    present = _taking(windows, delivered, HISTORY)
 
     def take(channel: str, place: str) -> Tensor:
         if channel != "history_code":
-            return now(channel, place)
+            return present(channel, place)
         code = predictor.encode(history(predictor.reads, past))
         assert code is not None
         return code

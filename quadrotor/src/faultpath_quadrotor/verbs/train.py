@@ -66,8 +66,8 @@ def command(
 
     console = SafeConsole()
     if list_:
-        given = {"names": names or None, "seed": seeds or None, "ship": ship or None}
-        refuse_with("--list", **given, data=data, out=out, workers=workers)
+        values = {"names": names or None, "seed": seeds or None, "ship": ship or None}
+        refuse_with("--list", **values, data=data, out=out, workers=workers)
         console.print(drawn(_models()))
         return 0
 
@@ -81,17 +81,17 @@ def command(
     if not ship:
         check_pilots(chosen)
     for place in (out, data):
-        make_folder(place)  # before the flights: what cannot be kept need not be collected
+        make_folder(place)  # before the flights: none are needed where nothing can be stored
     status = 0
     for jobs in stages(chosen):  # models whose data are flown with other models come after those
         _collect(console, jobs, data, workers)
-        found = _fit(console, jobs, data, out, workers, ship)
-        for failure in (each for each in found if isinstance(each, Failure)):
-            said = f"{failure.job.stem} was not fitted: {failure.error}"
-            said += f" ({failure.details})" if failure.details else ""
-            console.print(said, markup=False, style="bold red", soft_wrap=True)
+        results = _fit(console, jobs, data, out, workers, ship)
+        for failure in (result for result in results if isinstance(result, Failure)):
+            text = f"{failure.job.stem} was not fitted: {failure.error}"
+            text += f" ({failure.details})" if failure.details else ""
+            console.print(text, markup=False, style="bold red", soft_wrap=True)
             status = FOUND
-        cards = [each for each in found if not isinstance(each, Failure)]
+        cards = [result for result in results if not isinstance(result, Failure)]
         if cards:
             console.print(drawn(result_table(cards), one_line=True))
             console.print(f"Checkpoints: {out}", markup=False, soft_wrap=True)
@@ -140,9 +140,9 @@ def _collect(console: "SafeConsole", jobs: "Sequence[Job]", data: Path, workers:
     with _progress(console) as bar:
         tasks = {pool: bar.add_task(f"Collecting {pool}", total=None, news="") for pool in missing}
 
-        def show(pool: str, done: float, asked: float) -> None:
-            news = f"{done / max(asked, 1):.0%}"
-            bar.update(tasks[pool], total=asked, completed=done, news=news)
+        def show(pool: str, done: float, total: float) -> None:
+            news = f"{done / max(total, 1):.0%}"
+            bar.update(tasks[pool], total=total, completed=done, news=news)
 
         try:
             collect_missing(jobs, data, workers, show)
@@ -162,12 +162,12 @@ def _fit(
         whole = bar.add_task("Fitting", total=1.0, news="")
         tasks: dict[str, TaskID] = {}
 
-        def show(now: "Overview") -> None:
-            news = f"{now.done}/{now.total} models"
-            bar.update(whole, completed=now.fraction, news=news)
-            for stem in set(tasks) - set(now.running):
+        def show(overview: "Overview") -> None:
+            news = f"{overview.done}/{overview.total} models"
+            bar.update(whole, completed=overview.fraction, news=news)
+            for stem in set(tasks) - set(overview.running):
                 bar.remove_task(tasks.pop(stem))
-            for stem, moment in now.running.items():
+            for stem, moment in overview.running.items():
                 if stem not in tasks:
                     tasks[stem] = bar.add_task(f"  {stem}", total=1.0, news="")
                 if moment is not None:
