@@ -126,7 +126,7 @@ class Printed(NamedTuple):
 
 
 def published(*keys: str | int) -> Any:
-    """Return a figure of the paper by its keys in `paper/published.yaml`; `KeyError` for none."""
+    """Return a figure of the paper by its keys in `data/published.yaml`; `KeyError` for none."""
     figure: Any = data("published.yaml")
     for key in keys:
         figure = figure[key]
@@ -134,7 +134,7 @@ def published(*keys: str | int) -> Any:
 
 
 def published_claims() -> tuple[PublishedClaim, ...]:
-    """Return every claim of `paper/claims.yaml`, in its order."""
+    """Return every claim of `data/claims.yaml`, in its order."""
     return tuple(PublishedClaim.model_validate(entry) for entry in data("claims.yaml"))
 
 

@@ -30,7 +30,7 @@ class Fact(Frozen):
     """`our reading`: the paper is silent there, or can be read in several ways."""
     fact: str
     at: tuple[str, ...]
-    """Places: a file of this package, or of the engine from `faultpath/` on, and a name in it."""
+    """Places: a file of the quadrotor, or of another package from its name on, and a name in it."""
     ours: str = ""
     """Our way and the reason for it, unless it is as written."""
 
@@ -45,7 +45,7 @@ class Group(Frozen):
 
 @cache
 def groups() -> tuple[Group, ...]:
-    """Return every group of `paper/facts.yaml`, in the order of the paper."""
+    """Return every group of `data/facts.yaml`, in the order of the paper."""
     return tuple(Group.model_validate(entry) for entry in data("facts.yaml"))
 
 
