@@ -41,7 +41,7 @@ def timed(side: str, loops: int) -> tuple[float, int, str]:
     """
     where, environment = SIDES[side]
     with tempfile.TemporaryDirectory() as folder:
-        found, python = Path(folder) / "found.json", sys.executable
+        output, python = Path(folder) / "output.json", sys.executable
         if side in ELSEWHERE:
             python, problem = str(ROOT / ELSEWHERE[side]), str(Path(folder) / "problem.npz")
             if not os.access(python, os.X_OK):
@@ -50,7 +50,7 @@ def timed(side: str, loops: int) -> tuple[float, int, str]:
             subprocess.run(write, cwd=ROOT, check=True)
             environment = {**environment, "FAULTPATH_PROBLEM": problem}
         command = [python, "-m", "benchmarks.side", where, "--processes=1", "--values=3"]
-        command += ["--warmups=1", "--min-time=0.1", f"--loops={loops}", f"--output={found}"]
+        command += ["--warmups=1", "--min-time=0.1", f"--loops={loops}", f"--output={output}"]
         command += ["--quiet", "--copy-env", f"--affinity={max(os.sched_getaffinity(0))}"]
         done = subprocess.run(
             command,
@@ -60,12 +60,12 @@ def timed(side: str, loops: int) -> tuple[float, int, str]:
             text=True,
         )
         if done.returncode:
-            said = [line for line in done.stderr.splitlines() if not line.startswith("ERROR:")]
-            raise NotMeasured(f"{side}: {said[-1] if said else 'no message'}")
-        bench = pyperf.Benchmark.load(str(found))
-    said = bench.get_metadata()
+            lines = [line for line in done.stderr.splitlines() if not line.startswith("ERROR:")]
+            raise NotMeasured(f"{side}: {lines[-1] if lines else 'no message'}")
+        bench = pyperf.Benchmark.load(str(output))
+    metadata = bench.get_metadata()
     loops = bench.get_total_loops() // bench.get_nvalue()
-    return float(said["amount"]) / bench.median(), loops, said.get("note", "")
+    return float(metadata["amount"]) / bench.median(), loops, metadata.get("note", "")
 
 
 def measure(rows: Sequence[Row], rounds: int) -> list[Record]:
@@ -96,15 +96,15 @@ def _record(
     ours, peer = (rates.get(side, []) for side in (row.ours, row.peer))
     if row.unit == "ms":
         ours, peer = ([1e3 / rate for rate in side] for side in (ours, peer))
-    found = record(row.name, row.unit, ours, peer, row.peer, row.target)
-    return found.model_copy(update={"note": notes.get(row.peer, "")})
+    measured = record(row.name, row.unit, ours, peer, row.peer, row.target)
+    return measured.model_copy(update={"note": notes.get(row.peer, "")})
 
 
 def describe() -> Machine:
     """Return this machine and the code on it."""
     kernels = native.kernels()
     commit, _ = checkout(Path(faultpath.__file__), [Path(faultpath.__file__).parent])
-    installed = {each.name.replace("_", "-"): each.version for each in distributions()}
+    installed = {package.name.replace("_", "-"): package.version for package in distributions()}
     return Machine(
         date=datetime.now(UTC).date().isoformat(),
         processor=processor(),
@@ -118,30 +118,30 @@ def describe() -> Machine:
 
 
 def main() -> None:
-    """Do what was asked."""
+    """Measure the rows that the command line names, or all of them."""
     parser = argparse.ArgumentParser(prog="benchmarks", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("rows", nargs="*", metavar="ROW", help="these rows, and keep nothing")
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--new", action="store_true", help="keep them with what was measured")
-    asked = parser.parse_args()
-    before = load() if asked.new else None
-    kept = {each.name: each for each in before.records} if before else {}
+    options = parser.parse_args()
+    before = load() if options.new else None
+    kept = {old.name: old for old in before.records} if before else {}
     lacking = [row for row in ROWS if row.name not in kept or kept[row.name].ours is None]
-    named = [row for row in ROWS if row.name in asked.rows]
-    chosen = named if asked.rows else lacking if asked.new else [*ROWS]
-    if len(chosen) < len(asked.rows):
+    named = [row for row in ROWS if row.name in options.rows]
+    chosen = named if options.rows else lacking if options.new else [*ROWS]
+    if len(chosen) < len(options.rows):
         parser.error(f"choose rows from {', '.join(repr(row.name) for row in ROWS)}")
-    found = measure(chosen, asked.rounds)
-    print("\n".join(map(page.told, found)))
+    records = measure(chosen, options.rounds)
+    print("\n".join(map(page.told, records)))
     machine = describe()
     if before is not None:
         machine, when = before.machine, f"measured on {machine.date}"
-        for each in found:
-            note = each.note if each.ours is None else "; ".join(filter(None, (each.note, when)))
-            kept[each.name] = each.model_copy(update={"note": note})
-        found = [kept[row.name] for row in ROWS if row.name in kept]
-    if asked.new or not asked.rows:
-        save(Results(machine=machine, records=tuple(found)))
+        for new in records:
+            note = new.note if new.ours is None else "; ".join(filter(None, (new.note, when)))
+            kept[new.name] = new.model_copy(update={"note": note})
+        records = [kept[row.name] for row in ROWS if row.name in kept]
+    if options.new or not options.rows:
+        save(Results(machine=machine, records=tuple(records)))
 
 
 if __name__ == "__main__":

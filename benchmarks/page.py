@@ -1,6 +1,6 @@
 """The blocks of `docs/performance.md` from `results.json`: its words are there, its numbers here.
 
-As of every document, `tools/documents.py` fills the blocks that are marked in it.
+As in every document, `tools/documents.py` fills the blocks that are marked in it.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -29,7 +29,7 @@ def told(record: Record) -> str:
 
 
 def machine() -> str:
-    """Return what the numbers were measured on, in a sentence."""
+    """Return machine, software and date of the measurements, in a sentence."""
     here = load().machine
     packages = ", ".join(f"{name} {version}" for name, version in here.packages.items())
     commit = f"commit `{here.commit[:12]}`" if here.commit else "no commit known"

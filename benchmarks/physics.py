@@ -49,7 +49,7 @@ def scenes() -> Sequence[Scene]:
 
 
 def camera_poses(chosen: Sequence[Scene]) -> State:
-    """Return where the cameras of a block are at its start, batch `[B]`."""
+    """Return the poses of a block's cameras at its start, batch `[B]`."""
     position = torch.tensor([scene.start_m for scene in chosen], dtype=torch.float64).T
     yaw = torch.tensor([scene.start_yaw_rad for scene in chosen], dtype=torch.float64)
     state = State.hover(position.contiguous(), yaw)
@@ -79,8 +79,8 @@ def interval() -> tuple[float | None, float | None]:
     """Return the ends of our interval of the effect, percentage points."""
     arms = outcomes()
     resamples = Resamples.draw("benchmark", len(arms[0]), n_resamples=RESAMPLES)
-    found = success_effect(*arms, resamples).estimate()
-    return found.low, found.high
+    effect = success_effect(*arms, resamples).estimate()
+    return effect.low, effect.high
 
 
 def bootstrap() -> Side:

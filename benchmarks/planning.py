@@ -1,7 +1,7 @@
 """The planning problem, WM-A with wind, 512 candidates, 20 steps, and our sides of it.
 
-States, calibrations and commands are drawn about what flights have; how long a rollout takes does
-not depend on them.
+States, calibrations and commands are drawn about those of flights; the time that a rollout takes
+does not depend on them.
 """
 
 from collections.abc import Callable
@@ -33,16 +33,16 @@ GOAL_M = (6.0, 0.5, 1.2)
 
 def model() -> AnchoredPredictor:
     """Return the shipped predictor, seed 0, with `DRAG_KGPS`."""
-    found = predictor("wm-a-wind", 0)
-    assert isinstance(found, AnchoredPredictor)
-    return AnchoredPredictor(found.network, wind=True, drag_kgps=(DRAG_KGPS,) * 3)
+    shipped = predictor("wm-a-wind", 0)
+    assert isinstance(shipped, AnchoredPredictor)
+    return AnchoredPredictor(shipped.network, wind=True, drag_kgps=(DRAG_KGPS,) * 3)
 
 
 CALIBRATED = ("trim", "dynamics")
 
 
 def inputs() -> PredictorInputs:
-    """Return what the taps would deliver for one scene, batch `[1, 1]`, float32."""
+    """Return the readings that taps would deliver for one scene, batch `[1, 1]`, float32."""
     draw = generator("benchmark", "scene/0", 0)
 
     def column(rows: int, low: float, high: float) -> Tensor:
@@ -76,15 +76,15 @@ def commands() -> Tensor:
 
 
 def positions() -> list[float]:
-    """Return what every planner must predict, `[3, H, 32]` flat, m."""
-    found = rolling(model())(inputs(), commands()).positions
-    return found[:, 0, :, :CHECKED].flatten().tolist()
+    """Return the positions that every planner must predict, `[3, H, 32]` flat, m."""
+    predicted = rolling(model())(inputs(), commands()).positions
+    return predicted[:, 0, :, :CHECKED].flatten().tolist()
 
 
 def rollout() -> Side:
     """The candidates of one scene rolled out."""
-    roll, given, candidates = rolling(model()), inputs(), commands()
-    return Side(lambda: roll(given, candidates))
+    roll, readings, candidates = rolling(model()), inputs(), commands()
+    return Side(lambda: roll(readings, candidates))
 
 
 def replan() -> Side:
@@ -116,12 +116,12 @@ def one_vehicle() -> Side:
 
 
 def _replans(goal: Tensor, clearance: Callable[[Tensor], Tensor]) -> Callable[[], None]:
-    """Return what takes one step of the planner outside the loop, from the step before's plan.
+    """Return a function that takes one step of the planner, from the plan of the step before.
 
     `clearance` gives `[1, H, K]`, metres, along positions `[3, 1, H, K]`.
     """
-    planner, roll, given = QuadrotorOptions().build_planner(), rolling(model()), inputs()
-    hover = hover_thrust(given.delivered, "trim")[:, 0]
+    planner, roll, readings = QuadrotorOptions().build_planner(), rolling(model()), inputs()
+    hover = hover_thrust(readings.delivered, "trim")[:, 0]
     plan, step = commands()[..., 0].clone(), 0
 
     def work() -> None:
@@ -129,7 +129,7 @@ def _replans(goal: Tensor, clearance: Callable[[Tensor], Tensor]) -> Callable[[]
         search = planner.init(plan, hover)
         for iteration in range(planner.iterations):
             candidates = planner.propose(search, planner.noise(["scene/0"], 0, step, iteration))
-            rolled = roll(given, candidates)
+            rolled = roll(readings, candidates)
             near = clearance(rolled.positions)
             search = planner.update(search, Scored(rolled, candidates, near, goal, hover))
         plan, step = shift(search.plan), step + 1
@@ -146,7 +146,7 @@ def network_product() -> Side:
     network = model().network
     layers = [network.embed, network.cell.from_input, network.cell.from_latent]
     layers += [network.first, network.second, network.last]
-    each = sum(2 * layer.weight.numel() + layer.bias.numel() for layer in layers)
+    operations = sum(2 * layer.weight.numel() + layer.bias.numel() for layer in layers)
     one, other, out = torch.rand(1024, 1024), torch.rand(1024, 1024), torch.empty(1024, 1024)
-    rollouts = 2 * 1024**3 / (each * CANDIDATES * HORIZON)
+    rollouts = 2 * 1024**3 / (operations * CANDIDATES * HORIZON)
     return Side(lambda: torch.mm(one, other, out=out), rollouts)

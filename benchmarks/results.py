@@ -1,4 +1,4 @@
-"""What was measured, as `results.json` keeps it; the page is made from nothing else."""
+"""Measurements as `results.json` keeps them; the page is made from nothing else."""
 
 import json
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ class Record(_Frozen):
     """One number of ours, beside one of a peer where there is a peer."""
 
     name: str
-    """What is measured, as the page's table says it; unique."""
+    """Name of the row in the page's table; unique."""
     unit: str
     ours: float | None = None
     """Median over the rounds; `None` where it was not measured, and `note` says why."""
@@ -76,7 +76,7 @@ def record(
 
 
 class Machine(_Frozen):
-    """What the numbers were measured on."""
+    """The machine and software of the measurements."""
 
     date: str
     processor: str
@@ -90,7 +90,7 @@ class Machine(_Frozen):
 
 
 class Results(_Frozen):
-    """Everything in `results.json`."""
+    """Contents of `results.json`."""
 
     machine: Machine
     records: tuple[Record, ...] = ()

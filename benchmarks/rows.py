@@ -1,4 +1,4 @@
-"""All that is measured: which sides run against which, and what is asked of them."""
+"""All rows of the benchmarks: which sides are compared, and the targets."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ SIDES: Mapping[str, tuple[str, Mapping[str, str]]] = {
     "bootstrap": ("benchmarks.physics:bootstrap", {}),
     "scipy.stats.bootstrap": ("benchmarks.peers.scipy_side:percentile", {}),
 }
-"""What builds each side, as `module:function`, and its environment."""
+"""Function that builds each side, as `module:function`, and its environment."""
 ELSEWHERE = {"jax-mppi": ".venv-bench-jax/bin/python"}
 """Pythons of the sides that need one of their own; they get the problem as a file."""
 

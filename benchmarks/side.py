@@ -22,12 +22,12 @@ class Side:
     amount: float = 1.0
     """Units of work in one call; a rate is this over the seconds of a call."""
     note: str = ""
-    """What runs it, where that is not what runs the others."""
+    """Software that runs it, where that differs from the other sides."""
 
 
-def check_same(found: Any, ours: Any, tolerance: float) -> None:
-    """Exit where a side gives other numbers than ours: what it does is then other work."""
-    apart = float(np.max(np.abs(np.asarray(found) - np.asarray(ours))))
+def check_same(theirs: Any, ours: Any, tolerance: float) -> None:
+    """Exit where a side gives other numbers than ours: then it does other work."""
+    apart = float(np.max(np.abs(np.asarray(theirs) - np.asarray(ours))))
     if not apart <= tolerance:
         sys.exit(f"its numbers differ from ours by {apart:.3g}")
 

@@ -1,4 +1,4 @@
-"""What the marked blocks of the documents show of reference runs and of example files."""
+"""Marked blocks of the documents about reference runs and example files."""
 
 import re
 import shlex
@@ -29,7 +29,7 @@ M = TypeVar("M", bound=BaseModel)
 
 
 class Wrong(Exception):
-    """Something that whoever edits the documents has to correct."""
+    """A mistake that the editor of the documents has to correct."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Run:
 
 
 def parsed(path: Path, model: type[M], again: str) -> M:
-    """Return what a file holds; `Wrong` where it cannot be read, with what to do `again`."""
+    """Return the model in a file; `Wrong` where it cannot be read, with the remedy `again`."""
     try:
         return model.model_validate_json(path.read_bytes())
     except (OSError, ValidationError) as error:
@@ -77,39 +77,39 @@ def load(name: str) -> Run:
 
 def table(run: Run) -> str:
     """Return success of both variants and their difference, one path a column."""
-    record, asked = run.record, run.record.question
+    record, question = run.record, run.record.question
     table = by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm", "break-even"))
     return "\n\n".join(
         [
             grid(table),
-            f"{asked.n_scenes} scenes of `{asked.library}`, {wording.seeds(asked.seeds)}, fault "
-            f"`{asked.fault}`. Bold: a detected difference (interval and test agree, and it stands "
-            f"after Holm's correction for {record.hypotheses} contrasts). Floor, ceiling: both "
-            f"below 10 % or above 90 %, no headline. Break-even: the estimate of the fault "
-            f"frequency at which neither is ahead, and the frequencies at which none is decided to "
-            f"be. Intervals are for {record.estimand}. Void pairs: "
+            f"{question.n_scenes} scenes of `{question.library}`, {wording.seeds(question.seeds)}, "
+            f"fault `{question.fault}`. Bold: a detected difference (interval and test agree, and "
+            f"it stands after Holm's correction for {record.hypotheses} contrasts). Floor, "
+            f"ceiling: both below 10 % or above 90 %, no headline. Break-even: the estimate of the "
+            f"fault frequency at which neither is ahead, and the frequencies at which none is "
+            f"decided to be. Intervals are for {record.estimand}. Void pairs: "
             f"{sum(effect.void_pairs for effect in record.effects)}.{_rule(run)} {flown(run)}",
         ]
     )
 
 
 def _rule(run: Run) -> str:
-    """Say by which rule a run was decided, and what today's makes of its primary effect."""
-    asked, effects = run.record.question, {each.path: each for each in run.record.effects}
-    if asked.stop or asked.rule != "exact":
-        return f" Rule: {asked.ruled}." if asked.ruled else ""
-    said = (
-        f" Rule: {asked.ruled}; its scenes were seen under it, so it keeps that verdict. Scenes "
+    """Return the rule that decided a run, and the p-value of its primary effect by today's rule."""
+    question, effects = run.record.question, {e.path: e for e in run.record.effects}
+    if question.stop or question.rule != "exact":
+        return f" Rule: {question.ruled}." if question.ruled else ""
+    rule = (
+        f" Rule: {question.ruled}; its scenes were seen under it, so it keeps that verdict. Scenes "
         "flown from now on answer under the rule in force."
     )
-    effect = effects.get(asked.primary)
+    effect = effects.get(question.primary)
     if effect is None or len(effect.wins) != 1:
-        return said
+        return rule
     wins, losses = effect.wins[0], effect.losses[0]
-    now = unconditional.p_value(wins, losses, effect.scenes)
+    exact = unconditional.p_value(wins, losses, effect.scenes)
     return (
-        f"{said} Of the primary effect, {wins}:{losses}, p by itself is "
-        f"{wording.p_value(effect.p_value)} by this rule and {wording.p_value(now)} by the E+M "
+        f"{rule} Of the primary effect, {wins}:{losses}, p by itself is "
+        f"{wording.p_value(effect.p_value)} by this rule and {wording.p_value(exact)} by the E+M "
         "test."
     )
 
@@ -121,14 +121,14 @@ def headline(run: Run) -> str:
 
 def contrast(run: Run) -> str:
     """Return the two decided effects that point opposite ways: one module alone, and shared."""
-    question, effects = run.record.question, {each.path: each for each in run.record.effects}
+    question, effects = run.record.question, {e.path: e for e in run.record.effects}
     shared = effects["shared"]
     opposed = [
-        each
-        for each in run.record.effects
-        if each.detected
-        and each.path not in ("correct", "shared")
-        and each.success.value * shared.success.value < 0
+        effect
+        for effect in run.record.effects
+        if effect.detected
+        and effect.path not in ("correct", "shared")
+        and effect.success.value * shared.success.value < 0
     ]
     if not shared.detected or len(opposed) != 1:
         raise Wrong(f"{run.name} has not decided one reversal: the block has nothing to say")
@@ -151,12 +151,12 @@ def contrast(run: Run) -> str:
 
 
 def terminal(run: Run) -> str:
-    """Return what the command line prints of the record, and by which code the run was flown."""
+    """Return the record as the command line prints it, and by which code the run was flown."""
     return "\n\n".join([printed(decision(run.record)), flown(run)])
 
 
 def printed(shown: RenderableType) -> str:
-    """Return what a terminal of 100 columns shows."""
+    """Return `shown` as a terminal of 100 columns prints it."""
     console = Console(file=StringIO(), width=100, record=True, color_system=None)
     console.print(shown)
     lines = (line.rstrip() for line in console.export_text().splitlines())
@@ -165,29 +165,29 @@ def printed(shown: RenderableType) -> str:
 
 def command(run: Run, *words: str) -> str:
     """Return the command that made the run, where it goes left out; `words` follow the fence."""
-    given = list(run.provenance.command)
-    if "--out" in given:
-        at = given.index("--out")
-        del given[at : at + 2]
-    line = shlex.join([Path(given[0]).name, *given[1:]])
-    return fence(" ".join(["console", *words]), "$ " + line.replace(" --", " \\\n    --"))
+    arguments = list(run.provenance.command)
+    if "--out" in arguments:
+        at = arguments.index("--out")
+        del arguments[at : at + 2]
+    text = shlex.join([Path(arguments[0]).name, *arguments[1:]])
+    return fence(" ".join(["console", *words]), "$ " + text.replace(" --", " \\\n    --"))
 
 
 def flown(run: Run) -> str:
     """Return by which code the run was flown, and whether that is the code that is here."""
-    asked = run.record.question
-    return flown_by(run.provenance, asked.system, asked.options)
+    question = run.record.question
+    return flown_by(run.provenance, question.system, question.options)
 
 
 def origin(run: Run) -> str:
     """Return where the run comes from."""
-    made = run.provenance
+    provenance, installed = run.provenance, run.provenance.packages
     packages = ", ".join(
-        f"{n} {made.packages[n]}" for n in ("numpy", "torch") if n in made.packages
+        f"{name} {installed[name]}" for name in ("numpy", "torch") if name in installed
     )
     return (
-        f"Made on {made.finished[:10]} by faultpath {made.faultpath_version} with Python "
-        f"{made.python}, {packages}. {flown(run)} "
+        f"Made on {provenance.finished[:10]} by faultpath {provenance.faultpath_version} with "
+        f"Python {provenance.python}, {packages}. {flown(run)} "
         f"Everything that the run left in small files is in [`docs/reference/{run.name}`]"
         f"({{reference}}/{run.name}): decision record, outcome table, provenance and report."
     )
@@ -232,10 +232,10 @@ def picture(run: Run, part: str) -> str:
 def code(place: str, part: str, *words: str) -> str:
     """Return a file's part below the line `# --- PART ---`; `words` follow the fence."""
     pieces = re.split(r"^ *# --- (.+) ---\n", (ROOT / place).read_text("utf-8"), flags=re.MULTILINE)
-    found = dict(zip(pieces[1::2], pieces[2::2], strict=True))
-    if part not in found:
-        raise Wrong(f"{place} has no part '{part}'; it has {', '.join(found)}")
-    return fence(" ".join(["python", *words]), found[part].rstrip().strip("\n"))
+    parts = dict(zip(pieces[1::2], pieces[2::2], strict=True))
+    if part not in parts:
+        raise Wrong(f"{place} has no part '{part}'; it has {', '.join(parts)}")
+    return fence(" ".join(["python", *words]), parts[part].rstrip().strip("\n"))
 
 
 def template(kind: str, name: str) -> str:
@@ -256,13 +256,13 @@ PARTS: dict[str, tuple[str, str]] = {
     "effects": ("Effects of the repair", "[aria-labelledby=effects] figure"),
     "flights": ("Some flights", "[aria-labelledby=flights] > *"),
 }
-"""What may be pictured: its name in words, and where in the page it is."""
+"""Parts of a report that may be pictured: name in words, and selector in the page."""
 
 
 def about(
     load: Callable[[str], Any], *fills: Callable[..., str]
 ) -> Iterator[tuple[str, Callable[..., str]]]:
-    """Yield what fills blocks about a run that is loaded by its name, each with its kind."""
+    """Yield kind and function of the blocks about a run that is loaded by its name."""
     for fill in fills:
         kind = fill.__name__.strip("_")
         yield kind, lambda name, *words, fill=fill: fill(load(name), *words)
@@ -274,4 +274,4 @@ KINDS: dict[str, Callable[..., str]] = {
     "code": code,
     "template": template,
 }
-"""What fills the kinds of blocks about runs and about the code of examples."""
+"""Functions that fill the blocks about runs and about the code of examples, by kind."""

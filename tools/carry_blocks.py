@@ -1,4 +1,4 @@
-"""What the page about the carry-over of verdicts shows of its study."""
+"""Blocks of the page about the carry-over of verdicts."""
 
 import sys
 from functools import cache
@@ -26,7 +26,7 @@ MARKS = {1: "repair", -1: "baseline", 0: "·"}
 
 @cache
 def load(name: str) -> Flown:
-    """Return what a study left; `Wrong` for a damaged file, and where there is none."""
+    """Return a flown study; `Wrong` for a damaged file, and where there is none."""
     return parsed(REFERENCE / name / CELLS, Flown, TAKE_AGAIN)
 
 
@@ -37,27 +37,27 @@ def take(name: str, folder: Path) -> None:
 
 
 def _said(flown: Flown) -> str:
-    return "\n".join(f"- {each}" for each in sentences(flown))
+    return "\n".join(f"- {sentence}" for sentence in sentences(flown))
 
 
 def _matrix(flown: Flown) -> str:
-    """Return a table a question and path: planner, estimator and plant down, the rest across."""
+    """Return a table per question and path: planner, estimator and plant down, the rest across."""
     parts: list[str] = []
     means = {(q.repair, q.baseline, reach): mean for q, reach, mean in overall(flown)}
     for question, reach, cells in questions(flown):
         if not cells:
             continue
         used = {
-            factor: [each for each in levels if any(c.levels[factor] == each for c in cells)]
+            factor: [level for level in levels if any(c.levels[factor] == level for c in cells)]
             for factor, levels in flown.design.factors.items()
         }
         down, across = list(used)[:3], list(used)[3:]
-        found = {tuple(cell.levels[name] for name in used): cell for cell in cells}
+        by_levels = {tuple(cell.levels[name] for name in used): cell for cell in cells}
         columns = list(product(*(used[name] for name in across)))
         table = Table(
-            columns=tuple(" ".join((*each[:-2], "".join(each[-2:]))) for each in columns),
+            columns=tuple(" ".join((*column[:-2], "".join(column[-2:]))) for column in columns),
             lines=tuple(
-                line(", ".join(row), *(_entry(flown, found.get((*row, *each))) for each in columns))
+                line(", ".join(row), *(_entry(flown, by_levels.get((*row, *c))) for c in columns))
                 for row in product(*(used[name] for name in down))
             ),
             corner=", ".join(down),
@@ -85,9 +85,9 @@ def _shown(mean: Mean | None) -> str:
 
 def _factors(flown: Flown) -> str:
     lines: list[Line] = []
-    every = moves(flown)
+    all_moves = moves(flown)
     for question, reach, _ in questions(flown):
-        own = [each for each in every if (each.question, each.reach) == (question, reach)]
+        own = [move for move in all_moves if (move.question, move.reach) == (question, reach)]
         lines += [Line(label=title(question, reach))] if own else []
         for move in own:
             counts = (move.same, move.opposite, move.one, move.neither)
@@ -108,16 +108,16 @@ def _factors(flown: Flown) -> str:
 def _cost(name: str) -> str:
     flown = load(name)
     origin = parsed(REFERENCE / name / "provenance.json", RunProvenance, TAKE_AGAIN)
-    timed = sum(each.trials for each in flown.rounds)
-    spent = sum(each.seconds for each in flown.rounds) / 60
-    crowds = sorted({each.workers for each in flown.rounds})
+    timed = sum(batch.trials for batch in flown.rounds)
+    spent = sum(batch.seconds for batch in flown.rounds) / 60
+    crowds = sorted({batch.workers for batch in flown.rounds})
     workers = f"{' or '.join(map(str, crowds))} worker{'s' * (crowds != [1])}"
     left = "".join(f" Left out: {level}: {why}" for level, why in flown.left_out.items())
     whole = "" if flown.complete else " The study was not flown to its end."
-    asked = flown.design
+    design = flown.design
     return (
-        f"{counted(len(flown.cells), 'cell')}, {asked.first} to {asked.most} scenes each of "
-        f"`{asked.library}`, {wording.seeds((asked.seed,))}; {counted(flown.trials, 'trial')}. "
+        f"{counted(len(flown.cells), 'cell')}, {design.first} to {design.most} scenes each of "
+        f"`{design.library}`, {wording.seeds((design.seed,))}; {counted(flown.trials, 'trial')}. "
         f"{counted(timed, 'trial')} took {spent:.0f} minutes on {workers} ({origin.processor}); on "
         f"{NODES} nodes of two cores the same blocks would take {60 * hours(flown, NODES):.0f} "
         f"minutes, without what sending them costs.{whole}{left} "
@@ -126,4 +126,4 @@ def _cost(name: str) -> str:
 
 
 KIND = {**dict(about(load, _said, _matrix, _factors)), "cost": _cost}
-"""What fills the blocks of docs/carry-over.md."""
+"""Functions that fill the blocks of docs/carry-over.md, by kind."""

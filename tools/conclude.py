@@ -51,10 +51,10 @@ def conclude_all(tell: Callable[[str], None]) -> None:
 def audit(folder: Path) -> DecisionRecord:
     """Decide a stored audit anew and write its record and pages."""
     before = json.loads((folder / "record.json").read_bytes())
-    asked = Question.model_validate(before["question"])
+    question = Question.model_validate(before["question"])
     paths = [FaultPath.model_validate(path) for path in before["paths"]]
     outcomes = read_outcomes(folder / "outcomes.parquet")
-    record = decide(asked, paths, outcomes, findings=tuple(before.get("findings", ())))
+    record = decide(question, paths, outcomes, findings=tuple(before.get("findings", ())))
     (folder / RECORD).write_text(as_text(record), "utf-8")
     origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
     shown = SystemShown.model_validate_json((folder / SYSTEM).read_bytes())  # as it flew
@@ -78,28 +78,28 @@ def audit(folder: Path) -> DecisionRecord:
 def reversal_map(folder: Path) -> MapRecord:
     """Decide a reference map anew from its trials; write its record and table."""
     before = map_blocks.load(folder.name).record
-    asked = before.question
-    spec, system = _system(asked)
+    question = before.question
+    spec, system = _system(question)
     request = MapQuestion(
-        baseline=asked.baseline,
-        repair=asked.repair,
-        fault=asked.fault,
-        against=asked.against,
-        up_to=asked.up_to,
-        points=asked.points,
-        mean=asked.means,
-        spread=asked.spreads,
-        correlation=asked.correlation,
-        scenes=asked.n_scenes,
-        seeds=asked.seeds,
+        baseline=question.baseline,
+        repair=question.repair,
+        fault=question.fault,
+        against=question.against,
+        up_to=question.up_to,
+        points=question.points,
+        mean=question.means,
+        spread=question.spreads,
+        correlation=question.correlation,
+        scenes=question.n_scenes,
+        seeds=question.seeds,
     )
-    plan = plan_map(system, spec, request, library_of(system, asked.library))
+    plan = plan_map(system, spec, request, library_of(system, question.library))
     points = [
-        (round(x / asked.up_to * UNITS), round(y / asked.up_to * UNITS))
-        for x, y in (each.errors for each in before.points)
+        (round(x / question.up_to * UNITS), round(y / question.up_to * UNITS))
+        for x, y in (point.errors for point in before.points)
     ]
     record = map_decided(
-        replace(plan, question=asked), points, read_outcomes(folder / OUTCOMES), before.findings
+        replace(plan, question=question), points, read_outcomes(folder / OUTCOMES), before.findings
     )
     (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     (folder / "table.md").write_text(table_markdown(record), "utf-8")
@@ -109,35 +109,35 @@ def reversal_map(folder: Path) -> MapRecord:
 
 
 def paper(folder: Path, target: Path) -> list[str]:
-    """Conclude a reproduction; return what its claims were answered and now are."""
+    """Conclude a reproduction; return the claims whose answers changed, with both answers."""
     results, old = read_results(folder)
     built = [part for page in PAGES for part in page.build(results)]
-    found = old.model_copy(
+    record = old.model_copy(
         update={
             "ledger": again(results, old.ledger),
             "tables": tuple(part for part in built if isinstance(part, Table)),
             "figures": tuple(part for part in built if not isinstance(part, Table)),
         }
     )
-    (folder / CONCLUSIONS).write_text(found.model_dump_json(indent=1) + "\n", "utf-8")
+    (folder / CONCLUSIONS).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
-    write_pages(target, found, _reseal(folder, origin))
+    write_pages(target, record, _reseal(folder, origin))
     answers = {claim.id: claim.verdict for claim in old.ledger.claims}
     return [
         f"{claim.id}: {answers.get(claim.id, 'not answered')} -> {claim.verdict}"
-        for claim in found.ledger.claims
+        for claim in record.ledger.claims
         if claim.verdict != answers.get(claim.id)
     ] or ["No claim changed its answer."]
 
 
-def _system(asked: Any) -> tuple[SystemSpec, System]:
-    place = str(ROOT / asked.system) if ".py:" in asked.system else asked.system
-    spec = SystemSpec(name=place, options=asked.options)
+def _system(question: Any) -> tuple[SystemSpec, System]:
+    place = str(ROOT / question.system) if ".py:" in question.system else question.system
+    spec = SystemSpec(name=place, options=question.options)
     return spec, load_system(spec)
 
 
 def _reseal(folder: Path, origin: RunProvenance) -> RunProvenance:
-    """Write the digests of what was concluded anew; a run that kept none keeps none."""
+    """Write the digests of the files that were made anew; a run that kept none keeps none."""
     if not origin.files:
         return origin
     here = [name for name in origin.files if (folder / name).is_file()]

@@ -48,7 +48,7 @@ KINDS: Mapping[str, Any] = {
     "performance": performance.KIND,
     "state": state_blocks.KIND,
 }
-"""What fills a block, by its kind, or by kind and part; takes the other words of its name."""
+"""Functions that fill a block from the other words of its name, by kind, or by kind and part."""
 
 BLOCK = re.compile(
     r"^<!-- begin:(?P<name>\S+) -->\n(?P<body>.*?)^<!-- end:(?P=name) -->$",
@@ -64,7 +64,7 @@ PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     paper_blocks.fact_page,
     state_blocks.pictures,
 )
-"""What makes whole files, by their path."""
+"""Functions that return whole files, by their path."""
 
 
 def documents() -> list[Path]:
@@ -73,16 +73,16 @@ def documents() -> list[Path]:
 
 
 def fill(name: str, document: Path) -> str:
-    """Return what belongs into the block `name` of a document."""
-    found, words = KINDS, name.split(":")
-    while isinstance(found, Mapping):
+    """Return the text of the block `name` of a document."""
+    filler, words = KINDS, name.split(":")
+    while isinstance(filler, Mapping):
         kind, *words = words or [""]
-        if kind not in found:
+        if kind not in filler:
             raise Wrong(
-                f"{document.name}: there is no block '{kind}' in '{name}': use {', '.join(found)}"
+                f"{document.name}: there is no block '{kind}' in '{name}': use {', '.join(filler)}"
             )
-        found = found[kind]
-    text = found(*words)
+        filler = filler[kind]
+    text = filler(*words)
     for word, folder in (("{images}", IMAGES), ("{reference}", REFERENCE)):
         text = text.replace(word, Path(os.path.relpath(folder, document.parent)).as_posix())
     return text
@@ -110,12 +110,12 @@ def made() -> Mapping[Path, str]:
 
 
 def stale() -> Iterator[str]:
-    """Yield what is not up to date, in words."""
+    """Yield each file, block or picture that is not up to date, in words."""
     files = made()
-    for path, wanted in files.items():
+    for path, content in files.items():
         text = path.read_text("utf-8") if path.is_file() else ""
-        if text != wanted:
-            pairs = zip(BLOCK.finditer(text), BLOCK.finditer(wanted), strict=False)
+        if text != content:
+            pairs = zip(BLOCK.finditer(text), BLOCK.finditer(content), strict=False)
             names = [f"block {a['name']}" for a, b in pairs if a["body"] != b["body"]]
             yield ": ".join(filter(None, [str(path.relative_to(ROOT)), ", ".join(names)]))
     for path in leftover(files):
@@ -128,7 +128,7 @@ def stale() -> Iterator[str]:
 
 
 def write() -> None:
-    """Write what is stale, and drop pictures of what is no longer measured."""
+    """Write what is stale, and delete pictures of what is no longer measured."""
     files = made()
     for path, text in files.items():
         if not path.is_file() or path.read_text("utf-8") != text:
@@ -139,7 +139,8 @@ def write() -> None:
 
 def leftover(files: Mapping[Path, str]) -> list[Path]:
     """Return the drawn pictures that no measurement gives."""
-    pages = {IMAGES / name_of(*each) for each in pictures()} | {IMAGES / n for n in made_from()}
+    pages = {IMAGES / name_of(*picture) for picture in pictures()}
+    pages |= {IMAGES / name for name in made_from()}
     kept = {*IMAGES.glob("fault-*.svg"), IMAGES / "paper-figure-2.svg"}
     return sorted(set(IMAGES.glob("*.svg")) - set(files) - pages - kept)
 
@@ -162,40 +163,40 @@ def take(what: str) -> None:
     if (Path(folder) / carry_blocks.CELLS).is_file():
         carry_blocks.take(name, Path(folder))
         return
-    heard = (SIGNALS,) if (Path(folder) / SIGNALS).is_file() else ()
-    copied((*TAKEN, *heard), Path(folder), REFERENCE / name)
+    signals = (SIGNALS,) if (Path(folder) / SIGNALS).is_file() else ()
+    copied((*TAKEN, *signals), Path(folder), REFERENCE / name)
     load.cache_clear()
     if load(name).provenance.dirty:
         print(f"{name} was made with uncommitted changes, and the documents will say so.")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Do what was asked; return the exit status."""
+    """Carry out the command line; return the exit status."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--check", action="store_true", help="exit 1 when something is stale")
     parser.add_argument("--images", action="store_true", help="make the pictures too")
     parser.add_argument("--conclude", action="store_true", help="decide stored runs anew first")
     parser.add_argument("--paper", type=Path, metavar="RUN_FOLDER")
     parser.add_argument("--take", action="append", default=[], metavar="NAME=RUN_FOLDER")
-    asked = parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
     try:
-        if asked.check:
-            found = list(stale())
+        if options.check:
+            problems = list(stale())
             hint = "Run python tools/documents.py."
-            print("\n".join([*found, hint] if found else ["Up to date."]))
-            return 1 if found else 0
-        for what in asked.take:
+            print("\n".join([*problems, hint] if problems else ["Up to date."]))
+            return 1 if problems else 0
+        for what in options.take:
             take(what)
-        if asked.paper is not None:
-            paper_blocks.take(asked.paper)
-        if asked.conclude:
+        if options.paper is not None:
+            paper_blocks.take(options.paper)
+        if options.conclude:
             from conclude import conclude_all
 
             conclude_all(print)
             load.cache_clear()
             paper_blocks.load.cache_clear()
         write()
-        if asked.images:
+        if options.images:
             make_images(pictures())
     except Wrong as wrong:
         print(f"documents.py: {wrong}", file=sys.stderr)

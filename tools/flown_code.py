@@ -13,21 +13,21 @@ from faultpath.trials.provenance import RunProvenance
 ROOT = Path(__file__).resolve().parents[1]
 
 
-def flown_by(made: RunProvenance, system: str, options: Mapping[str, str]) -> str:
+def flown_by(origin: RunProvenance, system: str, options: Mapping[str, str]) -> str:
     """Return in a sentence by which commit a run was flown, and whether what flies has changed.
 
     What flies: the sources and the data files, trained weights among them, whose digests the run
     kept. Only that they changed is said, not how many, so that a document goes stale once.
     """
-    commit = f"commit `{made.commit[:12]}`" if made.commit else "code of no known commit"
-    done = "Finished" if made.blocks_kept else "Flown"  # parts may have been flown by others
-    said = f"{done} by {commit}{' with uncommitted changes' if made.dirty else ''}"
-    if not made.sources:
-        return f"{said}, before runs kept digests of what flies: by older code than today's."
+    commit = f"commit `{origin.commit[:12]}`" if origin.commit else "code of no known commit"
+    done = "Finished" if origin.blocks_kept else "Flown"  # parts may have been flown by others
+    text = f"{done} by {commit}{' with uncommitted changes' if origin.dirty else ''}"
+    if not origin.sources:
+        return f"{text}, before runs kept digests of what flies: by older code than today's."
     here = _state(system, tuple(sorted(options.items())))
-    if (here.files, here.data) == (made.sources, made.data):
-        return f"{said}; nothing that flew has changed since."
-    return f"{said}; code{' or weights' if made.data else ''} that flew changed since."
+    if (here.files, here.data) == (origin.sources, origin.data):
+        return f"{text}; nothing that flew has changed since."
+    return f"{text}; code{' or weights' if origin.data else ''} that flew changed since."
 
 
 @cache

@@ -1,4 +1,4 @@
-"""What the documents show of reference runs of `faultpath map`."""
+"""Marked blocks of the documents about reference runs of `faultpath map`."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -64,17 +64,17 @@ def _picture(run: Mapped, part: str) -> str:
 
 
 def _said(run: Mapped) -> str:
-    record, asked = run.record, run.record.question
+    record, question = run.record, run.record.question
     lines = [f"> **{record.headline}**"]
-    lines += [f"> {each}" for each in record.sentences]
-    flown = flown_by(run.provenance, asked.system, asked.options)
+    lines += [f"> {sentence}" for sentence in record.sentences]
+    flown = flown_by(run.provenance, question.system, question.options)
     return "\n>\n".join(lines) + f"\n\n{flown}"
 
 
 def _turns(run: Mapped) -> str:
-    flips = next(each for each in tables(run.record) if each.name == "flips")
+    flips = next(table for table in tables(run.record) if table.name == "flips")
     return "\n\n".join([grid(flips), *flips.notes])
 
 
 KIND = dict(about(load, command, _terminal, _picture, _said, _turns))
-"""What fills the kinds of blocks about maps."""
+"""Functions that fill the blocks about maps, by kind."""

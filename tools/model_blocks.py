@@ -1,4 +1,4 @@
-"""What the documents show of the models that ship: the end of each fit, from its card."""
+"""Marked block of the documents about the models that ship: the end of each fit, from its card."""
 
 import json
 from typing import Any
@@ -16,7 +16,7 @@ MEASURES = {
     "wind_rmse_mps": "wind, m/s",
     "error_m": "clearance, m",
 }
-"""What a card says of held-out windows, with its words."""
+"""Errors on held-out windows that a card may have, with their names in words."""
 COLUMNS = ("What it is", "Parameters", "Samples", "Error of", "By seed")
 
 
@@ -29,8 +29,8 @@ def table() -> str:
         measure = next(name for name in MEASURES if name in last)
         errors = [wording.plain(card["validation"][-1][measure], 3) for card in cards]
         sizes = (f"{cards[0][name]:,}" for name in ("parameters", "samples"))
-        told = (entry.description, *sizes, MEASURES[measure], " / ".join(errors))
-        lines.append(line(entry.name, *told, name=True))
+        columns = (entry.description, *sizes, MEASURES[measure], " / ".join(errors))
+        lines.append(line(entry.name, *columns, name=True))
     return grid(Table(corner="Model", columns=COLUMNS, words=COLUMNS, lines=tuple(lines)))
 
 

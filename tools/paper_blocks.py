@@ -1,4 +1,4 @@
-"""What the marked blocks of the documents show of the shipped reproduction of the paper."""
+"""Marked blocks of the documents about the shipped reproduction of the paper."""
 
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -37,11 +37,11 @@ from faultpath.trials.store.folder import read_outcomes
 PLACE = REFERENCE / "paper"
 FACTS = PLACE / "facts.md"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")
-"""What of a run is shipped with the package: the claims are evaluated from it."""
+"""Files of a run that ship with the package: the claims are evaluated from them."""
 PAGES = ("reproduction.html", "tables.md", "ledger.md")
-"""What of a run stands in `docs/reference/paper`."""
+"""Files of a run that are copied to `docs/reference/paper`."""
 AGAIN = "quadrotor-L3"
-"""The reference run that asks what Table IV asks, of the same scenes."""
+"""The reference run that asks the question of Table IV, on the same scenes."""
 BESIDES = ("quadrotor-L3-confirmation",)
 """Reference runs that ask the central question."""
 _FAULT, _MODULE = "calibration=+0.1", "reconstruction"
@@ -50,15 +50,15 @@ _FAULT, _MODULE = "calibration=+0.1", "reconstruction"
 @cache
 def load() -> tuple[Reproduction, RunProvenance]:
     """Return the shipped run; `Wrong` for a damaged one."""
-    found = parsed(RUN / FILES[0], Reproduction, TAKE_AGAIN)
-    return found, parsed(RUN / FILES[1], RunProvenance, TAKE_AGAIN)
+    record = parsed(RUN / FILES[0], Reproduction, TAKE_AGAIN)
+    return record, parsed(RUN / FILES[1], RunProvenance, TAKE_AGAIN)
 
 
 def take(folder: Path) -> None:
     """Ship a run of the whole paper; `Wrong` when it is not finished."""
-    found = parsed(folder / FILES[0], Reproduction, "give the folder of a finished run")
-    if found.profile != "paper":
-        raise Wrong(f"{folder} is a {found.profile} run: what is shipped is one of profile paper")
+    record = parsed(folder / FILES[0], Reproduction, "give the folder of a finished run")
+    if record.profile != "paper":
+        raise Wrong(f"{folder} is a {record.profile} run: what is shipped is one of profile paper")
     copied(FILES, folder, RUN)
     copied(PAGES, folder, PLACE)
     load.cache_clear()
@@ -67,7 +67,7 @@ def take(folder: Path) -> None:
 def pictures() -> Mapping[Path, str]:
     """Return the paper's figures, by their path."""
     figures = load()[0].figures
-    return {IMAGES / f"paper-{each.name}.svg": standing(sweep_plot(each)) for each in figures}
+    return {IMAGES / f"paper-{figure.name}.svg": standing(sweep_plot(figure)) for figure in figures}
 
 
 def central_answer() -> str:
@@ -82,7 +82,7 @@ def central_table() -> str:
 
 
 def elsewhere() -> Mapping[Path, str]:
-    """Return the file that says what reference runs detected of the central question."""
+    """Return the file with what reference runs detected on the central question, by its path."""
     return {ELSEWHERE: CASES.dump_json(_besides(), indent=1).decode() + "\n"}
 
 
@@ -114,10 +114,10 @@ def _case(name: str) -> Case:
 
 
 def _counts() -> str:
-    found, ledger = load()[0], load()[0].ledger
+    record, ledger = load()[0], load()[0].ledger
     return (
-        f"{headline(ledger, found.profile)} ({ledger.scenes} scenes of `{ledger.library}`, seeds "
-        f"{', '.join(map(str, ledger.seeds))}; {found.trials:,} trials)."
+        f"{headline(ledger, record.profile)} ({ledger.scenes} scenes of `{ledger.library}`, seeds "
+        f"{', '.join(map(str, ledger.seeds))}; {record.trials:,} trials)."
     )
 
 
@@ -128,8 +128,8 @@ def _apart() -> str:
 
 
 def _picture(part: str) -> str:
-    found = load()[0]
-    titles = {each.name: each.title for each in (*found.tables, *found.figures)}
+    record = load()[0]
+    titles = {exhibit.name: exhibit.title for exhibit in (*record.tables, *record.figures)}
     return f"![{titles.get(part, part)}]({{images}}/paper-{part}.svg)"
 
 
@@ -146,7 +146,7 @@ def _origin() -> str:
 
 
 def _run_again() -> str:
-    """Say how many trials a reference run has repeated, and how many came out alike."""
+    """Return how many trials a reference run has repeated, and how many came out alike."""
     paths = {CORRECT: CORRECT, SHARED: _FAULT, _MODULE: f"{_FAULT}@{_MODULE}"}
     setting = Setting(wind="L3")
     here = {
@@ -187,17 +187,17 @@ def fact_page() -> Mapping[Path, str]:
 def _facts() -> str:
     """Return the counts by section, and every fact that is otherwise with its reason."""
     every = facts()
-    apart = [fact for fact in every if fact.state == "otherwise"]
-    said = [
+    otherwise = [fact for fact in every if fact.state == "otherwise"]
+    items = [
         f"- **{fact.number}.** *The paper:* {markdown(fact.fact)} *Here:* {markdown(fact.ours)}"
-        for fact in apart
+        for fact in otherwise
     ]
     where = f"{{reference}}/{FACTS.relative_to(REFERENCE)}"
     return "\n\n".join(
         [
             grid(counted()),
             f"Otherwise ([all {len(every)} facts]({where}), with their places in the code):",
-            "\n".join(said),
+            "\n".join(items),
         ]
     )
 
@@ -211,4 +211,4 @@ KIND: dict[str, Callable[..., str]] = {
     "origin": _origin,
     "picture": _picture,
 }
-"""What fills the kinds of blocks about the paper."""
+"""Functions that fill the blocks about the paper, by kind."""

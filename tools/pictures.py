@@ -59,20 +59,20 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
     """Make every picture that documents show, and drop those that they no longer do."""
     from playwright.sync_api import sync_playwright
 
-    found = shutil.which("chromium") or shutil.which("chromium-browser")
-    if found is None:
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    if chromium is None:
         raise Wrong("there is no Chromium to make pictures with; install it")
     IMAGES.mkdir(parents=True, exist_ok=True)
-    made: dict[str, str] = {}
+    digests: dict[str, str] = {}
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=found, args=ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=chromium, args=ARGUMENTS)
         for run, part in pictures:
             (IMAGES / name_of(run, part)).write_text(picture(browser, run, part), "utf-8")
-            made[name_of(run, part)] = digest(run)
+            digests[name_of(run, part)] = digest(run)
         browser.close()
-    for old in made_from().keys() - made.keys():
+    for old in made_from().keys() - digests.keys():
         (IMAGES / old).unlink(missing_ok=True)
-    MADE_FROM.write_text(json.dumps(made, indent=2, sort_keys=True) + "\n", "utf-8")
+    MADE_FROM.write_text(json.dumps(digests, indent=2, sort_keys=True) + "\n", "utf-8")
 
 
 def picture(browser: "Browser", run: str, part: str) -> str:
@@ -81,25 +81,27 @@ def picture(browser: "Browser", run: str, part: str) -> str:
     A part that is one drawing stays one, with its title above; any other is taken twice, as a page
     shows it in the light and in the dark.
     """
-    wanted = PARTS[part][1]
+    selector = PARTS[part][1]
     with _opened(browser, run, "light") as page:
-        drawings = page.query_selector_all(f":is({wanted}) svg.fig:visible, svg.fig:is({wanted})")
-        texts = page.query_selector_all(f":is({wanted}) p:visible, p:is({wanted})")
+        drawings = page.query_selector_all(
+            f":is({selector}) svg.fig:visible, svg.fig:is({selector})"
+        )
+        texts = page.query_selector_all(f":is({selector}) p:visible, p:is({selector})")
         if len(drawings) == 1 and not texts:
             return standing(drawings[0].evaluate("e => new XMLSerializer().serializeToString(e)"))
-    taken: list[str] = []
+    shots: list[str] = []
     size = (0.0, 0.0)
     for scheme in SCHEMES:
         with _opened(browser, run, scheme) as page:
-            boxes = [each.bounding_box() for each in page.query_selector_all(wanted)]
+            boxes = [element.bounding_box() for element in page.query_selector_all(selector)]
             areas = [box for box in boxes if box is not None and box["height"] > 0]
             if not areas:
                 raise Wrong(f"the report of {run} has no {part}")
             clip = _around(areas, MARGIN)
             shot = b64encode(page.screenshot(full_page=True, clip=clip)).decode()
-            taken.append(page.evaluate(_SMALL, shot))
+            shots.append(page.evaluate(_SMALL, shot))
             size = clip["width"], clip["height"]
-    return twice(size, *taken)
+    return twice(size, *shots)
 
 
 @contextmanager
@@ -125,11 +127,11 @@ def _opened(browser: "Browser", run: str, scheme: Literal["light", "dark"]) -> "
 def standing(drawing: str) -> str:
     """Return a drawing of a page as a file of its own: colours inside, and its title above it where
     it shows none itself."""
-    found = re.search(r'viewBox="([^"]*)"', drawing)
+    box = re.search(r'viewBox="([^"]*)"', drawing)
     title = re.search(r"<title[^>]*>([^<]*)</title>", drawing)
-    if found is None or title is None:
+    if box is None or title is None:
         raise Wrong("a drawing without a title or a size")
-    left, top, width, height = map(float, found[1].split())
+    left, top, width, height = map(float, box[1].split())
     room = 0 if 'class="head"' in drawing else TITLE
     around = left - MARGIN, top - MARGIN - room, width + 2 * MARGIN, height + 2 * MARGIN + room
     head, _, rest = drawing.partition(">")

@@ -1,7 +1,7 @@
-"""What Sphinx is taught for the site: notebooks, links to what is no page, our docstrings.
+"""Extension of Sphinx for the site: notebooks, links to files that are no pages, our docstrings.
 
-The pages are written for a forge that shows Markdown, and must read well there; whatever the site
-needs beyond that is done here.
+The pages are written for GitHub, which shows Markdown, and must read well there; whatever else the
+site needs is done here.
 """
 
 import json
@@ -53,8 +53,8 @@ def as_markdown(notebook: nbformat.NotebookNode) -> str:
             parts.append(cell.source)
             continue
         parts.append(_fence("python", cell.source))
-        said = (each for each in cell.outputs if each.get("name") != "stderr")
-        parts += [_output(output) for output in said]
+        shown = (output for output in cell.outputs if output.get("name") != "stderr")
+        parts += [_output(output) for output in shown]
     return "\n\n".join(parts) + "\n"
 
 
@@ -93,7 +93,7 @@ DESIGN = """
 
 
 def with_notes(app: Sphinx, name: str, source: list[str]) -> None:
-    """List the design notes in the navigation; the forge shows their README as it is."""
+    """List the design notes in the navigation; GitHub shows their README as it is."""
     del app
     if name == "design/README":
         source[0] += DESIGN
@@ -101,7 +101,7 @@ def with_notes(app: Sphinx, name: str, source: list[str]) -> None:
 
 def linked(app: Sphinx, tree: nodes.document) -> None:
     """Let links to reports open them, links to run folders their report, and those to the README
-    the start of the site. The forge shows each where it lies."""
+    the start of the site. GitHub shows each where it lies."""
     here = app.env.docname
     folder = Path(app.env.doc2path(here)).parent
     for node in [*tree.findall(addnodes.download_reference), *tree.findall(addnodes.pending_xref)]:
@@ -152,11 +152,11 @@ PRIVATE = re.compile(r"[(\s]_\w+:")
 
 
 def public(
-    app: Sphinx, what: str, name: str, thing: Any, options: Any, taken: str | None, given: Any
+    app: Sphinx, what: str, name: str, thing: Any, options: Any, taken: str | None, returned: Any
 ) -> tuple[str, Any] | None:
     """Show no call of a class that takes something private: only faultpath makes one."""
     del app, name, thing, options
-    return ("", given) if what == "class" and PRIVATE.search(taken or "") else None
+    return ("", returned) if what == "class" and PRIVATE.search(taken or "") else None
 
 
 def _restructured(text: str) -> Iterator[str]:

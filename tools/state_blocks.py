@@ -1,4 +1,4 @@
-"""What the page about sensors' faults shows of its study."""
+"""Blocks and picture of the page about sensors' faults."""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -48,54 +48,54 @@ def _effect(effect: Sequence[float]) -> Entry:
 
 
 def _effects(library: str) -> str:
-    found = _read(f"{library}/found.json")
-    places = [name for name in TITLES if name in found[0]["effects"]]
+    audits = _read(f"{library}/found.json")
+    places = [name for name in TITLES if name in audits[0]["effects"]]
     columns = ("repair", *(TITLES[name] for name in places))
     lines: list[Line] = []
-    for each in found:
-        effects = (_effect(each["effects"][name]) for name in places)
-        lines.append(line(each["fault"], each["repair"], *effects))
+    for audit in audits:
+        effects = (_effect(audit["effects"][name]) for name in places)
+        lines.append(line(audit["fault"], audit["repair"], *effects))
     return grid(Table(corner="fault", columns=columns, words=columns, lines=tuple(lines)))
 
 
 def _success(library: str) -> str:
     """Return the baseline's success in percent, fault by fault and place by place."""
-    found = {each["fault"]: each["success"] for each in _read(f"{library}/found.json")}
-    places = [name for name in TITLES if name in next(iter(found.values()))]
+    rates = {audit["fault"]: audit["success"] for audit in _read(f"{library}/found.json")}
+    places = [name for name in TITLES if name in next(iter(rates.values()))]
     columns = tuple(TITLES[name] for name in places)
     lines = [
         line(fault, *(wording.plain(100 * success[name][1], 0) for name in places))
-        for fault, success in found.items()
+        for fault, success in rates.items()
     ]
     return grid(Table(corner="fault", columns=columns, words=columns, lines=tuple(lines)))
 
 
-def said(found: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Return what was decided: whether a ranking reverses, then each audit in a sentence or two."""
-    turned = sum("reversal" in each["turns"].values() for each in found)
+def said(audits: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return the decisions: whether a ranking reverses, then each audit in a sentence or two."""
+    turned = sum("reversal" in audit["turns"].values() for audit in audits)
     lead = "No reversal was decided" if not turned else f"A reversal was decided in {turned}"
-    told = [f"{lead}{' in' if not turned else ' of'} {counted(len(found), 'audit')}."]
-    for each in found:
-        sides = {name: SIDES[effect[3]] for name, effect in each["effects"].items()}
-        alone = [f"{sides[place]} {TITLES[place]}" for place in each["turns"]]
-        text = f"{each['repair']}, {each['fault']}: {sides[SHARED]} with the fault shared"
+    sentences = [f"{lead}{' in' if not turned else ' of'} {counted(len(audits), 'audit')}."]
+    for audit in audits:
+        sides = {name: SIDES[effect[3]] for name, effect in audit["effects"].items()}
+        alone = [f"{sides[place]} {TITLES[place]}" for place in audit["turns"]]
+        text = f"{audit['repair']}, {audit['fault']}: {sides[SHARED]} with the fault shared"
         text += f"; {wording.series(alone)}." if alone else "."
         for turn, words in TURNS.items():
-            places = [TITLES[place] for place, of in each["turns"].items() if of == turn]
+            places = [TITLES[place] for place, of in audit["turns"].items() if of == turn]
             text += f" {words} {wording.series(places)}." if places else ""
-        told.append(text)
-    return told
+        sentences.append(text)
+    return sentences
 
 
 def pictures() -> Mapping[Path, str]:
     """Return the picture of the fresh scenes' audits, by its path."""
-    found = _read("sensors/found.json")
+    audits = _read("sensors/found.json")
     rows = [
-        (each, name) for each in found for name in (SHARED, *each["turns"]) if name != "correct"
+        (audit, name) for audit in audits for name in (SHARED, *audit["turns"]) if name != "correct"
     ]
-    ends = [end for each, name in rows for end in each["effects"][name][:3]]
-    told = "; ".join(said(found))
-    svg = Svg(_WIDTH, _TOP + _PITCH * len(rows) + 40, "Repairs under faults of sensors", told)
+    ends = [end for audit, name in rows for end in audit["effects"][name][:3]]
+    text = "; ".join(said(audits))
+    svg = Svg(_WIDTH, _TOP + _PITCH * len(rows) + 40, "Repairs under faults of sensors", text)
     axis = covering(ends, least=10.0).at(_LEFT, _WIDTH - 8)
     zero, bottom = axis(0.0), _TOP + _PITCH * len(rows)
     svg.text(zero - 8, 14, "← baseline better", "small baseline", "end")
@@ -104,11 +104,11 @@ def pictures() -> Mapping[Path, str]:
         svg.line((axis(tick), _TOP - 6), (axis(tick), bottom), "axis" if tick else "zero")
         svg.text(axis(tick), bottom + 16, tick_label(tick), "small soft", "middle")
     svg.text((axis.start + axis.end) / 2, bottom + 34, "success, pp", "small soft", "middle")
-    for index, (each, name) in enumerate(rows):
+    for index, (audit, name) in enumerate(rows):
         y = _TOP + _PITCH * index + 10
-        value, low, high, sign = each["effects"][name]
+        value, low, high, sign = audit["effects"][name]
         if name == SHARED:
-            svg.text(0, y + 4, f"{each['repair']}, {each['fault']}", "bold")
+            svg.text(0, y + 4, f"{audit['repair']}, {audit['fault']}", "bold")
         svg.text(
             _LEFT - 10, y + 4, TITLES[name], "small" if name == SHARED else "small soft", "end"
         )
@@ -124,17 +124,15 @@ def _picture() -> str:
 
 
 def _said(library: str) -> str:
-    return "\n".join(f"- {each}" for each in said(_read(f"{library}/found.json")))
+    return "\n".join(f"- {sentence}" for sentence in said(_read(f"{library}/found.json")))
 
 
 def _errors(library: str) -> str:
     """Return how large the recorded errors are that are delivered to one module."""
     columns = ("filter", *(f"{name.replace('_', ' ')}, {unit}" for name, unit in UNITS.items()))
     lines = [
-        line(
-            each["fault"], each["filter"], *(wording.plain(each["rms"][name], 3) for name in UNITS)
-        )
-        for each in _read(f"{library}/errors.json")
+        line(row["fault"], row["filter"], *(wording.plain(row["rms"][name], 3) for name in UNITS))
+        for row in _read(f"{library}/errors.json")
     ]
     return grid(Table(corner="fault", columns=columns, words=columns, lines=tuple(lines)))
 
@@ -142,7 +140,7 @@ def _errors(library: str) -> str:
 def _map() -> str:
     cells = _read("map.json")["cells"]
     scales, errors = (list(dict.fromkeys(n.split(",")[i] for n in cells)) for i in (0, 1))
-    columns = tuple(f"calibration {100 * float(each):+g} %" for each in errors)
+    columns = tuple(f"calibration {100 * float(error):+g} %" for error in errors)
     lines = [
         line(
             f"accelerometer {100 * float(scale):+g} %",
@@ -154,11 +152,11 @@ def _map() -> str:
 
 
 def _accuracy() -> str:
-    found = _read("accuracy.json")
+    accuracy = _read("accuracy.json")
     columns = tuple(f"{name.replace('_', ' ')}, {unit}" for name, unit in UNITS.items())
     lines = [
-        line(name, *(wording.plain(found[name][each], 3) for each in UNITS))
-        for name in ("eskf", "eskf-no-bias", "eskf-cautious")
+        line(kind, *(wording.plain(accuracy[kind][name], 3) for name in UNITS))
+        for kind in ("eskf", "eskf-no-bias", "eskf-cautious")
     ]
     return grid(Table(corner="filter", columns=columns, words=columns, lines=tuple(lines)))
 

@@ -18,7 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 MOST = ROOT / "tools" / "words.json"
 ROOMS = ("src", "quadrotor/src", "paper/src", "tools", "benchmarks")
-NAMES = frozenset("each found asked given held said told made wanted now".split())
+NAMES = {"each", "found", "asked", "given", "held", "said", "told", "made", "wanted", "now"}
 OPENINGS = ("What", "Of")
 
 

@@ -44,9 +44,9 @@ def rays() -> Side:
             )  # fmt: skip
 
     work()
-    found = np.where(geom >= 0, distance / length, RANGE_M).clip(0, RANGE_M)
+    depths = np.where(geom >= 0, distance / length, RANGE_M).clip(0, RANGE_M)
     # The mean of each image: a pixel on an edge may fall on either side.
-    check_same(found.mean(1), physics.images().flatten(1).double().mean(1), 0.02)
+    check_same(depths.mean(1), physics.images().flatten(1).double().mean(1), 0.02)
     return Side(work, len(chosen))
 
 

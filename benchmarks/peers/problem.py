@@ -13,11 +13,11 @@ from benchmarks.peers import rows
 
 
 def main() -> None:
-    """Write weights, constants, state, actions, and what must come out for some candidates."""
+    """Write weights, constants, state, actions, and the positions of some candidates."""
     model = rows.RowsModel()
-    given = {name: each.numpy() for name, each in model.state_dict().items()}
+    arrays = {name: weight.numpy() for name, weight in model.state_dict().items()}
     actions = dict(zip(("centre", "sigma", "low", "high"), rows.actions(), strict=True))
-    given |= {name: each.numpy() for name, each in actions.items()}
+    arrays |= {name: action.numpy() for name, action in actions.items()}
     candidates = planning.commands()[:, :, 0, : planning.CHECKED].permute(0, 2, 1)
     shape = (3, planning.HORIZON, planning.CHECKED)
     np.savez(
@@ -30,7 +30,7 @@ def main() -> None:
         bounds=(rows.anchored.LINEAR_BOUND_MPS2, rows.anchored.ANGULAR_BOUND_RADPS2),
         goal=planning.GOAL_M,
         speed=(rows.WEIGHTS.speed, rows.WEIGHTS.v_max_mps),
-        **given,
+        **arrays,
     )
 
 

@@ -36,9 +36,9 @@ def linear(layer: Affine, *, over: tuple[Tensor, Tensor] | None = None, at: int 
         mean, deviation = over
         weight[:, at:] /= deviation.T
         bias = bias - weight[:, at:] @ mean[:, 0]
-    made = nn.Linear(weight.shape[1], weight.shape[0])
-    made.load_state_dict({"weight": weight, "bias": bias})
-    return made
+    folded = nn.Linear(weight.shape[1], weight.shape[0])
+    folded.load_state_dict({"weight": weight, "bias": bias})
+    return folded
 
 
 class RowsModel(nn.Module):
@@ -54,23 +54,23 @@ class RowsModel(nn.Module):
         mean, std = network.feature_mean, network.feature_std
         self.embed = linear(network.embed, over=(mean[15:19], std[15:19]))
         self.cell = nn.GRUCell(16, LATENT)
-        given, kept = network.cell.from_input, network.cell.from_latent
+        from_input, from_latent = network.cell.from_input, network.cell.from_latent
         self.cell.load_state_dict(
             {
-                "weight_ih": given.weight,
-                "weight_hh": kept.weight,
-                "bias_ih": given.bias[:, 0],
-                "bias_hh": kept.bias[:, 0],
+                "weight_ih": from_input.weight,
+                "weight_hh": from_latent.weight,
+                "bias_ih": from_input.bias[:, 0],
+                "bias_hh": from_latent.bias[:, 0],
             }
         )
         first = linear(network.first, over=(mean, std), at=LATENT)
         second, last = linear(network.second), linear(network.last)
         self.head = nn.Sequential(first, nn.ReLU(), second, nn.ReLU(), last)
-        given = planning.inputs()
-        mass_kg = given["mass", "dynamics"]
-        self.gain = float(given["thrust_scale", "dynamics"] / mass_kg)
-        self.weight_n = float(given["mass", "normalise_thrust"]) * GRAVITY_MPS2
-        constant = planning.DRAG_KGPS * given["wind", "wind_map"][:, 0, 0] / mass_kg[0]
+        readings = planning.inputs()
+        mass_kg = readings["mass", "dynamics"]
+        self.gain = float(readings["thrust_scale", "dynamics"] / mass_kg)
+        self.weight_n = float(readings["mass", "normalise_thrust"]) * GRAVITY_MPS2
+        constant = planning.DRAG_KGPS * readings["wind", "wind_map"][:, 0, 0] / mass_kg[0]
         constant[2] -= GRAVITY_MPS2
         self.register_buffer("constant", constant)
         self.register_buffer("eye", torch.eye(3))
@@ -106,9 +106,9 @@ class RowsModel(nn.Module):
 
 def initial() -> Tensor:
     """Return the first scene's state, `[50]`."""
-    given = planning.inputs()
-    state = given.state
-    code = given["history_code", "latent"]
+    readings = planning.inputs()
+    state = readings.state
+    code = readings["history_code", "latent"]
     parts = (state.position, state.velocity, state.rotation.flatten(0, 1), state.rate, code)
     return torch.cat([part.reshape(-1) for part in parts])
 
@@ -117,11 +117,11 @@ def initial() -> Tensor:
 def positions(step: RowsModel) -> list[float]:
     """Return the positions `[3, H, 32]` under the problem's candidates, m."""
     state = initial().expand(planning.CHECKED, -1)
-    found = []
+    path = []
     for command in planning.commands()[:, :, 0, : planning.CHECKED]:
         state = step(state, command.T)
-        found.append(state[:, POSITION].T)
-    return torch.stack(found, 1).flatten().tolist()
+        path.append(state[:, POSITION].T)
+    return torch.stack(path, 1).flatten().tolist()
 
 
 def actions() -> tuple[Tensor, Tensor, Tensor, Tensor]:

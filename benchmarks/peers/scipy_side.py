@@ -15,7 +15,7 @@ def percentile() -> Side:
     one, two = outcomes()
     difference = 100.0 * (one.astype(float) - two.astype(float)).mean(1)
 
-    def found() -> tuple[float, float]:
+    def peer() -> tuple[float, float]:
         result = bootstrap(
             (difference,),
             np.mean,
@@ -25,5 +25,5 @@ def percentile() -> Side:
         )
         return result.confidence_interval.low, result.confidence_interval.high
 
-    check_same(found(), interval(), 1.0)
-    return Side(found)
+    check_same(peer(), interval(), 1.0)
+    return Side(peer)

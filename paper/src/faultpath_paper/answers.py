@@ -1,4 +1,4 @@
-"""Everything that a reproduction concludes, claims and tables and figures: pages are made of it."""
+"""Conclusions of a reproduction: claims, tables and figures, from which its pages are made."""
 
 from pathlib import Path
 from typing import Literal
@@ -28,7 +28,7 @@ class Part(_Frozen):
     answer: Answer
     estimate: float | None = None
     interval: tuple[float, float] | None = None
-    """The paper's: a percentile bootstrap of scenes."""
+    """Interval by the paper's method: a percentile bootstrap of scenes."""
     score: tuple[float, float] | None = None
     """Our score interval, where there is one; no answer depends on it."""
     unit: str = ""
@@ -41,27 +41,27 @@ class Part(_Frozen):
     reason: str = ""
     """Why it is undecided, where the numbers do not say it."""
     not_run: bool = False
-    """Whether that is because the run lacks what it is about."""
+    """Whether it is undecided because the run lacks its trials or measurements."""
     paper: float | None = None
     """The paper's figure in `unit`, where it prints one, or the two that it follows from."""
     paper_interval: tuple[float, float] | None = None
     size: Size = "not comparable"
-    """How the estimate stands to that figure; no answer depends on it."""
+    """How the estimate compares with that figure; no answer depends on it."""
 
 
 class ClaimVerdict(_Frozen):
-    """A claim and what the run says of it; confirmed when every part is."""
+    """A claim and the run's answer to it; confirmed when every part is."""
 
     id: str
     kind: Literal["platform", "finding"]
     verdict: Answer
     estimate: float | None
-    """That of the part that decides: the first that fails to hold, or else the first."""
+    """Estimate of the deciding part: the first that fails to hold, or else the first."""
     interval: tuple[float, float] | None
     mde: float | None
     unit: str
     paper: str
-    """What the paper reports."""
+    """Result that the paper reports."""
     claim: str
     parts: tuple[Part, ...]
 
@@ -75,7 +75,7 @@ class Ledger(_Frozen):
     seeds: tuple[int, ...]
     claims: tuple[ClaimVerdict, ...]
     left_out: int = 0
-    """Claims that the run is not about."""
+    """Number of claims that the run is not about."""
 
     def count(self, answer: Answer) -> int:
         """Return how many claims got this answer."""
@@ -107,7 +107,7 @@ class Sweep(_Frozen):
     y_title: str
     series: tuple[Series, ...]
     published: str
-    """What the paper says of its figure."""
+    """Values that the paper gives for its figure."""
     notes: tuple[str, ...] = ()
 
 

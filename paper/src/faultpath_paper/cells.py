@@ -1,4 +1,4 @@
-"""What the paper's studies fly, as data: settings, cells, and the profiles that size them."""
+"""Settings and cells that the paper's studies fly, and the profiles that size them."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -21,7 +21,7 @@ SEEDS = (0, 1, 2)
 
 @dataclass(frozen=True)
 class Setting:
-    """Where a cell is flown: everything of the system that no arm changes."""
+    """Where a cell is flown: the options of the system that no arm changes."""
 
     library: str = HELD_OUT
     """Role of the library; a run may put another library into the place of the held-out one."""
@@ -83,17 +83,17 @@ class Profile:
     seeds: tuple[int, ...]
 
     def cells(self, cells: Iterable[Cell]) -> tuple[Cell, ...]:
-        """Return what this profile flies of `cells`: each variant and path once, all its seeds."""
-        wanted: dict[tuple[str, str], Cell] = {}
+        """Return the cells that this profile flies: each variant and path once, all its seeds."""
+        flown: dict[tuple[str, str], Cell] = {}
         for cell in cells:
             seeds = [seed for seed in cell.seeds if seed in self.seeds]
             if not seeds or (self.name == QUICK.name and not cell.quick):
                 continue
             address = cell.variant, cell.path
-            known = wanted.get(address)
-            every = {*seeds, *(known.seeds if known else ())}
-            wanted[address] = Cell(cell.setting, cell.variant, cell.faults, tuple(sorted(every)))
-        return tuple(wanted.values())
+            earlier = flown.get(address)
+            every = {*seeds, *(earlier.seeds if earlier else ())}
+            flown[address] = Cell(cell.setting, cell.variant, cell.faults, tuple(sorted(every)))
+        return tuple(flown.values())
 
 
 QUICK = Profile("quick", scenes=10, seeds=(0,))
@@ -114,7 +114,7 @@ class PublishedClaim(Frozen):
     """`platform`: a property that the selection library could be used to match."""
     claim: str
     paper: str
-    """What the paper reports."""
+    """Result that the paper reports."""
 
 
 class Printed(NamedTuple):
@@ -126,15 +126,15 @@ class Printed(NamedTuple):
 
 
 def published(*keys: str | int) -> Any:
-    """Return a figure of the paper by its keys in `paper/published.yaml`; `KeyError` for none."""
-    found: Any = data("published.yaml")
+    """Return a figure of the paper by its keys in `data/published.yaml`; `KeyError` for none."""
+    figure: Any = data("published.yaml")
     for key in keys:
-        found = found[key]
-    return found
+        figure = figure[key]
+    return figure
 
 
 def published_claims() -> tuple[PublishedClaim, ...]:
-    """Return every claim of `paper/claims.yaml`, in its order."""
+    """Return every claim of `data/claims.yaml`, in its order."""
     return tuple(PublishedClaim.model_validate(entry) for entry in data("claims.yaml"))
 
 

@@ -22,7 +22,7 @@ Figure = float | str
 
 @dataclass(frozen=True)
 class Group:
-    """Entries that are made together: dashes, all of them, where a run does not hold them."""
+    """Entries that are made together; all are dashes where a run does not hold them."""
 
     make: Callable[[Results], Made]
     published: tuple[str, ...] = ("",)
@@ -36,7 +36,7 @@ class Group:
             ours = self.make(results)
         except (NotRun, Undecidable):
             ours = [MISSING] * len(self.published)
-        entries = (Entry(text=each) if isinstance(each, str) else each for each in ours)
+        entries = (Entry(text=entry) if isinstance(entry, str) else entry for entry in ours)
         return tuple(
             entry.model_copy(update={"published": paper})
             for entry, paper in zip(entries, self.published, strict=True)
@@ -44,7 +44,7 @@ class Group:
 
 
 BLANK = Group(lambda results: ("",))
-"""Where a column has nothing to say of a line."""
+"""Group of a column that is empty in a line."""
 
 
 def printed(figure: Figure, digits: int = 1) -> str:
@@ -74,7 +74,7 @@ def ended(cell: Cell, status: Status, paper: Figure = "") -> Group:
     """Share of seed 0's trials that ended in a way, percent; failed trials do not count."""
 
     def make(results: Results) -> Made:
-        ends = [each.status for each in results.first(cell)]
+        ends = [outcome.status for outcome in results.first(cell)]
         return (wording.plain(100 * ends.count(status) / len(ends), 0),)
 
     return Group(make, (printed(paper),), (of_seed(cell),))
@@ -116,23 +116,23 @@ def of_quantity(
     """
 
     def make(results: Results) -> Made:
-        found = quantity(results)
-        as_paper = found.resampled()
-        bold = found.unit == "pp" and bool(detection(as_paper))
-        entry = Entry(text=wording.signed(found.value, digits), detected=bold)
-        return entry, interval_of(as_paper, digits), interval_of(found, digits)
+        effect = quantity(results)
+        as_paper = effect.resampled()
+        bold = effect.unit == "pp" and bool(detection(as_paper))
+        entry = Entry(text=wording.signed(effect.value, digits), detected=bold)
+        return entry, interval_of(as_paper, digits), interval_of(effect, digits)
 
     return Group(make, (*published, ""), tuple(cells))
 
 
-def interval_of(found: Contrast, digits: int = 1) -> str:
+def interval_of(effect: Contrast, digits: int = 1) -> str:
     """Return an interval as the paper's are written; a dash without one."""
-    return bracket(found.interval, digits) if found.interval else MISSING
+    return bracket(effect.interval, digits) if effect.interval else MISSING
 
 
 @dataclass(frozen=True)
 class PublishedContrast:
-    """What the paper prints of a contrast; empty where it prints nothing."""
+    """A contrast as the paper prints it; empty where it prints nothing."""
 
     difference: str = ""
     interval: str = ""
@@ -158,20 +158,20 @@ def difference(first: Cell, second: Cell, published: PublishedContrast) -> Group
     """Difference, its two intervals, wins:losses, p-value and least detectable difference."""
 
     def make(results: Results) -> Made:
-        found = contrast(results, first, second)
-        assert found.test is not None
+        effect = contrast(results, first, second)
+        assert effect.test is not None
         return (
-            decided(found),
-            *map(interval_of, (found.resampled(), found)),
-            str(found.counts),
-            wording.p_value(found.test.p_value),
-            "none" if found.least is None else wording.plain(found.least),
+            decided(effect),
+            *map(interval_of, (effect.resampled(), effect)),
+            str(effect.counts),
+            wording.p_value(effect.test.p_value),
+            "none" if effect.least is None else wording.plain(effect.least),
         )
 
     return Group(make, astuple(published), (first, second))
 
 
-def decided(found: Contrast) -> Entry:
+def decided(effect: Contrast) -> Entry:
     """Return a difference, bold where it is detected."""
-    bold = bool(detection(found.resampled()))
-    return Entry(text=wording.signed(found.value), detected=bold)
+    bold = bool(detection(effect.resampled()))
+    return Entry(text=wording.signed(effect.value), detected=bold)

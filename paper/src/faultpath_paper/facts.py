@@ -1,4 +1,4 @@
-"""What the paper states, fact by fact, and how the project stands to each."""
+"""Facts that the paper states, and how the project stands to each."""
 
 from functools import cache
 from itertools import groupby
@@ -23,16 +23,16 @@ SECTIONS = {
 
 
 class Fact(Frozen):
-    """Something that the paper says of its set-up, its methods or what it reports."""
+    """A statement of the paper about its set-up, its methods or its results."""
 
     number: int
     state: Standing
     """`our reading`: the paper is silent there, or can be read in several ways."""
     fact: str
     at: tuple[str, ...]
-    """Where it is: a file of this package, or of the engine from `faultpath/` on, and a name."""
+    """Places: a file of the quadrotor, or of another package from its name on, and a name in it."""
     ours: str = ""
-    """What is done and why, unless it is as written."""
+    """Our way and the reason for it, unless it is as written."""
 
 
 class Group(Frozen):
@@ -45,7 +45,7 @@ class Group(Frozen):
 
 @cache
 def groups() -> tuple[Group, ...]:
-    """Return every group of `paper/facts.yaml`, in the order of the paper."""
+    """Return every group of `data/facts.yaml`, in the order of the paper."""
     return tuple(Group.model_validate(entry) for entry in data("facts.yaml"))
 
 
@@ -55,13 +55,13 @@ def facts() -> tuple[Fact, ...]:
 
 
 def counted() -> Table:
-    """Return how many facts stand in which way, section by section."""
+    """Return how many facts have each standing, section by section."""
     lines: list[Line] = []
     for section, parts in groupby(groups(), lambda group: group.section):
         states = [fact.state for group in parts for fact in group.facts]
-        lines.append(line(SECTIONS[section], *(str(states.count(each)) for each in STANDINGS)))
+        lines.append(line(SECTIONS[section], *(str(states.count(state)) for state in STANDINGS)))
     states = [fact.state for fact in facts()]
-    lines.append(line("All", *(str(states.count(each)) for each in STANDINGS)))
+    lines.append(line("All", *(str(states.count(state)) for state in STANDINGS)))
     return Table(corner="Section of the paper", columns=STANDINGS, lines=tuple(lines))
 
 
@@ -74,6 +74,6 @@ def listed(section: str) -> Table:
             lines.append(Line(label=group.heading))
             for fact in group.facts:
                 state = Entry(text=fact.state, tone="bad" if fact.state == "otherwise" else "")
-                said = fact.fact, state, fact.ours, "; ".join(fact.at)
-                lines.append(line(str(fact.number), *said))
+                entries = fact.fact, state, fact.ours, "; ".join(fact.at)
+                lines.append(line(str(fact.number), *entries))
     return Table(corner="Fact", columns=columns, lines=tuple(lines), words=columns)

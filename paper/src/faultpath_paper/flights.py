@@ -37,7 +37,7 @@ class Leg:
 
 @dataclass(frozen=True)
 class Flown:
-    """What the legs left."""
+    """Results of the legs of a run."""
 
     legs: tuple[Leg, ...]
     results: tuple[RunResult, ...]
@@ -50,14 +50,14 @@ class Flown:
     @property
     def fingerprint(self) -> str:
         """Hash of the fingerprints of all legs."""
-        every = "".join(result.system_fingerprint for result in self.results)
-        return hashlib.sha256(every.encode()).hexdigest()[:16]
+        fingerprints = "".join(result.system_fingerprint for result in self.results)
+        return hashlib.sha256(fingerprints.encode()).hexdigest()[:16]
 
 
 def plan_legs(
     cells: Iterable[Cell], profile: Profile, options: Mapping[str, str]
 ) -> tuple[Leg, ...]:
-    """Return what a profile runs of `cells`, setting by setting in the order of the cells.
+    """Return the legs of a profile, setting by setting in the order of `cells`.
 
     `options` are added to those of every setting. Raises `UserError` for an option that does not
     exist.
@@ -90,8 +90,8 @@ def fly(legs: Sequence[Leg], folder: Path, run: Run, show: Callable[[Progress], 
     results: list[RunResult] = []
     for leg in legs:
 
-        def progress(now: Progress, before: int = before, leg: Leg = leg) -> None:
-            show(now.within(total, before, leg.study.name))
+        def progress(done: Progress, before: int = before, leg: Leg = leg) -> None:
+            show(done.within(total, before, leg.study.name))
 
         place = folder / FLIGHTS / leg.folder
         results.append(run(leg.study, leg.system, progress, place, shared=True, recheck=False))

@@ -1,4 +1,4 @@
-"""A page of the paper as data: its tables, row by row, and so what it needs flown and measured."""
+"""A page of the paper as data: its tables row by row, with the cells and measurements they need."""
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
@@ -28,38 +28,37 @@ WINDOWS = "Errors: median over all windows, 20 control steps ahead."
 
 
 def flown(results: Results, cells: Iterable[Cell]) -> str:
-    """Return scenes and seeds that a run holds of cells, library by library."""
-    held: dict[str, tuple[set[str], set[int]]] = {}
+    """Return the scenes and seeds of cells in a run, library by library, in a sentence."""
+    libraries: dict[str, tuple[set[str], set[int]]] = {}
     for cell in cells:
         with suppress(NotRun):
-            run = results.seeds(cell)
-            library = cell.setting.library
-            scenes, seeds = held.setdefault(library, (set(), set()))
-            seeds.update(run)
-            rows = results.outcomes.arm(cell.variant, cell.path, run[0])
+            run_seeds = results.seeds(cell)
+            scenes, seeds = libraries.setdefault(cell.setting.library, (set(), set()))
+            seeds.update(run_seeds)
+            rows = results.outcomes.arm(cell.variant, cell.path, run_seeds[0])
             scenes.update(row.outcome.scene for row in rows)
-    if not held:
+    if not libraries:
         return "No trial of this table was run."
     parts = (
         f"{wording.counted(len(scenes), 'scene')} of the {library} library, "
         f"{wording.seeds(tuple(sorted(seeds)))}"
-        for library, (scenes, seeds) in held.items()
+        for library, (scenes, seeds) in libraries.items()
     )
     return wording.sentence("; ".join(parts))
 
 
 def recorded(results: Results, measurements: Iterable[Measurement]) -> str:
-    """Return windows, scenes, library and seeds that a run holds of one recording."""
-    found: dict[Measurement, Measured] = {}
+    """Return the windows, scenes, library and seeds of one recording in a run, in a sentence."""
+    measured: dict[Measurement, Measured] = {}
     for measurement in measurements:
         with suppress(NotRun):
-            found[measurement] = results.measured(measurement)
-    if not found:
+            measured[measurement] = results.measured(measurement)
+    if not measured:
         return "No error of this table was measured."
-    measurement, windows = next(iter(found.items()))
+    measurement, windows = next(iter(measured.items()))
     library = measurement.recording.library
     scenes = wording.counted(len(set(windows.scenes)), "scene")
-    seeds = wording.seeds(tuple(sorted({measurement.seed for measurement in found})))
+    seeds = wording.seeds(tuple(sorted({measurement.seed for measurement in measured})))
     return f"{len(windows):,} windows of {scenes} of the {library} library, {seeds}."
 
 
@@ -120,7 +119,7 @@ def differences(
 
 @dataclass(frozen=True)
 class TableSpec:
-    """A table: what stands in it, and where that comes from."""
+    """A table: its rows, and the cells and measurements that they come from."""
 
     name: str
     """Such as `table-2`; several of one page are `table-6a`, `table-6b`."""
@@ -128,7 +127,7 @@ class TableSpec:
     columns: tuple[str, ...]
     rows: Rows
     notes: tuple[str, ...] = ()
-    """`{flown}` and `{recorded}` stand for what a run holds of the cells and measurements."""
+    """`{flown}` and `{recorded}` are filled by the functions of these names."""
 
     @property
     def cells(self) -> tuple[Cell, ...]:
@@ -142,7 +141,7 @@ class TableSpec:
 
     def build(self, results: Results) -> Table:
         """Return the table as a run fills it."""
-        held = {
+        fields = {
             "flown": flown(results, self.cells),
             "recorded": recorded(results, self.measurements),
         }
@@ -151,40 +150,40 @@ class TableSpec:
             title=self.title,
             columns=self.columns,
             lines=tuple(line for row in self.rows for line in row.lines(results)),
-            notes=tuple(note.format(**held) for note in self.notes),
+            notes=tuple(note.format(**fields) for note in self.notes),
         )
 
 
 @dataclass(frozen=True)
 class FigureSpec:
-    """A figure of lines, and what they are made of."""
+    """A figure of lines, and the cells and measurements that they come from."""
 
     build: Callable[[Results], Sweep]
-    """Fills it with what was run."""
+    """Makes the figure from a run."""
     cells: tuple[Cell, ...]
     measurements: tuple[Measurement, ...] = ()
 
 
 @dataclass(frozen=True)
 class Page:
-    """One table or figure of the paper, or its results in the text: what is shown of a run."""
+    """One table or figure of the paper, or its results in the text."""
 
     name: str
     """Such as `table-2`."""
     title: str
     parts: tuple[TableSpec | FigureSpec, ...] = ()
     cells: tuple[Cell, ...] = ()
-    """What the page needs run; by default what its parts do."""
+    """Cells that the page needs run; those of its parts are added."""
     measurements: tuple[Measurement, ...] = ()
-    """What it needs measured; likewise."""
+    """Measurements that the page needs; likewise."""
 
     def __post_init__(self) -> None:
-        """Add what the parts need."""
+        """Add the cells and measurements of the parts."""
         cells = (*self.cells, *(cell for part in self.parts for cell in part.cells))
         measurements = (*self.measurements, *(m for part in self.parts for m in part.measurements))
         object.__setattr__(self, "cells", cells)
         object.__setattr__(self, "measurements", measurements)
 
     def build(self, results: Results) -> Built:
-        """Return tables and figures of what a run holds of the page; never raises `NotRun`."""
+        """Return the page's tables and figures as a run fills them; never raises `NotRun`."""
         return tuple(part.build(results) for part in self.parts)

@@ -36,13 +36,13 @@ from faultpath_paper.run import (
 
 
 class ReproductionRun(FinishedRun):
-    """A finished reproduction: what was found, and where its files are.
+    """A finished reproduction: its conclusions, and the folder of its files.
 
     A notebook shows the tables, with the paper's numbers beside our own.
     """
 
     record: Reproduction
-    """Tables, figures, and in `ledger` the claims of the paper with what became of each."""
+    """Tables, figures, and in `ledger` the claims of the paper with their verdicts."""
 
     @property
     def headline(self) -> str:
@@ -65,14 +65,15 @@ def read_reproduction(folder: Path) -> ReproductionRun:
     """
     provenance = read_provenance(folder)
     unseal(folder, provenance.files, RESULTS)
-    results, found = read_results(folder)
+    results, record = read_results(folder)
     rows = results.outcomes.rows
-    if (found.trials, found.failed_trials) != (len(rows), sum(row.outcome.failed for row in rows)):
+    failed = sum(row.outcome.failed for row in rows)
+    if (record.trials, record.failed_trials) != (len(rows), failed):
         raise UserError(
             f"the files of {folder} do not belong together (reproduction.json counts other trials "
             f"than outcomes.parquet holds): {AGAIN}."
         )
-    return ReproductionRun(folder, found, provenance)
+    return ReproductionRun(folder, record, provenance)
 
 
 def reproduce(
@@ -102,15 +103,15 @@ def reproduce(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    given = dict(locals())
+    arguments = dict(locals())
     check_executor(executor)
     named = (pages,) if isinstance(pages, str) else tuple(pages)
-    asked = plan(named, profile, {} if device is None else {"device": device})
-    place = Path(folder) if folder else asked.folder(f"reproduction-{asked.profile.name}")
-    told = display(progress, "reproduce", given | {"pages": named})
+    work = plan(named, profile, {} if device is None else {"device": device})
+    place = Path(folder) if folder else work.folder(f"reproduction-{work.profile.name}")
+    terminal = display(progress, "reproduce", arguments | {"pages": named})
 
-    with executor_of(asked.system, workers, executor) as workforce:
-        return carry_out(asked, Job(place, workforce, told, {"time_limit_s": time_limit_s}))
+    with executor_of(work.system, workers, executor) as workforce:
+        return carry_out(work, Job(place, workforce, terminal, {"time_limit_s": time_limit_s}))
 
 
 def carry_out(plan: Plan, job: Job) -> ReproductionRun:
@@ -139,16 +140,16 @@ def carry_out(plan: Plan, job: Job) -> ReproductionRun:
             ) from None
     results = plan.results(flown.outcomes, evidence)
     place = folder / plan.place
-    found = conclude(plan, results)
-    result = save(place, flown, results, found)
+    record = conclude(plan, results)
+    result = save(place, flown, results, record)
     provenance = job.finish(result, plan.system, (*RESULTS, DELIVERIES), place)
-    write_pages(place, found, provenance)
-    return ReproductionRun(place, found, provenance)
+    write_pages(place, record, provenance)
+    return ReproductionRun(place, record, provenance)
 
 
-def write_pages(place: Path, found: Reproduction, provenance: RunProvenance) -> None:
+def write_pages(place: Path, record: Reproduction, provenance: RunProvenance) -> None:
     """Write the page, the tables and the ledger of a reproduction into a folder."""
-    page = reproduction_page(found, provenance, of_page(found))
+    page = reproduction_page(record, provenance, of_page(record))
     write_text(place / "reproduction.html", page, place)
-    write_text(place / "tables.md", "\n\n".join(map(markdown.block, found.tables)) + "\n", place)
-    write_text(place / "ledger.md", ledger_markdown(found.ledger, found.profile), place)
+    write_text(place / "tables.md", "\n\n".join(map(markdown.block, record.tables)) + "\n", place)
+    write_text(place / "ledger.md", ledger_markdown(record.ledger, record.profile), place)

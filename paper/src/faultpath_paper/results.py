@@ -1,4 +1,4 @@
-"""What the studies' runs left, as tables, figures and claims ask for it."""
+"""Outcomes and measurements of the studies' runs, as tables, figures and claims read them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -85,11 +85,11 @@ class Results:
         return success_rate(pairs.first.success, self.resamples(pairs)).estimate()
 
     def first(self, cell: Cell) -> list[Outcome]:
-        """Return how the trials of seed 0 ended, failed ones apart; `NotRun` without any."""
+        """Return the outcomes of seed 0's trials, without failed ones; `NotRun` without any."""
         if 0 not in self.seeds(cell):
             raise NotRun(f"{cell}, seed 0")
         ends = [row.outcome for row in self.outcomes.arm(cell.variant, cell.path, 0)]
-        ended = [each for each in ends if not each.failed]
+        ended = [outcome for outcome in ends if not outcome.failed]
         if not ended:
             raise NotRun(f"a trial of {cell} that did not fail")
         return ended
@@ -112,7 +112,7 @@ def _drawn(library_hash: str, n_scenes: int) -> Resamples:
 
 
 Quantity = Callable[[Results], Contrast]
-"""Works a number out of a run, for tables and claims; raises `NotRun` or `Undecidable`."""
+"""Computes a number from a run, for tables and claims; raises `NotRun` or `Undecidable`."""
 
 
 def detection(contrast: Contrast) -> Sign:

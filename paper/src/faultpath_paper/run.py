@@ -1,4 +1,4 @@
-"""A reproduction from start to end: run, measure, conclude, and keep what was found."""
+"""A reproduction from start to end: run, measure, conclude, and save the conclusions."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -44,7 +44,7 @@ RESULTS = (CONCLUSIONS, OUTCOMES, EVIDENCE)
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to be reproduced, of how much, and with what."""
+    """Pages to reproduce, with their profile and options of the system."""
 
     pages: tuple[Page, ...]
     profile: Profile
@@ -62,20 +62,20 @@ class Plan:
         return "." if self.whole else "+".join(page.name for page in self.pages)
 
     def legs(self) -> tuple[Leg, ...]:
-        """Return what there is to run."""
+        """Return the legs to run."""
         cells = [cell for page in self.pages for cell in page.cells]
         return plan_legs(cells, self.profile, self.options)
 
     def measurements(self) -> dict[Measurement, Measurement]:
-        """Return what there is to measure, each with the one that this run makes for it."""
-        asked = (m for page in self.pages for m in page.measurements)
-        found: dict[Measurement, Measurement] = {}
-        for measurement in asked:
+        """Return the measurements of the pages, each with the one that this run makes for it."""
+        measurements = (m for page in self.pages for m in page.measurements)
+        own: dict[Measurement, Measurement] = {}
+        for measurement in measurements:
             if measurement.seed in self.profile.seeds:
-                given = measurement.recording
-                recording = given.model_copy(update={"options": {**given.options, **self.options}})
-                found[measurement] = measurement.model_copy(update={"recording": recording})
-        return found
+                options = {**measurement.recording.options, **self.options}
+                recording = measurement.recording.model_copy(update={"options": options})
+                own[measurement] = measurement.model_copy(update={"recording": recording})
+        return own
 
     @cached_property
     def system(self) -> System:
@@ -113,10 +113,10 @@ def measure_all(
     """
     from faultpath_paper.evidence.quantities import measure  # it loads torch
 
-    wanted = plan.measurements()
-    made = tuple(dict.fromkeys(wanted.values()))
-    found = measure(made, plan.profile.scenes, folder / "windows", workers, progress)
-    return EvidenceTable({asked: found.values(own) for asked, own in wanted.items()})
+    measurements = plan.measurements()
+    unique = tuple(dict.fromkeys(measurements.values()))
+    table = measure(unique, plan.profile.scenes, folder / "windows", workers, progress)
+    return EvidenceTable({m: table.values(own) for m, own in measurements.items()})
 
 
 def conclude(plan: Plan, results: Results) -> Reproduction:
@@ -141,17 +141,18 @@ def conclude(plan: Plan, results: Results) -> Reproduction:
     )
 
 
-def save(folder: Path, flown: Flown, results: Results, found: Reproduction) -> RunResult:
+def save(folder: Path, flown: Flown, results: Results, record: Reproduction) -> RunResult:
     """Write outcomes, evidence and conclusions; return the run as one result, without traces."""
     folder.mkdir(parents=True, exist_ok=True)
     slim = (replace(row, outcome=replace(row.outcome, trace=None)) for row in results.outcomes.rows)
+    findings = (finding for result in flown.results for finding in result.findings)
     deliveries = Deliveries(
         rows=tuple(row for result in flown.results for row in result.deliveries.rows),
-        findings=tuple(dict.fromkeys(said for result in flown.results for said in result.findings)),
+        findings=tuple(dict.fromkeys(findings)),
     )
     digest = RunFolder(folder).save_tables(OutcomeTable(tuple(slim)), deliveries)
     write_evidence(folder / EVIDENCE, results.evidence)
-    write_text(folder / CONCLUSIONS, found.model_dump_json(indent=1) + "\n", folder)
+    write_text(folder / CONCLUSIONS, record.model_dump_json(indent=1) + "\n", folder)
     return RunResult(
         outcomes=results.outcomes,
         deliveries=deliveries,
@@ -175,16 +176,16 @@ def read_results(folder: Path) -> tuple[Results, Reproduction]:
     place = folder / "provenance.json"
     if place.exists():
         try:
-            made = model_of(read_regular(place), RunProvenance)
+            provenance = model_of(read_regular(place), RunProvenance)
         except Misread:
             raise UserError(
                 f"{place} is damaged or from another version of faultpath: reproduce the paper "
                 "again."
             ) from None
-        named = {name: digest for name, digest in made.files.items() if name in RESULTS}
-        unseal(folder, {OUTCOMES: made.outcomes_sha256, **named}, ())
+        named = {name: digest for name, digest in provenance.files.items() if name in RESULTS}
+        unseal(folder, {OUTCOMES: provenance.outcomes_sha256, **named}, ())
     try:
-        found = model_of(contents(folder / CONCLUSIONS, LARGEST_TEXT), Reproduction)
+        record = model_of(contents(folder / CONCLUSIONS, LARGEST_TEXT), Reproduction)
     except (OSError, Misread):
         raise UserError(
             f"{folder} holds no finished reproduction: give the folder of one, or make it with "
@@ -192,4 +193,4 @@ def read_results(folder: Path) -> tuple[Results, Reproduction]:
         ) from None
     outcomes = read_outcomes(folder / OUTCOMES)
     evidence = read_evidence(folder / EVIDENCE)
-    return Results(outcomes, evidence, found.ledger.library_hash), found
+    return Results(outcomes, evidence, record.ledger.library_hash), record

@@ -78,7 +78,7 @@ def command(
 
 
 def _judge(folder: Path | None, as_json: bool) -> None:
-    """Show the claims; those of a run that did not ship are judged by the code that is here."""
+    """Show the claims of the shipped run, or those of `folder` as this code judges them."""
     if folder is None:
         from faultpath_paper.answers import shipped_ledger
 
@@ -87,10 +87,10 @@ def _judge(folder: Path | None, as_json: bool) -> None:
         from faultpath_paper.claims import again
         from faultpath_paper.run import read_results
 
-        results, found = read_results(folder)
-        ledger, profile = again(results, found.ledger), found.profile
+        results, record = read_results(folder)
+        ledger, profile = again(results, record.ledger), record.profile
     if as_json:
-        typer.echo(json.dumps([each.model_dump(mode="json") for each in ledger.claims], indent=2))
+        typer.echo(json.dumps([claim.model_dump(mode="json") for claim in ledger.claims], indent=2))
         return
     from faultpath.api.display import SafeConsole
     from faultpath_paper.report.terminal import ledger_view
@@ -99,7 +99,7 @@ def _judge(folder: Path | None, as_json: bool) -> None:
 
 
 def show(run: "ReproductionRun", whole: bool) -> None:
-    """Print what came out: the ledger of the whole paper, or the tables of its pages."""
+    """Print the ledger of the whole paper, or the tables of some pages."""
     from faultpath.api.display import SafeConsole
     from faultpath.decisions.tables.terminal import drawn
     from faultpath_paper.report import words

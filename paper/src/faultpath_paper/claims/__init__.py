@@ -1,4 +1,4 @@
-"""The paper's claims: what each consists of, and what a run says of it."""
+"""The paper's claims: their statements, and a run's answers to them."""
 
 from collections.abc import Mapping, Sequence
 
@@ -25,11 +25,11 @@ SUBJECTS: Mapping[str, Mapping[str, Statements]] = {
     "Decision record (Table V)": paying.CLAIMS,
     "Histories, planning, perception (text)": others.CLAIMS,
 }
-"""The claims by what they are about, and where the paper has it."""
+"""Claims by subject, with its place in the paper."""
 STATEMENTS: Mapping[str, Statements] = {
     claim: statements for claims in SUBJECTS.values() for claim, statements in claims.items()
 }
-"""What each claim consists of, by its id."""
+"""Statements of each claim, by its id."""
 
 
 def evaluate(results: Results) -> tuple[ClaimVerdict, ...]:
@@ -46,22 +46,22 @@ def ledger(
     *,
     only_run: bool = False,
 ) -> Ledger:
-    """Return all answers with what they were answered on.
+    """Return all answers, with the library, scenes and seeds of the run.
 
     `only_run` leaves claims out of which a part was not run: a run of some pages is not about them.
     """
-    every = evaluate(results)
-    kept = [c for c in every if not (only_run and any(part.not_run for part in c.parts))]
+    verdicts = evaluate(results)
+    kept = [c for c in verdicts if not (only_run and any(part.not_run for part in c.parts))]
     return Ledger(
         library=library,
         library_hash=library_hash,
         scenes=scenes,
         seeds=tuple(seeds),
         claims=tuple(kept),
-        left_out=len(every) - len(kept),
+        left_out=len(verdicts) - len(kept),
     )
 
 
 def again(results: Results, old: Ledger) -> Ledger:
-    """Return a ledger answered anew, every claim of it, by the rules that are here."""
+    """Return a ledger with every claim answered again, by the rules of this code."""
     return ledger(results, old.library, old.library_hash, old.scenes, old.seeds)

@@ -66,9 +66,9 @@ def _responds(
 
 
 def _response_in_paper(first: str, probe: str, second: str) -> Printed:
-    probed = f"probe_WM-A_{probe.replace(' ', '_')}_response_cm"
-    found = dict(zip((BASELINE, REPAIR), published("in_text", probed).values(), strict=True))
-    return Printed(found[first] / found[second])
+    key = f"probe_WM-A_{probe.replace(' ', '_')}_response_cm"
+    responses_cm = dict(zip((BASELINE, REPAIR), published("in_text", key).values(), strict=True))
+    return Printed(responses_cm[first] / responses_cm[second])
 
 
 CLAIMS: dict[str, Statements] = {

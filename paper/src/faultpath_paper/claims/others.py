@@ -10,7 +10,7 @@ from faultpath_paper.quantities.summaries import share
 GRU, DCC = (of_seed(table_4.cell(method, "correct")) for method in ("gru", "gru+dcc"))
 _PAPER = published("in_text")
 _NOMINAL = table_6.paper_negative("gru", "correct")
-"""Of seed 0, as the paper's GRU without calibration."""
+"""Success of seed 0, as of the paper's GRU without calibration, percent."""
 
 
 def _frozen(key: str) -> Printed:

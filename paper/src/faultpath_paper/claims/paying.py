@@ -13,7 +13,7 @@ from faultpath_paper.results import Results, detection
 
 @dataclass(frozen=True)
 class Pays:
-    """The repair pays from a frequency on that meets a bound."""
+    """The frequency from which the repair pays meets a bound."""
 
     name: str
     repair: str
@@ -33,34 +33,34 @@ class Pays:
         return self.bound.words.format(f"break-even frequency of {self.name}, in percent,")
 
     def part(self, results: Results) -> Part:
-        """Answer it from a run."""
-        found = crossing(results, table_5.REPAIRS[self.repair])
-        n_scenes = found.correct.n_scenes
-        judged = judge(found, self.bound)
-        ends = None if found.value is None else found.interval
+        """Answer the statement from a run."""
+        tradeoff = crossing(results, table_5.REPAIRS[self.repair])
+        n_scenes = tradeoff.correct.n_scenes
+        judged = judge(tradeoff, self.bound)
+        ends = None if tradeoff.value is None else tradeoff.interval
         return Part(
             words=self.words,
             answer=judged.answer,
-            estimate=found.value,
+            estimate=tradeoff.value,
             interval=ends,
             unit="percent",
             reason=judged.reason,
-            size=size(found.value, ends, n_scenes, self.paper, None),
+            size=size(tradeoff.value, ends, n_scenes, self.paper, None),
             **beside(self.paper),
         )
 
 
-def judge(found: Crossing, bound: Bound) -> Judged:
-    """Answer that a break-even frequency meets a bound.
+def judge(tradeoff: Crossing, bound: Bound) -> Judged:
+    """Judge whether a break-even frequency meets a bound.
 
     Where the repair pays from no frequency on, it is refuted if the repair is detected behind under
     the fault.
     """
-    if not found.correct.enough:
+    if not tradeoff.correct.enough:
         return FEW_SCENES
-    if found.value is not None:
-        return bound.judge(found.value, found.interval, found.correct.n_scenes)
-    behind = detection(found.faulty.resampled()) < 0
+    if tradeoff.value is not None:
+        return bound.judge(tradeoff.value, tradeoff.interval, tradeoff.correct.n_scenes)
+    behind = detection(tradeoff.faulty.resampled()) < 0
     return REFUTED if behind else Judged("undecided", "pays from no frequency on")
 
 

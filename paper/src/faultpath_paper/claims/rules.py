@@ -1,7 +1,7 @@
 """When a statement is confirmed, when it is refuted, and when the run leaves it open.
 
-`docs/design/claims.md` gives the reasons. A rule is asked about contrasts with the interval of the
-paper, the percentile bootstrap of scenes, and does not know the figure that the paper reports.
+`docs/design/claims.md` gives the reasons. A rule judges contrasts with the interval of the paper,
+the percentile bootstrap of scenes, and does not know the figure that the paper reports.
 """
 
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from faultpath_paper.answers import Answer
 from faultpath_paper.results import detection
 
 POINT_SCENES = 50
-"""From so many scenes on an estimate decides where the paper's own does: half of the paper's
+"""Scenes from which on an estimate decides where the paper's own does: half of the paper's
 hundred. A rate of success then has a standard error of at most 7 pp."""
 
 Ends = tuple[float, float]
@@ -39,21 +39,21 @@ class Rule:
     words: str
     """The statement, with `{}` for its subject."""
     judge: Callable[[Contrast], Judged]
-    """Answers it."""
+    """Judges a contrast."""
     sided: bool = True
     """Whether the statement is about a side of no effect, rather than about there being none."""
 
 
 def points_decide(n_scenes: int) -> bool:
-    """Return whether there are scenes enough for an estimate to decide without its interval."""
+    """Return whether there are enough scenes for an estimate to decide without its interval."""
     return n_scenes >= POINT_SCENES
 
 
 def telling(interval: Ends | None, n_scenes: int) -> Ends | None:
-    """Return the interval to set a threshold beside: `None` where it says no more than a point.
+    """Return the interval to compare with a threshold; `None` where it says no more than a point.
 
-    Scenes that are all alike give an interval without width, which of few scenes is a point
-    estimate by another name.
+    Scenes that are all alike give an interval of no width, which for few scenes is only a point
+    estimate.
     """
     if interval is None or points_decide(n_scenes):
         return interval
@@ -61,15 +61,15 @@ def telling(interval: Ends | None, n_scenes: int) -> Ends | None:
 
 
 def detected(sign: int) -> Rule:
-    """The difference is detected on one side of 0; refuted on the other one."""
+    """Return the rule that the difference is detected on one side of 0; refuted on the other."""
 
-    def judge(found: Contrast) -> Judged:
-        side = detection(found)
+    def judge(contrast: Contrast) -> Judged:
+        side = detection(contrast)
         if side:
             return CONFIRMED if side == sign else REFUTED
-        if found.interval is None:
+        if contrast.interval is None:
             return FEW_SCENES
-        if found.side:
+        if contrast.side:
             return Judged("undecided", "the interval excludes 0, the test does not reject")
         return OPEN
 
@@ -77,19 +77,19 @@ def detected(sign: int) -> Rule:
 
 
 def not_detected(sign: int | None = None) -> Rule:
-    """No difference is detected, on one side of 0 or on either.
+    """Return the rule that no difference is detected, on one side of 0 or on either.
 
     Refuted where interval and test find one there; else confirmed where it would have been seen.
     """
 
-    def judge(found: Contrast) -> Judged:
-        if found.interval is None:
+    def judge(contrast: Contrast) -> Judged:
+        if contrast.interval is None:
             return FEW_SCENES
-        if found.detected:
-            return REFUTED if sign in (None, found.detected) else CONFIRMED
-        if found.least is None:
+        if contrast.detected:
+            return REFUTED if sign in (None, contrast.detected) else CONFIRMED
+        if contrast.least is None:
             return Judged("undecided", "no difference, however large, is sure to be detected")
-        if found.notable is not None and found.least > found.notable:
+        if contrast.notable is not None and contrast.least > contrast.notable:
             return Judged("undecided", "a difference of notable size could have been missed")
         return CONFIRMED
 
@@ -105,25 +105,25 @@ class Bound:
     sign: int
     """1: at least; -1: at most."""
     strict: bool = False
-    """Whether it is not reached by equality."""
+    """Whether a value equal to the limit misses it."""
 
     @property
     def words(self) -> str:
-        """What lies there, with `{}` for it."""
+        """The statement, with `{}` for its subject."""
         return f"{{}} is {(_SIDES if self.strict else _LIMITS)[self.sign]} {self.limit:g}"
 
     def ahead(self, value: float) -> float:
-        """Return by how much a value is beyond it."""
+        """Return by how much a value is beyond the limit."""
         return self.sign * (value - self.limit)
 
     def meets(self, value: float) -> bool:
-        """Return whether a value does."""
+        """Return whether a value meets the bound."""
         return self.ahead(value) > 0 if self.strict else self.ahead(value) >= 0
 
     def judge(self, value: float, interval: Ends | None, n_scenes: int) -> Judged:
-        """Refute when the whole interval misses; confirm when it meets, or the estimate may do so.
+        """Refute when the whole interval misses; confirm when all of it meets the bound.
 
-        The estimate may in a run that is large enough.
+        In a large enough run the estimate alone may confirm.
         """
         interval = telling(interval, n_scenes)
         if interval is None:
@@ -139,11 +139,11 @@ class Bound:
 
 
 def bounded(bound: Bound, *, seen: bool = False) -> Rule:
-    """The value reaches a threshold; `seen`: and is detected on the side of it too."""
+    """Return the rule that the value meets a bound; `seen`: and is detected on that side of 0."""
 
-    def judge(found: Contrast) -> Judged:
-        met = bound.judge(found.value, found.interval, found.n_scenes)
-        if met == CONFIRMED and seen and detection(found) != bound.sign:
+    def judge(contrast: Contrast) -> Judged:
+        met = bound.judge(contrast.value, contrast.interval, contrast.n_scenes)
+        if met == CONFIRMED and seen and detection(contrast) != bound.sign:
             return Judged("undecided", "met, but not detected")
         return met
 
@@ -151,57 +151,57 @@ def bounded(bound: Bound, *, seen: bool = False) -> Rule:
 
 
 def at_least(limit: float) -> Rule:
-    """The value reaches a lower limit."""
+    """Return the rule that the value is at least a limit."""
     return bounded(Bound(limit, 1))
 
 
 def at_most(limit: float, *, seen: bool = False) -> Rule:
-    """The value reaches an upper limit; `seen` as in `bounded`."""
+    """Return the rule that the value is at most a limit; `seen` as in `bounded`."""
     return bounded(Bound(limit, -1), seen=seen)
 
 
 def less_than(limit: float) -> Rule:
-    """The value is below a limit."""
+    """Return the rule that the value is below a limit."""
     return bounded(Bound(limit, -1, strict=True))
 
 
 def within(least: float, most: float) -> Rule:
-    """The value lies between two limits, or on them.
+    """Return the rule that the value lies between two limits, or on them.
 
     Refuted when the whole interval misses; confirmed when all of it lies inside, or in a run that
     is large enough the estimate alone.
     """
 
-    def judge(found: Contrast) -> Judged:
-        interval = telling(found.interval, found.n_scenes)
+    def judge(contrast: Contrast) -> Judged:
+        interval = telling(contrast.interval, contrast.n_scenes)
         if interval is None:
             return FEW_SCENES
         low, high = interval
         if high < least or low > most:
             return REFUTED
-        if not least <= found.value <= most:
+        if not least <= contrast.value <= most:
             return OPEN
         inside = least < low and high < most
-        return CONFIRMED if inside or points_decide(found.n_scenes) else FEW_FOR_POINTS
+        return CONFIRMED if inside or points_decide(contrast.n_scenes) else FEW_FOR_POINTS
 
     return Rule(f"{{}} lies between {least:g} and {most:g}", judge, sided=False)
 
 
 def by_point(sign: int, limit: float = 0.0, *, strict: bool = True) -> Rule:
-    """The point estimate lies on one side of a limit, in a run that is large enough.
+    """Return the rule that the point estimate, in a large enough run, is on one side of a limit.
 
     A tie confirms no advantage.
     """
     bound = Bound(limit, sign, strict)
 
-    def judge(found: Contrast) -> Judged:
-        if not found.enough:
+    def judge(contrast: Contrast) -> Judged:
+        if not contrast.enough:
             return FEW_SCENES
-        if not points_decide(found.n_scenes):
+        if not points_decide(contrast.n_scenes):
             return FEW_FOR_POINTS
-        if bound.meets(found.value):
+        if bound.meets(contrast.value):
             return CONFIRMED
-        return REFUTED if bound.ahead(found.value) else TIED
+        return REFUTED if bound.ahead(contrast.value) else TIED
 
     return Rule(f"{bound.words}, by the point estimate", judge)
 
@@ -210,5 +210,5 @@ _SIDES = {1: "above", -1: "below"}
 _LIMITS = {1: "at least", -1: "at most"}
 ABOVE, BELOW = detected(1), detected(-1)
 NO_GAIN, NO_LOSS, NO_DIFFERENCE = not_detected(1), not_detected(-1), not_detected()
-REPORTED = Rule("reported: {}", lambda found: CONFIRMED)
-"""A quantity that the claim wants stated, whatever it is; what is not there raises `NotRun`."""
+REPORTED = Rule("reported: {}", lambda contrast: CONFIRMED)
+"""Rule of a quantity that the claim only asks for; one that was not run raises `NotRun`."""

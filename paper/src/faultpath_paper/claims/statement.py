@@ -27,7 +27,7 @@ from faultpath_paper.results import (
 )
 
 NO_EFFECT = {"pp": 0.0, "s": 0.0, "m": 0.0, "m/s^2": 0.0, "times": 1.0}
-"""By unit, its value. What has another unit, as a share of scenes has, has no sign."""
+"""Value of no effect, by unit; in any other unit, as for a share of scenes, there is no sign."""
 
 
 def size(
@@ -37,7 +37,7 @@ def size(
     paper: Printed | None,
     no_effect: float | None,
 ) -> Size:
-    """Set an estimate beside the paper's figure; `no_effect` is `None` where no sign is at stake.
+    """Compare an estimate with the paper's figure; `no_effect` is `None` where there is no sign.
 
     Compatible: the 95 % interval of ours minus the paper's holds 0. Else a sign counts where a
     whole interval shows it, ours and, where it prints one, the paper's.
@@ -85,7 +85,7 @@ class Stated(Protocol):
         ...
 
     def part(self, results: Results) -> Part:
-        """Answer it from a run; raises `NotRun` or `Undecidable`."""
+        """Answer the statement from a run; raises `NotRun` or `Undecidable`."""
         ...
 
 
@@ -97,7 +97,7 @@ class Statement:
     """A part of a claim that a rule decides from one quantity."""
 
     subject: str
-    """What is looked at, as the beginning of a sentence; differences are first minus second."""
+    """Subject, as the beginning of a sentence; differences are first minus second."""
     quantity: Quantity
     rule: Rule
     paper: Printed | None = None
@@ -109,17 +109,17 @@ class Statement:
         return self.rule.words.format(self.subject)
 
     def part(self, results: Results) -> Part:
-        """Answer it from a run."""
-        found = self.quantity(results)
-        no_effect = NO_EFFECT.get(found.unit) if self.rule.sided else None
-        judged = self.rule.judge(found.resampled())
-        return shown(self.words, judged, found, self.paper, no_effect)
+        """Answer the statement from a run."""
+        contrast = self.quantity(results)
+        no_effect = NO_EFFECT.get(contrast.unit) if self.rule.sided else None
+        judged = self.rule.judge(contrast.resampled())
+        return shown(self.words, judged, contrast, self.paper, no_effect)
 
 
 def shown(
     words: str,
     judged: Judged,
-    found: Contrast,
+    contrast: Contrast,
     paper: Printed | None,
     no_effect: float | None,
     counts: str = "",
@@ -128,21 +128,21 @@ def shown(
 
     `no_effect` as in `size`; `counts` where the quantity has none of its own.
     """
-    score = None if found.scenes is None else found.interval
-    found = found.resampled()
+    score = None if contrast.scenes is None else contrast.interval
+    contrast = contrast.resampled()
     return Part(
         words=words,
         answer=judged.answer,
-        estimate=found.value,
-        interval=found.interval,
+        estimate=contrast.value,
+        interval=contrast.interval,
         score=score,
-        unit=found.unit,
-        p_value=None if found.test is None else found.test.p_value,
-        test="" if found.test is None else found.test.name,
-        mde=found.least,
-        counts=str(found.counts or counts),
+        unit=contrast.unit,
+        p_value=None if contrast.test is None else contrast.test.p_value,
+        test="" if contrast.test is None else contrast.test.name,
+        mde=contrast.least,
+        counts=str(contrast.counts or counts),
         reason=judged.reason,
-        size=size(found.value, found.interval, found.n_scenes, paper, no_effect),
+        size=size(contrast.value, contrast.interval, contrast.n_scenes, paper, no_effect),
         **beside(paper),
     )
 
@@ -179,9 +179,9 @@ def verdict(claim: PublishedClaim, statements: Statements, results: Results) -> 
 def answered(statement: Stated, results: Results) -> Part:
     """Answer a statement from a run; what was not run, or does not decide, leaves it undecided."""
 
-    def left_open(reason: str, **why: Any) -> Part:
-        why |= beside(statement.paper)
-        return Part(words=statement.words, answer="undecided", reason=reason, **why)
+    def left_open(reason: str, **fields: Any) -> Part:
+        fields |= beside(statement.paper)
+        return Part(words=statement.words, answer="undecided", reason=reason, **fields)
 
     try:
         return statement.part(results)
@@ -192,7 +192,7 @@ def answered(statement: Stated, results: Results) -> Part:
 
 
 ALL_SEEDS = 3
-"""Trainings that the paper speaks of."""
+"""Number of trainings in the paper."""
 
 
 class Turned(NamedTuple):
@@ -203,12 +203,12 @@ class Turned(NamedTuple):
     after: Contrast
 
     def judge(self) -> Judged:
-        """Answer that the effect turns from above 0 to below 0: both are detected, each by itself.
+        """Judge whether the effect turns from above to below 0: both are detected, each by itself.
 
         That is an intersection-union test, whose level is that of each effect's. Refuted when the
         change, or either effect, is detected on the other side.
         """
-        moved, before, after = (detection(each.resampled()) for each in self)
+        moved, before, after = (detection(contrast.resampled()) for contrast in self)
         if self.change.interval is None:
             return FEW_SCENES
         if moved > 0 or before < 0 or after > 0:
@@ -235,7 +235,7 @@ class TurnsDown:
         return f"{self.subject} turns from above 0 to below 0"
 
     def part(self, results: Results) -> Part:
-        """Answer it from a run."""
+        """Answer the statement from a run."""
         one, two = together(results, self.before, self.after)
         turned = Turned(decisive(change(one, two)), one, two)
         counts = f"{one.counts}, then {two.counts}"
@@ -245,11 +245,11 @@ class TurnsDown:
 def seeds_that_turn(before: Pair, after: Pair) -> Quantity:
     """Return in how many seeds the difference is above 0 before and below 0 after."""
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         one, two = together(results, before, after)
         if one.n_seeds < ALL_SEEDS:
             raise Undecidable(f"run with {one.n_seeds} of {ALL_SEEDS} seeds")
         turning = sum(b > 0 > a for b, a in zip(one.per_seed, two.per_seed, strict=True))
         return Contrast(float(turning), "seeds", one.n_scenes, against_zero=False)
 
-    return found
+    return quantity

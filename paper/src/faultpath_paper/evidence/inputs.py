@@ -27,7 +27,7 @@ _IN_TIME = (Delay, Drift, Dropout, Freeze, Hold)
 
 
 _STEPS = ("position", "velocity", "rotation", "rate", "command", "wind_mps", "motor_thrust_n")
-"""What windows hold of every step, `[..., T, W]`."""
+"""Fields of windows that have a value for every step, `[..., T, W]`."""
 
 
 def with_shuffled_history(windows: Windows, seed: int) -> Windows:
@@ -47,7 +47,7 @@ def with_shuffled_history(windows: Windows, seed: int) -> Windows:
 
 @dataclass(frozen=True)
 class Subject:
-    """A variant with its models: what is measured."""
+    """A variant with its models, to be measured on recorded windows."""
 
     system: Quadrotor
     variant: Variant
@@ -58,15 +58,14 @@ class Subject:
     @classmethod
     def load(cls, system: Quadrotor, name: str, seed: int) -> Subject:
         """Load a variant; `UserError` where a checkpoint is missing."""
-        found = system.setups[name]
-        models = found.load_predictor(seed), found.load_reconstruction(seed)
+        setup = system.setups[name]
+        models = setup.load_predictor(seed), setup.load_reconstruction(seed)
         return cls(system, system.variants[name], seed, *models)
 
     def at_present(self, windows: Windows, faults: Sequence[str], recording: str) -> Present:
-        """Return what the variant makes of windows of the recording of that name.
+        """Return what the variant gets and predicts at the present of a recording's windows.
 
-        `UserError` for a fault that does not fit the variant, or of a channel or in a way that
-        windows do not have.
+        `UserError` for a fault that does not fit the variant, or that windows cannot have.
         """
         by_window, by_recording = self._parse(faults)
         return at_present(

@@ -66,13 +66,13 @@ class Playback(Plant):
         return 0
 
     def sense(self, state: int) -> Outputs:
-        """Return what was recorded at an instant."""
-        windows, now = self._windows, self._windows.state(state)
+        """Return the recorded readings of an instant."""
+        windows, vehicle = self._windows, self._windows.state(state)
         truth = {
-            "position": now.position,
-            "velocity": now.velocity,
-            "attitude": now.rotation,
-            "body_rate": now.rate,
+            "position": vehicle.position,
+            "velocity": vehicle.velocity,
+            "attitude": vehicle.rotation,
+            "body_rate": vehicle.rate,
             **windows.calibration,
         }
         wind = windows.wind_mps[:, state].T
@@ -94,12 +94,12 @@ class Playback(Plant):
         return Progress(~none, none, none, torch.full(none.shape, state * CONTROL_DT_S))
 
     def conditions(self, state: int) -> tuple[Sequence[str], Sequence[str]]:
-        """Return which windows they are: nothing else tells them apart."""
+        """Return the ids of the windows: nothing else tells them apart."""
         return self._windows.ids, self._windows.ids
 
 
 class Executed(Module):
-    """Commands what was executed, in the planner's place."""
+    """Stands in for the planner: commands what was executed."""
 
     name, writes = "planner", ("commanded_action",)
     reads = frozenset({Port("rollout", "candidates")})
@@ -117,41 +117,41 @@ class Executed(Module):
 
 
 class WindowTaps:
-    """Stands before taps for which a window is a trial of one step, its present.
+    """Stands before taps to which a window is a trial of one step, its present.
 
-    Faults draw once a window. What they do to the calibration is held over the history; all else
-    they change at the present alone.
+    Faults draw once per window. A changed calibration holds over the history; everything else
+    changes at the present alone.
     """
 
     def __init__(self, taps: Taps, exchange: Exchange) -> None:
-        self.told: dict[tuple[str, str], Any] = {}
-        """What was delivered at the present, by channel and consumer."""
+        self.delivered: dict[tuple[str, str], Any] = {}
+        """Values delivered at the present, by channel and consumer."""
         self.set_active = taps.set_active
         self._taps, self._exchange = taps, exchange
 
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
-        """Return what a consumer gets, of the history as it was recorded."""
+        """Return what a consumer gets; over the history, most channels as they were recorded."""
         if step < HISTORY and channel not in HELD:
             return reading.value
         value = self._exchange(reading.value) if channel == CODE[0] else reading.value
-        given = self._taps.deliver(channel, consumer, Reading(value, reading.source, 0), 0)
-        self.told[channel, consumer] = given
-        return given
+        delivered = self._taps.deliver(channel, consumer, Reading(value, reading.source, 0), 0)
+        self.delivered[channel, consumer] = delivered
+        return delivered
 
 
 @dataclass(frozen=True)
 class Present:
-    """What the modules got at the present of windows, and what they make of it."""
+    """Values that modules got at the present of windows, and the predictions from them."""
 
     windows: Windows
-    """Filled up with the first one to a multiple of 32."""
+    """The windows, padded with the first one to a multiple of 32."""
     count: int
-    """How many there are without those."""
-    told: Mapping[tuple[str, str], Any]
+    """Number of windows without the padding."""
+    delivered: Mapping[tuple[str, str], Any]
 
     def __getitem__(self, tap: tuple[str, str]) -> Tensor:
         """Return what a consumer got of a channel, `[W, ...]`."""
-        return self.told[tap][: self.count]
+        return self.delivered[tap][: self.count]
 
     def wind(self) -> Tensor:
         """Return the wind that the predictor got, `[3, W]`, m/s."""
@@ -159,11 +159,11 @@ class Present:
 
     def positions(self) -> Tensor:
         """Return the predicted positions 13 to 32 under what was executed, `[3, W, 20]`, m."""
-        every = len(self.windows)
+        lanes = len(self.windows)
         commands = self.windows.command[:, HISTORY:].movedim(1, 0)[..., None]
-        part = Chunk(tuple(range(every)), torch.arange(every))
-        asked = Candidates(every, (part,), (commands,))
-        predicted: Predicted = self.told["rollout", "planner.candidates"](asked)
+        part = Chunk(tuple(range(lanes)), torch.arange(lanes))
+        candidates = Candidates(lanes, (part,), (commands,))
+        predicted: Predicted = self.delivered["rollout", "planner.candidates"](candidates)
         return predicted.rollouts[0].positions[:, : self.count, :, 0]
 
 
@@ -182,12 +182,12 @@ def at_present(
 
     Args:
         windows: Some windows, W.
-        predictor: Whose rollouts may be asked for.
-        reconstruction: What estimates the wind, if anything does.
+        predictor: Model whose rollouts `Present.positions` reads.
+        reconstruction: Estimator of the wind, if there is one.
         bindings: Channel to source, where it is not the channel's first.
-        faults: What acts on windows one by one.
-        seed: Of the faults' random numbers.
-        exchange: What is done to the history codes of the whole recording, `[W, 32]`.
+        faults: Faults that act on windows one by one.
+        seed: Seed of the faults' random numbers.
+        exchange: Change to the history codes of the whole recording, `[W, 32]`.
 
     Raises:
         UserError: A fault does not fit, or acts on nobody here.
@@ -208,8 +208,8 @@ def at_present(
         consumers=present,
         privileged=PRIVILEGED,
     )
-    before = WindowTaps(taps, lambda codes: exchange(codes[: len(windows)])[lanes])
-    for _ in Loop(interface, parts).execute(Batch(wide.ids, seed, CONTROL_DT_S), before):
+    window_taps = WindowTaps(taps, lambda codes: exchange(codes[: len(windows)])[lanes])
+    for _ in Loop(interface, parts).execute(Batch(wide.ids, seed, CONTROL_DT_S), window_taps):
         pass
     taps.verify(last_step=0)
-    return Present(wide, len(windows), before.told)
+    return Present(wide, len(windows), window_taps.delivered)

@@ -1,4 +1,4 @@
-"""The quantities of a measurement, each a number a window."""
+"""Quantities that are measured on recorded windows, one number per window."""
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
@@ -32,55 +32,53 @@ from faultpath_paper.evidence.table import (
 
 
 @torch.inference_mode()
-def measured(asked: Measurement, recorded: Recorded) -> Measured:
+def measured(measurement: Measurement, recorded: Recorded) -> Measured:
     """Measure on every window.
 
     A window's number does not depend on the windows beside it, to the bit, unless a fault on the
     history code exchanges them.
     """
-    values = _QUANTITIES[asked.quantity](_subject(asked), asked, recorded.windows)
+    values = _QUANTITIES[measurement.quantity](_subject(measurement), measurement, recorded.windows)
     return Measured(recorded.scenes, recorded.steps, values.double().numpy())
 
 
-def _subject(asked: Measurement) -> Subject:
-    return Subject.load(quadrotor(asked.recording), asked.subject, asked.seed)
+def _subject(measurement: Measurement) -> Subject:
+    return Subject.load(quadrotor(measurement.recording), measurement.subject, measurement.seed)
 
 
-def _present(subject: Subject, asked: Measurement, windows: Windows) -> Present:
-    return subject.at_present(windows, asked.faults, asked.recording.name)
+def _present(subject: Subject, measurement: Measurement, windows: Windows) -> Present:
+    return subject.at_present(windows, measurement.faults, measurement.recording.name)
 
 
-def _position_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    last = _present(subject, asked, windows).positions()[..., -1]
+def _position_error(subject: Subject, measurement: Measurement, windows: Windows) -> Tensor:
+    last = _present(subject, measurement, windows).positions()[..., -1]
     return (last - windows.position[:, -1]).norm(dim=0)
 
 
-def _position_response(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    correct = asked.model_copy(update={"faults": ()})
-    here, there = (
-        _present(subject, each, windows).positions()[..., -1] for each in (correct, asked)
-    )
+def _position_response(subject: Subject, measurement: Measurement, windows: Windows) -> Tensor:
+    correct = measurement.model_copy(update={"faults": ()})
+    here = _present(subject, correct, windows).positions()[..., -1]
+    there = _present(subject, measurement, windows).positions()[..., -1]
     return (there - here).norm(dim=0)
 
 
-def _shuffle_response(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    here, there = (
-        _present(subject, asked, each).positions()[..., -1]
-        for each in (windows, with_shuffled_history(windows, asked.seed))
-    )
+def _shuffle_response(subject: Subject, measurement: Measurement, windows: Windows) -> Tensor:
+    shuffled = with_shuffled_history(windows, measurement.seed)
+    here = _present(subject, measurement, windows).positions()[..., -1]
+    there = _present(subject, measurement, shuffled).positions()[..., -1]
     return (there - here).norm(dim=0)
 
 
-def _acceleration_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    present = _present(subject, asked, windows)
-    told = {channel: present[channel, "predictor.dynamics"] for channel in windows.calibration}
-    believed = replace(windows, mass_kg=told["mass"], thrust_scale=told["thrust_scale"])
+def _acceleration_error(subject: Subject, measurement: Measurement, windows: Windows) -> Tensor:
+    present = _present(subject, measurement, windows)
+    delivered = {channel: present[channel, "predictor.dynamics"] for channel in windows.calibration}
+    believed = replace(windows, mass_kg=delivered["mass"], thrust_scale=delivered["thrust_scale"])
     nominal = _nominal(believed) - _nominal(windows)
     return (nominal + _wind_term_difference(present, windows)).norm(dim=0)
 
 
-def _wind_term_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    return _wind_term_difference(_present(subject, asked, windows), windows).norm(dim=0)
+def _wind_term_error(subject: Subject, measurement: Measurement, windows: Windows) -> Tensor:
+    return _wind_term_difference(_present(subject, measurement, windows), windows).norm(dim=0)
 
 
 _QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]] = {
@@ -127,29 +125,29 @@ def measure(
     workers: int = 0,
     progress: Progress | None = None,
 ) -> EvidenceTable:
-    """Record what is missing, measure what is missing, and return all of `measurements`.
+    """Record and measure what the folder lacks, and return all of `measurements`.
 
     Args:
-        measurements: What to measure; one that stands there twice is measured once.
+        measurements: Measurements to make; duplicates are made once.
         scenes: The first N scenes of each library; `None`: all.
-        folder: Where recordings and measurements are kept, so that the next call goes on.
-        workers: Processes; 0: everything is done in this one.
-        progress: Is told how far it is.
+        folder: Folder of recordings and measurements, from which the next call resumes.
+        workers: Worker processes; 0 for this process alone.
+        progress: Called with how much is done, of how much.
     """
-    asked = tuple(dict.fromkeys(measurements))
-    recordings = dict.fromkeys(measurement.recording for measurement in asked)
+    unique = tuple(dict.fromkeys(measurements))
+    recordings = dict.fromkeys(measurement.recording for measurement in unique)
     flown = {recording: blocks(recording, scenes) for recording in recordings}
-    # One recording after the other: a worker keeps the windows of the one that it is at.
+    # One recording after the other: a worker keeps the windows of its current recording.
     paths = {
         measurement: _path(measurement, flown[recording], folder)
         for recording in recordings
-        for measurement in asked
+        for measurement in unique
         if measurement.recording == recording
     }
     make_folder(folder)
     with locked(folder, lambda text: None):
         atomic.sweep(folder)
-        waiting = {found: path for found, path in paths.items() if not path.exists()}
+        waiting = {m: path for m, path in paths.items() if not path.exists()}
         flights = [
             Part(block.rows(folder), partial(_fly, block, folder), len(block.scenes))
             for recording in dict.fromkeys(measurement.recording for measurement in waiting)
@@ -157,11 +155,11 @@ def measure(
             if not block.rows(folder).exists()
         ]
         tables = [  # a measurement takes about as long as a flight
-            Part(path, partial(_measure, found, flown[found.recording], folder, path))
-            for found, path in waiting.items()
+            Part(path, partial(_measure, measurement, flown[measurement.recording], folder, path))
+            for measurement, path in waiting.items()
         ]
         make_missing((flights, tables), workers, progress)
-    return EvidenceTable({found: read_evidence(paths[found]).values(found) for found in asked})
+    return EvidenceTable({m: read_evidence(paths[m]).values(m) for m in unique})
 
 
 @arithmetic()
@@ -171,8 +169,8 @@ def _fly(block: Block, folder: Path) -> None:
 
 @arithmetic()
 def _measure(measurement: Measurement, flown: Blocks, folder: Path, path: Path) -> None:
-    found = measured(measurement, _recorded(flown, folder))
-    write_evidence(path, EvidenceTable({measurement: found}))
+    values = measured(measurement, _recorded(flown, folder))
+    write_evidence(path, EvidenceTable({measurement: values}))
 
 
 def _path(measurement: Measurement, flown: Blocks, folder: Path) -> Path:

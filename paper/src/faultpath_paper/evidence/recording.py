@@ -35,7 +35,7 @@ class Block:
     stem: str
 
     def rows(self, folder: Path) -> Path:
-        """Return the file that is written last."""
+        """Return the path of the file that is written last."""
         return folder / f"{self.stem}.rows"
 
     def fly(self, folder: Path) -> None:
@@ -85,13 +85,13 @@ def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
         recording.seed,
         code_of("faultpath_quadrotor.training.trajectories", "faultpath_quadrotor.training.pool"),
     )
-    found: list[Block] = []
+    library_blocks: list[Block] = []
     for first in range(0, len(scenes), BLOCK):
         part = scenes[first : first + BLOCK]
         content = repr((*decisive, first, part))
         stem = hashlib.sha256(content.encode()).hexdigest()[:24]
-        found.append(Block(recording, first, part, stem))
-    return tuple(found)
+        library_blocks.append(Block(recording, first, part, stem))
+    return tuple(library_blocks)
 
 
 def recorded(blocks: Sequence[Block], folder: Path) -> Recorded:

@@ -1,7 +1,7 @@
-"""Evidence measured on recorded windows: what was asked, what was found, and its table as Parquet,
-one row a window of a measurement.
+"""Evidence measured on recorded windows: measurements, their values, and the table as Parquet,
+with one row per window of a measurement.
 
-No tensors and no simulator here: `quantities` measures, and everybody else reads the table.
+No tensors and no simulator here: `quantities` measures, and all others read the table.
 """
 
 import hashlib
@@ -42,7 +42,7 @@ QUANTITIES: Mapping[Quantity, str] = {
 class Recording(Frozen):
     """Closed-loop flights under correct inputs, whose windows are measured.
 
-    Which scenes of the library fly is said when they are measured: the first N.
+    How many scenes fly is decided when they are measured: the first N of the library.
     """
 
     library: str
@@ -143,13 +143,13 @@ _COLUMNS = {
 def write_evidence(path: Path, table: EvidenceTable) -> None:
     """Write a table, measurements in its order; the bytes depend on the table alone.
 
-    `measurement` is the measurement as JSON, from which it is read back; the columns beside it say
-    the same to whoever opens the file with something else. `UserError` when it cannot be written.
+    `measurement` is the measurement as JSON, from which it is read back; the other
+    columns repeat it for other readers of the file. `UserError` when it cannot be written.
     """
     rows: list[dict[str, Any]] = []
     for measurement in table:
-        found = table.values(measurement)
-        same = {
+        measured = table.values(measurement)
+        common = {
             "measurement": measurement.model_dump_json(),
             "recording": measurement.recording.name,
             "quantity": measurement.quantity,
@@ -157,8 +157,9 @@ def write_evidence(path: Path, table: EvidenceTable) -> None:
             "seed": measurement.seed,
             "faults": " ".join(measurement.faults),
         }
-        windows = zip(found.scenes, found.steps.tolist(), found.values.tolist(), strict=True)
-        rows += [{**same, "scene": s, "step": step, "value": value} for s, step, value in windows]
+        steps, values = measured.steps.tolist(), measured.values.tolist()
+        windows = zip(measured.scenes, steps, values, strict=True)
+        rows += [{**common, "scene": s, "step": step, "value": value} for s, step, value in windows]
     write_file(path, encode(_COLUMNS, rows), path.parent)
 
 
@@ -168,10 +169,10 @@ def read_evidence(path: Path) -> EvidenceTable:
     entries: dict[Measurement, Measured] = {}
     try:
         for row in decode(contents(path), _COLUMNS)[0]:
-            found = windows.setdefault(row["measurement"], [])
-            found.append((row["scene"], row["step"], row["value"]))
-        for text, found in windows.items():
-            scenes, steps, values = zip(*found, strict=True)
+            rows = windows.setdefault(row["measurement"], [])
+            rows.append((row["scene"], row["step"], row["value"]))
+        for text, rows in windows.items():
+            scenes, steps, values = zip(*rows, strict=True)
             measured = Measured(scenes, np.array(steps, np.int64), np.array(values))
             entries[Measurement.model_validate_json(text)] = measured
     except OSError as error:
@@ -179,6 +180,6 @@ def read_evidence(path: Path) -> EvidenceTable:
             f"cannot read {path} ({error.strerror}): measure it first, or check the path"
         ) from error
     except (Unreadable, ValueError) as error:
-        said = error if isinstance(error, Unreadable) else "it is not of this version"
-        raise UserError(f"{path} is damaged ({said}): delete it and measure again") from None
+        reason = error if isinstance(error, Unreadable) else "it is not of this version"
+        raise UserError(f"{path} is damaged ({reason}): delete it and measure again") from None
     return EvidenceTable(entries)

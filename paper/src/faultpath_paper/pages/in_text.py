@@ -71,8 +71,8 @@ PROBES: dict[str, tuple[Quantity, tuple[str, ...]]] = {
     "history shuffle": ("shuffle-response", ()),
     "history exchange": ("position-response", ("history_code:shuffle",)),
 }
-"""What is measured, and under which faults: the steps of every history change places, or windows
-exchange their histories."""
+"""Quantity and faults of each probe: the steps of every history change places, or windows exchange
+their histories."""
 
 
 def response(subject: str, probe: str) -> Measurement:

@@ -79,8 +79,8 @@ def _slower(cell: Cell) -> Group:
     pair = cell, of_seed(WM_A)
 
     def make(results: Results) -> Made:
-        found = differences.time(*pair)(results)
-        return wording.signed(found.value, 2), interval_of(found, 2), str(found.n_scenes)
+        effect = differences.time(*pair)(results)
+        return wording.signed(effect.value, 2), interval_of(effect, 2), str(effect.n_scenes)
 
     return Group(make, (wording.signed(paper["median"], 2), "", printed(paper["n"])), pair)
 

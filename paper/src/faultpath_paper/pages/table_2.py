@@ -79,9 +79,9 @@ def _matched(repair: str, baseline: str) -> Rows:
 
 
 def _tail(error: float) -> Group:
-    asked = error_under(error)
+    own = error_under(error)
     return Group(
-        lambda results: (wording.plain(100 * quantile(results, asked, 0.9)),), measurements=(asked,)
+        lambda results: (wording.plain(100 * quantile(results, own, 0.9)),), measurements=(own,)
     )
 
 

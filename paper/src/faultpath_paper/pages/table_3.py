@@ -27,7 +27,7 @@ UNMET = range(70, 100)
 selection scenes of its training."""
 
 AVERAGED = {"free-space": (WITHHELD, ZERO, TRAJECTORY), "obstacles": (TRAJECTORY, GRU)}
-"""Whose figure at L3 is a mean over three seeds, of the predictor or of the reconstruction."""
+"""Variants whose figure at L3 is a mean over three seeds of predictor or reconstruction."""
 
 
 def cell(variant: str, environment: str, level: str) -> Cell:
@@ -76,17 +76,17 @@ def _unmet(variant: str, key: str) -> Row:
     return Row(ROWS[variant][0], tuple(groups))
 
 
-def _won(asked: Cell, paper: int | list[int]) -> Group:
+def _won(row: Cell, paper: int | list[int]) -> Group:
     """Return successes among the unmet scenes, seed by seed where the paper has each seed's."""
-    every = isinstance(paper, list)
-    shown = asked if every else of_seed(asked)
+    by_seed = isinstance(paper, list)
+    shown = row if by_seed else of_seed(row)
 
     def make(results: Results) -> Made:
-        seeds = (of_seed(shown, seed) for seed in results.seeds(shown))
-        pairs = (results.pairs(one, one, scenes=UNMET) for one in seeds)
+        trainings = (of_seed(shown, seed) for seed in results.seeds(shown))
+        pairs = (results.pairs(cell, cell, scenes=UNMET) for cell in trainings)
         return ("/".join(str(int(pair.first.success.sum())) for pair in pairs),)
 
-    return Group(make, ("/".join(map(str, paper)) if every else str(paper),), (shown,))
+    return Group(make, ("/".join(map(str, paper)) if by_seed else str(paper),), (shown,))
 
 
 PAGE = Page(

@@ -103,7 +103,7 @@ def _changed(
 
 
 _FARTHER = _PAPER["terminal_distance_GRU+DCC_minus_GRU_m"]
-"""What the paper prints of GRU+DCC minus GRU in terminal goal distance."""
+"""Terminal goal distance of GRU+DCC minus GRU, as the paper prints it."""
 
 PAGE = Page(
     "table-4",

@@ -41,13 +41,13 @@ def _row(label: str, key: str) -> Row:
     cells = REPAIRS[key]
 
     def make(results: Results) -> Made:
-        found = crossing(results, cells)
-        inverted = break_even(found.correct, found.faulty)
+        tradeoff = crossing(results, cells)
+        inverted = break_even(tradeoff.correct, tradeoff.faulty)
         undecided = " and ".join(
             f"[{wording.last(low)}, {wording.first(high)}]" for low, high in inverted.pieces
         )
-        effects = decided(found.correct), decided(found.faulty)
-        return *effects, _crossing(found), undecided or "none"
+        effects = decided(tradeoff.correct), decided(tradeoff.faulty)
+        return *effects, _crossing(tradeoff), undecided or "none"
 
     printed, p_star = NO_CROSSING, paper["p_star_percent"]
     if p_star is not None:
@@ -57,12 +57,12 @@ def _row(label: str, key: str) -> Row:
     return Row(label, (Group(make, (*effects, printed, ""), cells),))
 
 
-def _crossing(found: Crossing) -> str:
-    if found.value is None:
-        return NO_CROSSING if found.behind_throughout else ABOVE_NONE
-    low, high = found.interval or (None, None)
+def _crossing(tradeoff: Crossing) -> str:
+    if tradeoff.value is None:
+        return NO_CROSSING if tradeoff.behind_throughout else ABOVE_NONE
+    low, high = tradeoff.interval or (None, None)
     ends = "" if low is None or high is None else f" [{low:.0f}, {high:.0f}]"
-    return f"{found.value:.0f}{ends}"
+    return f"{tradeoff.value:.0f}{ends}"
 
 
 PAGE = Page(

@@ -16,7 +16,7 @@ Repair = tuple[Cell, Cell, Cell, Cell]
 
 @dataclass(frozen=True)
 class Crossing:
-    """What a repair changes under correct inputs and under the fault, and where it breaks even."""
+    """Effects of a repair under correct inputs and under the fault, and where it breaks even."""
 
     correct: Contrast
     faulty: Contrast
@@ -27,7 +27,7 @@ class Crossing:
 
     @property
     def behind_throughout(self) -> bool:
-        """Whether the estimates say so of the repair, at every frequency."""
+        """Whether the repair is behind at every frequency, by the estimates."""
         return max(self.correct.value, self.faulty.value) < 0
 
 
@@ -48,21 +48,21 @@ def crossing(results: Results, repair: Repair) -> Crossing:
 def _break_even(correct: Floats, faulty: Floats) -> Floats:
     """Return -Δ0 / (Δf - Δ0) in percent, 0 where neither is negative, and NaN without a crossing
     above which the repair is ahead."""
-    found = np.full(correct.shape, np.nan)
-    found[(correct >= 0) & (faulty >= 0)] = 0.0
+    percent = np.full(correct.shape, np.nan)
+    percent[(correct >= 0) & (faulty >= 0)] = 0.0
     crosses = (correct < 0) & (faulty > 0)
-    found[crosses] = 100.0 * correct[crosses] / (correct[crosses] - faulty[crosses])
-    return found
+    percent[crosses] = 100.0 * correct[crosses] / (correct[crosses] - faulty[crosses])
+    return percent
 
 
 def greater_effect(repair: Repair) -> Quantity:
     """Return the greater of a repair's two effects: with it the repair is behind throughout."""
 
-    def found(results: Results) -> Contrast:
-        both = crossing(results, repair)
-        value = max(both.correct.value, both.faulty.value)
-        draws = np.maximum(both.correct.draws, both.faulty.draws)
-        n_scenes = both.correct.n_scenes
+    def quantity(results: Results) -> Contrast:
+        tradeoff = crossing(results, repair)
+        value = max(tradeoff.correct.value, tradeoff.faulty.value)
+        draws = np.maximum(tradeoff.correct.draws, tradeoff.faulty.draws)
+        n_scenes = tradeoff.correct.n_scenes
         return decisive(Contrast(value, "pp", n_scenes, draws=draws, against_zero=False))
 
-    return found
+    return quantity

@@ -19,7 +19,7 @@ from faultpath_paper.results import NotRun, Quantity, Results, decisive
 Pair: TypeAlias = tuple[Cell, Cell]
 Bools: TypeAlias = NDArray[np.bool_]
 Effect: TypeAlias = Callable[[Pairs, Resamples], Contrast]
-"""What of paired trials is compared."""
+"""Comparison of paired trials."""
 
 TELLING_PP = 20.0
 """A difference in success that a run must be able to detect for its absence to say anything."""
@@ -55,7 +55,7 @@ def contrast(
     *,
     other_noise: bool = False,
 ) -> Contrast:
-    """Return what differs between two cells; `other_noise` as in `Results.pairs`."""
+    """Return the difference between two cells; `other_noise` as in `Results.pairs`."""
     pairs = results.pairs(first, second, other_noise=other_noise)
     return effect(pairs, results.resamples(pairs))
 
@@ -65,21 +65,21 @@ def success(
 ) -> Quantity:
     """Return the difference in success, or other ends; `other_noise` as in `Results.pairs`."""
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         shown = contrast(results, first, second, effect, other_noise=other_noise)
         return decisive(shown, TELLING_PP)
 
-    return found
+    return quantity
 
 
 def rate(cell: Cell) -> Quantity:
     """Return the success of a cell in percent."""
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         pairs = results.pairs(cell, cell)
         return decisive(success_rate(pairs.first.success, results.resamples(pairs)))
 
-    return found
+    return quantity
 
 
 def crashes(first: Cell, second: Cell) -> Quantity:
@@ -95,7 +95,7 @@ def timeouts(first: Cell, second: Cell) -> Quantity:
 def time(first: Cell, second: Cell) -> Quantity:
     """Return the median difference in time over jointly successful scenes."""
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         pairs = results.pairs(first, second)
         one, two = pairs.first, pairs.second
         both = one.success & two.success
@@ -103,18 +103,18 @@ def time(first: Cell, second: Cell) -> Quantity:
             raise NotRun(f"a scene in which both {first} and {second} succeed")
         return decisive(median_effect(one.time_s, two.time_s, both, results.resamples(pairs)))
 
-    return found
+    return quantity
 
 
 def combined(*terms: tuple[float, Pair], effect: Effect = succeeded) -> Quantity:
     """Return a weighted sum of differences over common scenes, on shared resamples."""
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         contrasts = together(results, *(pair for _, pair in terms), effect=effect)
         summed = weighted_sum([weight for weight, _ in terms], contrasts)
         return decisive(summed, TELLING_PP if summed.unit == "pp" else None)
 
-    return found
+    return quantity
 
 
 def together(results: Results, *pairs: Pair, effect: Effect = succeeded) -> tuple[Contrast, ...]:
@@ -123,7 +123,7 @@ def together(results: Results, *pairs: Pair, effect: Effect = succeeded) -> tupl
     `NotRun` when there is no such seed or scene.
     """
     joined = joint(results, *pairs)
-    return tuple(effect(each, results.resamples(each)) for each in joined)
+    return tuple(effect(trials, results.resamples(trials)) for trials in joined)
 
 
 def joint(results: Results, *pairs: Pair) -> tuple[Pairs, ...]:

@@ -29,7 +29,7 @@ def at_lower_success(
     `Undecidable` when both succeed equally often.
     """
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         (one, error_one), (two, error_two) = first, second
         difference = contrast(results, of_seed(one), of_seed(two)).value
         if difference == 0:
@@ -37,25 +37,25 @@ def at_lower_success(
         ordered = (error_one, error_two) if difference < 0 else (error_two, error_one)
         return difference_of_quantiles(*ordered, q)(results)
 
-    return found
+    return quantity
 
 
 def share(cells: Sequence[Cell], end: bool) -> Quantity:
     """Return the share of scenes in which all cells succeed (`end`), or all fail, seed 0."""
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         own = [of_seed(cell) for cell in cells]
         every = joint(results, *((cell, cell) for cell in own))
         ends = np.stack([pairs.first.success[:, 0] == end for pairs in every])
         return decisive(success_rate(np.all(ends, axis=0), results.resamples(every[0])))
 
-    return found
+    return quantity
 
 
 def rank_correlation(cells: Sequence[tuple[Cell, Subject]]) -> Quantity:
     """Return Spearman's correlation of success with the median of something measured."""
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         rates = [results.rate(cell) for cell, _ in cells]
         measured = np.array([mean_of_medians(results, subject) for _, subject in cells])
         value = spearman(np.array([rate.value for rate in rates]), measured)
@@ -64,7 +64,7 @@ def rank_correlation(cells: Sequence[tuple[Cell, Subject]]) -> Quantity:
         n_scenes = min(rate.n_scenes for rate in rates)
         return Contrast(value, "rank correlation", n_scenes, against_zero=False)
 
-    return found
+    return quantity
 
 
 def spearman(one: Floats, two: Floats) -> float | None:
@@ -88,15 +88,15 @@ PEAK_PERCENT = 90.0
 
 @dataclass(frozen=True)
 class _Sweep:
-    """What some models flew, over common scenes."""
+    """Success of some models over the errors of the sweep, on common scenes."""
 
     errors: list[float]
     rates: list[Floats]
-    """Of each model `[1 + resamples, errors]`: success in percent, and in every resample."""
+    """Success of each model in percent, `[1 + resamples, errors]`: the estimate, then resamples."""
     n_scenes: int
 
-    def found(self, drawn: Floats, unit: str) -> Contrast:
-        """Return a quantity `[1 + resamples]` of the sweep."""
+    def contrast(self, drawn: Floats, unit: str) -> Contrast:
+        """Return the contrast of a quantity `[1 + resamples]` of the sweep."""
         value, draws = float(drawn[0]), drawn[1:]
         return decisive(Contrast(value, unit, self.n_scenes, draws=draws, against_zero=False))
 
@@ -104,26 +104,26 @@ class _Sweep:
 def worst(model: str) -> Quantity:
     """Return the least success of a model over the sweep, in percent."""
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         sweep = _sweep(results, model)
-        return sweep.found(sweep.rates[0].min(axis=1), "percent")
+        return sweep.contrast(sweep.rates[0].min(axis=1), "percent")
 
-    return found
+    return quantity
 
 
 def range_gained(first: str, second: str) -> Quantity:
-    """Return how many more errors of the sweep one model bears around 0 than another.
+    """Return how many more errors of the sweep one model tolerates around 0 than another.
 
     They are counted outwards from 0, on each side to the first error at which success is below
     `PEAK_PERCENT`.
     """
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         sweep = _sweep(results, first, second)
         one, two = (_borne(rates, sweep.errors.index(0.0)) for rates in sweep.rates)
-        return sweep.found(one - two, "errors")
+        return sweep.contrast(one - two, "errors")
 
-    return found
+    return quantity
 
 
 def _sweep(results: Results, *models: str) -> _Sweep:
@@ -144,7 +144,7 @@ def _sweep(results: Results, *models: str) -> _Sweep:
 
 
 def _borne(rates: Floats, middle: int) -> Floats:
-    held = (rates >= PEAK_PERCENT).astype(np.float64)
-    up = np.cumprod(held[:, middle:], axis=1).sum(axis=1)
-    down = np.cumprod(held[:, middle::-1], axis=1).sum(axis=1)
-    return up + down - held[:, middle]
+    high = (rates >= PEAK_PERCENT).astype(np.float64)
+    up = np.cumprod(high[:, middle:], axis=1).sum(axis=1)
+    down = np.cumprod(high[:, middle::-1], axis=1).sum(axis=1)
+    return up + down - high[:, middle]

@@ -24,21 +24,21 @@ TELLING_SHARE = 0.2
 def median(subject: Subject) -> Quantity:
     """Return the median of a subject."""
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         (one,) = quantiles(results, 0.5, subject)
         return decisive(replace(one, against_zero=False))
 
-    return found
+    return quantity
 
 
 def difference_of_quantiles(first: Subject, second: Subject, q: float = 0.5) -> Quantity:
     """Return a quantile of `first` minus that of `second`."""
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         one, two = quantiles(results, q, first, second)
         return decisive(weighted_sum([1, -1], [one, two]), TELLING_SHARE * two.value)
 
-    return found
+    return quantity
 
 
 def difference_of_changes(
@@ -49,20 +49,20 @@ def difference_of_changes(
     `size`: changes are compared whatever their sign.
     """
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         ends = quantiles(results, 0.5, *first, *second)
         changes = [weighted_sum([-1, 1], ends[:2]), weighted_sum([-1, 1], ends[2:])]
         if size:
             changes = [replace(c, value=abs(c.value), draws=np.abs(c.draws)) for c in changes]
         return decisive(weighted_sum([1, -1], changes))
 
-    return found
+    return quantity
 
 
 def ratio(first: Subject, second: Subject) -> Quantity:
     """Return the median of `first` over that of `second`."""
 
-    def found(results: Results) -> Contrast:
+    def quantity(results: Results) -> Contrast:
         one, two = quantiles(results, 0.5, first, second)
         if not (two.value > 0 and bool((two.draws > 0).all())):
             raise Undecidable("the median that is divided by is 0")
@@ -70,7 +70,7 @@ def ratio(first: Subject, second: Subject) -> Quantity:
         value = one.value / two.value
         return decisive(replace(one, value=value, draws=draws, unit="times", against_zero=False))
 
-    return found
+    return quantity
 
 
 def quantiles(results: Results, q: float, *subjects: Subject) -> list[Contrast]:
@@ -113,7 +113,7 @@ def mean_of_medians(results: Results, by_seed: Iterable[Measurement]) -> float:
 
 
 def _run(results: Results, subject: Subject) -> Subject:
-    run = tuple(each for each in subject if each in results.evidence)
+    run = tuple(measurement for measurement in subject if measurement in results.evidence)
     if not run:
         results.measured(subject[0])  # says what is missing
     return run
@@ -123,9 +123,9 @@ def _check_windows(results: Results, measurements: list[Measurement]) -> None:
     first = results.measured(measurements[0])
     if not len(first):
         raise NotRun(f"a window of {measurements[0].subject}")
-    for each in measurements:
-        if not results.measured(each).same_windows(first):
-            raise NotRun(f"{each.subject} on the windows of {measurements[0].subject}")
+    for measurement in measurements:
+        if not results.measured(measurement).same_windows(first):
+            raise NotRun(f"{measurement.subject} on the windows of {measurements[0].subject}")
 
 
 @lru_cache(maxsize=512)
@@ -138,9 +138,9 @@ def _mean(evidence: EvidenceTable, subject: Subject, q: float) -> Contrast:
 
 @lru_cache(maxsize=512)
 def _quantile(evidence: EvidenceTable, measurement: Measurement, q: float) -> Contrast:
-    found: Measured = evidence.values(measurement)
-    values: NDArray[np.float64] = found.values
-    return _resampled(found.scenes).value(values, q, QUANTITIES[measurement.quantity])
+    measured: Measured = evidence.values(measurement)
+    values: NDArray[np.float64] = measured.values
+    return _resampled(measured.scenes).value(values, q, QUANTITIES[measurement.quantity])
 
 
 @lru_cache(maxsize=8)

@@ -23,8 +23,8 @@ def sweep_plot(sweep: Sweep) -> str:
     """Return the lines of a sweep with their bands."""
     width, height = 560.0, 250.0
     top = _KEY_ROW + 34
-    told = "; ".join(f"{line.label}: {', '.join(map(_told, line.points))}" for line in sweep.series)
-    svg = Svg(width, top + height + 42, sweep.title, told)
+    lines = (f"{line.label}: {', '.join(map(_point, line.points))}" for line in sweep.series)
+    svg = Svg(width, top + height + 42, sweep.title, "; ".join(lines))
     _key(svg, sweep.series)
     across, upward = _axes([point for line in sweep.series for point in line.points])
     x, y = across.at(34, width - 10), upward.at(top + height, top)
@@ -38,11 +38,11 @@ def sweep_plot(sweep: Sweep) -> str:
     for i, line in enumerate(sweep.series):
         svg.polyline([(x(p.x), y(p.y)) for p in line.points], f"curve s{i % LOOKS}")
         for point in line.points:
-            _mark(svg, x(point.x), y(point.y), i % LOOKS, f"{line.label}, {_told(point)}")
+            _mark(svg, x(point.x), y(point.y), i % LOOKS, f"{line.label}, {_point(point)}")
     return svg.render()
 
 
-def _told(point: Point) -> str:
+def _point(point: Point) -> str:
     ends = ""
     if point.low is not None and point.high is not None:
         ends = f" [{wording.plain(point.low)}, {wording.plain(point.high)}]"
@@ -52,7 +52,7 @@ def _told(point: Point) -> str:
 def _axes(points: Sequence[Point]) -> tuple[Axis, Axis]:
     across = [point.x for point in points] or [0.0, 1.0]
     upward = [0.0, *(v for p in points for v in (p.y, p.low, p.high) if v is not None)]
-    (left, right), (low, high) = ((min(each), max(each)) for each in (across, upward))
+    (left, right), (low, high) = ((min(ends), max(ends)) for ends in (across, upward))
     pad = 0.03 * (right - left) or 0.5
     x = Axis(left - pad, right + pad, 0.0, 1.0)
     return x, Axis(low, high + (0.04 * (high - low) or 1.0), 0.0, 1.0)
@@ -88,22 +88,23 @@ def _key(svg: Svg, series: Sequence[Series]) -> None:
 
 
 def reproduction_page(
-    found: Reproduction, provenance: RunProvenance | None, central: tuple[str, str, Table] | None
+    record: Reproduction, provenance: RunProvenance | None, central: tuple[str, str, Table] | None
 ) -> str:
     """Return the whole page as HTML: styles and pictures inside.
 
     `central` is our answer to the paper's central question with its table; `None` where the run
     is not about it.
     """
-    notes = [note for part in (*found.tables, *found.figures) for note in dict.fromkeys(part.notes)]
+    exhibits = (*record.tables, *record.figures)
+    notes = [note for part in exhibits for note in dict.fromkeys(part.notes)]
     shared = [note for note in dict.fromkeys(notes) if notes.count(note) > 1]
     return render(
         "reproduction.html.j2",
         ("tokens.css", "svg.css", "page.css", "reproduction.css"),
         (),
         "faultpath_paper.report",
-        found=found,
-        ledger=found.ledger,
+        record=record,
+        ledger=record.ledger,
         central=central
         and {
             "answer": central[0],
@@ -112,9 +113,9 @@ def reproduction_page(
             "table": Markup(html(central[2])),
             "notes": (*central[2].legend(), *central[2].notes),
         },
-        tables=[(table, Markup(html(table, "beside", caption=False))) for table in found.tables],
+        tables=[(table, Markup(html(table, "beside", caption=False))) for table in record.tables],
         footnotes={note: number for number, note in enumerate(shared, 1)},
-        sweeps=[{"sweep": sweep, "picture": Markup(sweep_plot(sweep))} for sweep in found.figures],
+        sweeps=[{"sweep": sweep, "picture": Markup(sweep_plot(sweep))} for sweep in record.figures],
         provenance=provenance,
         w=wording,
         words=words,

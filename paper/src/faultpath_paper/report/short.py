@@ -1,4 +1,4 @@
-"""A ledger in short: verdicts by kind, sizes by subject, and what did not come out."""
+"""A ledger in short: verdicts by kind, sizes by subject, and claims not confirmed."""
 
 from collections.abc import Iterator
 
@@ -34,7 +34,7 @@ def _ids(claims: list[ClaimVerdict], answer: str) -> str:
 
 
 def by_subject(ledger: Ledger) -> Table:
-    """Return of each subject how the figures that the paper prints stand to ours."""
+    """Return how the figures that the paper prints compare with ours, subject by subject."""
     lines = [
         line(subject, *_sizes([claim for claim in ledger.claims if claim.id in claims]))
         for subject, claims in SUBJECTS.items()
@@ -51,7 +51,7 @@ def _sizes(claims: list[ClaimVerdict]) -> Iterator[Entry]:
 
 
 def apart(ledger: Ledger) -> Iterator[tuple[str, str]]:
-    """Yield of each claim that is not confirmed its id and verdict, and the part that decides."""
+    """Yield id and verdict of each claim that is not confirmed, with the part that decides."""
     for claim in ledger.claims:
         if claim.verdict != "confirmed":
             part = next(part for part in claim.parts if part.answer == claim.verdict)
@@ -59,7 +59,7 @@ def apart(ledger: Ledger) -> Iterator[tuple[str, str]]:
 
 
 def _decisive(part: Part) -> str:
-    said = typeset(part.words.removesuffix(", by the point estimate"))
+    statement = typeset(part.words.removesuffix(", by the point estimate"))
     paper = figure(part.model_copy(update={"estimate": part.paper})) if part.unit else ""
-    shown = f"{said}: {estimate(part) or 'no estimate'}"
+    shown = f"{statement}: {estimate(part) or 'no estimate'}"
     return "; ".join(filter(None, (shown, paper and f"the paper {paper}", part.reason)))

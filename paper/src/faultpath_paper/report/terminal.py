@@ -37,7 +37,7 @@ _FARTHEST = (
 
 
 def ledger_view(ledger: Ledger, profile: str) -> RenderableType:
-    """Return headline, the claims, each with its words below what came of it, and counts.
+    """Return the headline, the claims with their verdicts and sentences, and counts.
 
     A quick run has neither counts nor sizes.
     """
@@ -63,8 +63,8 @@ def _claims(ledger: Ledger) -> Iterable[RenderableType]:
     yield aligned(heads)
     for claim, row in zip(ledger.claims, rows, strict=True):
         yield aligned(row)
-        said = Text(words.typeset(claim.claim), "dim")
-        yield Padding(said, (0, 0, 0, widths[0] + 2))
+        sentence = Text(words.typeset(claim.claim), "dim")
+        yield Padding(sentence, (0, 0, 0, widths[0] + 2))
 
 
 def _shown(claim: ClaimVerdict) -> Iterable[Text]:

@@ -1,4 +1,4 @@
-"""How the figures of claims are written, on the page and in the terminal."""
+"""Wording of the figures of claims, on the page and in the terminal."""
 
 import re
 
@@ -6,7 +6,7 @@ from faultpath.decisions import wording
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Part, Size
 
 QUICK = "quick"
-"""The profile whose runs are too small to be held against the paper."""
+"""The profile whose runs are too small to be compared with the paper."""
 VERDICTS = (
     "The verdicts of the run that comes with faultpath: faultpath reproduce --judge, "
     "docs/reproduction.md."
@@ -62,7 +62,7 @@ def least_detectable(of: ClaimVerdict | Part) -> str:
 
 
 def evidence(part: Part) -> tuple[str, ...]:
-    """Return what stands behind a part, phrase by phrase."""
+    """Return the evidence for a part's answer, phrase by phrase."""
     p_value = "" if part.p_value is None else wording.p_value(part.p_value)
     p_value = p_value and f"p {p_value if p_value.startswith('<') else f'= {p_value}'}"
     detectable = least_detectable(part)
@@ -106,16 +106,16 @@ def sizes(ledger: Ledger) -> str:
     """Return in one sentence how many figures of the paper ours are compatible with."""
     parts = [part for claim in ledger.claims for part in claim.parts]
     printed = [part.size for part in parts if part.paper is not None]
-    compared = [each for each in printed if each in SIZES]
+    compared = [label for label in printed if label in SIZES]
     if not printed:
         return ""
     figures = wording.counted(len(printed), "figure")
     if not compared:
         return f"The paper prints {figures} for these claims; this run can be compared with none."
-    found = "; ".join(f"{compared.count(each)} {each}" for each in SIZES if each in compared)
+    counts = "; ".join(f"{compared.count(label)} {label}" for label in SIZES if label in compared)
     return (
         f"The paper prints {figures} for these claims, of which {len(compared)} can be compared: "
-        f"{found}."
+        f"{counts}."
     )
 
 
@@ -123,7 +123,7 @@ KINDS = {
     "finding": "findings",
     "platform": "properties that the simulator was matched to",
 }
-"""What claims of a kind are called: findings come out by themselves, matched properties do not."""
+"""Names of the kinds of claims: findings are tested, properties were matched beforehand."""
 
 
 def headline(ledger: Ledger, profile: str) -> str:
