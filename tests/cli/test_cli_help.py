@@ -35,7 +35,7 @@ WRITTEN = """
 from typing import Annotated, Literal
 def create(
     part: Annotated[str, "A part, file.py:factory: or [bold]x[/bold], at [0, 1]."] = "a:star:b",
-):
+) -> "System":
     raise SystemExit
 """
 

@@ -11,11 +11,12 @@ Options are text on their way to a factory, because worker processes and run fol
 import inspect
 import types
 import typing
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, Literal, TypeVar, get_args, get_origin
+from functools import partial
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin
 
 from pydantic import BaseModel, PydanticSchemaGenerationError, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
@@ -104,6 +105,22 @@ def call(factory: Callable[..., _Built], given: Mapping[str, str], system: str) 
         raise UserError(f"the options of {system} do not fit: {misfit_of(error)}.") from None
 
 
+def builds(factory: Factory, kinds: Sequence[type]) -> bool:
+    """Return whether a factory is declared to return one of some classes, or is one of them.
+
+    A function is by its annotation, `type[Kind]` too for what returns the class itself. `Kind` need
+    not be imported: those who annotate for type checkers only name it all the same.
+    """
+    made: Any = inspect.unwrap(factory)
+    while isinstance(made, partial):
+        made = inspect.unwrap(made.func)
+    kind = made
+    if not isinstance(made, type):
+        kind = _hints(made, {each.__name__: each for each in kinds}).get("return")
+    several = get_args(kind) if get_origin(kind) in (type, Union, types.UnionType) else (kind,)
+    return all(isinstance(each, type) and issubclass(each, tuple(kinds)) for each in several)
+
+
 def as_text(options: Mapping[str, object]) -> dict[str, str]:
     """Return options as the text that stands for them; `UserError` for what has none."""
     for name, value in options.items():
@@ -120,13 +137,7 @@ def _declared(factory: Factory) -> tuple[dict[str, Option], type[BaseModel] | No
         parameters: Mapping[str, inspect.Parameter] = inspect.signature(factory).parameters
     except (TypeError, ValueError):  # of some built-in functions nothing is known
         parameters = dict[str, inspect.Parameter]()
-    made: Any = factory.__init__ if isinstance(factory, type) else factory
-    hints = dict[str, Any]()
-    for name, written in getattr(made, "__annotations__", {}).items():
-        holder = types.SimpleNamespace(__annotations__={name: written})
-        with suppress(NameError, TypeError, AttributeError, SyntaxError):  # for type checkers only
-            names = getattr(made, "__globals__", {})
-            hints |= typing.get_type_hints(holder, names, include_extras=True)
+    hints = _hints(factory.__init__ if isinstance(factory, type) else factory, {})
     only = hints.get(next(iter(parameters))) if len(parameters) == 1 else None
     model = only if isinstance(only, type) and issubclass(only, BaseModel) else None
     fields = dict[str, FieldInfo]() if model is None else model.model_fields
@@ -153,6 +164,16 @@ def _declared(factory: Factory) -> tuple[dict[str, Option], type[BaseModel] | No
             bool(offered and offered.factories),
         )
     return options, model, any(each.kind is each.VAR_KEYWORD for each in parameters.values())
+
+
+def _hints(made: Any, known: Mapping[str, type]) -> dict[str, Any]:
+    """Return the annotations that can be read; `known` is what names mean that nothing defines."""
+    names, hints = {**known, **getattr(made, "__globals__", {})}, dict[str, Any]()
+    for name, written in getattr(made, "__annotations__", {}).items():
+        holder = types.SimpleNamespace(__annotations__={name: written})
+        with suppress(NameError, TypeError, AttributeError, SyntaxError):  # for type checkers only
+            hints |= typing.get_type_hints(holder, names, include_extras=True)
+    return hints
 
 
 def _values(kind: Any) -> dict[str, Any]:
