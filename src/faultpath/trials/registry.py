@@ -28,12 +28,15 @@ from faultpath.core.text import extra
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.imports import Graph, Root, file_of, kind_of, locate
+from faultpath.trials.opened import reads
 from faultpath.trials.options import Factory, Option, builds, call, options_of
 from faultpath.trials.system import System
 
 GROUP = "faultpath.systems"
 """Entry points of installed distributions: the name of a system to `module:factory`."""
 
+_opened: dict[tuple[str, int], set[str]] = {}
+"""By file and its time: what lies beside it is imported once, and what is opened then counts."""
 _EXTRAS = frozenset({"torch", "gymnasium"})
 
 
@@ -69,6 +72,16 @@ def load_system(spec: SystemSpec) -> System:
             raise UserError(f"{said} returned a {type(system).__name__}: it must return a System")
         check_system(system, spec.name)
         return system
+
+
+def opened_by(name: str) -> frozenset[str]:
+    """Return the files that this process opened to read while it loaded the system `name`."""
+    return frozenset(_opened.get(_version(name), ()))
+
+
+def _version(name: str) -> tuple[str, int]:
+    file = os.path.realpath(_target(name)[0])
+    return file, os.stat(file).st_mtime_ns if os.path.isfile(file) else 0
 
 
 def system_options(name: str) -> tuple[Option, ...]:
@@ -240,8 +253,10 @@ def _loading(name: str) -> Generator[None]:
     """
     path, modules = tuple(sys.path), dict(sys.modules)
     try:
-        with redirect_stdout(sys.stderr):  # what a system prints is no output of a command
+        # What a system prints is no output of a command.
+        with redirect_stdout(sys.stderr), reads() as opened:
             yield
+        _opened.setdefault(_version(name), set()).update(opened)
     except BaseException as error:
         sys.path[:] = path
         for module_name, module in tuple(sys.modules.items()):
