@@ -15,8 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import Enum
-from functools import partial
-from typing import Any, Literal, TypeVar, Union, get_args, get_origin
+from typing import Any, Literal, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, PydanticSchemaGenerationError, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
@@ -106,18 +105,14 @@ def call(factory: Callable[..., _Built], given: Mapping[str, str], system: str) 
 
 
 def builds(factory: Factory, kinds: Sequence[type]) -> bool:
-    """Return whether a factory is declared to return one of some classes, or is one of them.
+    """Return whether a factory is one of some classes, or annotated to return one or `type` of it.
 
-    A function is by its annotation, `type[Kind]` too for what returns the class itself. `Kind` need
-    not be imported: those who annotate for type checkers only name it all the same.
+    Names of the classes that are imported for type checkers only are known.
     """
     made: Any = inspect.unwrap(factory)
-    while isinstance(made, partial):
-        made = inspect.unwrap(made.func)
-    kind = made
-    if not isinstance(made, type):
-        kind = _hints(made, {each.__name__: each for each in kinds}).get("return")
-    several = get_args(kind) if get_origin(kind) in (type, Union, types.UnionType) else (kind,)
+    known = {kind.__name__: kind for kind in kinds}
+    kind = made if isinstance(made, type) else _hints(made, known).get("return")
+    several = get_args(kind) or (kind,)
     return all(isinstance(each, type) and issubclass(each, tuple(kinds)) for each in several)
 
 

@@ -1,8 +1,4 @@
-"""Code that a received file names: a record or a study may be anybody's, and importing runs it.
-
-It is imported once a person has said so; what was installed needs no word. What is about to be
-imported is said first, and whether it is the code that the file speaks of.
-"""
+"""Code that a received file names, which may be anybody's: imported once a person trusts it."""
 
 import re
 import sys
@@ -21,14 +17,13 @@ PART = re.compile(r"([^:]+:[A-Za-z_]\w*)(?:/|$)")
 
 @dataclass(frozen=True)
 class Received:
-    """A file that names code."""
+    """A file that names code: what it is called, and whether that code may be imported."""
 
     name: str
-    """In words: `record.json`."""
     trusted: bool
     say: Callable[[str], None]
     sources: Mapping[str, str] = field(default_factory=dict[str, str])
-    """SHA-256 of each source file that it speaks of, by module; empty where it keeps none."""
+    """SHA-256 of each source file that ran, by module; empty of a file that keeps none."""
 
     def check(self, spec: SystemSpec, variants: Sequence[str]) -> None:
         """Say what building `spec` with its `variants` would import, and what of it has changed.

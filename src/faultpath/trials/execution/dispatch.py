@@ -5,7 +5,7 @@ import os
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
@@ -80,28 +80,19 @@ class Built:
         return done
 
     def check_files(self, opened: Iterable[str] = ()) -> None:
-        """Raise `UndeclaredFile` where one of these files, or one that was read when the system was
-        built, is none of those that tell its trials from others.
-
-        Of an object no trial is taken for another call's, whatever it reads.
-        """
-        spec = self.job.system
-        if spec.is_object:
+        """Raise `UndeclaredFile` for a file that was read, now or when the system was built, and
+        is neither source nor data. No trial of an object is ever taken for another's."""
+        name, code = self.job.system.name, self.code
+        if self.job.system.is_object or not (found := {*opened, *opened_by(name)}):
             return
-        if unknown := {*opened, *opened_by(spec.name)} - self._known:
-            base = self.code.main.parent if self.code.main else Path()
-            near = (Path(p) for p in sorted(unknown))
-            names = [str(p.relative_to(base) if p.is_relative_to(base) else p) for p in near]
+        known = map(os.path.realpath, (*code.sources.values(), *code.data.values()))
+        if unknown := sorted(found.difference(known)):
+            names = [os.path.relpath(path, (code.main or Path()).parent) for path in unknown]
             raise UndeclaredFile(
-                f"system {spec.name!r} reads {named(names)}, which it does not declare: an edit "
-                "there would go unnoticed, and old results would pass for new ones; set "
+                f"system {name!r} reads {named(names)}, which it does not declare: an edit there "
+                "would go unnoticed, and old results would pass for new ones; set "
                 f"`data_files = ({names[0]!r},)` in its class"
             )
-
-    @cached_property
-    def _known(self) -> frozenset[str]:
-        files = (*self.code.sources.values(), *self.code.data.values())
-        return frozenset(map(os.path.realpath, files))
 
 
 @dataclass
