@@ -141,7 +141,7 @@ class Craft:
 
 
 # --- system ---
-def create():
+def create() -> ComposedSystem:
     plant = FunctionPlant(
         lambda rng: Craft(rng).move(np.zeros(3), rng),
         lambda state, torque, rng: state["craft"].move(torque, rng),

@@ -101,7 +101,7 @@ def advance(state, command, rng):
     return state | now | {"off": abs(float(simulator.x0["phi", 1]) - now["setpoint"][0])}
 
 
-def create():
+def create() -> ComposedSystem:
     off_rad = Measure(Metric(unit="rad", better="less"), lambda seen: seen["off"][JUDGED:].max())
     plant = FunctionPlant(
         start,

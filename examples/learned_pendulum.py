@@ -189,7 +189,9 @@ def modules(name, folder):
     return made
 
 
-def create(weights: Annotated[str, "Folder of fitted weights; default: those shipped."] = ""):
+def create(
+    weights: Annotated[str, "Folder of fitted weights; default: those shipped."] = "",
+) -> LearnedPendulum:
     plant = GymnasiumPlant(
         Pushed,
         observes={"angle": slice(0, 2)},

@@ -100,7 +100,7 @@ def error_percent(episode):
     return 100 * abs(episode["torque"] - episode["torque_ref"])[-400:].max() / NOMINAL.tau
 
 
-def create():
+def create() -> ComposedSystem:
     plant = FunctionPlant(
         lambda rng: seen(*simulation(rng, Given())),
         step,

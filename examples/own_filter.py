@@ -55,5 +55,5 @@ def kalman(fix):
     return found
 
 
-def create(seed):
+def create(seed) -> Filter:
     return Filter()

@@ -88,7 +88,7 @@ def offset_m(episode):
 
 
 # --- system ---
-def create():
+def create() -> ComposedSystem:
     plant = GymnasiumPlant(
         "InvertedPendulum-v5",
         observes={"encoders": slice(0, 2)},

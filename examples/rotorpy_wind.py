@@ -98,7 +98,7 @@ def offset_m(episode):
 
 
 # --- system ---
-def create():
+def create() -> ComposedSystem:
     known = {"mass": "kg", "k_eta": "N s^2", "drag": "N s^2/m^2", "drag_z": "N s^2/m^2"}
     observes = {n: n for n in (*known, "imu")} | {"rates": ("state", "w"), "place": ("state", "x")}
     observes["mocap"] = lambda scene: np.hstack([scene["mocap"][each] for each in "xvqw"])

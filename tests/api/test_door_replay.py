@@ -39,7 +39,7 @@ def folder(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def found(folder):
-    return replay(read_run(folder)[0], (SCENE,))
+    return replay(read_run(folder)[0], (SCENE,), trust=True)
 
 
 def _signals(found, variant: str, path: str) -> dict[str, Signal]:
@@ -84,7 +84,7 @@ def test_signals_stay_with_the_run_and_a_changed_file_is_refused(folder, found, 
 def test_exported_signals_are_read_back_equal(folder, found, tmp_path, capsys, monkeypatch) -> None:
     reader = pytest.importorskip("mcap.reader", reason="the extra mcap is not installed")
     to = tmp_path / "run.mcap"
-    assert command(folder, scene=[SCENE], path=["shared"], export=to) == 0
+    assert command(folder, trust=True, scene=[SCENE], path=["shared"], export=to) == 0
     assert f"Written: {to}" in capsys.readouterr().out
     back: dict[tuple[str, str], list[np.ndarray]] = {}
     with to.open("rb") as file:
@@ -97,10 +97,10 @@ def test_exported_signals_are_read_back_equal(folder, found, tmp_path, capsys, m
     for (variant, name), rows in back.items():
         assert np.array_equal(np.stack(rows), kept[variant][name].values, equal_nan=True), name
     with pytest.raises(UserError, match="is there already"):
-        command(folder, scene=[SCENE], export=to)
+        command(folder, trust=True, scene=[SCENE], export=to)
     monkeypatch.setitem(sys.modules, "mcap.writer", None)
     with pytest.raises(UserError, match=r"pip install '\.\[mcap\]'"):
-        command(folder, scene=[SCENE], export=tmp_path / "other.mcap")
+        command(folder, trust=True, scene=[SCENE], export=tmp_path / "other.mcap")
 
 
 def test_topics_and_components_have_names_that_ros_takes(tmp_path) -> None:
@@ -131,7 +131,7 @@ def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
         for row in held.outcomes.rows
     )
     changed = replace(held, outcomes=replace(held.outcomes, rows=rows))
-    found = replay(changed, (SCENE,), ("shared", "observer"))
+    found = replay(changed, (SCENE,), ("shared", "observer"), trust=True)
     assert {each.address.path: bool(each.differs) for each in found} == {
         "shared": True,
         "observer": False,
@@ -156,9 +156,9 @@ def test_an_object_cannot_be_flown_again(folder) -> None:
     question = held.record.question.model_copy(update={"system": "Toy object"})
     lost = replace(held, record=held.record.model_copy(update={"question": question}))
     with pytest.raises(UserError, match="is of a Toy object, which only its own process had"):
-        replay(lost, (SCENE,))
+        replay(lost, (SCENE,), trust=True)
 
 
 def test_the_verb_says_whether_a_run_repeats(folder, capsys) -> None:
-    assert command(folder, scene=[SCENE], path=["observer"]) == 0
+    assert command(folder, trust=True, scene=[SCENE], path=["observer"]) == 0
     assert "2 trials in 1 scene came out as in the run, to the bit." in capsys.readouterr().out

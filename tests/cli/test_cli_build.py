@@ -114,6 +114,8 @@ def test_a_question_in_a_file_needs_no_plan(tmp_path: Path) -> None:
         "audits:\n- {name: low-gain, fault: 'gain:scale=0.6'}\n"
     )
     out = tmp_path / "runs"
-    done = faultpath("audit", "--study", file, "--out", out, "--workers", 0, "--fail-if", "void")
+    done = faultpath(
+        "audit", "--study", file, "--trust", "--out", out, "--workers", 0, "--fail-if", "void"
+    )
     assert done.status == 0, done.err
     assert len(open_run(out / "low-gain").record.effects) == 4

@@ -1,6 +1,8 @@
 """What `faultpath --help` shows: verbs in groups, one example of each that can be typed."""
 
 import shlex
+import subprocess
+import sys
 
 import pytest
 import typer
@@ -35,7 +37,7 @@ WRITTEN = """
 from typing import Annotated, Literal
 def create(
     part: Annotated[str, "A part, file.py:factory: or [bold]x[/bold], at [0, 1]."] = "a:star:b",
-):
+) -> "System":
     raise SystemExit
 """
 
@@ -61,3 +63,11 @@ def test_help_shows_every_text_as_it_is_written(verb: str, tmp_path, monkeypatch
 
 def test_the_version() -> None:
     assert faultpath("--version").out == f"faultpath {package.__version__}\n"
+
+
+def test_python_m_is_the_command_and_imports_nothing_from_the_working_directory(tmp_path) -> None:
+    (tmp_path / "typer.py").write_text("raise SystemExit('a stranger')")
+    line = [sys.executable, "-m", "faultpath", "report", "nowhere"]
+    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == faultpath("report", "nowhere").err

@@ -50,13 +50,18 @@ def _resumed(run: Path, gate: Path) -> bytes:
     return (run / "outcomes.parquet").read_bytes()
 
 
-@pytest.mark.parametrize("workers", [0, 1])
-def test_ctrl_c_says_what_is_kept_and_how_to_go_on(workers, gate, tmp_path, undisturbed):
+@pytest.mark.parametrize(
+    ("workers", "sent", "status"),
+    [(0, signal.SIGINT, INTERRUPTED), (1, signal.SIGINT, INTERRUPTED), (1, signal.SIGTERM, 143)],
+)
+def test_a_stop_says_what_is_kept_and_how_to_go_on(
+    workers, sent, status, gate, tmp_path, undisturbed
+):
     run, words = tmp_path / "run", tmp_path / "words"
     process = start(words, **_options(gate, run), workers=workers)
     until(lambda: len(shards(run)) >= 2, "two blocks")
-    process.send_signal(signal.SIGINT)
-    assert process.wait(timeout=60) == INTERRUPTED
+    process.send_signal(sent)
+    assert process.wait(timeout=60) == status
     kept = len(shards(run))
     assert kept < 36
     said = words.read_text()

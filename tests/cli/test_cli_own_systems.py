@@ -22,16 +22,23 @@ INTERFACE = Toy.interface
 
 BROKEN = {
     "syntax": ("def create(:", "SyntaxError"),
-    "indentation": ("def create():\nreturn Toy()  # here", "IndentationError"),
+    "indentation": ("def create() -> System:\nreturn Toy()  # here", "IndentationError"),
     "import": ("import numpi", "numpi"),
     "import of a name": ("from toy import Tyo  # here", "ImportError"),
     "while loading": ("1 / 0  # here", "ZeroDivisionError: division by zero"),
     "ends the program while loading": ("sys.exit(3)  # here", "SystemExit: 3"),
-    "ends the program when built": ("def create():\n    sys.exit(0)  # here", "SystemExit"),
-    "end of input": ("def create():\n    raise EOFError('no more')  # here", "EOFError: no more"),
-    "when built": ("def create():\n    return Toy(3)  # here", "TypeError"),
+    "ends the program when built": (
+        "def create() -> System:\n    sys.exit(0)  # here",
+        "SystemExit",
+    ),
+    "end of input": (
+        "def create() -> System:\n    raise EOFError('no more')  # here",
+        "EOFError: no more",
+    ),
+    "when built": ("def create() -> System:\n    return Toy(3)  # here", "TypeError"),
     "missing methods": (
-        "class Mine(System):\n    name = 'mine'\ndef create():\n    return Mine()  # here",
+        "class Mine(System):\n    name = 'mine'\n"
+        "def create() -> System:\n    return Mine()  # here",
         "abstract method",
     ),
     "variant of text": ("Variant('a', 'words', 'abc')  # here", "'abc'"),
@@ -119,7 +126,7 @@ def test_a_file_that_is_no_python(source, tmp_path):
 
 @pytest.mark.parametrize(("code", "says"), DECLARED.values(), ids=DECLARED)
 def test_a_system_that_declares_nonsense(code, says, tmp_path):
-    code = f"class Mine(Toy):\n    {code}\ndef create():\n    return Mine()"
+    code = f"class Mine(Toy):\n    {code}\ndef create() -> System:\n    return Mine()"
     system, place = _system(tmp_path, code)
     sentence = audit(system=system, out=tmp_path / "run").refused()
     _check(sentence, place, says)
@@ -136,7 +143,7 @@ def test_a_system_that_flies_wrongly(code, says, workers, tmp_path):
             def run(self, variant, scenes, taps, seed):
                 observer = taps.for_module("observer")
                 {code}
-        def create():
+        def create() -> System:
             return Mine()
         """
     system, place = _system(tmp_path, dedent(run))
@@ -165,7 +172,7 @@ def test_a_module_that_does_what_it_does_not_declare(code, says, tmp_path):
         class Looped(Toy):
             def modules(self, variant, seed):
                 return Mine(variant == "calibrated"), Controller()
-        def create():
+        def create() -> System:
             return Looped()
         """
     system, place = _system(tmp_path, dedent(module))
@@ -176,7 +183,7 @@ def test_an_error_of_ours_below_a_system_keeps_its_traceback_too(tmp_path):
     """The user's code called, but no argument of his can be the cause."""
     code = """
         import faultpath.core.streams
-        def create():
+        def create() -> System:
             return faultpath.core.streams.generator("p", Failing(), 0)
         class Failing:
             pass

@@ -39,13 +39,15 @@ def test_a_plan_is_told_written_flown_and_resumed() -> None:
         "gain_estimate",
         "observed_slope",
     ]
-    flown = faultpath("audit", "--study", "study.yaml", "--workers", 0, "--out", "runs")
+    flown = faultpath("audit", "--study", "study.yaml", "--trust", "--workers", 0, "--out", "runs")
     assert flown.status == 0
     assert "Fault gain:scale=1.25" in flown.out
     assert "Fault slope:offset=0.2" in flown.out
     before = {path: path.stat().st_mtime_ns for path in Path("runs").rglob("shards/*")}
     assert len(shards(Path("runs/gain_estimate"))) > 0
-    again = faultpath("audit", "--study=study.yaml", "--workers", 0, "--out", "runs", "--json")
+    again = faultpath(
+        "audit", "--study=study.yaml", "--trust", "--workers", 0, "--out", "runs", "--json"
+    )
     assert again.status == 0
     assert "Kept" in again.err
     for each, name in zip(json.loads(again.out), ("gain_estimate", "observed_slope"), strict=True):

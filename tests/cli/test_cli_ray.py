@@ -1,6 +1,7 @@
 """What `--executor ray` says where there is no cluster to fly on."""
 
 import sys
+from threading import Thread
 from unittest.mock import patch
 
 import pytest
@@ -55,3 +56,15 @@ def test_without_a_cluster_one_is_started_here_with_as_many_cpus_as_workers(tmp_
         ended = audit(executor="ray", workers=3, out=tmp_path / "run")
     assert asked == [("auto", None), ("local", 3)]
     assert "Ray does not start on this machine: no room" in ended.refused()
+
+
+def test_what_rays_threads_print_is_no_output_of_ours(capsys):
+    pytest.importorskip("ray")
+    from faultpath.trials.work.ray_cluster import _Told
+
+    told = _Told(sys.stdout)
+    print("ours", file=told)
+    thread = Thread(target=lambda: print("theirs", file=told), name="ray_listen_error_messages")
+    thread.start()
+    thread.join()
+    assert capsys.readouterr() == ("ours\n", "theirs\n")

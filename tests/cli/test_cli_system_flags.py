@@ -17,7 +17,7 @@ def create(
     gear: Annotated[Literal["low", "high"], "Gear of the cart."] = "low",
     steps: int = 3,
     scenes: str = "",
-):
+) -> "System":
     assert isinstance(steps, int)
     return toy.create()
 """

@@ -48,23 +48,23 @@ class Halved(MPPI):
         return super().update(search, scored)
 
 
-def blind(seed):
+def blind(seed) -> KinematicIntegrator:
     return K(drag=False, wind=False)
 
 
-def predictor(seed):
+def predictor(seed) -> KinematicIntegrator:
     return Heavy(seed)
 
 
-def exact(seed):
+def exact(seed) -> KinematicIntegrator:
     return KinematicIntegrator(drag=True, drag_kgps=PLATFORM.drag_kgps)
 
 
-def wind(seed):
+def wind(seed) -> Constant:
     return Constant()
 
 
-def planner(seed):
+def planner(seed) -> Halved:
     return Halved(
         AutoregressiveSampler(OPTIONS.sampling),
         NavigationCost(CostWeights(running=0.0)),

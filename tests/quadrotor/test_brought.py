@@ -95,47 +95,57 @@ def test_an_arm_gets_a_part_of_its_own_with_the_seed_that_it_names():
 BROKEN = {
     "no file": ("", "nowhere.py:create", "there is no file"),
     "no factory": ("", "create", "has no function 'create'"),
-    "no part": ("def create(seed):\n    return 3", "create", "returned a int for seed None"),
-    "raises": ("def create(seed):\n    1 / 0  # here", "create", "line 10: ZeroDivisionError"),
+    "no part": (
+        "def create(seed) -> K:\n    return 3",
+        "create",
+        "returned a int for seed None",
+    ),
+    "raises": (
+        "def create(seed) -> K:\n    1 / 0  # here",
+        "create",
+        "line 10: ZeroDivisionError",
+    ),
     "syntax": ("def create(:", "create", "line 9: SyntaxError"),
     "takes nothing": (
-        "def create():\n    return K()",
+        "def create() -> K:\n    return K()",
         "create",
         "cannot be called with a seed alone",
     ),
     "place": (
         "class P(K):\n    reads = 0\n    def __init__(self):\n        super().__init__()\n"
-        "        self.reads |= {'sonar'}\ndef create(seed):\n    return P()",
+        "        self.reads |= {'sonar'}\ndef create(seed) -> K:\n    return P()",
         "create",
         "'sonar', which predictors do not have: choose from initial_state (position, velocity,",
     ),
     "without a start": (
-        "def create(seed):\n    k = K()\n    k.reads = frozenset({'trim'})\n    return k",
+        "def create(seed) -> K:\n    k = K()\n    k.reads = frozenset({'trim'})\n    return k",
         "create",
         "does not read at 'initial_state'",
     ),
     "history alone": (
-        "def create(seed):\n    k = K()\n    k.reads |= {'latent'}\n    return k",
+        "def create(seed) -> K:\n    k = K()\n    k.reads |= {'latent'}\n    return k",
         "create",
         "'history' and 'latent'",
     ),
     "channel": (
-        "def create(seed):\n    c = Constant()\n    c.reads = {('wind', 'head')}\n    return c",
+        "def create(seed) -> K:\n"
+        "    c = Constant()\n    c.reads = {('wind', 'head')}\n    return c",
         "create",
         "('wind', 'head'), a channel and place that reconstructions do not have",
     ),
     "half a place": (
-        "def create(seed):\n    c = Constant()\n    c.reads = {('mass', 'head')}\n    return c",
+        "def create(seed) -> K:\n"
+        "    c = Constant()\n    c.reads = {('mass', 'head')}\n    return c",
         "create",
         "add ('thrust_scale', 'head')",
     ),
     "weights from nowhere": (
-        "def create(seed):\n    k = K()\n    k.net = torch.nn.Linear(1, 1)\n    return k",
+        "def create(seed) -> K:\n    k = K()\n    k.net = torch.nn.Linear(1, 1)\n    return k",
         "create",
         "set its data_files",
     ),
     "missing data": (
-        "def create(seed):\n    k = K()\n    k.data_files = ['gone.pt']\n    return k",
+        "def create(seed) -> K:\n    k = K()\n    k.data_files = ['gone.pt']\n    return k",
         "create",
         "names among its data files",
     ),
@@ -143,41 +153,41 @@ BROKEN = {
 FLOWN = {
     "wide state": (
         "class P(K):\n    def step(self, state, command, memory):\n        return state, memory\n"
-        "def create(seed):\n    return P()",
+        "def create(seed) -> K:\n    return P()",
         "position of the state that step() returns is a tensor [3, 2, 1] of float32: it must be a "
         "tensor [3, 2, 8]",
     ),
     "no memory": (
         "class P(K):\n    def step(self, *given):\n        return super().step(*given)[0]\n"
-        "def create(seed):\n    return P()",
+        "def create(seed) -> K:\n    return P()",
         "returned a State: it returns a State and the memory",
     ),
     "fails in a step": (
         "class P(K):\n    def step(self, state, command, memory):\n"
-        "        return {}['x'], memory  # here\ndef create(seed):\n    return P()",
+        "        return {}['x'], memory  # here\ndef create(seed) -> K:\n    return P()",
         "line 11: KeyError",
     ),
     "not a number": (
         "class P(K):\n    def step(self, *given):\n        s, m = super().step(*given)\n"
-        "        return replace(s, rate=s.rate / 0), m\ndef create(seed):\n    return P()",
+        "        return replace(s, rate=s.rate / 0), m\ndef create(seed) -> K:\n    return P()",
         "rate of the state that step() returns is NaN or infinite",
     ),
     "flat wind": (
         "class C(Constant):\n    def wind(self, memory):\n        return memory\n"
-        "def create(seed):\n    return C()",
+        "def create(seed) -> K:\n    return C()",
         "wind() is a tensor [32] of float64: it must be a tensor [3, 32]",
     ),
     "other kind": (
-        "def create(seed):\n    return K(drag=seed is None, wind=seed is None)",
+        "def create(seed) -> K:\n    return K(drag=seed is None, wind=seed is None)",
         "reads elsewhere than the one for None",
     ),
     "no weights": (
-        "def create(seed):\n    if seed is not None:\n        open('gone.pt')  # here\n"
+        "def create(seed) -> K:\n    if seed is not None:\n        open('gone.pt')  # here\n"
         "    return K()",
         "line 11: FileNotFoundError",
     ),
     "horizon": (
-        "def create(seed):\n    p = planner(seed)\n"
+        "def create(seed) -> K:\n    p = planner(seed)\n"
         "    p.sampler = AutoregressiveSampler(SamplerSettings(candidates=1024))\n    return p",
         "the sampler's candidates is 1024, and the options ask for 512",
     ),
@@ -228,7 +238,8 @@ def test_an_unknown_predictor_is_told_how_to_bring_one():
 def test_code_and_data_of_a_part_are_part_of_what_flies(tmp_path):
     path = _file(
         tmp_path,
-        "import helper_of_a_part\ndef create(seed):\n    k = K()\n    k.data_files = ['w.bin']\n"
+        "import helper_of_a_part\ndef create(seed) -> K:\n"
+        "    k = K()\n    k.data_files = ['w.bin']\n"
         "    return k",
     )
     helper, data = tmp_path / "helper_of_a_part.py", tmp_path / "w.bin"

@@ -104,7 +104,7 @@ def test_an_estimator_that_writes_elsewhere_is_refused(tmp_path):
         "from faultpath_quadrotor.estimators import Estimator\n"
         "class Odd(Estimator):\n    writes = ('mission_goal',)\n"
         "    def step(self, inputs, memory):\n        return {}, memory\n"
-        "def create(seed):\n    return Odd()\n"
+        "def create(seed) -> 'Predictor':\n    return Odd()\n"
     )
     with pytest.raises(UserError, match="'mission_goal', which is no source of an estimator"):
         quadrotor(estimator=f"{path}:create")

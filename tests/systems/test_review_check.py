@@ -1,6 +1,7 @@
 """A check passes what is sound, and names what is broken and nothing else."""
 
 import json
+import os
 import re
 from pathlib import Path
 
@@ -165,5 +166,19 @@ def test_the_command_says_it_in_lines_and_as_json(capsys, monkeypatch):
     code, said = run(BROKEN, "--broken", "deaf", "--json", "--scenes", "2")
     assert code == 1
     counts = [len(each["failures"]) for each in json.loads(said)["checks"]]
-    assert counts == [0, 0, 0, 0, 1, 0, 0]
+    assert counts == [0, 0, 0, 0, 1, 0, 0, 0]
     assert run(BROKEN, "--variants", "bear")[0] == 2
+
+
+def test_a_file_that_is_read_undeclared_fails_a_check_of_its_own(tmp_path) -> None:
+    (tmp_path / "gain.txt").write_text("1")
+    (tmp_path / "mine.py").write_text(
+        f"import sys\nsys.path.append({str(ROOT / 'examples')!r})\nfrom pathlib import Path\n"
+        "from toy import Toy\nclass Mine(Toy):\n    def run(self, *asked):\n"
+        "        Path(__file__).with_name('gain.txt').read_text()\n"
+        "        return super().run(*asked)\ndef create() -> Mine:\n    return Mine()\n"
+    )
+    os.utime(tmp_path / "gain.txt", (0, 0))
+    ((name, (said,)),) = failed(check(f"{tmp_path}/mine.py:create", library="carts")).items()
+    assert name == "data files"
+    assert "reads gain.txt, which it does not declare" in said

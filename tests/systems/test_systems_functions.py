@@ -32,7 +32,7 @@ def start(rng):
 def step(state, push, rng):
     return state | {"place": state["place"] + state["gain"] * push + rng.normal(scale=0.01)}
 
-def create():
+def create() -> ComposedSystem:
     plant = FunctionPlant(start, step, observes={"place": "place", "gain": "gain"}, action="push",
         steps=12, dt_s=0.1, succeeded=lambda episode: abs(episode["place"][-1]) < 0.05)
     variants = {"known": Parts("", [Brake(True)]), "typical": Parts("", [Brake(False)])}

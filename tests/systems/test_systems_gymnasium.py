@@ -12,6 +12,7 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Module, Port
 from faultpath.systems import ComposedSystem, Parts
 from faultpath.systems.checks.blocks import Block, run_block
+from faultpath.systems.episodes import EpisodePlant
 from faultpath.trials import Arm, SystemSpec
 from faultpath.trials.code import system_code
 from faultpath.trials.registry import load_parts
@@ -247,7 +248,7 @@ class Own(gymnasium.Wrapper, gymnasium.utils.RecordConstructorArgs):
         gymnasium.utils.RecordConstructorArgs.__init__(self, law=law)
         super().__init__(env)
 
-def made():
+def made() -> GymnasiumPlant:
     return GymnasiumPlant(
         lambda: Own(TransformReward(gymnasium.make("Pendulum-v1"), abs), lambda reward: reward),
         observes={"angle": 0}, action="torque", succeeded=bool, dt_s=0.05,
@@ -261,7 +262,7 @@ def test_scenes_are_the_same_wherever_the_file_of_a_system_lies(tmp_path):
     for folder in ("here", "there"):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "wrapped.py").write_text(WRAPPED)
-        made += load_parts([f"{tmp_path / folder / 'wrapped.py'}:made"]).values()
+        made += load_parts([f"{tmp_path / folder / 'wrapped.py'}:made"], (EpisodePlant,)).values()
     here, there = (make().identity for make in made)
     assert "faultpath_system_:Own" in here
     assert "function" in here

@@ -58,10 +58,10 @@ def test_an_audit_of_an_environment_takes_forty_lines():
 
 def test_what_cannot_be_written_is_said(tmp_path):
     pytest.importorskip("torch")  # one of the names that are taken
-    for name in ("my rover", "Rover", "test_rover", "1st", ""):
+    for name in ("my rover", "Rover", "test_rover", "rover_test", "__init__", "_a", "1st", ""):
         with pytest.raises(UserError, match="cannot name a system"):
             write_system(name, "numpy", tmp_path)
-    for name in ("numpy", "torch", "gymnasium", "json", "class"):
+    for name in ("numpy", "torch", "gymnasium", "json", "class", "conftest", "usercustomize"):
         with pytest.raises(UserError, match=rf"^'{name}' is an?\b.*: choose .* my_{name}\.$"):
             write_system(name, "numpy", tmp_path)
     with pytest.raises(UserError, match="no template 'jax'"):
@@ -71,3 +71,15 @@ def test_what_cannot_be_written_is_said(tmp_path):
     with pytest.raises(UserError, match=r"rover\.py is there already"):
         write_system("rover", "torch", tmp_path)
     assert (tmp_path / "rover.py").read_text() == "mine"
+
+
+def test_a_full_disk_leaves_nothing_behind(tmp_path):
+    code = (
+        "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))\n"
+        "from faultpath.cli.main import main; main()"
+    )
+    line = [sys.executable, "-c", code, "init", "rover"]
+    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "rover.py" in done.stderr
+    assert not list(tmp_path.iterdir())

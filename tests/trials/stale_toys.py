@@ -26,7 +26,7 @@ class Mine(ToySystem):
         return [replace(o, metrics={{"distance": o.metrics["distance"] + push}}) for o in outcomes]
 
 
-def create(**options):
+def create(**options) -> Mine:
     return Mine(**options)
 """
 

@@ -32,7 +32,7 @@ class Other(ToySystem):
     def fingerprint(self):
         return os.environ.get("PLACE", "there")
 
-def create(**options):
+def create(**options) -> Other:
     if options.get("needs") not in os.environ:
         raise OSError(f"{options['needs']} is not set")
     return Other()

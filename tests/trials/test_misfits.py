@@ -9,7 +9,11 @@ from pydantic import TypeAdapter, ValidationError
 
 from faultpath.core.error_source import described
 from faultpath.core.misfits import Misfit, misfit_of
+from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.plan.plan import Plan
+from faultpath.decisions.search.model import SearchRecord
 from faultpath.faults import Fault, Scale
+from faultpath.trials import Deliveries
 
 SRC = Path(__file__).resolve().parents[2] / "src" / "faultpath"
 MAP = {
@@ -22,6 +26,14 @@ PYDANTIC = re.compile(
     r"[Ii]nput should|[Ff]ield required|[Ee]xtra inputs|not permitted|unable to parse|Value error|"
     r"validation error|pydantic|Tuple should|String should|List should|input_value"
 )
+
+
+@pytest.mark.parametrize("model", [Deliveries, MapRecord, SearchRecord, Plan])
+@pytest.mark.parametrize("number", [-1, 0, 2])
+def test_a_format_that_no_version_wrote_is_refused(model: type, number: int) -> None:
+    with pytest.raises(ValidationError) as caught:
+        TypeAdapter(model).validate_python({"format": number})
+    assert ("format",) in [each["loc"] for each in caught.value.errors()]
 
 
 def misfit(model: type, given: object) -> Misfit:

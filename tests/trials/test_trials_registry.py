@@ -32,7 +32,7 @@ def test_a_file_may_import_the_file_beside_it(tmp_path, monkeypatch):
 
 
 def test_what_is_loaded_by_mistake_is_blamed_for_nothing():
-    with pytest.raises(UserError, match="returned a dict"):
+    with pytest.raises(UserError, match="does not declare that 'loads'"):
         load_system(SystemSpec(name="json:loads", options={"s": "{}"}))
     with pytest.raises(ValueError, match="Expecting") as found:
         json.loads("nothing")
@@ -44,7 +44,7 @@ def test_two_edits_within_a_second_are_two(tmp_path, edited):
     """Python takes compiled code of a file with the same time in seconds and the same size."""
     (tmp_path / "parts_of_mine.py").write_text(f"{FILE.read_text()}\nSAID = 'a'\n")
     text = "from parts_of_mine import SAID, create as made\nLED = 'a'\n"
-    text += "def create(): return made(fingerprint=SAID + LED)\n"
+    text += "def create() -> 'System': return made(fingerprint=SAID + LED)\n"
     (tmp_path / "mine.py").write_text(text)
     for stem in ("mine", "parts_of_mine"):
         file = tmp_path / f"{stem}.py"
@@ -248,3 +248,49 @@ def test_the_process_of_the_caller_stays_as_it_was(name, library, fly):
     )
     beside = [] if name == "quadrotor" else [str(ROOT / "examples")]
     assert done.stdout.splitlines() == ["[]", f"{beside} True"]
+
+
+@pytest.mark.parametrize(
+    ("factory", "builds"),
+    [
+        ("def create() -> System: return Toy()", True),
+        ("def create() -> 'Toy': return Toy()", True),
+        ("def create() -> 'System | Toy': return Toy()", True),
+        ("del System\ndef create() -> 'System': return Toy()", True),
+        ("import functools\n@functools.cache\ndef create() -> System: return Toy()", True),
+        ("create = Toy", True),
+        ("def create(): return Toy()", False),
+        ("def create() -> None: ran()", False),
+        ("def create() -> 'System | None': return Toy()", False),
+        ("def create() -> 'Absent': return Toy()", False),
+        ("def create() -> dict: return ran()", False),
+        ("class create:\n    def __init__(self): ran()", False),
+        ("import functools\ncreate = functools.partial(ran)", False),
+    ],
+)
+def test_only_what_is_declared_to_build_a_system_is_called(factory, builds, tmp_path):
+    (tmp_path / "mine.py").write_text(
+        f"import sys\nsys.path.append({str(FILE.parent)!r})\nfrom pathlib import Path\n"
+        "from faultpath import System\nfrom toy_system import ToySystem as Toy\n"
+        f"def ran(): Path({str(tmp_path / 'ran')!r}).touch()\n{factory}\n"
+    )
+    spec = SystemSpec(name=f"{tmp_path}/mine.py:create")
+    if builds:
+        assert load_system(spec).name == "toy"
+    else:
+        with pytest.raises(
+            UserError, match=r"annotate it, as in `def create\(\.\.\.\) -> System:`"
+        ):
+            load_system(spec)
+    assert not (tmp_path / "ran").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "option"),
+    [("os:system", "command"), ("subprocess:getoutput", "cmd"), ("signal:pause", "")],
+)
+def test_a_function_of_pythons_own_is_never_called(name, option, tmp_path):
+    options = {option: f"touch {tmp_path}/ran"} if option else {}
+    with pytest.raises(UserError, match="nothing else is called"):
+        load_system(SystemSpec(name=name, options=options))
+    assert not list(tmp_path.iterdir())

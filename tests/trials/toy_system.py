@@ -107,8 +107,8 @@ def create(**options: str) -> System:
     return ToySystem(**options)
 
 
-def impostor() -> object:
-    return object()
+def impostor() -> System:
+    return object()  # pyright: ignore[reportReturnType]
 
 
 def needy() -> System:

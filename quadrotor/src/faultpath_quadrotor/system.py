@@ -118,7 +118,7 @@ class Quadrotor(LoopSystem):
 
     @property
     def data_files(self) -> Sequence[Path]:
-        """See `System.data_files`: the interface, the weights, and what kernels are built from."""
+        """See `System.data_files`: interface, weights and their cards, the kernels' sources."""
         own = (file for part in self.user_parts.values() for file in part.data_files)
         return (*_weights(shipped_folder()), Path("interface.yaml"), Path("native/source"), *own)
 
@@ -199,7 +199,7 @@ class Quadrotor(LoopSystem):
 
 @cache
 def _weights(folder: Path) -> tuple[Path, ...]:
-    return tuple(sorted(folder.glob("*.safetensors")))
+    return tuple(sorted((*folder.glob("*.json"), *folder.glob("*.safetensors"))))
 
 
 @lru_cache(maxsize=4)  # a library's blocks; each arm flies over the same ones

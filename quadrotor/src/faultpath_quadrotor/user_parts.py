@@ -118,7 +118,7 @@ def load_user_parts(names: Sequence[str], settings: SamplerSettings) -> dict[str
     `UserError` for a name that leads nowhere, `SystemMistake` for what is no part, or reads where
     nothing is.
     """
-    created = _explaining(lambda: load_parts(names))
+    created = _explaining(lambda: load_parts(names, (*KINDS, Plant)))
     return {name: _loaded(name, create, settings) for name, create in created.items()}
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from faultpath.api.asking import asks, begin
 from faultpath.api.audit import audit
-from faultpath.api.display import Display
+from faultpath.api.display import Display, display
 from faultpath.api.runs import Run
 from faultpath.api.systems import Chosen, choose
 from faultpath.core.errors import UserError
@@ -19,6 +19,7 @@ from faultpath.decisions.planning import plan_audit
 from faultpath.trials import System, library_of
 from faultpath.trials.question import CheckQuestion, PlanQuestion, Question, TraceQuestion
 from faultpath.trials.store.atomic import check_writable, write_text
+from faultpath.trials.trust import Received
 from faultpath.trials.work.executor import Progress
 
 if TYPE_CHECKING:
@@ -53,7 +54,9 @@ class Planned:
         progress: bool | Display = True,
     ) -> tuple[Run, ...]:
         """Carry the study out, as `faultpath audit --study` does; the same call resumes."""
-        return audit_study(self.plan.study, folder=folder, workers=workers, progress=progress)
+        return audit_study(
+            self.plan.study, folder=folder, workers=workers, progress=progress, trust=True
+        )
 
     def __repr__(self) -> str:
         """Return the audits and the first sentence."""
@@ -97,14 +100,18 @@ def audit_study(
     *,
     folder: str | PathLike[str] | None = None,
     progress: bool | Display = True,
+    trust: bool = False,
     **running: Any,
 ) -> tuple[Run, ...]:
     """Carry out the audits of a study, once all fit the system.
 
+    Without `trust` the system has to be an installed one, since the file may be anybody's.
     `running` is what `audit` takes of how to run: workers and limits. Raises as `audit`, and for a
     file that does not fit the system any more.
     """
-    chosen = choose(study.system, study.options, None, (study.baseline, study.repair))
+    say = display(progress, "audit_study", {}).say
+    received, arms = Received("the study file", trust, say), (study.baseline, study.repair)
+    chosen = choose(study.system, study.options, None, arms, received=received)
     library = library_of(chosen.system, study.library)
     for each in study.audits:
         laid = plan_audit(chosen.system, chosen.spec, study.audit_of(each.fault), library)

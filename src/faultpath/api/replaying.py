@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from faultpath.api.folders import read_run
+from faultpath.api.folders import RECORD, read_run
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
@@ -25,6 +25,7 @@ from faultpath.trials.store.atomic import check_writable, write_file
 from faultpath.trials.store.mcap import encode_mcap
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.trials.store.tables import TrialAddress
+from faultpath.trials.trust import Received
 from faultpath.trials.work.executor import Executor
 from faultpath.trials.work.processes import local
 
@@ -68,9 +69,11 @@ def replay(
     scenes: Sequence[str],
     paths: Sequence[str] = (),
     say: Callable[[str], None] = lambda said: None,
+    trust: bool = False,
 ) -> list[Replayed]:
     """Run the trials of some scenes again, on all paths or on some, in both arms.
 
+    Without `trust` the system has to be an installed one, since the record may be anybody's.
     Raises `UserError` where the system cannot be built, or no longer has the scenes and variants
     of the run.
     """
@@ -84,7 +87,9 @@ def replay(
             f"the run is of a {asked.system}, which only its own process had: put what builds the "
             "system into a file, and audit that."
         )
-    chosen = choose(asked.system, asked.options, None, (asked.baseline, asked.repair))
+    received = Received(RECORD, trust, say, held.provenance.sources)
+    arms = asked.baseline, asked.repair
+    chosen = choose(asked.system, asked.options, None, arms, received=received)
     system = chosen.system
     library = library_of(system, asked.library)
     if library.content_hash != asked.library_hash:

@@ -1,7 +1,6 @@
 """A system from whatever names it: a name, a file, or the object itself."""
 
 import os
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +14,7 @@ from faultpath.trials import System, SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import as_text
 from faultpath.trials.registry import factory_name
+from faultpath.trials.trust import PART, Received
 from faultpath.trials.work.executor import Executor
 from faultpath.trials.work.processes import local
 
@@ -24,8 +24,6 @@ LOCAL, RAY = "local", "ray"
 _BRING = "bring"
 """The option of a system that takes parts of the user's own, separated by commas; a system without
 it takes no parts."""
-
-_PART = re.compile(r"([^:]+:[A-Za-z_]\w*)(?:/|$)")
 
 _LOADED = "_faultpath_loaded"
 """Under which name an object keeps what it was loaded from."""
@@ -65,12 +63,14 @@ def choose(
     workers: int | None,
     variants: Sequence[str],
     executor: str = LOCAL,
+    received: Received | None = None,
 ) -> Chosen:
     """Return the system to audit, with the parts that its variants name.
 
-    What `load_system` gave is built again from its name and options, unless somebody changed its
-    attributes. Raises as `load_system`, and for what an object cannot do and an executor that
-    there is not.
+    `received` is the file that names them, unless the caller does. What `load_system` gave is built
+    again from its name and options, unless somebody changed its attributes. Raises as
+    `load_system`, for what an object cannot do and an executor that there is not, and as
+    `Received.check`.
     """
     check_executor(executor)
     if not isinstance(system, System):
@@ -88,6 +88,8 @@ def choose(
         if not same or not all(isinstance(each, cached_property) for each in more):
             spec = None
     if spec is not None:
+        if received is not None:
+            received.check(spec, variants)
         spec = with_parts(spec, variants)
         return Chosen(trials.load_system(spec), spec, workers, executor)
     if workers or executor != LOCAL:
@@ -153,7 +155,7 @@ def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
             )
         if "," in name:
             raise UserError(f"'{name}' has a comma in it: rename the file, commas part names.")
-        found += _PART.findall(name)
+        found += PART.findall(name)
     options = {**spec.options, _BRING: ",".join(dict.fromkeys(found))}
     return SystemSpec(name=spec.name, options=options)
 

@@ -10,7 +10,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.gates import FailIf, Gate, Junit, Summary
-from faultpath.cli.options import Json, SystemName, display
+from faultpath.cli.options import Json, SystemName, Trust, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
@@ -125,6 +125,7 @@ def study(
     study: Annotated[
         Path, typer.Option(parser=as_path, help="Study file that `faultpath plan` wrote.")
     ],
+    trust: Trust = False,
     as_json: Json = False,
     fail_if: FailIf = None,
     junit: Junit = None,
@@ -137,7 +138,7 @@ def study(
     from faultpath.decisions.plan.study import read_study
 
     gate = Gate.of(fail_if, junit, summary)
-    runs = audit_study(read_study(study), progress=display(as_json), **running)
+    runs = audit_study(read_study(study), progress=display(as_json), trust=trust, **running)
     return _print(runs, as_json, gate)
 
 

@@ -54,7 +54,7 @@ def main() -> NoReturn:
         interrupted = isinstance(error, KeyboardInterrupt) and not theirs
         if ctrl_c.pressed or interrupted or isinstance(error, Stopped):
             sentence = str(error) if isinstance(error, Stopped) else _AGAIN
-            status = INTERRUPTED
+            status = 128 + ctrl_c.pressed if ctrl_c.pressed else INTERRUPTED
         else:
             sentence, status = _sentence(error), USER_ERROR
             if sentence is None:
@@ -78,22 +78,23 @@ def _show(message: Warning | str, *more: Any, **named: Any) -> None:
 
 
 class _CtrlC:
-    """Remembers that Ctrl-C was pressed: libraries that it stops while they load raise errors of
-    other kinds."""
+    """Remembers that Ctrl-C was pressed, or SIGTERM sent: libraries that it stops while they load
+    raise errors of other kinds."""
 
     def __init__(self) -> None:
-        self.pressed = False
-        self._before = None
-        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            self._before = signal.signal(signal.SIGINT, self._press)
+        self.pressed = 0
+        usual = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
+        self._before = {n: was for n, was in usual.items() if signal.getsignal(n) is was}
+        for number in self._before:
+            signal.signal(number, self._press)
 
     def _press(self, number: int, frame: FrameType | None) -> None:
-        self.pressed = True
+        self.pressed = number
         raise KeyboardInterrupt
 
     def leave(self) -> None:
-        if self._before is not None:
-            signal.signal(signal.SIGINT, self._before)
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
 
 
 def _run(arguments: list[str]) -> int:

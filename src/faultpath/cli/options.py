@@ -29,6 +29,10 @@ SystemName = Annotated[
         "own options too."
     ),
 ]
+Trust = Annotated[
+    bool,
+    typer.Option("--trust", help="Import the system that the file names, though not installed."),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON; words go to the standard error.")]
 
 

@@ -1,11 +1,12 @@
 """`faultpath replay`: run trials of a finished run again."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import FOUND
+from faultpath.cli.options import FOUND, Trust
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 
@@ -27,9 +28,11 @@ def replay(
         Path | None,
         typer.Option(parser=as_path, help="MCAP file to write the signals to, as for Foxglove."),
     ] = None,
+    trust: Trust = False,
 ) -> int:
-    """Run trials of a finished run again and compare them with the run, to the bit; it runs the
-    system that the run names. Exits with 1 where one differs."""
+    """Run trials of a finished run again and compare them with the run, to the bit. It runs the
+    system that the run names, which has to be installed or trusted. Exits with 1 where one
+    differs."""
     from faultpath.api.display import SafeConsole
     from faultpath.api.folders import RECORD, read_provenance, read_run
     from faultpath.api.replaying import (
@@ -49,7 +52,8 @@ def replay(
     if export is not None:
         check_export(export)
     console = SafeConsole()
-    found = replay(held, scenes, path or (), lambda said: console.print(said, markup=False))
+    say = partial(console.print, markup=False)
+    found = replay(held, scenes, path or (), say, trust)
     unlike = [each for each in found if each.differs]
     for each in unlike:
         at = each.address

@@ -7,6 +7,7 @@ from keyword import iskeyword
 from pathlib import Path
 
 from faultpath.core.errors import UserError
+from faultpath.trials.store.atomic import write_text
 
 TEMPLATES = {
     "numpy": ("calibrated", "gain"),
@@ -19,10 +20,11 @@ TEMPLATES = {
 def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
     """Write `NAME.py` and `test_NAME.py` into a folder and return their paths.
 
-    Raises `UserError` for a name that is no Python name, begins with `test_` or already belongs to
-    another module, for an unknown template, and for files that exist.
+    Raises `UserError` for a name that is no Python name, has a meaning to Python or pytest or
+    already belongs to another module, for an unknown template, and for files that exist.
     """
-    if not name.isidentifier() or not name.islower() or name.startswith("test_"):
+    plain = name.isidentifier() and name.islower()
+    if not plain or name.startswith(("_", "test_")) or name.endswith("_test"):
         raise UserError(
             f"{name!r} cannot name a system and its file: take small letters, digits and '_', such "
             "as my_rover."
@@ -33,6 +35,8 @@ def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
     taken = ""
     if iskeyword(name):
         taken = "a word of Python"
+    elif name in ("conftest", "setup", "sitecustomize", "usercustomize"):
+        taken = "a file of Python's or pytest's own"
     elif name in sys.stdlib_module_names:
         taken = "a module of Python's own"
     elif places and ("site-packages" in str(places) or not here):
@@ -52,6 +56,11 @@ def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
     for place in places:
         if place.exists():
             raise UserError(f"{place} is there already: choose another name, or move it away.")
-    for place, text in zip(places, (system, test), strict=True):
-        place.write_text(text, "utf-8")
+    try:
+        for place, text in zip(places, (system, test), strict=True):
+            write_text(place, text)
+    except BaseException:
+        for place in places:
+            place.unlink(missing_ok=True)
+        raise
     return places

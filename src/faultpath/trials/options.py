@@ -11,7 +11,7 @@ Options are text on their way to a factory, because worker processes and run fol
 import inspect
 import types
 import typing
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import Enum
@@ -104,6 +104,18 @@ def call(factory: Callable[..., _Built], given: Mapping[str, str], system: str) 
         raise UserError(f"the options of {system} do not fit: {misfit_of(error)}.") from None
 
 
+def builds(factory: Factory, kinds: Sequence[type]) -> bool:
+    """Return whether a factory is one of some classes, or annotated to return one or `type` of it.
+
+    Names of the classes that are imported for type checkers only are known.
+    """
+    made: Any = inspect.unwrap(factory)
+    known = {kind.__name__: kind for kind in kinds}
+    kind = made if isinstance(made, type) else _hints(made, known).get("return")
+    several = get_args(kind) or (kind,)
+    return all(isinstance(each, type) and issubclass(each, tuple(kinds)) for each in several)
+
+
 def as_text(options: Mapping[str, object]) -> dict[str, str]:
     """Return options as the text that stands for them; `UserError` for what has none."""
     for name, value in options.items():
@@ -120,13 +132,7 @@ def _declared(factory: Factory) -> tuple[dict[str, Option], type[BaseModel] | No
         parameters: Mapping[str, inspect.Parameter] = inspect.signature(factory).parameters
     except (TypeError, ValueError):  # of some built-in functions nothing is known
         parameters = dict[str, inspect.Parameter]()
-    made: Any = factory.__init__ if isinstance(factory, type) else factory
-    hints = dict[str, Any]()
-    for name, written in getattr(made, "__annotations__", {}).items():
-        holder = types.SimpleNamespace(__annotations__={name: written})
-        with suppress(NameError, TypeError, AttributeError, SyntaxError):  # for type checkers only
-            names = getattr(made, "__globals__", {})
-            hints |= typing.get_type_hints(holder, names, include_extras=True)
+    hints = _hints(factory.__init__ if isinstance(factory, type) else factory, {})
     only = hints.get(next(iter(parameters))) if len(parameters) == 1 else None
     model = only if isinstance(only, type) and issubclass(only, BaseModel) else None
     fields = dict[str, FieldInfo]() if model is None else model.model_fields
@@ -153,6 +159,16 @@ def _declared(factory: Factory) -> tuple[dict[str, Option], type[BaseModel] | No
             bool(offered and offered.factories),
         )
     return options, model, any(each.kind is each.VAR_KEYWORD for each in parameters.values())
+
+
+def _hints(made: Any, known: Mapping[str, type]) -> dict[str, Any]:
+    """Return the annotations that can be read; `known` is what names mean that nothing defines."""
+    names, hints = {**known, **getattr(made, "__globals__", {})}, dict[str, Any]()
+    for name, written in getattr(made, "__annotations__", {}).items():
+        holder = types.SimpleNamespace(__annotations__={name: written})
+        with suppress(NameError, TypeError, AttributeError, SyntaxError):  # for type checkers only
+            hints |= typing.get_type_hints(holder, names, include_extras=True)
+    return hints
 
 
 def _values(kind: Any) -> dict[str, Any]:

@@ -4,7 +4,7 @@ import importlib
 import importlib.util
 import os
 import sys
-from collections.abc import Generator, Iterable
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager, redirect_stdout
 from functools import cache
 from hashlib import sha256
@@ -27,12 +27,15 @@ from faultpath.core.text import extra
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.imports import Graph, Root, file_of, kind_of, locate
-from faultpath.trials.options import Factory, Option, call, options_of
+from faultpath.trials.opened import reads
+from faultpath.trials.options import Factory, Option, builds, call, options_of
 from faultpath.trials.system import System
 
 GROUP = "faultpath.systems"
 """Entry points of installed distributions: the name of a system to `module:factory`."""
 
+_opened: dict[tuple[str, int], set[str]] = {}
+"""By file and its time: what lies beside it is imported once, and what is opened then counts."""
 _EXTRAS = frozenset({"torch", "gymnasium"})
 
 
@@ -70,6 +73,16 @@ def load_system(spec: SystemSpec) -> System:
         return system
 
 
+def opened_by(name: str) -> frozenset[str]:
+    """Return the files that this process opened to read while it loaded the system `name`."""
+    return frozenset(_opened.get(_version(name), ()))
+
+
+def _version(name: str) -> tuple[str, int]:
+    file = os.path.realpath(_target(name)[0])
+    return file, os.stat(file).st_mtime_ns if os.path.isfile(file) else 0
+
+
 def system_options(name: str) -> tuple[Option, ...]:
     """Return the options that the system `name` takes, without building it.
 
@@ -79,10 +92,11 @@ def system_options(name: str) -> tuple[Option, ...]:
         return options_of(_factory(name))
 
 
-def load_parts(names: Iterable[str]) -> dict[str, Factory]:
+def load_parts(names: Iterable[str], kinds: Sequence[type]) -> dict[str, Factory]:
     """Return what builds each part of their own that users name to a system, as they name systems.
 
-    A module is loaded once, whatever number of factories it has. Raises as `load_system`.
+    A module is loaded once, whatever number of factories it has. Raises as `load_system`, for what
+    is not declared to return one of `kinds`.
     """
     modules: dict[str, ModuleType] = {}
     found: dict[str, Factory] = {}
@@ -90,19 +104,26 @@ def load_parts(names: Iterable[str]) -> dict[str, Factory]:
         place, attribute = _split(name)
         with _loading(name):
             modules[place] = modules.get(place) or _module(place, name)
-        found[name] = _attribute(modules[place], place, attribute)
+        found[name] = _attribute(modules[place], place, attribute, kinds)
     return found
 
 
 def _factory(name: str) -> Factory:
     place, attribute = _target(name)
-    return _attribute(_module(place, name), place, attribute)
+    kinds = () if _installed(name) else (System,)  # an entry point of the group is a declaration
+    return _attribute(_module(place, name), place, attribute, kinds)
 
 
-def _attribute(module: ModuleType, place: str, attribute: str) -> Factory:
+def _attribute(module: ModuleType, place: str, attribute: str, kinds: Sequence[type]) -> Factory:
     factory = getattr(module, attribute, None)
     if not callable(factory):
         raise UserError(f"{place} has no function {attribute!r} to build from: check the name")
+    if kinds and not builds(factory, kinds):
+        names = " or a ".join(kind.__name__ for kind in kinds)
+        raise UserError(
+            f"{place} does not declare that {attribute!r} returns a {names}, and nothing else is "
+            f"called: annotate it, as in `def {attribute}(...) -> {kinds[0].__name__}:`"
+        )
     return factory
 
 
@@ -231,8 +252,10 @@ def _loading(name: str) -> Generator[None]:
     """
     path, modules = tuple(sys.path), dict(sys.modules)
     try:
-        with redirect_stdout(sys.stderr):  # what a system prints is no output of a command
+        # What a system prints is no output of a command.
+        with redirect_stdout(sys.stderr), reads() as opened:
             yield
+        _opened.setdefault(_version(name), set()).update(opened)
     except BaseException as error:
         sys.path[:] = path
         for module_name, module in tuple(sys.modules.items()):

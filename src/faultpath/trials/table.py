@@ -4,7 +4,7 @@ the taps did in every arm, from their receipts."""
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Self
+from typing import Literal, Self
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
@@ -111,7 +111,7 @@ class RowDeliveries(Result):
 class Deliveries(Result):
     """The taps of a study, row by row; written as `deliveries.json`."""
 
-    format: int = 1
+    format: Literal[1] = 1
     rows: tuple[RowDeliveries, ...] = ()
     findings: tuple[str, ...] = ()
     """What the run found that a reader of its results has to know, a sentence or two each."""

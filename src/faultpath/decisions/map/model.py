@@ -1,5 +1,7 @@
 """The question and the record of a map: what was run, what is decided, and how it is said."""
 
+from typing import Literal
+
 from pydantic import Field
 
 from faultpath.core.results import Frozen, Result
@@ -134,7 +136,7 @@ class JointErrors(Result, allow_inf_nan=False):
 class MapRecord(Result, allow_inf_nan=False):
     """A map, decided."""
 
-    format: int = 1
+    format: Literal[1] = 1
     question: MapQuestion
     scenes: int
     """Compared: those without a void pair at any point."""

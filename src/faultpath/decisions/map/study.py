@@ -19,6 +19,8 @@ from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, Sys
 from faultpath.trials import question as asking
 from faultpath.trials.pairing import mismatch_words
 
+_LEAST = 1e-9
+"""Of the largest error: sizes of points keep twelve digits after the point."""
 _MOST_POINTS = 10_000
 """A hundred errors of each module."""
 
@@ -108,8 +110,8 @@ def plan_map(
                 "be, for example --up-to 0.2 for 20 % to either side."
             )
         largest = float(f"{3.0 * expected:.2g}")  # three declared spreads
-    elif not 0.0 < largest < math.inf:
-        raise UserError(f"--up-to {largest:g} is no size: give a number above 0.")
+    elif not _LEAST <= largest < math.inf:
+        raise UserError(f"--up-to {largest:g} is no size: give a number of {_LEAST:g} or more.")
     elif relative and largest >= 1.0:
         raise UserError(
             f"--up-to {largest:g} would take all of the reading away: errors are fractions of it, "

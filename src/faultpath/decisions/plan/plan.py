@@ -1,6 +1,7 @@
 """A plan: sources in order, the audits of a study, how many trials they take, and why."""
 
 from collections.abc import Callable, Iterator
+from typing import Literal
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
@@ -23,7 +24,7 @@ Note = Callable[[int, int], None]
 class Plan(Result):
     """What `faultpath plan --json` prints."""
 
-    format: int = 1
+    format: Literal[1] = 1
     study: StudyFile
     candidates: tuple[Candidate, ...]
     """Ranked, those that have no fault and so no audit included."""

@@ -1,5 +1,7 @@
 """The question and the record of a search."""
 
+from typing import Literal
+
 from faultpath.core.results import Frozen, Result
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.search.bounds import Bounds
@@ -40,7 +42,7 @@ class Tried(Result, allow_inf_nan=False):
 class SearchRecord(Result, allow_inf_nan=False):
     """A search, with what was confirmed."""
 
-    format: int = 1
+    format: Literal[1] = 1
     question: SearchQuestion
     tried: tuple[Tried, ...]
     """In the order in which they were proposed."""

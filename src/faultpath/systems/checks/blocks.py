@@ -24,7 +24,7 @@ from faultpath.systems.checks.recording import Enough, Read, Recording, signals
 from faultpath.systems.episodes import EpisodePlant
 from faultpath.trials import Arm, LoopSystem, Outcome, System
 from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
-from faultpath.trials.execution.dispatch import Built, dispatch
+from faultpath.trials.execution.dispatch import Built, UndeclaredFile, dispatch
 from faultpath.trials.store.signals import DRAWN, Signal
 from faultpath.trials.work.executor import Executor
 
@@ -32,8 +32,9 @@ MISTAKES: dict[str, tuple[type[Exception], ...]] = {
     "declared reads": (UndeclaredReader, IllegalRead),
     "shape and unit": (MalformedReading, NotFinite),
     "fault delivery": (NotDelivered, FaultedElsewhere),
+    "data files": (UndeclaredFile,),
 }
-"""Errors of taps, by the check that reports them; any other error keeps trials from their end."""
+"""Errors by the check that reports them; any other error keeps trials from their end."""
 TRIALS = "trials end"
 
 
@@ -94,7 +95,9 @@ def run_blocks(
     waiting = iter(blocks)
 
     def settled(block: Block, reply: RecordedBlock | Died | Wrong) -> None:
-        if isinstance(reply, Wrong):
+        if isinstance(reply, Wrong) and isinstance(reply.error, UndeclaredFile):
+            reply = RecordedBlock(error=str(reply.error), fails="data files")
+        elif isinstance(reply, Wrong):
             if isinstance(reply.error, UserError):
                 raise reply.error
             reply = RecordedBlock(error=described(reply.error), fails=TRIALS)

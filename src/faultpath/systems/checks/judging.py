@@ -1,7 +1,7 @@
-"""Verdicts on a system from the runs of a check: seven checks, each with its sentences."""
+"""Verdicts on a system from the runs of a check: eight checks, each with its sentences."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -90,13 +90,14 @@ class Seen:
 def judged(seen: Seen) -> tuple[Check, ...]:
     """Judge all that was seen."""
     count = sum(len(run.outcomes) for _, run in seen.firsts())
-    judges = {
+    judges: dict[str, Callable[[str, Seen], Check]] = {
         "determinism": _determinism,
         "scene independence": _independence,
         "pairing": _pairing,
         "declared reads": _reads,
         "fault delivery": _delivery,
         "shape and unit": _readings,
+        "data files": lambda name, _: Check(name=name, says="none is read that is not declared"),
     }
     checks = [Check(name=TRIALS, says=f"{count} under correct inputs")]
     for name, judge in judges.items():
@@ -174,10 +175,8 @@ def coarsest(run: RecordedBlock) -> float:
 
 
 def _gap(first: RecordedBlock, again: RecordedBlock, dt_s: float) -> float:
-    """Return by how much of their size numbers differ at most; infinity for other ends.
-
-    Numbers are metrics, and the sums of readings. Nothing that ran differs from nothing.
-    """
+    """Return by how much of their size metrics and sums of readings differ at most; infinity for
+    other ends. Nothing that ran differs from nothing."""
     by_scene = {outcome.scene: outcome for outcome in first.outcomes}
     for two in again.outcomes:
         one = by_scene[two.scene]

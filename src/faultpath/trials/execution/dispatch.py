@@ -1,20 +1,23 @@
 """The tasks of a study on the workers of an executor, and what a worker does for them."""
 
 import math
+import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from faultpath.core.error_source import explained
-from faultpath.core.errors import UserError
+from faultpath.core.errors import SystemMistake, UserError
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.attempt import Died, Wrong
 from faultpath.trials.checks import library_of
 from faultpath.trials.code import Code, CodeState, Watch, named, source_state, system_code
 from faultpath.trials.declared import Library
-from faultpath.trials.registry import load_system
+from faultpath.trials.opened import reads
+from faultpath.trials.registry import load_system, opened_by
 from faultpath.trials.system import System
 from faultpath.trials.work.executor import Executor, Failed, Lost, WorkerLost, elsewhere, tell
 
@@ -27,6 +30,10 @@ LEAST_S = 300.0
 """For building a system, whatever is said of a block: imports wait for a busy machine."""
 
 T = TypeVar("T")
+
+
+class UndeclaredFile(SystemMistake):
+    """The system reads a file that is none of its sources and data files."""
 
 
 @dataclass(frozen=True)
@@ -59,13 +66,33 @@ class Built:
     def work(self, function: Callable[[System, Any], Any], task: Any) -> Any:
         """Return what a function of system and task returns.
 
-        `UserError` where a file that it may have read has changed since the system was built.
+        `UserError` where a file that it may have read has changed since the system was built, and
+        as `check_files`.
         """
+        self.check_files()
         try:
-            return function(self.system, task)
+            with reads() as opened:
+                done = function(self.system, task)
         finally:
             if changed := self.unread.changed():
                 raise _under_way(changed)
+        self.check_files(opened)
+        return done
+
+    def check_files(self, opened: Iterable[str] = ()) -> None:
+        """Raise `UndeclaredFile` for a file that was read, now or when the system was built, and
+        is neither source nor data. No trial of an object is ever taken for another's."""
+        name, code = self.job.system.name, self.code
+        if self.job.system.is_object or not (found := {*opened, *opened_by(name)}):
+            return
+        known = map(os.path.realpath, (*code.sources.values(), *code.data.values()))
+        if unknown := sorted(found.difference(known)):
+            names = [os.path.relpath(path, (code.main or Path()).parent) for path in unknown]
+            raise UndeclaredFile(
+                f"system {name!r} reads {named(names)}, which it does not declare: an edit there "
+                "would go unnoticed, and old results would pass for new ones; set "
+                f"`data_files = ({names[0]!r},)` in its class"
+            )
 
 
 @dataclass

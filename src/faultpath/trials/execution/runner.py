@@ -108,6 +108,7 @@ def run_study(
         raise UserError("a time limit needs worker processes: this one cannot stop itself")
     system = load_system(study.system) if system is None else system
     built = Built.of(system, study.system, study.library)
+    built.check_files()
     library, code = built.library, built.code
     scenes = selected(study, library)
     if study.look:

@@ -12,7 +12,7 @@ import threading
 import warnings
 from collections.abc import Generator, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
 from multiprocessing.reduction import ForkingPickler
 from queue import SimpleQueue
@@ -45,6 +45,17 @@ _ENVIRONMENT = {
     # A worker asks Ray for a CPU only, and sees the GPUs that a process of the node would see.
     "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0",
 }
+
+
+class _Told:
+    """Standard output, but for what Ray's threads print: news of workers is no output of ours."""
+
+    def __init__(self, output: Any) -> None:
+        self.output = output
+
+    def __getattr__(self, name: str) -> Any:
+        theirs = threading.current_thread().name.startswith("ray_")
+        return getattr(sys.stderr if theirs else self.output, name)
 
 
 class OnNode:
@@ -124,6 +135,7 @@ class RayWorkers(Executor):
                 "a CPU"
             )
         self._ours = _connect(address, count)
+        sys.stdout = self._told = _Told(sys.stdout)
         self.count = count or max(1, int(_ray.cluster_resources().get("CPU", 0)))
         self._nodes: set[str] = set()
         self._false_starts = 0
@@ -192,9 +204,11 @@ class RayWorkers(Executor):
             _ray.kill(worker.actor)
         self._workers.clear()
         if self._ours:
-            with _as_before():
+            with _as_before(), redirect_stdout(sys.stderr):
                 _ray.shutdown()
         self._ours = False
+        if sys.stdout is self._told:
+            sys.stdout = self._told.output
 
     def _started(self) -> _Worker:
         own = (os.path.realpath(sys.prefix), os.path.realpath(sys.base_prefix))

@@ -1,0 +1,63 @@
+"""Which files a process opens to read, as far as Python opens them, while something watches."""
+
+import os
+import sys
+import time
+from collections.abc import Generator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from faultpath.trials.imports import kind_of
+
+_OTHERS = (
+    *("/dev/", "/etc/", "/proc/", "/run/", "/sys/", "/usr/", os.path.expanduser("~/.")),
+    *(os.path.realpath(prefix) + os.sep for prefix in (sys.prefix, sys.base_prefix)),
+)
+"""The machine's, Python's, and what programs keep for themselves in the user's home."""
+_watching: list[tuple[set[str], set[str]]] = []
+"""By whoever watches: what was opened to be read, and what to be made."""
+
+
+@contextmanager
+def reads() -> Generator[set[str]]:
+    """Collect the user's files that are opened to be read until the end of the `with` block.
+
+    At its end, those that were written meanwhile, by this process or another, are left out.
+    """
+    _hook()
+    read, made, began = set[str](), set[str](), time.time_ns()
+    _watching.append(mine := (read, made))
+    try:
+        yield read
+    finally:
+        _watching[:] = (each for each in _watching if each is not mine)
+        paths = {os.path.realpath(path) for path in read - made}
+        read.clear()
+        read |= {path for path in paths if _is_users(path) and os.stat(path).st_mtime_ns < began}
+
+
+@cache
+def _hook() -> None:
+    sys.addaudithook(_note)  # once: it cannot be taken away again
+
+
+def _note(event: str, arguments: tuple[Any, ...]) -> None:
+    if not _watching or event != "open" or isinstance(arguments[0], int):
+        return  # a number is of a file that was opened before
+    path, _, flags = arguments
+    if flags & os.O_NONBLOCK:  # as faultpath opens; the file of a fault has its digest in the fault
+        caller = sys._getframe(2).f_back  # pyright: ignore[reportPrivateUsage]
+        if caller and caller.f_globals.get("__name__") == "faultpath.faults.recorded":
+            return
+    for read, made in _watching:
+        changes = flags & (os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        (made if changes else read).add(os.path.abspath(os.fsdecode(path)))
+
+
+def _is_users(path: str) -> bool:
+    if path.startswith(_OTHERS) or path.endswith((".py", ".pyc", ".so")):
+        return False  # imports are followed from the sources
+    place = Path(path)
+    return "__pycache__" not in path and place.is_file() and kind_of(place) == "local"

@@ -1,0 +1,136 @@
+"""Code that a received folder or file names runs only where a person says so."""
+
+import hashlib
+import json
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+from cli_runs import ROOT, audit, faultpath
+
+from faultpath.core.errors import UserError
+from faultpath.trials import SystemSpec
+from faultpath.trials.trust import Received
+
+STUDY = {
+    "baseline": "calibrated",
+    "repair": "blind",
+    "library": "carts",
+    "scenes": 2,
+    "audits": [{"name": "gain", "fault": "gain:scale=0.6"}],
+}
+MINE = f"""
+import sys
+sys.path.append({str(ROOT / "examples")!r})
+from pathlib import Path
+from toy import Toy
+Path("imported").touch()
+
+def create() -> Toy:
+    return Toy()
+"""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A finished run of a system beside it."""
+    place = tmp_path_factory.mktemp("trust")
+    with pytest.MonkeyPatch.context() as patched:
+        patched.chdir(place)
+        patched.setattr(sys, "path", list(sys.path))
+        (place / "mine.py").write_text(MINE)
+        assert audit(system="mine.py:create", out="run", scenes=2).status == 0
+        (place / "imported").unlink()
+    return place
+
+
+@pytest.fixture(autouse=True)
+def _here(run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(run, tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+
+
+def renamed(**names: object) -> None:
+    """Let the record name another system, and fit its digest as a stranger would."""
+    record, seal = Path("run/record.json"), Path("run/provenance.json")
+    content, provenance = json.loads(record.read_text()), json.loads(seal.read_text())
+    content["question"] |= names
+    record.write_text(json.dumps(content))
+    provenance["files"][record.name] = hashlib.sha256(record.read_bytes()).hexdigest()
+    seal.write_text(json.dumps(provenance))
+
+
+@pytest.mark.parametrize("trust", [(), ("--trust",)])
+@pytest.mark.parametrize(
+    ("system", "options"),
+    [
+        ("os:system", {"command": "touch ran"}),
+        ("subprocess:getoutput", {"cmd": "touch ran"}),
+        ("signal:pause", {}),
+    ],
+)
+def test_a_function_that_builds_nothing_is_called_for_no_file(system, options, trust) -> None:
+    renamed(system=system, options=options)
+    Path("s.yaml").write_text(yaml.safe_dump(STUDY | {"system": system, "options": options}))
+    for line in (("replay", "run"), ("audit", "--study", "s.yaml")):
+        ended = faultpath(*line, *trust)
+        assert ended.status == 2
+        assert system.partition(":")[0] in ended.err
+        assert ("nothing else is called" if trust else "give --trust") in ended.err
+    assert not Path("ran").exists()
+    assert not Path("runs").exists()
+
+
+@pytest.mark.parametrize(
+    "line", [("replay", "run"), ("audit", "--study", "s.yaml", "--workers", 0)]
+)
+def test_a_file_is_shown_and_imported_where_it_is_trusted(line) -> None:
+    Path("s.yaml").write_text(yaml.safe_dump(STUDY | {"system": "mine.py:create"}))
+    before = list(sys.path)
+    said = faultpath(*line).refused()
+    assert str(Path("mine.py").resolve()) in said
+    assert hashlib.sha256(Path("mine.py").read_bytes()).hexdigest()[:16] in said
+    assert "changed since" not in said
+    assert sys.path == before
+    assert not Path("imported").exists()
+    trusted = faultpath(*line, "--trust")
+    assert trusted.status == 0, trusted.err
+    assert "Importing mine.py:create" in " ".join(trusted.out.split())
+    assert Path("imported").exists()
+
+
+def test_that_the_code_is_another_is_said_before_it_is_imported() -> None:
+    code = "\nif not Path('said').exists():\n    raise SystemExit\n"
+    Path("mine.py").write_text(MINE + code)
+    assert "not the code of the run (mine.py changed since)" in faultpath("replay", "run").refused()
+    assert not Path("imported").exists()
+    ended = faultpath("replay", "run", "--trust")
+    assert "This is not the code of the run (mine.py changed since)." in ended.out
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        {"options": {"bring": "mine.py:create"}},
+        {"options": {"plant": "mine.py:create"}},
+        {"baseline": "mine.py:create/gru"},
+    ],
+)
+def test_a_part_that_a_file_brings_to_an_installed_system_is_asked_for_too(names) -> None:
+    pytest.importorskip("faultpath_quadrotor")
+    Path("s.yaml").write_text(yaml.safe_dump(STUDY | {"system": "quadrotor"} | names))
+    assert "names mine.py:create" in faultpath("audit", "--study", "s.yaml").refused()
+    assert not Path("imported").exists()
+
+
+def test_an_installed_system_needs_no_word() -> None:
+    pytest.importorskip("faultpath_quadrotor")
+    said: list[str] = []
+    file = Received("record.json", False, said.append)
+    file.check(SystemSpec(name="quadrotor", options={"wind": "L3"}), ("gru", "gru+dcc"))
+    assert said == ["Importing quadrotor, which record.json names."]
+    with pytest.raises(UserError, match="no file of its own"):
+        file.check(SystemSpec(name="sys:exit"), ())
