@@ -11,14 +11,13 @@ from faultpath.api.display import Display
 from faultpath.api.runs import Run
 from faultpath.api.systems import Chosen, choose
 from faultpath.core.errors import UserError
-from faultpath.core.files.opening import contents
 from faultpath.decisions.joined import fault_of
 from faultpath.decisions.plan.plan import Plan, make_plan, sentences
 from faultpath.decisions.plan.study import StudyFile, check_arms
 from faultpath.decisions.planning import plan_audit
 from faultpath.trials import System, library_of
 from faultpath.trials.question import CheckQuestion, PlanQuestion, Question, TraceQuestion
-from faultpath.trials.store.atomic import check_writable, write_text
+from faultpath.trials.store.atomic import check_output, write_text
 from faultpath.trials.work.executor import Progress
 
 if TYPE_CHECKING:
@@ -40,9 +39,7 @@ class Planned:
     def write(self, file: str | PathLike[str]) -> Path:
         """Write the study file and return its path; `UserError` where another one stands."""
         path, text = Path(file), self.plan.study.yaml()
-        if path.exists() and (not path.is_file() or contents(path) != text.encode()):
-            raise UserError(f"{path} is there already, and is another: give another file.")
-        check_writable(path)
+        check_output(path, text.encode()[:4096])  # the same study may be written again
         write_text(path, text)
         return path
 

@@ -21,6 +21,8 @@ from faultpath.report.inputs import ReportInput
 DEPENDENT = "dependent-failures.csv"
 NO_EVIDENCE = "no evidence"
 _COLUMNS = ("Read at", "Reaches further", "Kind", "Evidence", "Difference, pp", "To fly")
+DEPENDENT_MARK = ",".join(_COLUMNS[:4]).encode()
+"""In the first line of the table as CSV."""
 _NOTES = (
     "Terms of ISO 26262-1 and -9: the dependent failure initiator is an error of the source, the "
     "coupling factor why it reaches several places. What a source brings about at several modules "

@@ -148,7 +148,9 @@ class RunFolder:
         make_folder(self.path)
         with locked(self.path, notice):
             found = read_manifest(self.manifest)
-            if found is not None:
+            if found is None:
+                atomic.check_free(self.path)
+            else:
                 check_same(self.path, found, manifest, shared)
             for folder in (self.shards, self.failures):
                 make_folder(folder)
