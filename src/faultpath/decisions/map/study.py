@@ -108,8 +108,10 @@ def plan_map(
                 "be, for example --up-to 0.2 for 20 % to either side."
             )
         largest = float(f"{3.0 * expected:.2g}")  # three declared spreads
-    elif not 0.0 < largest < math.inf:
-        raise UserError(f"--up-to {largest:g} is no size: give a number above 0.")
+    elif not 1e-6 <= largest <= 1e12:
+        raise UserError(
+            f"--up-to {largest:g} is no size: give a number above 0, from 1e-6 to 1e12."
+        )
     elif relative and largest >= 1.0:
         raise UserError(
             f"--up-to {largest:g} would take all of the reading away: errors are fractions of it, "
