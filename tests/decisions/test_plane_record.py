@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from plane_toys import Seen, alike, differences, grown, question, record, reversal
+from pydantic import ValidationError
 
 from faultpath.decisions.map.decide import decided
 from faultpath.decisions.map.joint import Errors, lattice_weights
@@ -119,6 +120,17 @@ def test_better_is_said_only_of_who_is_ahead_at_a_point(strong: int, sign: int) 
     if not strong:
         said = f"No pair of errors decides who is ahead; only their average does, for {winner}."
     assert made.headline == said
+
+
+@pytest.mark.parametrize("name", ["sizes", "difference", "sign"])
+def test_a_surface_has_a_row_and_a_column_for_each_size(name: str) -> None:
+    """A record that somebody changed is read, too."""
+    held = record(alike(8)).model_dump()
+    whole = held["surface"][name]
+    for odd in ((), whole[:-1], [whole[0][:-1], *whole[1:]] if name != "sizes" else whole * 2):
+        held["surface"][name] = odd
+        with pytest.raises(ValidationError, match="has not a row and a column for each size"):
+            MapRecord.model_validate(held)
 
 
 def test_every_claim_of_a_path_is_one_of_its_points() -> None:

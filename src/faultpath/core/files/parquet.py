@@ -63,7 +63,10 @@ def read_table(data: bytes) -> pa.Table:
 
 
 def _opened(data: bytes) -> Any:
-    return pq.ParquetFile(pa.BufferReader(data), pre_buffer=False)
+    file = pq.ParquetFile(pa.BufferReader(data), pre_buffer=False)
+    if len(set(names := file.schema_arrow.names)) < len(names):
+        raise Unreadable("two columns have one name")
+    return file
 
 
 def _batches(file: Any, packed: int) -> Iterator[pa.RecordBatch]:
@@ -98,11 +101,7 @@ def read_rows(data: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
     """
     number = 0
     with _sound():
-        file = _opened(data)
-        names = file.schema_arrow.names
-        if len(set(names)) < len(names):
-            raise Unreadable("two columns have one name")
-        for batch in _batches(file, len(data)):
+        for batch in _batches(_opened(data), len(data)):
             for row in batch.to_pylist():
                 yield (number := number + 1), row
 
