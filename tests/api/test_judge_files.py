@@ -207,7 +207,7 @@ def test_names_that_are_no_text_are_a_damaged_table(tmp_path: Path) -> None:
         pa.string(), 1, [None, pa.py_buffer(b"\0\0\0\0\2\0\0\0"), pa.py_buffer(b"\xff\xfe")]
     )
     pq.write_table(pa.table({"arm": data, "scene": ["s"], "success": [1]}), tmp_path / "a.parquet")
-    assert "is no sound Parquet file" in refused(tmp_path / "a.parquet", tmp_path)
+    assert "a.parquet: cannot be read" in refused(tmp_path / "a.parquet", tmp_path)
 
 
 def test_lm_eval_samples_are_still_read(tmp_path: Path) -> None:

@@ -151,7 +151,8 @@ def test_a_run_does_not_begin_among_files_of_somebody_else(
     said = faultpath(*COMMANDS.get(command, judge), "--out", place).refused()
     assert f"place holds {name}, which is not of this run" in said
     assert (place / name).read_text() == MINE[name]
-    assert {each.name for each in place.iterdir()} <= {name, ".lock"}
+    assert [each.name for each in place.iterdir()] == [name]
+    assert "which is not of this run" in faultpath(*judge, "--out", place).refused()
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ from faultpath.api.display import Display
 from faultpath.api.runs import Run
 from faultpath.api.systems import Chosen, choose
 from faultpath.core.errors import UserError
+from faultpath.core.files.opening import contents
 from faultpath.decisions.joined import fault_of
 from faultpath.decisions.plan.plan import Plan, make_plan, sentences
 from faultpath.decisions.plan.study import StudyFile, check_arms
@@ -39,7 +40,8 @@ class Planned:
     def write(self, file: str | PathLike[str]) -> Path:
         """Write the study file and return its path; `UserError` where another one stands."""
         path, text = Path(file), self.plan.study.yaml()
-        check_output(path, text.encode()[:4096])  # the same study may be written again
+        if not path.is_file() or contents(path) != text.encode():
+            check_output(path)
         write_text(path, text)
         return path
 

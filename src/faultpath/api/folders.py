@@ -134,10 +134,9 @@ def _doubt(
     if not paths.issuperset(each.path for each in told):
         return "the record has effects on paths that it does not name"
     ends = {path for each in record.changes for path in (each.isolated, each.shared)}
-    if not ends.issubset(each.path for each in record.effects):
-        return "the record has changes between effects that it does not have"
-    if any(len(each.wins) != len(each.losses) for each in record.effects):
-        return "the record counts other seeds of wins than of losses"
+    seeds = all(len(each.wins) == len(each.losses) for each in record.effects)
+    if not seeds or not ends.issubset(each.path for each in record.effects):
+        return "the record has effects that do not fit each other"
     taps = {(c.name, consumer) for c in shown.interface.channels for consumer in c.consumers}
     for path in record.paths:
         faulted = {asked.repair: path.faulted, asked.baseline: path.baseline_faulted}

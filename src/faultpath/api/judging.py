@@ -24,15 +24,7 @@ from faultpath.trials.question import ask
 from faultpath.trials.received.files import read_results
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.shown import SystemShown, VariantShown
-from faultpath.trials.store.atomic import (
-    LOCK,
-    check_free,
-    is_run,
-    locked,
-    make_folder,
-    write_file,
-    write_text,
-)
+from faultpath.trials.store.atomic import begin, locked, write_file, write_text
 from faultpath.trials.store.folder import DELIVERIES, OUTCOMES, TRACES
 from faultpath.trials.store.tables import encode_outcomes, encode_traces
 from faultpath.trials.table import Deliveries, OutcomeTable, RowDeliveries
@@ -70,13 +62,11 @@ def judge(
     folder = asked.folder or _folder(laid, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
-    if not (is_run(folder) or (folder / LOCK).exists()):
-        check_free(folder)
     before = concluded_before(folder, laid.question)
     record = decide(laid.question, laid.paths, laid.table, laid.findings)
     if before is not None and before.question.library_hash == laid.question.library_hash:
         record = after_looks(record, (before,))
-    make_folder(folder)
+    begin(folder)
     with locked(folder, shown.say):
         result = _stored(folder, laid)
         write_text(folder / RECORD, as_text(record), folder)

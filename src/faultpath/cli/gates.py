@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from faultpath.api.runs import Run
 
 _PANEL = "For a build"
-_JUNIT = b'<testsuites name="faultpath"'
 _ASKS = ("reversal", "repair-behind", "undecided", "void")  # those of `faultpath.decisions.gate`
 
 FailIf = Annotated[
@@ -62,7 +61,7 @@ class Gate:
             if each not in _ASKS:
                 raise UserError(f"--fail-if {each}: {unknown('name', each, _ASKS)}.")
         if junit is not None:
-            check_output(junit, _JUNIT)
+            check_output(junit, b'<testsuites name="faultpath"')
         if summary is not None:
             check_output(summary, b"")  # added to, whatever it holds
         return cls(asked, junit, summary)

@@ -18,11 +18,9 @@ from faultpath.decisions.question import Question
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.report.inputs import ReportInput
 
-DEPENDENT = "dependent-failures.csv"
+DEPENDENT, DEPENDENT_MARK = "dependent-failures.csv", b"Read at,Reaches further,Kind,Evidence"
 NO_EVIDENCE = "no evidence"
 _COLUMNS = ("Read at", "Reaches further", "Kind", "Evidence", "Difference, pp", "To fly")
-DEPENDENT_MARK = ",".join(_COLUMNS[:4]).encode()
-"""In the first line of the table as CSV."""
 _NOTES = (
     "Terms of ISO 26262-1 and -9: the dependent failure initiator is an error of the source, the "
     "coupling factor why it reaches several places. What a source brings about at several modules "

@@ -17,7 +17,7 @@ from markupsafe import Markup
 
 from faultpath.core.version import __version__
 from faultpath.decisions.tables.escapes import visible
-from faultpath.trials.store.atomic import check_free, check_mark, is_run, make_folder, write_text
+from faultpath.trials.store.atomic import begin, check_mark, write_text
 
 PAGE = b'<meta name="generator" content="faultpath '
 """What every page has in its head."""
@@ -52,17 +52,13 @@ def render(
 
 
 def write_pages(files: Mapping[str, str], folder: Path) -> list[Path]:
-    """Write `report.html` and what belongs to it, and return the paths.
-
-    Each file appears whole or not at all. Raises `UserError` where the folder cannot be written, or
-    files of somebody else stand there.
-    """
-    make_folder(folder)
+    """Write `report.html` and what belongs to it, each whole or not at all, and return the paths;
+    `UserError` where that cannot be, or files of somebody else stand."""
     page = folder / "report.html"
     if page.is_file() and not page.is_symlink():
         check_mark(page, PAGE)
-    elif not is_run(folder):
-        check_free(folder)
+    else:
+        begin(folder)
     for name, text in files.items():
         write_text(folder / name, text, folder)
     return [folder / name for name in files]

@@ -18,10 +18,6 @@ from faultpath_quadrotor.flightlog.reading import (
 
 GRAVITY_MPS2 = 9.80665
 INTERVAL_S = 0.05  # paper, Section IV-A
-_AGAINST = 0.2
-"""Correlation of explained and seen changes of acceleration, below 0, that no flight has."""
-_FEW = 4
-"""Intervals over which accelerations are averaged: alone, each is mostly noise of the log."""
 _GAP = 10.0
 """A pause longer than so many usual ones, and than two intervals, ends a stretch of the flight."""
 
@@ -198,19 +194,20 @@ def _check_order(path: Path, columns: ColumnMap, flight: Flight) -> None:
 def _check_frame(path: Path, frame: str, flight: Flight) -> None:
     """Refuse motion that runs against thrust and weight: in the other frame both change sign.
 
-    What changes within some tenths of a second tells it: wind, and what a vehicle does about it,
-    are slower, and leave the correlation at 0 or above. Where noise hides it nothing is refused.
+    What changes within tenths of a second tells it: wind, and what a vehicle does about it, leave
+    that correlation at 0 or above. Where noise hides it nothing is refused.
     """
-    n = len(flight.stretch) // _FEW * _FEW
-    stretch = flight.stretch[:n].reshape(-1, _FEW)
+    few = 4  # intervals together; alone, each is mostly noise of the log
+    n = len(flight.stretch) // few * few
+    stretch = flight.stretch[:n].reshape(-1, few)
     same = stretch[1:, -1] == stretch[:-1, 0]
     explained, seen = (
-        np.diff(each[:n].reshape(-1, _FEW, 3).mean(axis=1), axis=0)[same]
+        np.diff(each[:n].reshape(-1, few, 3).mean(axis=1), axis=0)[same]
         for each in (nominal(flight), flight.acceleration_mps2)
     )
     size = float(np.sqrt((explained**2).sum() * (seen**2).sum()))
     against = -float((explained * seen).sum()) / size if size else 0.0
-    if against > max(_AGAINST, 4.0 / np.sqrt(same.sum())):
+    if against > max(0.2, 4.0 / np.sqrt(same.sum())):
         other = "ENU" if frame == "NED" else "NED"
         raise UserError(
             f"{path}: with the frame {frame} the vehicle accelerates against thrust and weight "

@@ -78,9 +78,9 @@ class ColumnMap(Frozen):
     velocity: Velocity
     thrust: Thrust
     frame: Literal["NED", "ENU"]
-    """NED with a body whose z axis points down, or ENU with one whose z axis points up."""
     check_frame: bool = True
-    """`false` reads a flight whose motion contradicts its frame, too."""
+    """NED with a body whose z axis points down, or ENU with one whose z axis points up; with
+    `check_frame` only where the motion does not contradict it."""
     mass_kg: Mass | None = None
     drag_kgps: tuple[Drag, Drag, Drag] | None = None
     """Linear drag along the body's axes; `None`: what thrust and weight leave is one force."""
@@ -165,10 +165,8 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
 def _table(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
     try:
         data = contents(path)
-        if parquet := path.suffix.lower() == ".parquet":
-            table: pa.Table = read_table(data)
-        else:
-            table = csv.read_csv(BytesIO(data))
+        parquet = path.suffix.lower() == ".parquet"
+        table: pa.Table = read_table(data) if parquet else csv.read_csv(BytesIO(data))
     except (OSError, pa.ArrowException, Unreadable) as error:
         raise UserError(f"{path}: cannot be read ({why(error)}): give a whole log") from None
     lines = () if parquet else enumerate(data.splitlines(), 1)

@@ -21,8 +21,6 @@ NUMBERS = pa.list_(pa.float32())
 Schema: TypeAlias = Mapping[str, Any]
 """Columns by name, each with one of the types above."""
 Row: TypeAlias = Mapping[str, Any]
-_CELL = 16
-"""Bytes that any cell takes at least, once it is a value of Python's."""
 
 
 class Unreadable(Exception):
@@ -54,44 +52,40 @@ def _sound() -> Generator[None]:
         raise Unreadable(str(error)) from error
 
 
+@_sound()
 def read_table(data: bytes) -> pa.Table:
     """Return the table in a Parquet file's bytes; `Unreadable` for another, or one too large."""
-    with _sound():
-        for _ in _batches(file := _opened(data), len(data)):
-            pass
-        return file.read(use_threads=False)
+    for _ in _batches(data):
+        pass
+    return pq.ParquetFile(pa.BufferReader(data), pre_buffer=False).read(use_threads=False)
 
 
-def _opened(data: bytes) -> Any:
+def _batches(data: bytes) -> Iterator[pa.RecordBatch]:
+    """Yield the rows, counting what they take: columns of equal values are packed to nothing.
+    In this thread alone: a thread of pyarrow's that still lets go of the data while the interpreter
+    shuts down ends the process with an abort."""
     file = pq.ParquetFile(pa.BufferReader(data), pre_buffer=False)
     if len(set(names := file.schema_arrow.names)) < len(names):
         raise Unreadable("two columns have one name")
-    return file
-
-
-def _batches(file: Any, packed: int) -> Iterator[pa.RecordBatch]:
-    """Yield the rows, counting what they take: columns of equal values are packed to nothing.
-
-    In this thread alone: a thread of pyarrow's that still lets go of the data while the interpreter
-    shuts down ends the process with an abort.
-    """
-    about, most, unpacked = file.metadata, most_unpacked(packed), 0
+    about, most, unpacked = file.metadata, most_unpacked(len(data)), 0
     groups = (about.row_group(number) for number in range(about.num_row_groups))
     cells = sum(group.column(n).num_values for group in groups for n in range(group.num_columns))
-    for batch in file.iter_batches(256, use_threads=False) if cells * _CELL <= most else ():
-        plain = (c.dictionary_decode() if pa.types.is_dictionary(c.type) else c for c in batch)
-        unpacked += sum(column.nbytes for column in plain)
+    least = 16 * cells  # as values of Python's
+    for batch in file.iter_batches(256, use_threads=False) if least <= most else ():
+        for column in batch:
+            plain = isinstance(column, pa.DictionaryArray) and column.dictionary_decode()
+            unpacked += (plain or column).nbytes
         if unpacked > most:
             break
         yield batch
-    if max(cells * _CELL, unpacked) > most:
+    if max(least, unpacked) > most:
         raise Unreadable(f"it unpacks to more than {most / 2**20:.0f} MiB")
 
 
+@_sound()
 def unpacked(data: bytes, size: int) -> bytes:
     """Return the `size` bytes that were compressed by Zstandard; `Unreadable` for others."""
-    with _sound():
-        return pa.decompress(data, size, "zstd", asbytes=True)
+    return pa.decompress(data, size, "zstd", asbytes=True)
 
 
 def read_rows(data: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
@@ -101,11 +95,12 @@ def read_rows(data: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
     """
     number = 0
     with _sound():
-        for batch in _batches(_opened(data), len(data)):
+        for batch in _batches(data):
             for row in batch.to_pylist():
                 yield (number := number + 1), row
 
 
+@_sound()
 def decode(
     data: bytes, schema: Schema, may_lack: Collection[str] = (), more: Any = None
 ) -> tuple[Iterator[dict[str, Any]], dict[str, str]]:
@@ -128,10 +123,8 @@ def decode(
             raise Unreadable(f"column {name!r} has gaps")
         if kind is NUMBERS:
             columns.append([each.values.to_numpy() if each.is_valid else None for each in column])
-            continue
-        with _sound():
+        else:
             columns.append(column.to_pylist())
     rows = (dict(zip(kinds, row, strict=True)) for row in zip(*columns, strict=True))
     notes = table.schema.metadata or {}
-    with _sound():
-        return rows, {key.decode(): text.decode() for key, text in notes.items()}
+    return rows, {key.decode(): text.decode() for key, text in notes.items()}

@@ -82,9 +82,9 @@ class MapSurface(Result, allow_inf_nan=False):
 
     @model_validator(mode="after")
     def _square(self) -> Self:
-        for rows in (self.difference, self.sign):
-            if {len(self.sizes)} != {len(rows), *map(len, rows)}:
-                raise ValueError("has not a row and a column for each size")
+        rows = (self.difference, self.sign, *self.difference, *self.sign)
+        if {len(self.sizes)} != set(map(len, rows)):
+            raise ValueError("has not a row and a column for each size")
         return self
 
 

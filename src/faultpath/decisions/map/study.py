@@ -109,9 +109,7 @@ def plan_map(
             )
         largest = float(f"{3.0 * expected:.2g}")  # three declared spreads
     elif not 1e-6 <= largest <= 1e12:
-        raise UserError(
-            f"--up-to {largest:g} is no size: give a number above 0, from 1e-6 to 1e12."
-        )
+        raise UserError(f"--up-to {largest:g}: give a number above 0, from 1e-6 to 1e12.")
     elif relative and largest >= 1.0:
         raise UserError(
             f"--up-to {largest:g} would take all of the reading away: errors are fractions of it, "

@@ -19,15 +19,13 @@ from faultpath.trials import System
 
 _DIGITS = 3
 """Of a size, counted from the width of its range: what is tried can be typed."""
-_LARGEST = 1e12
-"""Of an end: sums and roundings of larger numbers are none, and no system has such a size."""
 
 
 def _ascending(ends: tuple[float, float]) -> tuple[float, float]:
     if ends[0] > ends[1]:
         raise ValueError(f"goes from {ends[0]:g} down to {ends[1]:g}: give the lower end first")
-    if max(map(abs, ends)) > _LARGEST:
-        raise ValueError(f"reaches {max(ends, key=abs):g}: give ends within {_LARGEST:g}")
+    if max(map(abs, ends)) > 1e12:  # sums and roundings of the largest numbers are none
+        raise ValueError(f"reaches {max(ends, key=abs):g}: give ends within 1e12")
     return ends
 
 

@@ -55,7 +55,7 @@ def read_results(
         except Misread as error:
             raise UserError(f"{error.at(path)}.") from None
         except Unreadable as error:
-            raise UserError(f"{path} is no sound Parquet file ({error}): write it anew.") from None
+            raise UserError(f"{path}: cannot be read ({error}): write it anew.") from None
         digests[str(path)] = hashlib.sha256(data).hexdigest()
     return found, digests
 
@@ -78,12 +78,14 @@ def _as_expected(cells: Cells) -> Cells:
     """Yield what a reader finds; `Misread` where a part of the file is not what it takes it for."""
     try:
         yield from cells
-    except Misread:
+    except (Misread, Unreadable):
         raise
     except KeyError as error:
         raise Misread(f"lacks {error}, which files of its kind have") from None
-    except (TypeError, AttributeError, ValueError, IndexError):
+    except (TypeError, AttributeError, ValueError, IndexError, OverflowError):
         raise Misread("is not laid out as files of its kind are") from None
+    except inspect_logs.UNSOUND as error:
+        raise Misread(f"is no sound zip file ({error})") from None
 
 
 def _cells(path: Path, data: bytes, asked: JudgeQuestion, label: str) -> Cells:

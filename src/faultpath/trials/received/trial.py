@@ -72,9 +72,8 @@ def received(where: str, cells: Mapping[str, Any], given: Given, asked: JudgeQue
         raise UserError(f"{where} names no scene: name the column with --column scene=NAME.")
     if "success" not in cells:
         raise UserError(f"{where} has no success: name the column with --column success=NAME.")
-    texts = {
-        name: _text(cells.get(name), f"{where}: the {name}") for name in ("task", "seed", "initial")
-    }
+    more = ("task", "seed", "initial")
+    texts = {name: _text(cells.get(name), f"{where}: the {name}") for name in more}
     for name, text in {"arm": arm, "scene": scene, "condition": condition, **texts}.items():
         if text:
             check_name(f"{where}: the {name}", text)

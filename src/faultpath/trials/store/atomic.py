@@ -4,10 +4,6 @@ a run folder.
 A file takes the place of another file and of nothing else: a device, a pipe, a socket or a folder
 of that name is left as it is. Symbolic links are followed, as by any program that opens a file, so
 that the link stays and what it points to is replaced.
-
-What faultpath did not write is not replaced. A run begins in a folder without files of the kinds
-that it writes (`check_free`), and a file that the user names is a new one, or one of ours that
-belongs to no run (`check_output`).
 """
 
 import errno
@@ -22,13 +18,9 @@ from pathlib import Path
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents, opened, unlike_file
 
-LOCK = ".lock"
 _PREFIX = ".partial-"
 _KINDS = (".csv", ".html", ".json", ".md", ".parquet", ".svg")
 """Of the files that a run writes into its folder."""
-_MADE = b'"faultpath_version"'
-_HEAD = 4096
-"""Bytes in which a file of ours says that it is one."""
 Say = Callable[[str], None]
 
 
@@ -75,40 +67,41 @@ def write_text(path: Path, text: str, inside: Path | None = None) -> None:
 
 
 def is_run(folder: Path) -> bool:
-    """Return whether a folder holds a run, finished or not."""
+    """Return whether a folder holds a run, finished or begun."""
     for name in ("provenance.json", "manifest.json"):
         with suppress(OSError):
-            if _MADE in contents(folder / name, LARGEST_TEXT):
+            if b'"faultpath_version"' in contents(folder / name, LARGEST_TEXT):
                 return True
-    return False
+    return (folder / ".lock").is_file()
+
+
+def begin(folder: Path) -> None:
+    """Make the folder of a run, or go on in it; `UserError` where files stand that are of none."""
+    if not is_run(folder):
+        check_free(folder)
+    make_folder(folder)
 
 
 def check_free(folder: Path) -> None:
     """Raise `UserError` for a folder with files that a run which begins there might replace."""
     if names := sorted(each.name for each in folder.glob("*") if each.suffix in _KINDS):
-        raise UserError(
-            f"{folder} holds {names[0]}, which is not of this run: give a new folder with --out."
-        )
+        raise UserError(f"{folder} holds {names[0]}, which is not of this run: give a new folder.")
 
 
 def check_output(path: Path, mark: bytes | None = None) -> None:
-    """Raise `UserError` where a file that the user names cannot be written, before the work.
-
-    One that is there is kept, unless it begins with the `mark` of what is to replace it and belongs
-    to no run.
-    """
+    """Raise `UserError` where a file that the user names cannot be written, belongs to a run, or
+    stands there without the `mark` of what is to replace it."""
     check_writable(path)
-    if not path.exists():
-        return
-    if is_run(Path(os.path.realpath(path)).parent):
-        raise UserError(f"{path} belongs to the run in that folder: give another file.")
-    check_mark(path, mark)
+    if path.exists():
+        if is_run(Path(os.path.realpath(path)).parent):
+            raise UserError(f"{path} belongs to the run in that folder: give another file.")
+        check_mark(path, mark)
 
 
 def check_mark(path: Path, mark: bytes | None) -> None:
     """Raise `UserError` for a file that does not begin as those do that may replace it."""
     with opened(path) as file:
-        head = file.read(_HEAD)
+        head = file.read(4096)
     if head and (mark is None or mark not in head):
         raise UserError(
             f"{path} is there already, and not a file that this may replace: remove it, or "
@@ -176,7 +169,7 @@ def locked(folder: Path, notice: Say) -> Generator[None, None, None]:
     The kernel holds the lock for this process and lets it go when the process dies, however it
     dies. Its file descriptor is not inherited, so a worker that outlives us cannot keep it.
     """
-    path = folder / LOCK
+    path = folder / ".lock"
     try:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
     except OSError as error:
