@@ -83,7 +83,7 @@ test-foreign: .venv-foreign/ready ## Run the examples' tests on packages of othe
 
 fuzz: $(STAMPS)/dev ## Try the laws and the command line with random inputs; SEED=7 repeats
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "hypothesis or fuzz" \
-	  --hypothesis-profile=explore --fuzz-seed=$(SEED) $(ARGS)
+	  --hypothesis-profile=explore --fuzz-seed=$(SEED) --fuzz-whole $(ARGS)
 
 statistics: $(STAMPS)/dev ## Simulate what the statistics promise, and write its page: some minutes
 	OMP_NUM_THREADS=1 $(BIN)/python tests/statistics/simulation_page.py docs/statistics-check.md

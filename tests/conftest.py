@@ -22,6 +22,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--fuzz-seed", default="1", help="Seed of the fuzz tests, a number or `random`."
     )
+    parser.addoption("--fuzz-whole", action="store_true", help="Try all odd inputs, not a few.")
     parser.addoption(
         "--engine-alone", action="store_true", help="Leave out what needs torch or the quadrotor."
     )

@@ -2,6 +2,7 @@
 
 import inspect
 import os
+import shutil
 import stat
 from pathlib import Path
 from typing import get_args
@@ -11,6 +12,7 @@ import typer
 from cli_runs import ROOT, TOY, audit, faultpath
 from typer.models import OptionInfo
 
+from faultpath import UserError, open_run
 from faultpath.cli.app import build
 from faultpath.cli.options import path
 
@@ -131,6 +133,89 @@ def test_pages_do_not_follow_a_link_out_of_the_run_folder(tmp_path: Path):
         assert "link out of" in sentence
         assert mine.read_text() == "mine"
         (tmp_path / "run" / name).unlink()
+
+
+MINE = {"report.html": "<html>mine", "table.md": "mine", "record.json": "{}", "map.svg": "mine"}
+
+
+@pytest.mark.parametrize("name", MINE)
+@pytest.mark.parametrize("command", ["audit", "map", "judge"])
+def test_a_run_does_not_begin_among_files_of_somebody_else(
+    command: str, name: str, tmp_path: Path
+) -> None:
+    place = tmp_path / "place"
+    place.mkdir()
+    (place / name).write_text(MINE[name])
+    (tmp_path / "all.csv").write_text("arm,scene,success\nold,s,0\nnew,s,1\n")
+    judge = ["judge", "all.csv", "--baseline", "old", "--repair", "new"]
+    said = faultpath(*COMMANDS.get(command, judge), "--out", place).refused()
+    assert f"place holds {name}, which is not of this run" in said
+    assert (place / name).read_text() == MINE[name]
+    assert [each.name for each in place.iterdir()] == [name]
+    assert "which is not of this run" in faultpath(*judge, "--out", place).refused()
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return Path(shutil.copytree(REFERENCE / "toy", tmp_path_factory.mktemp("run") / "run"))
+
+
+L3 = REFERENCE / "quadrotor-L3"
+TO_FILES = {
+    "report --out": OUTPUTS["report --out"],
+    "report --dependent-failures": ["report", L3, f"{L3}-20", "--dependent-failures"],
+    "plan --out": [*OUTPUTS["plan --out"][:-1], "--fault=gain:scale=0.6", "--out"],
+    "plan --dependent-failures": [*OUTPUTS["plan --out"][:-1], "--dependent-failures"],
+    "audit --junit": [*COMMANDS["audit"], "--junit"],
+    "audit --summary": [*COMMANDS["audit"], "--summary"],
+    "replay --export": ["replay", REFERENCE / "toy", "--export"],
+}
+
+
+@pytest.mark.parametrize("option", TO_FILES)
+def test_no_file_of_a_run_is_replaced_by_what_is_no_part_of_it(option: str, run: Path) -> None:
+    for name in ("record.json", "report.html", "table.md"):
+        before = (run / name).read_bytes()
+        said = faultpath(*TO_FILES[option], run / name).refused()
+        assert f"{name} belongs to the run in that folder" in said
+        assert (run / name).read_bytes() == before
+
+
+@pytest.mark.parametrize("option", sorted({*TO_FILES} - {"audit --summary"}))
+def test_a_file_of_somebody_else_is_not_replaced(option: str, tmp_path: Path) -> None:
+    (tmp_path / "mine").write_text("<html><!-- about faultpath -->")
+    said = faultpath(*TO_FILES[option], tmp_path / "mine").refused()
+    assert "mine is there already, and not a file that this may replace" in said
+    assert (tmp_path / "mine").read_text() == "<html><!-- about faultpath -->"
+
+
+@pytest.mark.parametrize("option", ["report --dependent-failures", "audit --junit"])
+def test_what_the_same_verb_wrote_is_replaced(option: str, tmp_path: Path) -> None:
+    for _ in range(2):
+        ended = faultpath(*TO_FILES[option], tmp_path / "mine")
+        assert ended.status == 0, ended.err
+
+
+def test_pages_replace_no_page_of_somebody_else(run: Path, tmp_path: Path) -> None:
+    opened = open_run(run)
+    (tmp_path / "table.md").write_text("mine")
+    with pytest.raises(UserError, match=r"holds table.md, which is not of this run"):
+        opened.report(tmp_path)
+    for _ in range(2):  # what it wrote itself may be written again
+        assert len(opened.report(tmp_path / "other")) > 1
+    (tmp_path / "other" / "report.html").write_text("mine")
+    with pytest.raises(UserError, match=r"report.html is there already, and not a file"):
+        opened.report(tmp_path / "other")
+    assert (tmp_path / "other" / "report.html").read_text() == "mine"
+
+
+def test_a_judgement_that_was_killed_goes_on(tmp_path: Path) -> None:
+    (tmp_path / "all.csv").write_text("arm,scene,success\nold,s,0\nnew,s,1\n")
+    line = ["judge", "all.csv", "--baseline", "old", "--repair", "new", "--out", "run"]
+    assert faultpath(*line).status == 0
+    (tmp_path / "run" / "provenance.json").unlink()
+    assert faultpath(*line).status == 0
+    assert "which is not of this run" in audit(out="run", scenes=2).refused()
 
 
 def test_the_lock_of_a_run_folder_is_no_link(tmp_path: Path):

@@ -184,6 +184,12 @@ FORGED = {
     "other variants": ("variants", _system(lambda c: c.update(variants=[]))),
     "deep": ("system.json", lambda run: (run / "system.json").write_text("[" * 100_000)),
     "an effect on no path": ("path", _record(lambda c: c["effects"][0].update(path="nowhere"))),
+    "no effects": ("fit each other", _record(lambda c: c.update(effects=[]))),
+    "a change of nothing": (
+        "fit each other",
+        _record(lambda c: c["changes"][0].update(isolated="")),
+    ),
+    "wins without losses": ("fit each other", _record(lambda c: c["effects"][0].update(wins=[]))),
     "no cells": ("arms", _record(lambda c: c.update(cells=[]))),
     "another count": ("count", _record(lambda c: c["cells"][0].update(success=77))),
     "another library": ("libraries", _record(lambda c: c["question"].update(library_hash="x"))),

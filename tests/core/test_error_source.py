@@ -2,6 +2,7 @@
 
 import sys
 
+import pyarrow as pa
 import pytest
 
 from faultpath.core.error_source import ours, place
@@ -27,3 +28,11 @@ def test_a_distribution_that_carries_our_name_answers_for_its_own_mistakes(tmp_p
     assert said[1].endswith("mine_zz.py, line 1")
     assert ours("faultpath_zz")
     assert not ours("faultpath_system_mine_12ab34cd")
+
+
+def test_what_a_package_compiled_from_cython_is_nobodys_system():
+    """Its frames name a file that is relative, and nowhere."""
+    with pytest.raises(KeyError) as found:
+        pa.table({"a": [1]}).column("b")
+    found.value.__traceback__ = found.value.__traceback__.tb_next
+    assert place(found.value) == ""

@@ -52,9 +52,9 @@ def test_a_file_reads_back_as_what_was_written(planned, file):
 def test_a_file_of_ones_own_is_not_written_over(planned, file, tmp_path):
     assert planned.write(file) == file  # the same text
     file.write_text(file.read_text() + "# mine\n")
-    with pytest.raises(UserError, match="is there already, and is another"):
+    with pytest.raises(UserError, match="is there already, and not a file that this may replace"):
         planned.write(file)
-    with pytest.raises(UserError, match="is there already"):
+    with pytest.raises(UserError, match="it is a folder, not a file"):
         planned.write(tmp_path)
 
 

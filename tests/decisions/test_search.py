@@ -40,6 +40,8 @@ def plan(tmp_path: Path, bounds: str, **given: Any) -> SearchPlan:
         ("isolated: observer\nfaults: []\n", "faults: is .*at least 1"),
         (GAIN.replace("size", "sizes"), "line 3: .*sizes: is no field; did you mean 'size'"),
         (GAIN.replace("[0.6, 1.4]", "[1.4, 0.6]"), "line 3: .*give the lower end first"),
+        (GAIN.replace("[0.6, 1.4]", "[-1e308, 1e308]"), "line 3: .*reaches -1e.308: give ends"),
+        (GAIN.replace("[0.6, 1.4]", "[0, 1.7e308]"), "line 3: .*within 1e12"),
         (GAIN.replace("[0.6, 1.4]", "[1, 1]"), "nothing is left to search"),
         (GAIN.replace(", size: [0.6, 1.4]", ""), "declares no uncertainty"),
         (GAIN.replace("gain", "gian"), "did you mean 'gain'"),

@@ -213,6 +213,33 @@ def test_the_command_prints_and_writes_what_it_found(tmp_path: Path, known: Comp
     )
 
 
+@pytest.mark.parametrize("text", [MAP, MAP.replace("drag_kgps: [0.3, 0.3, 0.6]", "")])
+def test_a_frame_that_the_motion_contradicts_is_refused(tmp_path: Path, text: str) -> None:
+    """Noise of a centimetre a second does not hide it; who insists is heard."""
+    rng = np.random.default_rng(7)
+    noisy = {n: COLUMNS[n] + 0.01 * rng.normal(size=len(COLUMNS["t"])) for n in ("vx", "vy", "vz")}
+    other = text.replace("ENU", "NED")
+    for columns in (COLUMNS, COLUMNS | noisy):
+        with pytest.raises(UserError, match=r"with the frame NED .* write frame: ENU, or check_f"):
+            found(tmp_path, columns, other)
+        found(tmp_path, columns, text)
+        found(tmp_path, columns, f"{other}check_frame: false\n")
+
+
+def test_a_stray_quote_is_refused_with_its_line(tmp_path: Path) -> None:
+    """It would open a cell that swallows all rows up to the next quote, or the end."""
+    log = write(tmp_path / "flight.csv", COLUMNS)
+    lines = log.read_text().splitlines()
+    lines[5638] = lines[5638].replace(",", ',"', 1)
+    log.write_text("\n".join(lines))
+    with pytest.raises(UserError, match=r"flight.csv, line 5639: a quote opens a cell"):
+        read_flight(log, read_columns(map_file(tmp_path)))
+    lines[9000] += '"'  # as far as there the rows would be one cell
+    log.write_text("\n".join(lines))
+    with pytest.raises(UserError, match=r"line 5639"):
+        read_flight(log, read_columns(map_file(tmp_path)))
+
+
 def test_a_log_with_a_column_twice_is_a_mistake(tmp_path: Path) -> None:
     log = write(tmp_path / "flight.csv", COLUMNS)
     log.write_bytes(log.read_bytes().replace(b'"vy"', b'"vx"', 1))

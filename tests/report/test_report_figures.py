@@ -7,9 +7,15 @@ from faultpath.decisions.model import DecisionRecord, PathBreakEven
 from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import pair_grid, pair_key, read_pairs
-from faultpath.report.svg import Svg, shortened, text_width
+from faultpath.report.svg import Svg, covering, shortened, text_width
 from faultpath.report.taps import fork_panel, forks
 from faultpath.statistics.estimate import BreakEven, Region
+
+
+def test_an_axis_covers_any_number_that_a_record_may_hold() -> None:
+    axis = covering([1.7e308, -1.7e308])
+    assert 2 <= len(axis.ticks(4)) <= 9
+    assert 0.0 < axis(1.7e308) < 1e9
 
 
 def test_all_figures_are_xml(one_seed: ReportInput) -> None:

@@ -18,7 +18,7 @@ from faultpath.decisions.plan.study import StudyFile, check_arms
 from faultpath.decisions.planning import plan_audit
 from faultpath.trials import System, library_of
 from faultpath.trials.question import CheckQuestion, PlanQuestion, Question, TraceQuestion
-from faultpath.trials.store.atomic import check_writable, write_text
+from faultpath.trials.store.atomic import check_output, write_text
 from faultpath.trials.trust import Received
 from faultpath.trials.work.executor import Progress
 
@@ -41,9 +41,8 @@ class Planned:
     def write(self, file: str | PathLike[str]) -> Path:
         """Write the study file and return its path; `UserError` where another one stands."""
         path, text = Path(file), self.plan.study.yaml()
-        if path.exists() and (not path.is_file() or contents(path) != text.encode()):
-            raise UserError(f"{path} is there already, and is another: give another file.")
-        check_writable(path)
+        if not path.is_file() or contents(path) != text.encode():
+            check_output(path)
         write_text(path, text)
         return path
 

@@ -12,7 +12,9 @@ from faultpath.core.errors import UserError
 from faultpath.decisions.tables.csv import csv_text
 from faultpath.report.compared import Compared, differing, together
 from faultpath.report.comparison import dependent_failures, headline, page, sentences
-from faultpath.trials.store.atomic import write_text
+from faultpath.report.dependent import DEPENDENT_MARK
+from faultpath.report.frame import PAGE
+from faultpath.trials.store.atomic import check_output, write_text
 from faultpath.trials.store.folder import read_regular
 
 
@@ -31,17 +33,19 @@ class Comparison:
     def report(self, path: str | PathLike[str]) -> Path:
         """Write one page that needs no network, and return its path.
 
-        `UserError` where it cannot be written.
+        `UserError` where it cannot be written, or another file stands.
         """
+        check_output(Path(path), PAGE)
         write_text(Path(path), page(self.runs))
         return Path(path)
 
     def dependent_failures(self, path: str | PathLike[str]) -> Path:
         """Write what the audits show together of failures that have one cause, as CSV.
 
-        `UserError` where it cannot be written, where audits are of other systems or variants, and
-        where no two places depend on each other.
+        `UserError` where it cannot be written or another file stands, where audits are of other
+        systems or variants, and where no two places depend on each other.
         """
+        check_output(Path(path), DEPENDENT_MARK)
         found = dependent_failures(self.runs)
         if found is None:
             raise UserError(

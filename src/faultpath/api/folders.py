@@ -133,6 +133,10 @@ def _doubt(
     told = (*record.effects, *record.break_even, *record.break_even_beta)
     if not paths.issuperset(each.path for each in told):
         return "the record has effects on paths that it does not name"
+    ends = {path for each in record.changes for path in (each.isolated, each.shared)}
+    seeds = all(len(each.wins) == len(each.losses) for each in record.effects)
+    if not seeds or not ends.issubset(each.path for each in record.effects):
+        return "the record has effects that do not fit each other"
     taps = {(c.name, consumer) for c in shown.interface.channels for consumer in c.consumers}
     for path in record.paths:
         faulted = {asked.repair: path.faulted, asked.baseline: path.baseline_faulted}

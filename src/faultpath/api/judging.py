@@ -24,7 +24,7 @@ from faultpath.trials.question import ask
 from faultpath.trials.received.files import read_results
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.shown import SystemShown, VariantShown
-from faultpath.trials.store.atomic import make_folder, write_file, write_text
+from faultpath.trials.store.atomic import begin, locked, write_file, write_text
 from faultpath.trials.store.folder import DELIVERIES, OUTCOMES, TRACES
 from faultpath.trials.store.tables import encode_outcomes, encode_traces
 from faultpath.trials.table import Deliveries, OutcomeTable, RowDeliveries
@@ -66,11 +66,12 @@ def judge(
     record = decide(laid.question, laid.paths, laid.table, laid.findings)
     if before is not None and before.question.library_hash == laid.question.library_hash:
         record = after_looks(record, (before,))
-    make_folder(folder)
-    result = _stored(folder, laid)
-    write_text(folder / RECORD, as_text(record), folder)
-    made = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
-    amend(folder, made.model_copy(update={"data": sources}), MADE_FROM)
+    begin(folder)
+    with locked(folder, shown.say):
+        result = _stored(folder, laid)
+        write_text(folder / RECORD, as_text(record), folder)
+        made = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
+        amend(folder, made.model_copy(update={"data": sources}), MADE_FROM)
     run = Run(folder, *read_run(folder))
     run.report()
     if not shown.is_command:

@@ -21,7 +21,7 @@ from faultpath.trials.execution.again import difference
 from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.execution.provenance import amend
 from faultpath.trials.question import AuditQuestion
-from faultpath.trials.store.atomic import check_writable, write_file
+from faultpath.trials.store.atomic import check_output, write_file
 from faultpath.trials.store.mcap import encode_mcap
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.trials.store.tables import TrialAddress
@@ -180,9 +180,7 @@ def keep_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) -> 
 def check_export(to: Path) -> None:
     """Raise `UserError` where signals cannot be exported to a file, before trials run for it."""
     encode_mcap({}, 1.0)  # needs the package mcap
-    check_writable(to)
-    if to.exists():
-        raise UserError(f"{to} is there already: export to another file, or remove it.")
+    check_output(to)
 
 
 def export_signals(to: Path, held: ReportInput, found: Sequence[Replayed]) -> None:

@@ -51,12 +51,12 @@ def plan(
     write them as a study file for `faultpath audit --study`."""
     from faultpath.api.before import plan
     from faultpath.api.display import SafeConsole
-    from faultpath.trials.store.atomic import check_writable, write_text
+    from faultpath.report.dependent import DEPENDENT_MARK
+    from faultpath.trials.store.atomic import check_output, write_text
 
-    for each in filter(None, (out, dependent_failures)):
-        check_writable(each)
-    if out.exists():
-        raise UserError(f"{out} is there already: give another file with --out, or remove it.")
+    check_output(out)
+    if dependent_failures is not None:
+        check_output(dependent_failures, DEPENDENT_MARK)
     found = plan(system, **given, progress=display())
     written = found.write(out)
 

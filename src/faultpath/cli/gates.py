@@ -54,14 +54,16 @@ class Gate:
     @classmethod
     def of(cls, fail_if: Sequence[str] | None, junit: Path | None, summary: Path | None) -> "Gate":
         """Read the options; `UserError` for what cannot be asked, or written."""
-        from faultpath.trials.store.atomic import check_writable
+        from faultpath.trials.store.atomic import check_output
 
         asked = tuple(dict.fromkeys(fail_if or ()))
         for each in asked:
             if each not in _ASKS:
                 raise UserError(f"--fail-if {each}: {unknown('name', each, _ASKS)}.")
-        for place in filter(None, (junit, summary)):
-            check_writable(place)
+        if junit is not None:
+            check_output(junit, b'<testsuites name="faultpath"')
+        if summary is not None:
+            check_output(summary, b"")  # added to, whatever it holds
         return cls(asked, junit, summary)
 
     def end(self, runs: "Sequence[Run]", say: Callable[..., Any]) -> int:

@@ -109,7 +109,8 @@ def _frames(error: BaseException) -> Iterator[str]:
 
 
 def _passed_over(name: str) -> bool:
-    if name.startswith("<"):  # code without a file: frozen modules, generated methods
+    # Code without a file: frozen modules, generated methods, what packages compiled from Cython.
+    if name.startswith("<") or (name.endswith((".pyx", ".pxi")) and not os.path.exists(name)):
         return True
     file = os.path.realpath(name)
     if file.startswith(tuple(_systems)):

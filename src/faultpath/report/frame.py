@@ -7,8 +7,9 @@ script, no handler in an attribute, no style attribute, no picture, frame, form 
 
 import hashlib
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
@@ -16,6 +17,10 @@ from markupsafe import Markup
 
 from faultpath.core.version import __version__
 from faultpath.decisions.tables.escapes import visible
+from faultpath.trials.store.atomic import begin, check_mark, write_text
+
+PAGE = b'<meta name="generator" content="faultpath '
+"""What every page has in its head."""
 
 
 def render(
@@ -44,6 +49,19 @@ def render(
     )
     inside = {"policy": policy, "styles": Markup(texts[0]), "scripts": Markup(texts[1])}
     return environment.get_template(page).render(**inside, version=__version__, **content)
+
+
+def write_pages(files: Mapping[str, str], folder: Path) -> list[Path]:
+    """Write `report.html` and what belongs to it, each whole or not at all, and return the paths;
+    `UserError` where that cannot be, or files of somebody else stand."""
+    page = folder / "report.html"
+    if page.is_file() and not page.is_symlink():
+        check_mark(page, PAGE)
+    else:
+        begin(folder)
+    for name, text in files.items():
+        write_text(folder / name, text, folder)
+    return [folder / name for name in files]
 
 
 @cache

@@ -13,13 +13,12 @@ from faultpath.decisions.tables.html import html
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.dependent import DEPENDENT, of_runs
 from faultpath.report.effects import forest, frequency_panels
-from faultpath.report.frame import render
+from faultpath.report.frame import render, write_pages
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Kind, pair_grid, pair_key, read_pairs
 from faultpath.report.tables import SHOWN, by_path, by_threshold, ended, markdown_table, secondary
 from faultpath.report.taps import fork_panel, forks
 from faultpath.report.viewer import viewer_data
-from faultpath.trials.store.atomic import make_folder, write_text
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
 
@@ -85,17 +84,12 @@ def report_page(source: ReportInput) -> str:
 
 def write_report(source: ReportInput, folder: Path) -> list[Path]:
     """Write `report.html`, `table.md` and, where failures depend on each other, their table as CSV
-    into `folder`, and return their paths.
-
-    Each file appears whole or not at all. Raises `UserError` where the folder cannot be written.
+    into `folder`, and return their paths; `UserError` as `write_pages`.
     """
-    make_folder(folder)
     made = {"report.html": report_page(source), "table.md": markdown_table(source.record)}
     if dependent := of_runs([source]):
         made[DEPENDENT] = csv_text(dependent)
-    for name, text in made.items():
-        write_text(folder / name, text, folder)
-    return [folder / name for name in made]
+    return write_pages(made, folder)
 
 
 def _finding(record: DecisionRecord) -> list[tuple[Effect, str]]:

@@ -14,11 +14,10 @@ from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
 from faultpath.decisions.tables.terminal import drawn
-from faultpath.report.frame import render
+from faultpath.report.frame import render, write_pages
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store.atomic import make_folder, write_text
 
 
 def tables(record: MapRecord) -> tuple[Table, ...]:
@@ -129,10 +128,7 @@ def write_map(record: MapRecord, provenance: RunProvenance, folder: Path) -> lis
         "correlation.svg": correlation_picture(record).render(standalone=True) + "\n",
         "table.md": table_markdown(record),
     }
-    make_folder(folder)
-    for name, text in made.items():
-        write_text(folder / name, text, folder)
-    return [folder / name for name in made]
+    return write_pages(made, folder)
 
 
 def table_markdown(record: MapRecord) -> str:

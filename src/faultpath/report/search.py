@@ -13,11 +13,10 @@ from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
 from faultpath.decisions.tables.terminal import Parted
 from faultpath.report.effects import forest
-from faultpath.report.frame import render
+from faultpath.report.frame import render, write_pages
 from faultpath.report.svg import Axis, Svg, tick_label
 from faultpath.report.tables import DIFFERENCE, by_path
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store.atomic import make_folder, write_text
 
 _ROWS = 8
 """Of the faults tried, those shown in a table."""
@@ -115,7 +114,4 @@ def write_search(record: SearchRecord, provenance: RunProvenance, folder: Path) 
         "tried.svg": picture(record).render(standalone=True) + "\n",
         "table.md": "\n\n".join(map(block, tables(record))) + "\n",
     }
-    make_folder(folder)
-    for name, text in made.items():
-        write_text(folder / name, text, folder)
-    return [folder / name for name in made]
+    return write_pages(made, folder)

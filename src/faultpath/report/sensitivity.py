@@ -13,10 +13,9 @@ from faultpath.decisions.tables.csv import csv_text
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
 from faultpath.decisions.tables.terminal import Parted
-from faultpath.report.frame import render
+from faultpath.report.frame import render, write_pages
 from faultpath.report.svg import Svg, covering, tick_label
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store.atomic import make_folder, write_text
 
 _PITCH, _TOP, _LEFT, _WIDTH = 34.0, 40.0, 150.0, 560.0
 
@@ -122,7 +121,4 @@ def write_sensitivity(
         "sensitivity.csv": csv_text(made),
         "table.md": block(made) + "\n",
     }
-    make_folder(folder)
-    for name, text in files.items():
-        write_text(folder / name, text, folder)
-    return [folder / name for name in files]
+    return write_pages(files, folder)

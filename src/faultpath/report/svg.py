@@ -207,7 +207,7 @@ class Axis:
 
 def covering(values: Iterable[float], margin: float = 0.06, least: float = 1.0) -> Axis:
     """Return an axis from 0 to 1 pixel that covers 0 and every value, with a margin."""
-    inside = [0.0, *values]
+    inside = [0.0, *(max(-1e300, min(each, 1e300)) for each in values)]  # sums of them are finite
     low, high = min(inside), max(inside)
     if high - low < least:
         middle = 0.5 * (low + high)

@@ -114,6 +114,8 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
         gaps=gaps,
     )
     _check_order(path, columns, flight)
+    if columns.check_frame:
+        _check_frame(path, columns.frame, flight)
     return flight
 
 
@@ -186,6 +188,31 @@ def _check_order(path: Path, columns: ColumnMap, flight: Flight) -> None:
             f"{path}: thrust and weight explain the motion to {here:.3g} m/s^2 with the "
             f"quaternion's order {columns.attitude.order}, and to {there:.3g} m/s^2 with {order}: "
             "correct the order of the attitude"
+        )
+
+
+def _check_frame(path: Path, frame: str, flight: Flight) -> None:
+    """Refuse motion that runs against thrust and weight: in the other frame both change sign.
+
+    What changes within tenths of a second tells it: wind, and what a vehicle does about it, leave
+    that correlation at 0 or above. Where noise hides it nothing is refused.
+    """
+    few = 4  # intervals together; alone, each is mostly noise of the log
+    n = len(flight.stretch) // few * few
+    stretch = flight.stretch[:n].reshape(-1, few)
+    same = stretch[1:, -1] == stretch[:-1, 0]
+    explained, seen = (
+        np.diff(each[:n].reshape(-1, few, 3).mean(axis=1), axis=0)[same]
+        for each in (nominal(flight), flight.acceleration_mps2)
+    )
+    size = float(np.sqrt((explained**2).sum() * (seen**2).sum()))
+    against = -float((explained * seen).sum()) / size if size else 0.0
+    if against > max(0.2, 4.0 / np.sqrt(same.sum())):
+        other = "ENU" if frame == "NED" else "NED"
+        raise UserError(
+            f"{path}: with the frame {frame} the vehicle accelerates against thrust and weight "
+            f"(correlation {-against:.2f}): write frame: {other}, or check_frame: false where "
+            f"{frame} is right all the same"
         )
 
 

@@ -10,11 +10,11 @@ from typing import Annotated, Any, Literal, TypeAlias, cast
 import numpy as np
 import pyarrow as pa
 import pyarrow.csv as csv
-import pyarrow.parquet as pq
 from pydantic import Field
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
+from faultpath.core.files.parquet import Unreadable, read_table
 from faultpath.core.files.plain import Misread, read_yaml
 from faultpath.core.results import Frozen
 from faultpath.core.text import unknown
@@ -78,7 +78,9 @@ class ColumnMap(Frozen):
     velocity: Velocity
     thrust: Thrust
     frame: Literal["NED", "ENU"]
-    """NED with a body whose z axis points down, or ENU with one whose z axis points up."""
+    check_frame: bool = True
+    """NED with a body whose z axis points down, or ENU with one whose z axis points up; with
+    `check_frame` only where the motion does not contradict it."""
     mass_kg: Mass | None = None
     drag_kgps: tuple[Drag, Drag, Drag] | None = None
     """Linear drag along the body's axes; `None`: what thrust and weight leave is one force."""
@@ -162,11 +164,17 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
 
 def _table(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
     try:
-        data = BytesIO(contents(path))
+        data = contents(path)
         parquet = path.suffix.lower() == ".parquet"
-        table: pa.Table = cast(Any, pq.ParquetFile(data)).read() if parquet else csv.read_csv(data)
-    except (OSError, pa.ArrowException) as error:
+        table: pa.Table = read_table(data) if parquet else csv.read_csv(BytesIO(data))
+    except (OSError, pa.ArrowException, Unreadable) as error:
         raise UserError(f"{path}: cannot be read ({why(error)}): give a whole log") from None
+    lines = () if parquet else enumerate(data.splitlines(), 1)
+    if odd := next((number for number, line in lines if line.count(b'"') % 2), None):
+        raise UserError(
+            f"{path}, line {odd}: a quote opens a cell that does not end on the line, and would "
+            "swallow the rows below: correct the line"
+        )
     if columns.time is None:
         raise UserError(f"{path}: the map names no time column: add time: {{column: …, unit: s}}")
     found: dict[str, Floats] = {}

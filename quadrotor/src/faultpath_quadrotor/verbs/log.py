@@ -53,12 +53,13 @@ def command(
         said = said.model_copy(update={"mass_kg": mass})
     found = compensation(read_flight(log, said), _sizes(errors or ERRORS))
 
-    from faultpath.trials.store.atomic import make_folder, write_text
+    from faultpath.trials.store.atomic import check_output, make_folder, write_text
     from faultpath_quadrotor.flightlog.words import CAVEAT, sentences, table
 
     text = found.model_dump_json(indent=2) + "\n"
     if out is not None:
         make_folder(out)
+        check_output(out / "compensation.json", b'"flown_s"')
         write_text(out / "compensation.json", text, out)
     if as_json:
         typer.echo(text, nl=False)
@@ -75,12 +76,10 @@ def command(
 
 def _propose(log: Path, to: Path, mass_kg: float | None) -> None:
     from faultpath.api.display import SafeConsole
-    from faultpath.trials.store.atomic import check_writable, write_text
+    from faultpath.trials.store.atomic import check_output, write_text
     from faultpath_quadrotor.flightlog.proposing import propose
 
-    check_writable(to)
-    if to.exists():
-        raise UserError(f"{to} is there already: give another file with --columns, or remove it.")
+    check_output(to)
     text = propose(log, mass_kg)
     write_text(to, text)
     comments = [line.removeprefix("# ") for line in text.splitlines() if line.startswith("#")]

@@ -14,6 +14,12 @@ LARGEST = 4 * 2**30
 LARGEST_TEXT = 256 * 2**20
 """Bytes of JSON, which takes several times as much in memory."""
 
+
+def most_unpacked(packed: int) -> int:
+    """Return how many bytes may come of a packed file: a small one must not fill the memory."""
+    return min(LARGEST, max(LARGEST_TEXT, 100 * packed))
+
+
 _NO_FILE = (
     (stat.S_ISDIR, "a folder"),
     (stat.S_ISFIFO, "a pipe"),

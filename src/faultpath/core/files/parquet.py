@@ -6,11 +6,14 @@ The bytes depend on the rows and on the version of pyarrow alone.
 # pyarrow ships no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 # pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Generator, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any, TypeAlias
 
 import pyarrow as pa
 import pyarrow.parquet as pq
+
+from faultpath.core.files.opening import most_unpacked
 
 TEXT, INTEGER, NUMBER = pa.string(), pa.int64(), pa.float64()
 NUMBERS = pa.list_(pa.float32())
@@ -38,21 +41,51 @@ def encode(schema: Schema, rows: Iterable[Row], notes: Mapping[str, str] | None 
     return sink.getvalue().to_pybytes()
 
 
-def read_table(data: bytes) -> pa.Table:
-    """Return the table in a Parquet file's bytes; raises pyarrow's errors or `OSError`.
+@contextmanager
+def _sound() -> Generator[None]:
+    """Raise `Unreadable` for whatever a damaged file leads pyarrow into."""
+    try:
+        yield
+    except MemoryError:
+        raise Unreadable("it asks for more memory than there is") from None
+    except (pa.ArrowException, OSError, ValueError, OverflowError) as error:
+        raise Unreadable(str(error)) from error
 
-    In this thread alone: a thread of pyarrow's that still lets go of `data` while the interpreter
-    shuts down ends the process with an abort.
-    """
+
+@_sound()
+def read_table(data: bytes) -> pa.Table:
+    """Return the table in a Parquet file's bytes; `Unreadable` for another, or one too large."""
+    for _ in _batches(data):
+        pass
     return pq.ParquetFile(pa.BufferReader(data), pre_buffer=False).read(use_threads=False)
 
 
+def _batches(data: bytes) -> Iterator[pa.RecordBatch]:
+    """Yield the rows, counting what they take: columns of equal values are packed to nothing.
+    In this thread alone: a thread of pyarrow's that still lets go of the data while the interpreter
+    shuts down ends the process with an abort."""
+    file = pq.ParquetFile(pa.BufferReader(data), pre_buffer=False)
+    if len(set(names := file.schema_arrow.names)) < len(names):
+        raise Unreadable("two columns have one name")
+    about, most, unpacked = file.metadata, most_unpacked(len(data)), 0
+    groups = (about.row_group(number) for number in range(about.num_row_groups))
+    cells = sum(group.column(n).num_values for group in groups for n in range(group.num_columns))
+    least = 16 * cells  # as values of Python's
+    for batch in file.iter_batches(256, use_threads=False) if least <= most else ():
+        for column in batch:
+            plain = isinstance(column, pa.DictionaryArray) and column.dictionary_decode()
+            unpacked += (plain or column).nbytes
+        if unpacked > most:
+            break
+        yield batch
+    if max(least, unpacked) > most:
+        raise Unreadable(f"it unpacks to more than {most / 2**20:.0f} MiB")
+
+
+@_sound()
 def unpacked(data: bytes, size: int) -> bytes:
     """Return the `size` bytes that were compressed by Zstandard; `Unreadable` for others."""
-    try:
-        return pa.decompress(data, size, "zstd", asbytes=True)
-    except (pa.ArrowException, OSError) as error:
-        raise Unreadable(str(error)) from error
+    return pa.decompress(data, size, "zstd", asbytes=True)
 
 
 def read_rows(data: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
@@ -60,18 +93,14 @@ def read_rows(data: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
 
     Its columns have any types.
     """
-    try:
-        names, batches = (table := read_table(data)).column_names, table.to_batches()
-        if len(set(names)) < len(names):
-            raise Unreadable("two columns have one name")
-        number = 0
-        for batch in batches:
+    number = 0
+    with _sound():
+        for batch in _batches(data):
             for row in batch.to_pylist():
                 yield (number := number + 1), row
-    except (pa.ArrowException, OSError) as error:
-        raise Unreadable(str(error)) from error
 
 
+@_sound()
 def decode(
     data: bytes, schema: Schema, may_lack: Collection[str] = (), more: Any = None
 ) -> tuple[Iterator[dict[str, Any]], dict[str, str]]:
@@ -80,10 +109,7 @@ def decode(
     Beside the columns of `schema` the rows have all others of the type `more`, which may have gaps.
     `Unreadable` when a column of `schema` is not there, or has gaps and is not in `may_lack`.
     """
-    try:
-        table = read_table(data)
-    except (pa.ArrowException, OSError) as error:
-        raise Unreadable(str(error)) from error
+    table = read_table(data)
     others = [each.name for each in table.schema if each.type == more and each.name not in schema]
     kinds = {**schema, **dict.fromkeys(others, more)}
     columns: list[list[Any]] = []

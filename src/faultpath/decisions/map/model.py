@@ -1,8 +1,8 @@
 """The question and the record of a map: what was run, what is decided, and how it is said."""
 
-from typing import Literal
+from typing import Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from faultpath.core.results import Frozen, Result
 from faultpath.decisions.map.lattice import UNITS
@@ -79,6 +79,13 @@ class MapSurface(Result, allow_inf_nan=False):
     difference: tuple[tuple[float, ...], ...]
     sign: tuple[tuple[Sign, ...], ...]
     """Where it is decided who is ahead; the zero contour lies where it is not."""
+
+    @model_validator(mode="after")
+    def _square(self) -> Self:
+        rows = (self.difference, self.sign, *self.difference, *self.sign)
+        if {len(self.sizes)} != set(map(len, rows)):
+            raise ValueError("has not a row and a column for each size")
+        return self
 
 
 class Flip(Result, allow_inf_nan=False):

@@ -19,8 +19,8 @@ from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, Sys
 from faultpath.trials import question as asking
 from faultpath.trials.pairing import mismatch_words
 
-_LEAST = 1e-9
-"""Of the largest error: sizes of points keep twelve digits after the point."""
+_LEAST, _LARGEST = 1e-6, 1e12
+"""Bounds of the largest error: sizes keep twelve digits after the point, and no system has more."""
 _MOST_POINTS = 10_000
 """A hundred errors of each module."""
 
@@ -110,8 +110,10 @@ def plan_map(
                 "be, for example --up-to 0.2 for 20 % to either side."
             )
         largest = float(f"{3.0 * expected:.2g}")  # three declared spreads
-    elif not _LEAST <= largest < math.inf:
-        raise UserError(f"--up-to {largest:g} is no size: give a number of {_LEAST:g} or more.")
+    elif not _LEAST <= largest <= _LARGEST:
+        raise UserError(
+            f"--up-to {largest:g} is no size: give a number from {_LEAST:g} to {_LARGEST:g}."
+        )
     elif relative and largest >= 1.0:
         raise UserError(
             f"--up-to {largest:g} would take all of the reading away: errors are fractions of it, "

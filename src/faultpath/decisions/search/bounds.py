@@ -24,6 +24,8 @@ _DIGITS = 3
 def _ascending(ends: tuple[float, float]) -> tuple[float, float]:
     if ends[0] > ends[1]:
         raise ValueError(f"goes from {ends[0]:g} down to {ends[1]:g}: give the lower end first")
+    if max(map(abs, ends)) > 1e12:  # sums and roundings of the largest numbers are none
+        raise ValueError(f"reaches {max(ends, key=abs):g}: give ends within 1e12")
     return ends
 
 

@@ -45,14 +45,17 @@ def read_results(
         path = Path(given.path)
         try:
             data = contents(path, LARGEST_TEXT if path.suffix != ".eval" else inspect_logs.LARGEST)
-            for where, cells in _as_expected(_cells(path, data, asked)):
+            before = len(found)
+            for where, cells in _as_expected(_cells(path, data, asked, given.arm)):
                 found.append(received(f"{path}{where}", cells, given, asked))
+            if len(found) == before:
+                raise Misread("holds no trial; give a file with one in each row")
         except OSError as error:
             raise UserError(f"{path}: cannot be read ({error.strerror}): give a file.") from None
         except Misread as error:
             raise UserError(f"{error.at(path)}.") from None
         except Unreadable as error:
-            raise UserError(f"{path} is no sound Parquet file ({error}): write it anew.") from None
+            raise UserError(f"{path}: cannot be read ({error}): write it anew.") from None
         digests[str(path)] = hashlib.sha256(data).hexdigest()
     return found, digests
 
@@ -75,28 +78,30 @@ def _as_expected(cells: Cells) -> Cells:
     """Yield what a reader finds; `Misread` where a part of the file is not what it takes it for."""
     try:
         yield from cells
-    except Misread:
+    except (Misread, Unreadable):
         raise
     except KeyError as error:
         raise Misread(f"lacks {error}, which files of its kind have") from None
-    except (TypeError, AttributeError, ValueError):
+    except (TypeError, AttributeError, ValueError, IndexError, OverflowError):
         raise Misread("is not laid out as files of its kind are") from None
+    except inspect_logs.UNSOUND as error:
+        raise Misread(f"is no sound zip file ({error})") from None
 
 
-def _cells(path: Path, data: bytes, asked: JudgeQuestion) -> Cells:
+def _cells(path: Path, data: bytes, asked: JudgeQuestion, label: str) -> Cells:
     match path.suffix:
         case ".csv":
             yield from _named(_csv(text_of(data)), asked)
         case ".parquet":
             yield from _named(((f", row {n}", row) for n, row in read_rows(data)), asked)
         case ".eval":
-            yield from inspect_logs.cells(inspect_logs.unzipped(data), asked)
+            yield from inspect_logs.cells(inspect_logs.unzipped(data), asked, label)
         case ".jsonl":
-            lines = text_of(data).splitlines()
+            lines = text_of(data).split("\n")  # other line separators may stand in a text
             rows = [
                 (f", line {n}", _object(line.encode(), n))
                 for n, line in enumerate(lines, 1)
-                if line
+                if line.strip()
             ]
             if rows and "doc_id" in rows[0][1]:
                 yield from _samples(path, rows, asked)
@@ -105,7 +110,7 @@ def _cells(path: Path, data: bytes, asked: JudgeQuestion) -> Cells:
         case ".json":
             log = _object(data)
             if isinstance(log.get("eval"), dict):
-                yield from inspect_logs.cells(log, asked)
+                yield from inspect_logs.cells(log, asked, label)
             else:
                 yield from _episodes(log)
         case _:
@@ -150,7 +155,7 @@ def _episodes(info: Mapping[str, Any]) -> Cells:
     """Yield the episodes of LeRobot's `eval_info.json`: by task and place, or by seed where it says
     one."""
     if "per_episode" in info:
-        for number, episode in enumerate(_each(info["per_episode"])):
+        for number, episode in enumerate(_listed(info["per_episode"])):
             seed = episode["seed"]
             scene = f"episode {episode['episode_ix']}" if seed is None else f"seed {seed}"
             yield f", episode {number}", {**episode, "scene": scene, "seed": None}
@@ -160,20 +165,21 @@ def _episodes(info: Mapping[str, Any]) -> Cells:
             "is neither LeRobot's eval_info.json (per_task or per_episode) nor a log of Inspect "
             "(eval and samples); give one of these, or columns as CSV"
         )
-    for each in _each(info["per_task"]):
+    for each in _listed(info["per_task"]):
         task = f"{each['task_group']}/{each['task_id']}"
         metrics: dict[str, list[Any]] = each["metrics"]
         lists = {"success": "successes", "sum_reward": "sum_rewards", "max_reward": "max_rewards"}
-        columns = {name: metrics[key] for name, key in lists.items() if key in metrics}
+        columns = {name: _listed(metrics[key]) for name, key in lists.items() if key in metrics}
         for at, row in enumerate(zip(*columns.values(), strict=True)):
             cells = dict(zip(columns, row, strict=True))
             yield f", {task}, episode {at}", {**cells, "task": task, "scene": f"episode {at}"}
 
 
-def _each(value: Any) -> list[dict[str, Any]]:
+def _listed(value: Any) -> list[Any]:
+    """Return a list; `TypeError` for what could be gone through as one, such as a dict's keys."""
     if not isinstance(value, list):
         raise TypeError
-    return cast("list[dict[str, Any]]", value)
+    return cast("list[Any]", value)
 
 
 def _samples(path: Path, rows: Sequence[tuple[str, dict[str, Any]]], asked: JudgeQuestion) -> Cells:
@@ -182,11 +188,13 @@ def _samples(path: Path, rows: Sequence[tuple[str, dict[str, Any]]], asked: Judg
     task = named[1] if named else path.stem
     metric, _, wanted = asked.columns.get("success", "").partition(",")
     filters = list(dict.fromkeys(str(row.get("filter", "none")) for _, row in rows))
-    metrics = rows[0][1].get("metrics") or [
+    metrics = _listed(rows[0][1].get("metrics") or []) or [
         name
         for name, value in rows[0][1].items()
         if isinstance(value, int | float) and name not in _OF_SAMPLES
     ]
+    if not metrics:
+        raise Misread("names no metric, and has no number that could be one; give --column success")
     metric = metric or (str(metrics[0]) if len(metrics) == 1 else "")
     wanted = wanted or (filters[0] if len(filters) == 1 else "")
     if metric not in metrics or wanted not in filters:

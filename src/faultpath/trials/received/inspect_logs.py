@@ -6,17 +6,21 @@ import json
 import struct
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, cast
 
-from faultpath.core.files.opening import LARGEST_TEXT
-from faultpath.core.files.parquet import Unreadable, unpacked
+from faultpath.core.files.opening import most_unpacked
+from faultpath.core.files.parquet import unpacked
 from faultpath.core.files.plain import Misread, read_json
 from faultpath.core.text import listed
 from faultpath.trials.received.question import JudgeQuestion
 
 LARGEST = 2**30
-"""Bytes of a log, and of all that is packed into it."""
+"""Bytes of a log."""
+_LARGEST_SAMPLE = 2**26
+"""Of a sample of a packed log, which is read by itself."""
+UNSOUND = (zipfile.BadZipFile, zlib.error, struct.error, RuntimeError, OSError)
+"""What damaged zip files raise."""
 _ZSTANDARD = 93
 """How new logs are packed; Python's own reader of zip files does not know it before 3.14."""
 _GRADES = {"C": 1.0, "P": 0.5, "I": 0.0, "N": 0.0}
@@ -24,24 +28,25 @@ _GRADES = {"C": 1.0, "P": 0.5, "I": 0.0, "N": 0.0}
 
 
 def unzipped(data: bytes) -> dict[str, Any]:
-    """Return the log in a zip file as its JSON would be; `Misread` for what is none."""
-    try:
-        archive = zipfile.ZipFile(io.BytesIO(data))
-        files = {file.filename: file for file in archive.infolist()}
-        if "header.json" not in files:
-            raise Misread("holds no header.json, and is no finished log of Inspect")
-        samples = sorted(name for name in files if name.startswith("samples/"))
-        if sum(files[name].file_size for name in samples) > LARGEST:
-            raise Misread(f"unpacks to more than {LARGEST / 2**30:g} GiB; give it in parts")
-        log = read_json(_member(archive, files["header.json"], data))
-        return {**log, "samples": [read_json(_member(archive, files[n], data)) for n in samples]}
-    except (zipfile.BadZipFile, RuntimeError, struct.error, zlib.error, Unreadable) as error:
-        raise Misread(f"is no sound zip file ({error})") from None
+    """Return the log in a zip file as its JSON would be, its samples read one by one; `Misread` or
+    one of `UNSOUND` for what is none."""
+    archive = zipfile.ZipFile(io.BytesIO(data))
+    files = {file.filename: file for file in archive.infolist()}
+    if "header.json" not in files:
+        raise Misread("holds no header.json, and is no finished log of Inspect")
+    samples = [files[name] for name in sorted(files) if name.startswith("samples/")]
+    if sum(file.file_size for file in samples) > (most := most_unpacked(len(data))):
+        raise Misread(f"unpacks to more than {most / 2**20:.0f} MiB; give it in parts")
+    log = read_json(_member(archive, files["header.json"], data))
+    return {**log, "samples": (read_json(_member(archive, each, data)) for each in samples)}
 
 
 def _member(archive: zipfile.ZipFile, file: zipfile.ZipInfo, data: bytes) -> bytes:
-    if file.file_size > LARGEST_TEXT:
-        raise Misread(f"{file.filename} unpacks to more than {LARGEST_TEXT / 2**20:.0f} MiB")
+    if file.file_size > _LARGEST_SAMPLE:
+        raise Misread(f"{file.filename} unpacks to more than {_LARGEST_SAMPLE / 2**20:.0f} MiB")
+    # Other methods would unpack without a bound.
+    if file.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, _ZSTANDARD):
+        raise Misread(f"{file.filename} is packed as no log of Inspect is; write the log anew")
     if file.compress_type != _ZSTANDARD:
         with archive.open(file) as packed:
             return packed.read()
@@ -53,11 +58,16 @@ def _member(archive: zipfile.ZipFile, file: zipfile.ZipInfo, data: bytes) -> byt
     return found
 
 
-def cells(log: Mapping[str, Any], asked: JudgeQuestion) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the samples of a log: scenes by their id, seeds by the epoch, the arm by the model."""
-    about, samples = log["eval"], cast("list[dict[str, Any]] | None", log.get("samples"))
+def cells(
+    log: Mapping[str, Any], asked: JudgeQuestion, label: str = ""
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield the samples of a log: scenes by their id, seeds by the epoch, the arm by the model, or
+    by `label` where the model is not called as an arm."""
+    about, samples = log["eval"], cast("Iterable[dict[str, Any]] | None", log.get("samples"))
     if samples is None:
         raise Misread("holds no samples; write the log with them")
+    model = about["model"]
+    model = label if label and model not in (asked.baseline, asked.repair) else model
     wanted = asked.columns.get("success", "")
     for sample in samples:
         scores: dict[str, Any] = sample.get("scores") or {}
@@ -73,7 +83,7 @@ def cells(log: Mapping[str, Any], asked: JudgeQuestion) -> Iterator[tuple[str, d
         yield (
             where,
             {
-                "arm": about["model"],
+                "arm": model,
                 "task": about["task"],
                 "scene": sample["id"],
                 "seed": sample.get("epoch", 1),

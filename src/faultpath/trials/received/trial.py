@@ -44,25 +44,37 @@ class Given:
     arm: str = ""
     condition: str = ""
 
+    def label(self, name: str, cells: Mapping[str, Any], where: str) -> str:
+        """Return arm or condition of a trial; `UserError` where line and file say different ones,
+        since a label at the wrong file would turn the verdict round."""
+        label, cell = getattr(self, name), _text(cells.get(name), f"{where}: the {name}")
+        if label and cell and label != cell:
+            raise UserError(
+                f"{where}: the file says {name} '{cell}' and the command line '{label}': leave one "
+                f"of them out, or name another column with --column {name}=NAME."
+            )
+        return label or cell
+
 
 def received(where: str, cells: Mapping[str, Any], given: Given, asked: JudgeQuestion) -> Received:
     """Return the trial in `cells`, by the names of `COLUMNS` and of metrics.
 
     `UserError` for a trial without an arm, scene or success, and for cells that cannot be.
     """
-    arm = given.arm or _text(cells.get("arm"))
+    arm, condition = given.label("arm", cells, where), given.label("condition", cells, where)
     if not arm:
         raise UserError(
             f"{where} names no arm: write it before the file, as in {asked.repair}={given.path}, "
             "or name the column with --column arm=NAME."
         )
-    scene = _text(cells.get("scene"))
+    scene = _text(cells.get("scene"), f"{where}: the scene")
     if not scene:
         raise UserError(f"{where} names no scene: name the column with --column scene=NAME.")
     if "success" not in cells:
         raise UserError(f"{where} has no success: name the column with --column success=NAME.")
-    texts = {name: _text(cells.get(name)) for name in ("task", "seed", "initial", "condition")}
-    for name, text in {"arm": arm, "scene": scene, **texts}.items():
+    more = ("task", "seed", "initial")
+    texts = {name: _text(cells.get(name), f"{where}: the {name}") for name in more}
+    for name, text in {"arm": arm, "scene": scene, "condition": condition, **texts}.items():
         if text:
             check_name(f"{where}: the {name}", text)
     status = _status(cells["success"], where, asked.success_from)
@@ -78,7 +90,7 @@ def received(where: str, cells: Mapping[str, Any], given: Given, asked: JudgeQue
     return Received(
         where,
         arm,
-        given.condition or texts["condition"],
+        condition,
         texts["task"],
         scene,
         texts["seed"],
@@ -90,10 +102,12 @@ def received(where: str, cells: Mapping[str, Any], given: Given, asked: JudgeQue
     )
 
 
-def _text(cell: object) -> str:
+def _text(cell: object, what: str) -> str:
     """Return a name: `3` for 3.0 too, which is how a column of whole numbers with a gap is read."""
     if isinstance(cell, float) and cell.is_integer():
         cell = int(cell)
+    if isinstance(cell, list | dict | bytes):
+        raise UserError(f"{what} is {shown(cell)}: give a word or a number.")
     return "" if cell is None or cell != cell else str(cell).strip()
 
 
@@ -114,9 +128,9 @@ def _status(cell: object, where: str, least: float | None) -> Status:
     word = cell.strip().lower() if isinstance(cell, str) else cell
     if word is None or word == "" or word != word or word == "nan":
         return Status.FAILED
-    if word in set(Status):
-        return Status(str(word))
     if isinstance(word, str):
+        if word in set(Status):
+            return Status(word)
         word = _TRUTH.get(word, word)
     try:
         score = float(word) if isinstance(word, str | int | float) else math.nan

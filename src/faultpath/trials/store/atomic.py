@@ -16,9 +16,11 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from faultpath.core.errors import UserError
-from faultpath.core.files.opening import unlike_file
+from faultpath.core.files.opening import LARGEST_TEXT, contents, opened, unlike_file
 
 _PREFIX = ".partial-"
+_KINDS = (".csv", ".html", ".json", ".md", ".parquet", ".svg")
+"""Of the files that a run writes into its folder."""
 Say = Callable[[str], None]
 
 
@@ -62,6 +64,49 @@ def write_file(path: Path, data: bytes, inside: Path | None = None) -> None:
 def write_text(path: Path, text: str, inside: Path | None = None) -> None:
     """Write a text file as `write_file` does."""
     write_file(path, text.encode(), inside)
+
+
+def is_run(folder: Path) -> bool:
+    """Return whether a folder holds a run, finished or begun."""
+    for name in ("provenance.json", "manifest.json"):
+        with suppress(OSError):
+            if b'"faultpath_version"' in contents(folder / name, LARGEST_TEXT):
+                return True
+    return (folder / ".lock").is_file()
+
+
+def begin(folder: Path) -> None:
+    """Make the folder of a run, or go on in it; `UserError` where files stand that are of none."""
+    if not is_run(folder):
+        check_free(folder)
+    make_folder(folder)
+
+
+def check_free(folder: Path) -> None:
+    """Raise `UserError` for a folder with files that a run which begins there might replace."""
+    if names := sorted(each.name for each in folder.glob("*") if each.suffix in _KINDS):
+        raise UserError(f"{folder} holds {names[0]}, which is not of this run: give a new folder.")
+
+
+def check_output(path: Path, mark: bytes | None = None) -> None:
+    """Raise `UserError` where a file that the user names cannot be written, belongs to a run, or
+    stands there without the `mark` of what is to replace it."""
+    check_writable(path)
+    if path.exists():
+        if is_run(Path(os.path.realpath(path)).parent):
+            raise UserError(f"{path} belongs to the run in that folder: give another file.")
+        check_mark(path, mark)
+
+
+def check_mark(path: Path, mark: bytes | None) -> None:
+    """Raise `UserError` for a file that does not begin as those do that may replace it."""
+    with opened(path) as file:
+        head = file.read(4096)
+    if head and (mark is None or mark not in head):
+        raise UserError(
+            f"{path} is there already, and not a file that this may replace: remove it, or "
+            "choose another place."
+        )
 
 
 def check_writable(path: Path) -> None:

@@ -145,6 +145,8 @@ class RunFolder:
         `shared` lets studies with other arms use the folder one after the other. `UserError` when
         the folder cannot be written, or holds something else.
         """
+        if not self.manifest.exists():  # nothing is left in a folder of somebody else
+            atomic.check_free(self.path)
         make_folder(self.path)
         with locked(self.path, notice):
             found = read_manifest(self.manifest)

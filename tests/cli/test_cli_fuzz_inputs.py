@@ -1,0 +1,121 @@
+"""Odd files, folders and numbers in great numbers: a sentence each, and no file lost.
+
+`make test` tries a few of the same each time; `make fuzz` tries all, with a seed of its own, which
+a failure names with the number of the case.
+"""
+
+import hashlib
+import re
+import shutil
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from random import Random
+from traceback import format_exception
+
+import pytest
+from cli_runs import Ended, faultpath
+from odd_commands import CASES, LONG, bases
+from test_cli_fuzz import OPTIONS
+
+pytestmark = pytest.mark.fuzz
+
+LIMIT_S = 60
+FEW, MANY = 3, 66
+"""Cases of each kind in the quick part, and in all."""
+INNER = re.compile(r"\b[A-Z][A-Za-z]+(Error|Exception)\b|correct the system|\(None\)")
+"""What a sentence about data does not hold."""
+PAGES = (".html", ".md", ".svg", ".csv")
+"""Of a run's folder, which `report` and `replay --signals` write again."""
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Try what takes long in the whole alone."""
+    if "name" in metafunc.fixturenames:
+        whole = metafunc.config.getoption("--fuzz-whole")
+        every = {**CASES, **LONG} if whole else CASES
+        metafunc.parametrize("name", [n for n in every if n != "log" or "log" in OPTIONS])
+
+
+@pytest.fixture(scope="module")
+def base(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
+    folder = tmp_path_factory.mktemp("bases")
+    more = ("search", "sensitivity") if request.config.getoption("--fuzz-whole") else ()
+    bases(folder, ("audit", "judge", *more))
+    return folder
+
+
+@contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    def end(*_: object) -> None:
+        raise TimeoutError(f"it took more than {seconds:g} s")
+
+    before = signal.signal(signal.SIGALRM, end)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def held(folder: Path) -> dict[str, str]:
+    """Return the digest of each file."""
+    return {
+        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.name != ".lock"
+    }
+
+
+def wrong(line: list[str], ended: Ended, before: dict[str, str], here: Path) -> str:
+    """Return what is wrong with how a command ended, if anything is."""
+    said = ended.out + ended.err
+    if "Traceback" in said or ended.status not in (0, 1, 2):
+        return f"status {ended.status}: {said[-300:]}"
+    if not all(each.isprintable() for each in said.splitlines() if line[-1] != "--json"):
+        return "characters that steer the terminal"
+    last = ended.err.splitlines()[-1:] or [""]
+    if ended.status == 2 and "Usage" not in ended.out and not last[0].startswith("faultpath: "):
+        return f"no sentence: {said[-300:]}"
+    if ended.status == 2 and (len(last[0]) < 30 or INNER.search(last[0])):
+        return f"nothing is said: {last}"
+    after = held(here)
+    verb, ours = line[0], "run/"
+    lost = [
+        name
+        for name, digest in before.items()
+        if after.get(name) != digest
+        and not (verb in ("report", "replay") and name.startswith(ours) and name.endswith(PAGES))
+        and not (verb == "replay" and name in ("run/signals.parquet", "run/provenance.json"))
+    ]
+    return f"lost: {lost}" if lost else ""
+
+
+def test_odd_inputs_end_in_a_sentence(
+    name: str,
+    base: Path,
+    tmp_path: Path,
+    fuzz_seed: int,
+    monkeypatch: pytest.MonkeyPatch,
+    request: pytest.FixtureRequest,
+) -> None:
+    case, faults = {**CASES, **LONG}[name], list[str]()
+    for number in range(MANY if request.config.getoption("--fuzz-whole") else FEW):
+        rng, here = Random(f"{fuzz_seed} {name} {number}"), tmp_path / str(number)
+        here.mkdir()
+        monkeypatch.chdir(here)
+        line = [str(part).encode("utf-8", "replace").decode() for part in case(base, here, rng)]
+        before, begun = held(here), time.monotonic()
+        try:
+            with limited(LIMIT_S):
+                fault = wrong(line, faultpath(*line), before, here)
+        except Exception as error:  # what the command would end in, with its traceback
+            fault = "".join(format_exception(error))[-1500:]
+        if fault:
+            took = f"{time.monotonic() - begun:.1f} s"
+            faults.append(f"seed {fuzz_seed}, {name} {number}, {took}: {line}\n{fault}")
+        shutil.rmtree(here)
+    assert not faults, f"{len(faults)} of them\n" + "\n".join(faults)
