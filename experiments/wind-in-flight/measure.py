@@ -27,12 +27,12 @@ anchored.LINEAR_BOUND_MPS2 = compiled.LINEAR_BOUND_MPS2 = POINT["residual_bound_
 
 import numpy as np  # noqa: E402  (the platform first)
 import torch  # noqa: E402
-from faultpath_quadrotor import checkpoint, native  # noqa: E402
-from faultpath_quadrotor.device import CPU, arithmetic  # noqa: E402
 from faultpath_paper.evidence.inputs import Subject  # noqa: E402
 from faultpath_paper.evidence.quantities import _QUANTITIES as QUANTITIES  # noqa: E402
 from faultpath_paper.evidence.recording import STRIDE  # noqa: E402
 from faultpath_paper.evidence.table import Measurement, Recording  # noqa: E402
+from faultpath_quadrotor import checkpoint, native  # noqa: E402
+from faultpath_quadrotor.device import CPU, arithmetic  # noqa: E402
 from faultpath_quadrotor.plant.module import ACTION  # noqa: E402
 from faultpath_quadrotor.plant.world import CONTROL_STEPS  # noqa: E402
 from faultpath_quadrotor.system import Quadrotor  # noqa: E402

@@ -28,7 +28,7 @@ def made(one_seed: ReportInput) -> RunProvenance | None:
 
 @pytest.fixture(scope="module")
 def html(made: RunProvenance | None) -> str:
-    return reproduction_page(reproduction(), made, ("C26 is open here.", CENTRAL))
+    return reproduction_page(reproduction(), made, ("C26 is open here", "Here is why.", CENTRAL))
 
 
 @pytest.fixture(scope="module")
