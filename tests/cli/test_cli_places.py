@@ -196,6 +196,16 @@ def test_what_the_same_verb_wrote_is_replaced(option: str, tmp_path: Path) -> No
         assert ended.status == 0, ended.err
 
 
+@pytest.mark.parametrize("first", ["audit", "map"])
+def test_a_run_does_not_go_on_in_one_of_another_kind(first: str, tmp_path: Path) -> None:
+    """The arms of a map may be others from round to round, but a map is no audit."""
+    assert faultpath(*COMMANDS[first], "--out", "run").status == 0
+    before = {each: each.read_bytes() for each in Path("run").iterdir() if each.is_file()}
+    other = COMMANDS["map" if first == "audit" else "audit"]
+    assert "holds the run of another study" in faultpath(*other, "--out", "run").refused()
+    assert all(each.read_bytes() == data for each, data in before.items())
+
+
 def test_pages_replace_no_page_of_somebody_else(run: Path, tmp_path: Path) -> None:
     opened = open_run(run)
     (tmp_path / "table.md").write_text("mine")

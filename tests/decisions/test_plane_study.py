@@ -101,6 +101,7 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
         ({"up_to": float("nan")}, "finite number"),
         ({"points": 24}, "begins with 25"),
         ({"spread": (0.0,)}, "above 0"),
+        ({"spread": (0.1, 1e308)}, "--spread: give standard deviations above 0, up to"),
         ({"spread": (0.1, 0.1, 0.1)}, "one for each module"),
         ({"mean": (0.5,)}, "beyond the map"),
         ({"correlation": 1.5}, "between -1 and 1"),

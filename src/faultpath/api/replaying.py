@@ -20,7 +20,7 @@ from faultpath.trials.attempt import Done
 from faultpath.trials.execution.again import difference
 from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.execution.provenance import amend
-from faultpath.trials.question import AuditQuestion
+from faultpath.trials.question import AuditQuestion, ask
 from faultpath.trials.store.atomic import check_output, write_file
 from faultpath.trials.store.mcap import encode_mcap
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
@@ -96,9 +96,8 @@ def replay(
         raise UserError(
             f"library '{asked.library}' has other scenes than the run: bring its file back."
         )
-    request = AuditQuestion(
-        baseline=asked.baseline, repair=asked.repair, fault=asked.fault, seeds=asked.seeds
-    )
+    kept = ("baseline", "repair", "fault", "seeds")
+    request = ask(AuditQuestion, {name: getattr(asked, name) for name in kept})
     study = plan_audit(system, chosen.spec, request, library).study
     before = outcomes_at(held.outcomes, held.traces)
     named = paths or {row.path for row in study.rows}

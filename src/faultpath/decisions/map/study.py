@@ -129,8 +129,8 @@ def plan_map(
         )
     chosen = scenes_of(library, asked.scenes)
     spread = _two("--spread", asked.spread or (expected or largest / 2.0,))
-    if min(spread) <= 0.0:
-        raise UserError("--spread: a standard deviation is above 0.")
+    if not 0.0 < min(spread) <= max(spread) <= 1000 * largest:
+        raise UserError(f"--spread: give standard deviations above 0, up to {1000 * largest:g}.")
     middle = _two("--mean", asked.mean)
     if max(map(abs, middle)) > largest:
         raise UserError(f"--mean lies beyond the map, which ends at {largest:g}: see --up-to.")

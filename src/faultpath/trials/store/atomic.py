@@ -72,7 +72,7 @@ def is_run(folder: Path) -> bool:
         with suppress(OSError):
             if b'"faultpath_version"' in contents(folder / name, LARGEST_TEXT):
                 return True
-    return (folder / ".lock").is_file()
+    return (lock := folder / ".lock").is_file() and contents(lock).strip().isdigit()
 
 
 def begin(folder: Path) -> None:

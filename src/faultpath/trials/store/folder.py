@@ -79,11 +79,10 @@ def check_same(folder: Path, found: Manifest, asked: Manifest, shared: bool = Fa
     """Raise `UserError` unless `folder` may go on with the study that is asked for.
 
     The selection of scenes may differ: a quick look at some scenes grows into the whole library
-    in the same folder, and keeps what it has. In a folder that studies of one system share, their
-    names and arms may differ as well.
+    in the same folder, and keeps what it has. In a folder that rounds of one study share, their
+    arms may differ as well.
     """
     same_study = (
-        ("study", found.study.name, asked.study.name),
         ("set of variants, faults or seeds", found.study.rows, asked.study.rows),
         ("number of scenes from look to look", found.study.look, asked.study.look),
     )
@@ -91,6 +90,7 @@ def check_same(folder: Path, found: Manifest, asked: Manifest, shared: bool = Fa
         what
         for what, one, two in (
             ("version of faultpath", found.faultpath_version, asked.faultpath_version),
+            ("name", found.study.name, asked.study.name),
             ("system", found.study.system, asked.study.system),
             ("library", found.study.library, asked.study.library),
             ("state of the library", found.library_hash, asked.library_hash),
