@@ -40,7 +40,7 @@ audit: $(STAMPS)/runtime ## Audit a repair of the quadrotor's wind reconstructio
 	  $(call unless_given,--repair,gru+dcc) $(call unless_given,--fault,calibration=+0.1) \
 	  $(call unless_given,--library,held-out) $(call unless_given,--wind,L3) \
 	  $(call unless_given,--rule,exact) $(ARGS)
-	$(if $(ARGS),,@echo "To decide what 100 scenes and one training leave open: make confirm (300 new scenes, three trainings)")
+	$(if $(ARGS),,@$(BIN)/python -c "from faultpath_paper.central import shipped; print(shipped())")
 
 confirm: $(STAMPS)/runtime ## Ask the same of 300 new scenes and three trainings: it decides what that leaves open
 	$(BIN)/faultpath audit quadrotor --baseline gru --repair gru+dcc --fault calibration=+0.1 \

@@ -3,6 +3,7 @@
     python search.py FOLDER POINTS.json --scenes 50
     python search.py FOLDER FINALISTS.json --scenes 100 --seeds 0,1,2
     python search.py FOLDER --show
+    python search.py FOLDER --table
 
 `POINTS.json` holds {"name": {parameters that differ from s2}}. The same command
 goes on where it was cut short. `FOLDER/search.json` is the record.
@@ -33,12 +34,16 @@ def main() -> None:
     parser.add_argument("--seeds", default="0")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--show", action="store_true")
+    parser.add_argument("--table", action="store_true")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     path = options.folder / "search.json"
     if options.show:
         for trial in sorted(read(path), key=lambda trial: trial["distance"]):
             print(line(trial))
+        return
+    if options.table:
+        print(table(read(path)))
         return
     seeds = [int(seed) for seed in options.seeds.split(",")]
     running: dict[str, subprocess.Popen[bytes]] = {}
@@ -130,6 +135,42 @@ def line(trial: dict[str, Any]) -> str:
     head = f"## {trial['name']} {rung}: {trial['distance']} {trial['tables']}"
     soundness = f"{trial['constraints']} {'sound' if trial['sound'] else 'NOT SOUND'}"
     return "\n".join([head, json.dumps(differs), soundness, "; ".join(rows)])
+
+
+COLUMNS = {
+    "GRU": "success, GRU, L3",
+    "alone": "success, GRU, reconstruction only",
+    "shared": "success, GRU, shared",
+    "truth": "success, truth, L3",
+    "withheld": "success, withheld, L3",
+    "zero": "success, zero, L3",
+    "withheld, free": "success, withheld, L3, free",
+    "error": "acceleration error, GRU",
+}
+
+
+def table(trials: list[dict[str, Any]]) -> str:
+    """Return all points as a table, the nearest first."""
+    parts = list(trials[0]["tables"])
+    first = {column: trials[0]["quantities"][name]["target"] for column, name in COLUMNS.items()}
+    rows = [
+        f"| point | differs from s2 | scenes, seeds | distance | {' | '.join(parts)} | sound | "
+        f"{' | '.join(COLUMNS)} |",
+        "| :-- | :-- | :-- |" + " --: |" * (2 + len(parts) + len(COLUMNS)),
+        "| *the paper* |"
+        + " |" * (4 + len(parts))
+        + "".join(f" {x:.2f} |" for x in first.values()),
+    ]
+    for trial in sorted(trials, key=lambda trial: (trial["scenes"], trial["distance"])):
+        differs = ", ".join(f"{k} {v}" for k, v in trial["point"].items() if v != S2[k])
+        values = [trial["quantities"][name]["value"] for name in COLUMNS.values()]
+        distances = " | ".join(f"{part:.2f}" for part in trial["tables"].values())
+        rows.append(
+            f"| {trial['name']} | {differs} | {trial['scenes']}, {len(trial['seeds'])} | "
+            f"{trial['distance']:.2f} | {distances} | "
+            f"{'yes' if trial['sound'] else 'no'} | {' | '.join(f'{v:.2f}' for v in values)} |"
+        )
+    return "\n".join(rows)
 
 
 def commit() -> str:

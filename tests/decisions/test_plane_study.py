@@ -96,7 +96,7 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
         ({"against": ("controller", "observer"), "baseline": "blind"}, "two different variants"),
         ({"up_to": None}, "say how large errors may be"),
         ({"up_to": 1.0}, "less than 1"),
-        ({"up_to": 0.0}, "1e-09 or more"),
+        ({"up_to": 0.0}, "from 1e-06 to 1e+12"),
         ({"up_to": 1e-13}, "1e-13 is no size"),
         ({"up_to": float("nan")}, "finite number"),
         ({"points": 24}, "begins with 25"),

@@ -16,6 +16,7 @@ from faultpath_paper.central import (
     detail,
     elsewhere,
     of_page,
+    shipped,
 )
 from faultpath_paper.claims import SUBJECTS
 from faultpath_paper.report.short import apart, by_kind, by_subject
@@ -89,6 +90,13 @@ def test_a_page_answers_with_its_own_run_unless_it_is_quick(found: Reproduction)
     assert len(quick[2].lines) == len(elsewhere()) + 1
     none = found.ledger.model_copy(update={"claims": found.ledger.claims[:3]})
     assert of_page(found.model_copy(update={"ledger": none})) is None
+
+
+def test_the_main_job_shows_what_more_scenes_found() -> None:
+    text = shipped()
+    assert answer(elsewhere()) in text
+    assert detail(elsewhere()) in text
+    assert "make confirm" in text
 
 
 def test_findings_and_matched_properties_are_counted_apart(ledger: Ledger) -> None:

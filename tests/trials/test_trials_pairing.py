@@ -122,11 +122,13 @@ def test_pairs_can_be_cut_to_common_scenes():
     np.testing.assert_array_equal(pairs.second.success, [[1, 1], [0, 1]])
 
 
-def test_one_metric_that_is_missing_takes_the_array_away():
+def test_a_metric_that_a_trial_lacks_is_not_a_number_there():
     table = _altering("repair", "a", 3, metrics={})
     pairs = pair(table, ONE, TWO)
-    assert pairs.first.metrics == {}
-    assert list(pairs.second.metrics) == ["distance"]
+    missing = np.isnan(pairs.first.metrics["distance"])
+    assert missing.sum() == 1
+    assert missing[pairs.scenes.index("a"), SEEDS.index(3)]
+    assert not np.isnan(pairs.second.metrics["distance"]).any()
 
 
 def test_sides_of_different_extent_are_refused():
