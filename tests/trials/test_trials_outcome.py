@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from faultpath.trials import Outcome, Status
-from faultpath.trials.outcome import checked
+from faultpath.trials.outcome import checked, failed_outcome
 
 GOOD = Outcome("a", Status.SUCCESS, 2.0, "i", "d", "none", {"rms_m": 0.5})
 
@@ -76,3 +76,11 @@ def test_a_sound_one_stays_what_it_is(fields):
 
 def test_a_failed_trial_always_says_why():
     assert checked(replace(GOOD, status=Status.FAILED)).error == "the system said that it failed"
+
+
+@pytest.mark.parametrize("dt_s", [0.01, 0.02, 0.05, 0.1, 1 / 3])
+def test_a_time_tells_the_steps_that_it_is_the_sum_of(dt_s):
+    for count in range(1, 400):
+        for time_s in (count * dt_s, sum([dt_s] * count)):
+            assert Outcome("a", Status.SUCCESS, time_s, "i", "d", "n").steps(dt_s) == count
+    assert failed_outcome("a", "why").steps(dt_s) == 0

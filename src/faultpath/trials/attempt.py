@@ -1,6 +1,5 @@
 """One attempt at running an arm over some scenes, and what can come of it."""
 
-import math
 import traceback
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -91,7 +90,7 @@ def attempt(
         taps = taps_of(system, arm, scenes, guard, observer)
         outcomes = _checked(system, scenes, system.run(arm.variant, scenes, taps, arm.seed))
         dt_s = system.control_dt_s
-        steps = [0 if o.failed else math.ceil(o.time_s / dt_s - 1e-6) for o in outcomes]
+        steps = [outcome.steps(dt_s) for outcome in outcomes]
         taps.verify(np.array(steps, dtype=np.int64) - 1)
         receipts = taps.receipts()
         counts = zip(receipts.steps_faulted, receipts.steps_altered, strict=True)

@@ -88,6 +88,10 @@ class Outcome:
         """Whether the program failed, so that the trial says nothing."""
         return self.status is Status.FAILED
 
+    def steps(self, dt_s: float) -> int:
+        """Return how many control steps of `dt_s` it took; its time is a rounded sum of these."""
+        return math.ceil(self.time_s / dt_s - 1e-6)
+
 
 _LONGEST_ERROR = 2000
 

@@ -1,7 +1,6 @@
 """Blocks of scenes that a check, a trace or a replay runs and records, and what came of them."""
 
 import copy
-import math
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -73,7 +72,7 @@ class RecordedBlock:
 
         `what` is a field of `Read` by scene: a digest, or the sum.
         """
-        ends = {o.scene: math.ceil(o.time_s / dt_s) for o in self.outcomes}
+        ends = {outcome.scene: outcome.steps(dt_s) for outcome in self.outcomes}
         return {
             (scene, read.step, *read.tap): noted
             for read in self.reads

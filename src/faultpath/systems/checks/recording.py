@@ -204,7 +204,7 @@ class Trial(Recorded):
 
 def trials(recording: Recording, done: Done, dt_s: float) -> list[Trial]:
     """Return each trial of a recorded run."""
-    steps = (math.ceil(outcome.time_s / dt_s - 1e-6) for outcome in done.outcomes)
+    steps = (outcome.steps(dt_s) for outcome in done.outcomes)
     return [Trial(recording, scene, count) for scene, count in enumerate(steps)]
 
 
