@@ -117,13 +117,51 @@ def test_that_the_code_is_another_is_said_before_it_is_imported() -> None:
         {"options": {"bring": "mine.py:create"}},
         {"options": {"plant": "mine.py:create"}},
         {"baseline": "mine.py:create/gru"},
+        {"options": {"bring": "mine.py:create "}},
+        {"options": {"bring": "gru, mine.py:écrire"}},
+        {"options": {"predictor": "mine.py:create.x"}},
+        {"options": {"estimator": "mine.py:a-b"}},
+        {"options": {"planner": "wm-a-wind/mine.py:create"}},
+        {"system": "faultpath.api.systems:load_system", "options": {"system": "mine.py"}},
     ],
 )
 def test_a_part_that_a_file_brings_to_an_installed_system_is_asked_for_too(names) -> None:
     pytest.importorskip("faultpath_quadrotor")
     Path("s.yaml").write_text(yaml.safe_dump(STUDY | {"system": "quadrotor"} | names))
-    assert "names mine.py:create" in faultpath("audit", "--study", "s.yaml").refused()
+    said = faultpath("audit", "--study", "s.yaml").refused()
+    assert "give --trust" in said
+    assert hashlib.sha256(Path("mine.py").read_bytes()).hexdigest()[:16] in said
     assert not Path("imported").exists()
+
+
+def test_the_file_that_is_shown_is_the_one_that_would_be_imported() -> None:
+    pytest.importorskip("faultpath_quadrotor")
+    Path("decoy.py").write_text("")
+    Path("decoy.py:create").mkdir()
+    shutil.copy("mine.py", "decoy.py:create/real.py")
+    options = {"planner": "decoy.py:create/real.py:run-it"}
+    Path("s.yaml").write_text(yaml.safe_dump(STUDY | {"system": "quadrotor", "options": options}))
+    said = faultpath("audit", "--study", "s.yaml").refused()
+    assert str(Path("decoy.py:create/real.py").resolve()) in said
+
+
+@pytest.mark.parametrize(
+    "names", [{"system": "a\0b.py:create"}, {"options": {"bring": "a\0b.py:create"}}]
+)
+@pytest.mark.parametrize("trust", [(), ("--trust",)])
+def test_a_name_with_a_zero_byte_is_refused_in_a_sentence(names, trust) -> None:
+    pytest.importorskip("faultpath_quadrotor")
+    Path("s.yaml").write_text(yaml.safe_dump(STUDY | {"system": "quadrotor"} | names))
+    assert faultpath("audit", "--study", "s.yaml", *trust).status == 2
+
+
+def test_a_part_that_changed_since_the_run_is_said_to_have() -> None:
+    pytest.importorskip("faultpath_quadrotor")
+    said: list[str] = []
+    spec = SystemSpec(name="quadrotor", options={"bring": "mine.py:create"})
+    Received("record.json", True, said.append, {"mine": "0" * 64}).check(spec, ())
+    assert "mine.py:create" in said[-1]
+    assert "changed since" in said[-1]
 
 
 def test_an_installed_system_needs_no_word() -> None:
@@ -132,5 +170,5 @@ def test_an_installed_system_needs_no_word() -> None:
     file = Received("record.json", False, said.append)
     file.check(SystemSpec(name="quadrotor", options={"wind": "L3"}), ("gru", "gru+dcc"))
     assert said == ["Importing quadrotor, which record.json names."]
-    with pytest.raises(UserError, match="no file of its own"):
+    with pytest.raises(UserError, match="no file found"):
         file.check(SystemSpec(name="sys:exit"), ())

@@ -65,7 +65,7 @@ def mine(declared: str = "", built: str = "", stepped: str = "") -> str:
 @pytest.mark.parametrize("workers", [0, 1])
 @pytest.mark.parametrize("when", ["built", "stepped"])
 def test_a_file_that_is_read_undeclared_is_refused(when, workers, tmp_path) -> None:
-    with pytest.raises(UserError, match=r"reads gain\.npy.*`data_files = \('gain\.npy',\)`"):
+    with pytest.raises(UserError, match=r"reads gain\.npy.*`data_files=\('gain\.npy',\)`"):
         audit(mine(**{when: READ}), **ASKED, workers=workers, folder=tmp_path / "run")
     assert not list(tmp_path.glob("run/shards/*"))
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import sha256
+from os import PathLike
 from typing import Any, cast
 
 import numpy as np
@@ -57,6 +58,7 @@ class ComposedSystem(LoopSystem):
             channel of its own. In a variant the first that one of its modules writes feeds it, else
             the first that the plant gives.
         scenes: Seeds of the scenes of each library.
+        data_files: Files and folders whose contents decide a result; see `System.data_files`.
 
     Raises:
         SystemMistake: The parts do not fit together, or a source has no unit.
@@ -70,10 +72,12 @@ class ComposedSystem(LoopSystem):
         units: Mapping[str, str | Mapping[str, Any]],
         channels: Mapping[str, Sequence[str]] | None = None,
         scenes: Mapping[str, Sequence[int]] = SCENES,
+        data_files: Sequence[str | PathLike[str]] = (),
     ) -> None:
         self.name, self.control_dt_s = name, plant.dt_s
         self.metrics = {key: measure.metric for key, measure in plant.metrics.items()}
         self._plant, self._scenes = plant, dict(scenes)
+        self._data_files = tuple(data_files)
         self._parts = {
             key: parts
             if isinstance(parts, Parts)
@@ -100,6 +104,11 @@ class ComposedSystem(LoopSystem):
             for world in first.state.worlds:
                 world.close()
         self._interface = self._declared(units, several, plant.shapes | seen.shapes)
+
+    @property
+    @override
+    def data_files(self) -> Sequence[str | PathLike[str]]:
+        return self._data_files
 
     @property
     @override

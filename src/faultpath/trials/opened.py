@@ -15,9 +15,10 @@ _OTHERS = (
     *("/dev/", "/etc/", "/proc/", "/run/", "/sys/", "/usr/", os.path.expanduser("~/.")),
     *(os.path.realpath(prefix) + os.sep for prefix in (sys.prefix, sys.base_prefix)),
 )
-"""The machine's, Python's, and what programs keep for themselves in the user's home."""
+"""Places of the machine, of Python, and of what programs keep in hidden folders at home."""
+_EVENTS = ("open", "sqlite3.connect")
 _watching: list[tuple[set[str], set[str]]] = []
-"""By whoever watches: what was opened to be read, and what to be made."""
+"""Files opened to be read and files opened to be made, for each who watches."""
 
 
 @contextmanager
@@ -35,7 +36,12 @@ def reads() -> Generator[set[str]]:
         _watching[:] = (each for each in _watching if each is not mine)
         paths = {os.path.realpath(path) for path in read - made}
         read.clear()
-        read |= {path for path in paths if _is_users(path) and os.stat(path).st_mtime_ns < began}
+        ended = time.time_ns()
+        read |= {
+            path
+            for path in paths
+            if _is_users(path) and not began <= os.stat(path).st_mtime_ns <= ended
+        }
 
 
 @cache
@@ -44,9 +50,9 @@ def _hook() -> None:
 
 
 def _note(event: str, arguments: tuple[Any, ...]) -> None:
-    if not _watching or event != "open" or isinstance(arguments[0], int):
+    if not _watching or event not in _EVENTS or isinstance(arguments[0], int):
         return  # a number is of a file that was opened before
-    path, _, flags = arguments
+    path, _, flags = arguments if event == "open" else (arguments[0], None, os.O_RDONLY)
     if flags & os.O_NONBLOCK:  # as faultpath opens; the file of a fault has its digest in the fault
         caller = sys._getframe(2).f_back  # pyright: ignore[reportPrivateUsage]
         if caller and caller.f_globals.get("__name__") == "faultpath.faults.recorded":

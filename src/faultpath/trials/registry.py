@@ -210,7 +210,8 @@ def _target(name: str) -> tuple[str, str]:
 
 def _split(name: str) -> tuple[str, str]:
     place, _, attribute = name.rpartition(":")
-    if not place or not attribute or (place.startswith(".") and not place.endswith(".py")):
+    relative = place.startswith(".") and not place.endswith(".py")
+    if not place or not attribute or relative or "\0" in name:
         raise UserError(
             f"{name!r} names nothing to build: name it as 'module:attribute' or "
             "'path/to/file.py:attribute'"

@@ -1,12 +1,15 @@
 """Code that a received file names, which may be anybody's: imported once a person trusts it."""
 
+import os
 import re
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import sha256
+from pathlib import Path
 
 from faultpath.core.errors import UserError
+from faultpath.core.text import one_line
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.code import named, source_state
 from faultpath.trials.registry import factory_root, installed_systems
@@ -32,17 +35,23 @@ class Received:
         """
         path = list(sys.path)
         try:  # nothing is imported, and a folder of a stranger's stays no place to import from
-            shown = ", ".join(_shown(name) for name in _names(spec, variants))
+            names = list(_names(spec, variants))
+            shown = ", ".join(_shown(name) for name in names)
             state = source_state(spec).files if self.sources else {}
         finally:
             sys.path[:] = path
         changed = [name for name in state if state[name] != self.sources.get(name)]
+        if self.sources:
+            kept = set(self.sources.values())
+            parts = (name for name in names if name != spec.name)
+            changed += [name for name in parts if not kept.issuperset(_digests(name))]
+        changed.sort(key=lambda name: name.startswith("faultpath"))  # the user's own first
         differs = f"this is not the code of the run ({named(changed)} changed since)"
         if shown and not self.trusted:
+            same = "; it is the code of the run" if self.sources else ""
             raise UserError(
                 f"{self.name} names {shown}, and importing that runs it"
-                f"{f'; {differs}' if changed else ''}: look at it first, then give --trust "
-                "(in Python trust=True)"
+                f"{f'; {differs}' if changed else same}: look at it first, then give --trust"
             )
         self.say(f"Importing {shown or spec.name}, which {self.name} names.")
         if changed:
@@ -50,16 +59,33 @@ class Received:
 
 
 def _names(spec: SystemSpec, variants: Sequence[str]) -> Iterator[str]:
-    """Yield the names of code that is not installed: of the system, then of its parts."""
+    """Yield what names code that is not installed: the system, then whatever may name a part.
+
+    How a system reads its options is its own affair, so each that could name code counts whole.
+    """
     if spec.name not in installed_systems():
         yield spec.name
-    options = (part for value in spec.options.values() for part in value.split(","))
-    yield from dict.fromkeys(name for text in (*variants, *options) for name in PART.findall(text))
+    pieces = [piece.strip() for value in spec.options.values() for piece in value.split(",")]
+    pieces += [name for variant in variants for name in PART.findall(variant)]
+    yield from dict.fromkeys(piece for piece in pieces if ":" in piece or ".py" in piece)
+
+
+def _files(name: str) -> list[Path]:
+    """Return the files that a name of code may mean, whatever stands before and behind them."""
+    texts = (name, name.rpartition(":")[0], name.partition("/")[2].rpartition(":")[0])
+    files = [Path(os.path.realpath(text)) for text in texts if os.path.isfile(text)]
+    if not files and ".py" not in name:
+        module = factory_root(SystemSpec(name=name)).path
+        files = [] if module is None else [module]
+    return files
+
+
+def _digests(name: str) -> list[str]:
+    return [sha256(file.read_bytes()).hexdigest() for file in _files(name)]
 
 
 def _shown(name: str) -> str:
-    """Return a name of code with its file and the beginning of the file's SHA-256."""
-    file = factory_root(SystemSpec(name=name)).path
-    if file is None:
-        return f"{name} (no file of its own)"
-    return f"{name} ({file}, SHA-256 {sha256(file.read_bytes()).hexdigest()[:16]}...)"
+    """Return a name of code with its files and the beginnings of their SHA-256."""
+    pairs = zip(_files(name), _digests(name), strict=True)
+    files = "; ".join(f"{file}, SHA-256 {digest[:16]}..." for file, digest in pairs)
+    return f"{one_line(name)} ({files or 'no file found'})"

@@ -90,8 +90,9 @@ class Built:
             names = [os.path.relpath(path, (code.main or Path()).parent) for path in unknown]
             raise UndeclaredFile(
                 f"system {name!r} reads {named(names)}, which it does not declare: an edit there "
-                "would go unnoticed, and old results would pass for new ones; set "
-                f"`data_files = ({names[0]!r},)` in its class"
+                "would go unnoticed, and old results would pass for new ones: give "
+                f"`data_files={tuple(names)!r}` to its ComposedSystem, or name them in that "
+                "property of its class"
             )
 
 
