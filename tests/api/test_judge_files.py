@@ -155,7 +155,7 @@ def test_a_log_packed_by_another_method_is_refused(method: int, cut: int, tmp_pa
     data = bytearray(path.read_bytes())
     data[60 : 60 + cut] = bytes(cut)
     path.write_bytes(data)
-    assert "header.json is packed as no log of Inspect is" in refused(path, tmp_path)
+    assert "header.json is not packed as Inspect packs its logs" in refused(path, tmp_path)
 
 
 @pytest.mark.parametrize("kind", ["old.eval", "old.new.eval"])

@@ -43,8 +43,7 @@ def test_two_scenes_with_an_extra_seed_leave_the_other_28():
     assert made.effects[0].success == whole.effects[0].success
     (said,) = set(made.findings) - set(whole.findings)
     assert said == (
-        "More trials than of most, for example in s3, are of 2 scenes: what is more is not "
-        "compared."
+        "2 scenes have more trials than the others, for example s3: the extra trials are left out."
     )
 
 
@@ -60,7 +59,7 @@ def test_tasks_with_a_scene_less_are_compared_by_what_all_tasks_have():
     trials = [(f"t{n}", f"{scene}", "") for n in range(20) for scene in range(10 - n % 2)]
     made = judged(trials, cluster="task")
     assert made.scenes == 20
-    assert any("10 tasks: what is more is not compared" in each for each in made.findings)
+    assert any("10 tasks have more trials than the others" in each for each in made.findings)
 
 
 @pytest.mark.parametrize("seeds", [1, 2])
@@ -71,7 +70,7 @@ def test_a_metric_with_a_blank_is_told_of_the_other_scenes_and_that_is_said(seed
     effect = made.effects[0]
     assert effect.metrics["metres"].n_scenes == 11
     assert effect.metrics["metres"].value == 1.0
-    assert any("metres: it is told of 11 of 12 scenes" in each for each in made.findings)
+    assert any("metres is compared in 11 of 12 scenes" in each for each in made.findings)
     whole = judged(trials, metrics=["metres:more"])
     assert not any("metres" in each for each in whole.findings)
     assert np.isfinite(whole.effects[0].metrics["metres"].value)

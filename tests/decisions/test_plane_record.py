@@ -118,7 +118,10 @@ def test_better_is_said_only_of_who_is_ahead_at_a_point(strong: int, sign: int) 
     winner = "new" if sign > 0 else "old"
     said = f"{winner} does better at every correlation of the two errors."
     if not strong:
-        said = f"No pair of errors decides who is ahead; only their average does, for {winner}."
+        said = (
+            "No single pair of errors shows which is better; only their average does, in favour "
+            f"of {winner}."
+        )
     assert made.headline == said
 
 

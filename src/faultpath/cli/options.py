@@ -31,7 +31,7 @@ SystemName = Annotated[
 ]
 Trust = Annotated[
     bool,
-    typer.Option("--trust", help="Import the system that the file names, though not installed."),
+    typer.Option("--trust", help="Import the code that the file names; look at it first."),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON; words go to the standard error.")]
 

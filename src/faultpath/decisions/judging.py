@@ -262,8 +262,8 @@ def _findings(
         )
     if longer:
         yield (
-            f"More trials than of most, for example in {longer[0]}, are of "
-            f"{counted(len(longer), asked.cluster)}: what is more is not compared."
+            f"{counted(len(longer), asked.cluster)} {'has' if len(longer) == 1 else 'have'} more "
+            f"trials than the others, for example {longer[0]}: the extra trials are left out."
         )
     several = len(set(tasks.values()))
     if asked.cluster == "scene" and several > 1:

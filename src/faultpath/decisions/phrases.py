@@ -248,14 +248,15 @@ def no_pair(path: str) -> str:
 
 def partly_measured(record: DecisionRecord) -> Iterator[str]:
     """Say of which metrics not every trial has a value."""
-    for each in record.effects:
+    for effect in record.effects:
         for name in record.question.metrics:
-            told = each.metrics[name].n_scenes if name in each.metrics else 0
-            if told < each.scenes and (told or record.question.judged):
-                of = (
-                    f"it is told of {told} of {counted(each.scenes, 'scene')}, in which all have it"
+            whole = effect.metrics[name].n_scenes if name in effect.metrics else 0
+            if whole < effect.scenes and (whole or record.question.judged):
+                scenes = f"{whole} of {counted(effect.scenes, 'scene')}"
+                yield (
+                    f"{capital(where(effect.path))}, {name} is compared in {scenes}: only there "
+                    "does every trial have it."
                 )
-                yield f"{capital(where(each.path))}, not every trial has {name}: {of}."
 
 
 def failed_trials(record: DecisionRecord) -> Iterator[str]:

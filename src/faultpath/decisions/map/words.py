@@ -32,7 +32,10 @@ def headline(record: MapRecord) -> str:
     decided = {point.sign for point in record.points}
     if not (regions := tuple(each for each in regions if each.sign in decided)):
         winners = series(sorted({asked.winner(each.sign) for each in record.joint.regions}))
-        return f"No pair of errors decides who is ahead; only their average does, for {winners}."
+        return (
+            "No single pair of errors shows which is better; only their average does, in favour "
+            f"of {winners}."
+        )
     first, *others = regions
     if (first.low, first.high) == (-1.0, 1.0):
         return f"{asked.winner(first.sign)} does better at every correlation of the two errors."

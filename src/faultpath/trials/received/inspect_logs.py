@@ -46,7 +46,9 @@ def _member(archive: zipfile.ZipFile, file: zipfile.ZipInfo, data: bytes) -> byt
         raise Misread(f"{file.filename} unpacks to more than {_LARGEST_SAMPLE / 2**20:.0f} MiB")
     # Other methods would unpack without a bound.
     if file.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, _ZSTANDARD):
-        raise Misread(f"{file.filename} is packed as no log of Inspect is; write the log anew")
+        raise Misread(
+            f"{file.filename} is not packed as Inspect packs its logs; write the log again"
+        )
     if file.compress_type != _ZSTANDARD:
         with archive.open(file) as packed:
             return packed.read()
