@@ -249,7 +249,7 @@ def test_a_forged_folder_with_right_digests_ends_in_one_sentence(
 def test_a_replay_of_seeds_that_are_none_is_one_sentence(seeds: list[int], run: Path) -> None:
     _edit(run / "record.json", lambda content: content["question"].update(seeds=seeds))
     _sign(run)
-    assert "seed" in faultpath("replay", run).refused()
+    assert "seed" in faultpath("replay", run, "--trust").refused()
 
 
 def test_an_older_folder_is_refused_in_one_sentence(run: Path) -> None:
