@@ -305,7 +305,7 @@ CASES: dict[str, Case] = {
     **{f"numbers {verb}": partial(numbers, verb) for verb in ("audit", "plan", "map", "judge")},
     "outputs": outputs,
 }
-"""What the quick part tries too."""
+"""Cases that the quick part tries too."""
 LONG: dict[str, Case] = {
     **{f"report {kind}": partial(report, kind) for kind in ("search", "sensitivity")},
     "search": search,

@@ -26,9 +26,9 @@ LIMIT_S = 60
 FEW, MANY = 3, 66
 """Cases of each kind in the quick part, and in all."""
 INNER = re.compile(r"\b[A-Z][A-Za-z]+(Error|(?<!TProtocol)Exception)\b|correct the system|\(None\)")
-"""What a sentence about data does not hold."""
+"""Words that no sentence about data holds."""
 PAGES = (".html", ".md", ".svg", ".csv")
-"""Of a run's folder, which `report` and `replay --signals` write again."""
+"""Files of a run's folder that `report` and `replay --signals` write again."""
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

@@ -60,9 +60,9 @@ def test_without_a_cluster_one_is_started_here_with_as_many_cpus_as_workers(tmp_
 
 def test_what_rays_threads_print_is_no_output_of_ours(capsys):
     pytest.importorskip("ray")
-    from faultpath.trials.work.ray_cluster import _Told
+    from faultpath.trials.work.ray_cluster import _WithoutNews
 
-    told = _Told(sys.stdout)
+    told = _WithoutNews(sys.stdout)
     print("ours", file=told)
     thread = Thread(target=lambda: print("theirs", file=told), name="ray_listen_error_messages")
     thread.start()

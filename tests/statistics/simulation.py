@@ -118,7 +118,7 @@ class Skewed(NamedTuple):
     scenes: int
     seeds: int
     chances: Floats
-    """Of each of the possible differences, ascending."""
+    """Chance of each of the possible differences, ascending."""
 
     @classmethod
     def drawn(cls, stream: np.random.Generator) -> "Skewed":

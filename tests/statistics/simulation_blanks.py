@@ -21,10 +21,10 @@ BLANKS = (
     ("repeated", 3),
     *product(("clustered",), (1, 3)),
 )
-"""What is missing, and of how many seeds."""
+"""Kinds of missing trials, with the number of seeds."""
 CONDITIONS = ("nominal", "isolated:observer", "shared")
 SHIFTS = (-0.1, 0.05, 0.15)
-"""Of the repair's success in each condition, where it differs: even at a share of .4, and of .67
+"""Changes of the repair's success by condition, where it differs: even at a share of .4, and of .67
 and more."""
 SCENES = 60
 

@@ -20,7 +20,7 @@ from faultpath.decisions.tables.escapes import visible
 from faultpath.trials.store.atomic import begin, check_mark, write_text
 
 PAGE = b'<meta name="generator" content="faultpath '
-"""What every page has in its head."""
+"""Text in the head of every page."""
 
 
 def render(

@@ -97,9 +97,7 @@ def judged(seen: Seen) -> tuple[Check, ...]:
         "declared reads": _reads,
         "fault delivery": _delivery,
         "shape and unit": _readings,
-        "data files": lambda name, _: Check(
-            name=name, says="Python opens none that is not declared"
-        ),
+        "data files": lambda name, _: Check(name=name, says="Python opens declared ones alone"),
     }
     checks = [Check(name=TRIALS, says=f"{count} under correct inputs")]
     for name, judge in judges.items():

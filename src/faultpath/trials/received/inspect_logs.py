@@ -18,9 +18,9 @@ from faultpath.trials.received.question import JudgeQuestion
 LARGEST = 2**30
 """Bytes of a log."""
 _LARGEST_SAMPLE = 2**26
-"""Of a sample of a packed log, which is read by itself."""
+"""Bytes of one sample of a packed log, which is read by itself."""
 UNSOUND = (zipfile.BadZipFile, zlib.error, struct.error, RuntimeError, OSError)
-"""What damaged zip files raise."""
+"""Errors that damaged zip files raise."""
 _ZSTANDARD = 93
 """How new logs are packed; Python's own reader of zip files does not know it before 3.14."""
 _GRADES = {"C": 1.0, "P": 0.5, "I": 0.0, "N": 0.0}

@@ -20,7 +20,7 @@ from faultpath.core.files.opening import LARGEST_TEXT, contents, opened, unlike_
 
 _PREFIX = ".partial-"
 _KINDS = (".csv", ".html", ".json", ".md", ".parquet", ".svg")
-"""Of the files that a run writes into its folder."""
+"""Kinds of files that a run writes into its folder."""
 Say = Callable[[str], None]
 
 

@@ -47,7 +47,7 @@ _ENVIRONMENT = {
 }
 
 
-class _Told:
+class _WithoutNews:
     """Standard output, but for what Ray's threads print: news of workers is no output of ours."""
 
     def __init__(self, output: Any) -> None:
@@ -135,7 +135,7 @@ class RayWorkers(Executor):
                 "a CPU"
             )
         self._ours = _connect(address, count)
-        sys.stdout = self._told = _Told(sys.stdout)
+        sys.stdout = self._told = _WithoutNews(sys.stdout)
         self.count = count or max(1, int(_ray.cluster_resources().get("CPU", 0)))
         self._nodes: set[str] = set()
         self._false_starts = 0
