@@ -12,7 +12,7 @@ from faultpath_quadrotor.perception import PerceptionSettings, camera
 from faultpath_quadrotor.planners import CostWeights, SamplerSettings
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.scenes.scene import Scene
-from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS, Positive, Range, VehicleRanges
+from faultpath_quadrotor.vehicle import Positive, Range, VehicleRanges
 
 
 class ControllerSettings(BaseModel):
@@ -104,7 +104,7 @@ class PlannerSettings(_Frozen):
 
     sampler: SamplerSettings = SamplerSettings()
     weights: CostWeights = CostWeights()
-    temperature: float = 0.12
+    temperature: float = 0.1
     """Fraction of the spread of the better half of the candidates' costs."""
 
 
@@ -112,9 +112,9 @@ def _about(kgps: float) -> tuple[float, float]:
     return (kgps * (1 - _DRAG_SPREAD), kgps * (1 + _DRAG_SPREAD))
 
 
-_DRAG_SPREAD = 0.9
+_DRAG_SPREAD = 2 / 3
 """Spread of training vehicles about nominal drag, a fraction; the paper gives no range."""
-_DATA = {"drag_kgps", "ranges", "collection", "wind_collection"}
+_DATA = {"drag_kgps", "ranges", "collection"}
 """Fields that decide the data that models are fitted on, beside the winds."""
 
 
@@ -123,17 +123,13 @@ class Platform(_Frozen):
 
     planner: PlannerSettings = PlannerSettings()
     winds: Winds = Winds()
-    drag_kgps: tuple[Positive, Positive, Positive] = (0.6, 0.6, 1.2)
-    """Nominal drag, by body axis: what predictors and observers assume."""
-    own_drag: float = 0.0
-    """Share of the drag drawn for a scene's vehicle that it flies with; the rest is nominal."""
-    ranges: VehicleRanges = VehicleRanges(drag_kgps=(_about(0.6), _about(0.6), _about(1.2)))
+    drag_kgps: tuple[Positive, Positive, Positive] = (0.5, 0.5, 1.2)
+    """Nominal drag, by body axis: what scenes have, and what predictors and observers assume."""
+    ranges: VehicleRanges = VehicleRanges(drag_kgps=(_about(0.5), _about(0.5), _about(1.2)))
     """Ranges that the vehicles of training episodes are drawn from."""
     perception: PerceptionSettings = PerceptionSettings()
     collection: FlightSettings = FlightSettings()
-    """How the episodes in still air fly."""
-    wind_collection: FlightSettings = FlightSettings()
-    """How the episodes in wind fly."""
+    """How the training episodes fly."""
 
     @property
     def hash(self) -> str:
@@ -151,12 +147,8 @@ class Platform(_Frozen):
         return _hash({**content, "winds": winds})
 
     def scene(self, scene: Scene) -> Scene:
-        """Return a scene with the vehicle that flies there: the one drawn for it, but for drag."""
-        drawn = zip(scene.vehicle.drag_kgps, NOMINAL_DRAG_KGPS, self.drag_kgps, strict=True)
-        drag = tuple(
-            nominal * (1 + self.own_drag * (own / usual - 1)) for own, usual, nominal in drawn
-        )
-        vehicle = scene.vehicle.model_copy(update={"drag_kgps": drag})
+        """Return a scene with the vehicle that flies there: the one drawn for it, with nominal drag."""
+        vehicle = scene.vehicle.model_copy(update={"drag_kgps": self.drag_kgps})
         return scene.model_copy(update={"vehicle": vehicle})
 
 

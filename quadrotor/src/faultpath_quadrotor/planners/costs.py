@@ -21,7 +21,7 @@ class CostWeights(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    goal: float = 7.0
+    goal: float = 8.0
     running: float = Field(default=0.4, ge=0, le=1)
     """Share of the mean distance along the horizon in the distance to the goal; the rest is that at
     its end. At 0 the planner is soft in height: a candidate that climbs back by the end pays
@@ -33,8 +33,8 @@ class CostWeights(BaseModel):
     speed: float = 20.0
     v_max_mps: float = 3.4  # paper, Table I
     heading: float = 0.5
-    rate_effort: float = 0.25
-    thrust_effort: float = 6.0
+    rate_effort: float = 0.4
+    thrust_effort: float = 12.0
     """On the squared departure from hover thrust, as a fraction of it: the control cost of MPPI."""
 
 

@@ -25,7 +25,7 @@ class SamplerSettings(BaseModel):
     correlation: float = 0.7
     thrust_sigma: float = 0.22
     """Standard deviation of the thrust noise as a fraction of the hover thrust."""
-    rate_sigma_radps: tuple[float, float, float] = (1.2, 1.2, 0.4)
+    rate_sigma_radps: tuple[float, float, float] = (1.0, 1.0, 0.4)
 
 
 def scales(settings: SamplerSettings, hover: Tensor) -> Tensor:

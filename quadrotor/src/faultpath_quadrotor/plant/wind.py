@@ -44,17 +44,17 @@ class Winds(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    means_mps: tuple[float, float, float, float] = (0.0, 0.782, 1.653, 2.667)
-    """Sustained speeds of L0 to L3, matched to the paper's success without a wind input."""
-    pool_mean_mps: tuple[float, float] = (0.0, 15.0)
+    means_mps: tuple[float, float, float, float] = (0.0, 0.468, 0.99, 1.8)
+    """Sustained speeds of L0 to L3, matched to the paper's success with and without a wind input."""
+    pool_mean_mps: tuple[float, float] = (0.0, 6.0)
     """Sustained speeds of the training pool: beyond L3, as a shared fault asks the reconstruction
     for apparent winds that add to the true one."""
-    turbulence: float = 0.219
-    """Standard deviation along each axis. MIL-F-8785C's low-altitude intensity along the flow,
-    sigma_u / u20 at about 10 ft."""
-    length_m: float = 4.0
-    """Length scale. MIL-F-8785C's near the ground exceed any room; 3-5 m for 9 x 6 x 3 m."""
-    gust: Range = (0.4, 0.6)
+    turbulence: float = 1.111
+    """Standard deviation along each axis: a wind that changes within a flight, as between walls,
+    not MIL-F-8785C's 0.2 in the open. Matched, as are the next two."""
+    length_m: float = 12.0
+    """Length scale; MIL-F-8785C's near the ground exceed any room."""
+    gust: Range = (0.8, 1.2)
     """Peak of the gust."""
     gust_onset_s: Range = (0.5, 4.0)
 

@@ -52,7 +52,7 @@ def fly(
     vectors. All fly in free air for the same time, diverged or not; nothing passes a tap.
     """
     if settings is None:
-        settings = PLATFORM.wind_collection if pool == "wind" else PLATFORM.collection
+        settings = PLATFORM.collection
     starts = [_draw(pool, episode, seed, settings) for episode in episodes]
     lanes = padded_lanes(len(starts))
     vehicle = Vehicle.stack([start.vehicle for start in starts]).take(lanes)
