@@ -1,6 +1,8 @@
 """Results with trials missing, laid out and decided as `faultpath judge` does."""
 
+from contextlib import ExitStack
 from itertools import product
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -11,6 +13,7 @@ from faultpath.core.streams import generator
 from faultpath.decisions.decide import decide
 from faultpath.decisions.judging import lay_out
 from faultpath.decisions.model import DecisionRecord
+from faultpath.statistics.estimate import BreakEven
 from faultpath.trials.outcome import Status
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import Received
@@ -27,10 +30,24 @@ SHIFTS = (-0.1, 0.05, 0.15)
 """Changes of the repair's success by condition, where it differs: even at a share of .4, and of .67
 and more."""
 SCENES = 60
+_NOT_ASKED = BreakEven(
+    p_star=None,
+    pieces=((0.0, 1.0),),
+    kind="whole",
+    regions=(),
+    level=0.95,
+    method="not asked",
+    estimand="",
+)
 
 
-def judged(success: Bools, blank: Bools, cluster: str = "scene") -> DecisionRecord:
-    """Return the record of `success` [arms, conditions, scenes, seeds] without what is `blank`."""
+def judged(
+    success: Bools, blank: Bools, cluster: str = "scene", shares: bool = True
+) -> DecisionRecord:
+    """Return the record of `success` [arms, conditions, scenes, seeds] without what is `blank`.
+
+    Break-even sets are left out unless `shares` asks for them.
+    """
     rows: list[Received] = []
     for at in product(*map(range, success.shape)):
         if blank[at]:
@@ -44,8 +61,13 @@ def judged(success: Bools, blank: Bools, cluster: str = "scene") -> DecisionReco
         rows.append(Received("line", *where, status, "", float("nan")))
     asked = JudgeQuestion.model_validate({"baseline": "old", "repair": "new", "cluster": cluster})
     laid = lay_out(rows, asked)
-    # What could have been detected decides nothing, and takes most of the time.
-    with patch("faultpath.decisions.decide.detectable", return_value=None):
+    # What decides nothing here takes most of the time: what could have been detected, and curves.
+    unread: dict[str, Any] = {"detectable": None, "mixture_curve": ()}
+    if not shares:
+        unread["break_even"] = _NOT_ASKED
+    with ExitStack() as stack:
+        for name, value in unread.items():
+            stack.enter_context(patch(f"faultpath.decisions.decide.{name}", return_value=value))
         return decide(laid.question, laid.paths, laid.table, laid.findings)
 
 
@@ -92,7 +114,9 @@ def blanks(kind: str, seeds: int, runs: int = 100) -> tuple[float, float]:
         for _ in range(runs):
             try:
                 record = judged(
-                    *drawn(stream, kind, seeds, shifts), "task" if kind == "clustered" else "scene"
+                    *drawn(stream, kind, seeds, shifts),
+                    "task" if kind == "clustered" else "scene",
+                    shares=bool(column),
                 )
             except UserError:  # nothing is left, and nothing is said
                 continue
