@@ -11,7 +11,7 @@ FROZEN_SEEDS = {
     "training": (101, 100),
     "selection": (202, 100),
     "held-out": (303, 100),
-    "confirmation": (20261123, 300),
+    "confirmation": (20261126, 300),
 }
 """Seed and number of scenes of the libraries of the package."""
 
