@@ -20,7 +20,6 @@ from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.markdown import grid
 from faultpath.report.tables import DIFFERENCE, by_quantity
 from faultpath.report.terminal import decision
-from faultpath.statistics import unconditional
 from faultpath.trials.provenance import RunProvenance
 
 REFERENCE = ROOT / "docs" / "reference"
@@ -88,30 +87,14 @@ def table(run: Run) -> str:
             f"ceiling: both below 10 % or above 90 %, no headline. Break-even: the estimate of the "
             f"fault frequency at which neither is ahead, and the frequencies at which none is "
             f"decided to be. Intervals are for {record.estimand}. Void pairs: "
-            f"{sum(effect.void_pairs for effect in record.effects)}.{_rule(run)} {flown(run)}",
+            f"{sum(effect.void_pairs for effect in record.effects)}.{_tests(run)} {flown(run)}",
         ]
     )
 
 
-def _rule(run: Run) -> str:
-    """Return the rule that decided a run, and the p-value of its primary effect by today's rule."""
-    question, effects = run.record.question, {e.path: e for e in run.record.effects}
-    if question.stop or question.rule != "exact":
-        return f" Rule: {question.ruled}." if question.ruled else ""
-    rule = (
-        f" Rule: {question.ruled}; its scenes were seen under it, so it keeps that verdict. Scenes "
-        "flown from now on answer under the rule in force."
-    )
-    effect = effects.get(question.primary)
-    if effect is None or len(effect.wins) != 1:
-        return rule
-    wins, losses = effect.wins[0], effect.losses[0]
-    exact = unconditional.p_value(wins, losses, effect.scenes)
-    return (
-        f"{rule} Of the primary effect, {wins}:{losses}, p by itself is "
-        f"{wording.p_value(effect.p_value)} by this rule and {wording.p_value(exact)} by the E+M "
-        "test."
-    )
+def _tests(run: Run) -> str:
+    tests = run.record.question.tests
+    return f" Tests: {tests}." if tests else ""
 
 
 def headline(run: Run) -> str:

@@ -179,11 +179,6 @@ REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
     "column": (HEADER + ROW, {"columns": {"scene": "sccene"}}, "unknown column 'sccene'; did you"),
     "no success": ("arm,scene\nold,s0\n", {}, "line 2 has no success: name the column"),
     "metric": (HEADER + ROW, {"metrics": "reward"}, "line 2: unknown metric 'reward'"),
-    "many": (
-        "arm,scene,success\n" + "".join(f"old,{n},1\nnew,{n},1\n" for n in range(15_001)),
-        {},
-        "at most 15,000 scenes, and these are 15,001: give --rule exact",
-    ),
     "task": (HEADER + ROW, {"cluster": "task"}, "not every trial names its task"),
     "models": (HEADER + ROW, {"generalise": "models"}, "newly trained models need several seeds"),
 }

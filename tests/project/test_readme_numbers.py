@@ -103,7 +103,6 @@ def plan(record: DecisionRecord, scenes: int | None = None) -> Audit:
             fault=asked.fault,
             scenes=scenes or asked.n_scenes,
             seeds=asked.seeds,
-            rule=asked.rule,
         ),
         system.library(asked.library),
     )
@@ -123,7 +122,6 @@ def test_the_main_reference_is_what_make_audit_runs(name: str, scenes: int | Non
         "--repair": asked.repair,
         "--fault": asked.fault,
         "--library": asked.library,
-        "--rule": asked.rule,
     }
     assert asked.seeds == (0,)
     assert scenes is None or asked.n_scenes == scenes

@@ -18,13 +18,13 @@ from faultpath.core.streams import generator
 from faultpath.decisions.family import CORRECT, SHARED, Arms, Family, alpha_shares, decide_paths
 from faultpath.decisions.search.propose import proposals
 from faultpath.decisions.search.study import regret
-from faultpath.statistics.estimate import ALPHA, IN_FORCE, RULES
+from faultpath.statistics.estimate import ALPHA, RULE, RULES
 from faultpath.statistics.power import detectable, detected, rule_power
 from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import degrees_interval, degrees_rejects, reach
 
 Floats = NDArray[np.float64]
-PRIOR = RULES[IN_FORCE].prior
+PRIOR = RULES[RULE].prior
 RATES = (0.005, 0.02, 0.05, 0.1, 0.3, 0.5)
 LEANS = {0.0: "even", 0.5: "three to one", 1.0: "one-sided"}
 PATHS = (CORRECT, "reconstruction", "predictor", SHARED)
@@ -139,7 +139,7 @@ class Skewed(NamedTuple):
         values = np.arange(-self.seeds, self.seeds + 1) / self.seeds
         counts, times = np.unique(counts, axis=0, return_counts=True)
         far = reach(values, counts, 1.0, PRIOR)
-        return float(times @ detected(values, counts, far, ALPHA, IN_FORCE)) / runs
+        return float(times @ detected(values, counts, far, ALPHA, RULE)) / runs
 
 
 def skewed(populations: int, runs: int = 2000, again: int = 40_000) -> tuple[float, float]:
@@ -161,11 +161,11 @@ def powered(seeds: int, scenes: int = 100, runs: int = 20_000) -> float:
     trials favour one arm and .6 % the other."""
     truth = Population(0.06, 0.8, seeds, 0.5)
     if seeds == 1:
-        return rule_power(scenes, truth.rate, truth.mean, rule=IN_FORCE)
+        return rule_power(scenes, truth.rate, truth.mean, rule=RULE)
     stream = generator("statistics", f"power {scenes} {truth}", 0)
     counts = stream.multinomial(scenes, truth.chances(), size=runs).astype(np.float64)
     far = reach(truth.sizes, counts, 1.0, PRIOR)
-    return float(detected(truth.sizes, counts, far, ALPHA, IN_FORCE).mean())
+    return float(detected(truth.sizes, counts, far, ALPHA, RULE).mean())
 
 
 def tables(n: int) -> Floats:
@@ -233,7 +233,7 @@ def equal_arms(scenes: int, truth: Population, together: float, runs: int = 300)
     stream = generator("statistics", f"equal arms {scenes} {truth} {together}", 0)
     paths = dict.fromkeys(PATHS, truth)
     audits = (audit_of(stream, scenes, paths, together) for _ in range(runs))
-    return sum(announces(decide_paths(arms, rule=IN_FORCE)) for arms in audits) / runs
+    return sum(announces(decide_paths(arms, rule=RULE)) for arms in audits) / runs
 
 
 def reversals(scenes: int, seeds: int, isolated: float, runs: int = 600) -> float:
@@ -249,7 +249,7 @@ def reversals(scenes: int, seeds: int, isolated: float, runs: int = 600) -> floa
     }
     announced = 0
     for _ in range(runs):
-        family = decide_paths(audit_of(stream, scenes, paths, 0.3), rule=IN_FORCE)
+        family = decide_paths(audit_of(stream, scenes, paths, 0.3), rule=RULE)
         announced += "reversal" in family.turns.values()
     return announced / runs
 
@@ -286,7 +286,7 @@ def searches(
         value, found = max(seen, key=lambda each: each[0])
         if value > 0.0:
             judged = audit_of(stream, scenes, paths, 0.3) if fresh else found
-            family = decide_paths(judged, rule=IN_FORCE)
+            family = decide_paths(judged, rule=RULE)
             announced += family.turns["predictor"] == "reversal"
     return announced / runs
 
@@ -304,7 +304,7 @@ def trainings(scenes: int, seeds: int, models: bool, runs: int = 2000) -> float:
         easy = stream.random((scenes, 1))
         noise = stream.normal(0.0, 0.15, size=(2, scenes, seeds))
         arms = (easy + noise[0] < 0.5 + shift, easy + noise[1] < 0.5)
-        family = decide_paths({CORRECT: arms}, rule=IN_FORCE, resamples=resamples, models=models)
+        family = decide_paths({CORRECT: arms}, rule=RULE, resamples=resamples, models=models)
         announced += announces(family)
     return announced / runs
 
@@ -316,16 +316,16 @@ def detection(scenes: int, truth: Population, alpha: float, runs: int = 20) -> f
     shares: list[float] = []
     for _ in range(runs):
         difference = truth.outcomes(stream.random((scenes, truth.seeds + 2)))
-        least = detectable(difference > 0.0, difference < 0.0, rule=IN_FORCE, alpha=alpha)
+        least = detectable(difference > 0.0, difference < 0.0, rule=RULE, alpha=alpha)
         if least is None:
             continue
         rate = max(truth.rate, least / 100.0)
         true = replace(truth, rate=rate, lean=min(1.0, least / 100.0 / rate))
         if truth.seeds == 1:
-            shares.append(rule_power(scenes, rate, least / 100.0, alpha, rule=IN_FORCE))
+            shares.append(rule_power(scenes, rate, least / 100.0, alpha, rule=RULE))
             continue
         counts = stream.multinomial(scenes, true.chances(), size=400).astype(np.float64)
-        shares.append(float(detected(true.sizes, counts, 1.0, alpha, IN_FORCE).mean()))
+        shares.append(float(detected(true.sizes, counts, 1.0, alpha, RULE).mean()))
     return float(np.mean(shares))
 
 
@@ -342,7 +342,7 @@ def any_look(scenes: int, truth: Population, together: float, runs: int = 150) -
             announces(
                 decide_paths(
                     {path: (one[:look], two[:look]) for path, (one, two) in arms.items()},
-                    rule=IN_FORCE,
+                    rule=RULE,
                     primary=SHARED,
                     shares=shares,
                 )

@@ -11,7 +11,7 @@ from faultpath.statistics import score, unconditional
 from faultpath.statistics.contrast import change
 from faultpath.statistics.decisions import with_test
 from faultpath.statistics.effects import success_effect
-from faultpath.statistics.estimate import IN_FORCE
+from faultpath.statistics.estimate import RULE
 from faultpath.statistics.power import detected, rule_power
 from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import reach
@@ -23,13 +23,13 @@ laws = settings(max_examples=80, deadline=None)
 
 
 def found(first, second):
-    return with_test(success_effect(first, second, RESAMPLES, rule=IN_FORCE), IN_FORCE)
+    return with_test(success_effect(first, second, RESAMPLES, rule=RULE), RULE)
 
 
 def power(scenes, population, runs=6000):
     counts = np.random.default_rng(1).multinomial(scenes, population.chances(), size=runs) * 1.0
     far = reach(population.sizes, counts, 1.0, 12.0)
-    return detected(population.sizes, counts, far, 0.05, IN_FORCE).mean()
+    return detected(population.sizes, counts, far, 0.05, RULE).mean()
 
 
 def test_three_seeds_of_which_half_of_the_scenes_agree_find_most_of_what_can_be_found():
@@ -41,7 +41,7 @@ def test_three_seeds_of_which_half_of_the_scenes_agree_find_most_of_what_can_be_
 @pytest.mark.parametrize(("scenes", "rate", "lean"), [(100, 0.1, 0.6), (50, 0.1, 1.0)])
 def test_more_seeds_lose_no_power(scenes, rate, lean, alike):
     """Three nearly equal seeds found .38 where the first alone finds .47."""
-    alone = rule_power(scenes, rate, rate * lean, rule=IN_FORCE)
+    alone = rule_power(scenes, rate, rate * lean, rule=RULE)
     assert power(scenes, Population(rate, lean, 3, alike)) > alone - 0.02
 
 
@@ -78,10 +78,9 @@ def test_of_scenes_that_differ_wholly_it_is_e_plus_m(first, second, seeds):
 def test_power_and_changes_take_the_same_test(one, two):
     seeds = min(one.shape[2], two.shape[2])
     pair = [
-        success_effect(*(a[:, :seeds] for a in arms), RESAMPLES, rule=IN_FORCE)
-        for arms in (one, two)
+        success_effect(*(a[:, :seeds] for a in arms), RESAMPLES, rule=RULE) for arms in (one, two)
     ]
-    moved = with_test(change(*pair), IN_FORCE)
+    moved = with_test(change(*pair), RULE)
     assert moved.test.rejects() == (moved.side != 0)
     values = np.arange(-2 * seeds, 2 * seeds + 1) / seeds
     counts = np.array([[np.isclose(moved.scenes.values, each).sum() for each in values]]) * 1.0

@@ -4,6 +4,7 @@ import hashlib
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from datetime import datetime
 from os import PathLike
 from pathlib import Path
@@ -30,10 +31,8 @@ from faultpath.decisions.joined import JOINED
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.phrases import counted
 from faultpath.decisions.planning import Audit, plan_audit
-from faultpath.decisions.question import Question
 from faultpath.faults import each_size
 from faultpath.report.inputs import Traces
-from faultpath.statistics.estimate import IN_FORCE, RULES
 from faultpath.trials import System, system_shown
 from faultpath.trials.code import system_code
 from faultpath.trials.execution.runner import RunResult
@@ -78,8 +77,6 @@ def audit(
     named = [laid.study.name, asked.fault, Path(asked.library).stem]
     if asked.metric:
         named.append(f"{asked.metric}-{','.join(f'{each:g}' for each in asked.thresholds)}")
-    if asked.rule != IN_FORCE:
-        named.append(f"rule-{asked.rule}")
     if asked.stop_when is not None:
         small = "" if asked.margin_pp is None else f"-within-{asked.margin_pp:g}"
         named.append(f"until-{asked.stop_when}{small}")
@@ -159,10 +156,13 @@ def carry_out(system: System, audit: Audit, job: Job, signals: bool) -> None:
     What was concluded before in the folder stands in the record: see `after_looks`. Raises
     `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing can be compared.
     """
-    folder, question = job.folder, audit.question
+    folder = job.folder
     if system.backend:
         job.display.say(f"Computing with {system.backend}.")
-    earlier, before = None, concluded_before(folder, question)
+    earlier, before = None, concluded_before(folder)
+    if before is not None:
+        audit = replace(audit, question=audit.question.by_the_rule_of(before.question))
+    question = audit.question
     with suppress(UserError):  # nothing sound stands there: it is made anew
         earlier = read_provenance(folder)
     shown = system_shown(system, (question.baseline, question.repair), audit.study.scenes)
@@ -190,19 +190,12 @@ def carry_out(system: System, audit: Audit, job: Job, signals: bool) -> None:
     job.finish(result, system, (*MADE_FROM, *([SIGNALS] if held else ())))
 
 
-def concluded_before(folder: Path, question: Question) -> DecisionRecord | None:
-    """Return the record that a folder holds, if any; `UserError` for one by another rule."""
+def concluded_before(folder: Path) -> DecisionRecord | None:
+    """Return the record that a folder holds, if any."""
     try:
-        before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
+        return parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
     except UserError:
         return None
-    rule = before.question.rule
-    if rule != question.rule and not (before.question.stop or question.stop):
-        raise UserError(
-            f"{folder} was decided by the rule '{rule}' ({RULES[rule].words}), and a verdict "
-            f"is not redone by another: give --rule {rule}, or another folder."
-        )
-    return before
 
 
 def _recorded(

@@ -4,6 +4,7 @@ import hashlib
 import json
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from os import PathLike
 from pathlib import Path
@@ -62,7 +63,9 @@ def judge(
     folder = asked.folder or _folder(laid, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
-    before = concluded_before(folder, laid.question)
+    before = concluded_before(folder)
+    if before is not None:
+        laid = replace(laid, question=laid.question.by_the_rule_of(before.question))
     record = decide(laid.question, laid.paths, laid.table, laid.findings)
     if before is not None and before.question.library_hash == laid.question.library_hash:
         record = after_looks(record, (before,))

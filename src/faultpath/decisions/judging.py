@@ -14,6 +14,7 @@ from faultpath.decisions.decide import primary_path
 from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Path
 from faultpath.decisions.question import Judged, Question
 from faultpath.decisions.wording import capital, counted, where
+from faultpath.statistics.estimate import RULE
 from faultpath.trials.outcome import Metric, Outcome, Status, failed_outcome
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import NO_OUTCOME, Received
@@ -24,7 +25,8 @@ _ONE = "one module"
 """The path of a condition that is called isolated, and says no module."""
 _NONE = "none"
 _MOST = 15_000
-"""Scenes of the rule in force: the memory of its test grows with their square."""
+"""Scenes that the rule takes, since the memory of its test grows with their square; more are tested
+exactly."""
 _FIRST = {CORRECT: 0, SHARED: 2}
 
 _Key = tuple[str, str]
@@ -64,11 +66,6 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
     labels: dict[str, dict[str, None]] = {}
     for _, _, (unit, label) in trials:
         labels.setdefault(unit, {})[label] = None
-    if len(labels) > _MOST and asked.rule != "exact":
-        raise UserError(
-            f"the rule in force takes at most {_MOST:,} scenes, and these are {len(labels):,}: "
-            "give --rule exact, or --cluster task."
-        )
     often = Counter(label for each in labels.values() for label in each)
     sizes = [len(each) for each in labels.values()]
     # As many trials of each as leave the most of all, and first those that most scenes have.
@@ -122,7 +119,7 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
         trained=asked.generalise == "models",
         ends={Status.TIMEOUT.value: "no success"} if dull else {},
         metrics=_metrics(asked),
-        rule=asked.rule,
+        rule=RULE if len(labels) <= _MOST else "exact",
         judged=Judged(pairing="hashes" if hashed else "keys", unit=asked.cluster),
     )
     longer = [unit for unit, each in labels.items() if len(each) > most]

@@ -13,6 +13,7 @@ from faultpath.decisions.question import Question, StopRule
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import module_of
 from faultpath.loop import TapCount
+from faultpath.statistics.estimate import RULE
 from faultpath.trials import (
     Arm,
     Deliveries,
@@ -149,7 +150,7 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
         metric=asked.metric,
         thresholds=tuple(sorted(set(asked.thresholds))),
         stop=stop,
-        rule=asked.rule,
+        rule=RULE,
     )
     return Audit(question, tuple(paths), study)
 

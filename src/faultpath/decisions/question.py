@@ -81,9 +81,15 @@ class Question(Result):
         return "after Holm" if self.stop is None else "within the family"
 
     @property
-    def ruled(self) -> str:
-        """The rule in words, with the time it is of; empty for a sequential audit."""
-        return "" if self.stop else RULES[self.rule].words
+    def tests(self) -> str:
+        """How effects are tested and adjusted, in words; empty for a sequential audit."""
+        return "" if self.stop else RULES[self.rule].tests
+
+    def by_the_rule_of(self, earlier: "Question") -> "Question":
+        """Return the question by the rule that answered it before: none is answered by two."""
+        if self.stop or earlier.stop:
+            return self
+        return self.model_copy(update={"rule": earlier.rule})
 
 
 class EarlierLook(Result):

@@ -142,14 +142,14 @@ def whole_table(record: DecisionRecord) -> Table:
             f"The audit was sequential: intervals and p-values hold at whatever scene it stopped. "
             f"{wording.counted(record.hypotheses, 'contrast')} share the error rate{others}."
         )
-    ruled = f"Rule: {asked.ruled}. " if asked.ruled else ""
+    tests = f"Tests: {asked.tests}. " if asked.tests else ""
     notes = (
         f"Difference: success of {asked.repair} minus success of {asked.baseline}. Won:lost: "
         f"scenes in which only {asked.repair} or only {asked.baseline} succeeds. Void pairs count "
         "for neither side. Break-even: the fault frequencies at which neither is decided to be "
         "ahead, with the estimate in front; any: none is decided from which on one of them is."
         + (_BETA if record.break_even_beta else ""),
-        f"Primary contrast: {asked.primary}. {ruled}{corrected} Intervals and tests speak of "
+        f"Primary contrast: {asked.primary}. {tests}{corrected} Intervals and tests speak of "
         f"{record.estimand}.",
         *not_standing(record),
         record.headline,

@@ -37,8 +37,6 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
         parts += [Text(""), drawn(told)]
     parts += _list("Found in the run", record.findings, "bold red")
     if details:
-        if record.question.ruled:
-            parts += [Text(""), Text(f"Rule: {record.question.ruled}.")]
         if any(effect.mcnemar_p_value is not None for effect in record.effects):
             parts += [Text(""), Parted(by_path(record, ("p", "mcnemar", "holm")))]
         parts += [Text(""), *map(Text, record.sentences)]

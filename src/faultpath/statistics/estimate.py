@@ -139,24 +139,18 @@ class Rule(NamedTuple):
     """Whether half of the error rate is the primary contrast's, and the others share the rest."""
     prior: float
     """Of `score.reach`: scenes of the largest possible difference that several seeds are given."""
-    period: str
-    """When audits took it by default."""
     graded: bool = False
     """Whether several seeds and changes take the test of degrees (`score`)."""
 
-    @property
-    def words(self) -> str:
-        """The rule and its time."""
-        return f"{self.tests}, in force {self.period}"
-
 
 RULES: dict[RuleName, Rule] = {
-    "exact": Rule("exact McNemar or sign test and Holm", False, 3.0, "until 2026-11-22"),
-    "unconditional": Rule("E+M, sign flips and weighted Holm", True, 12.0, "until 2026-11-25"),
-    "graded": Rule("E+M test and weighted Holm", True, 12.0, "since 2026-11-26", graded=True),
+    "exact": Rule("exact McNemar or sign test and Holm", False, 3.0),
+    "unconditional": Rule("E+M, sign flips and weighted Holm", True, 12.0),
+    "graded": Rule("E+M test and weighted Holm", True, 12.0, graded=True),
 }
-IN_FORCE: RuleName = "graded"
+RULE: RuleName = "graded"
+"""By which audits are decided; the others decided earlier ones, and still do."""
 EM = "E+M (Lloyd)"
-"""Name of the test of one seed under the rule in force."""
+"""Name of the test of one seed."""
 DEGREES, FLIPS = "E+M and score of scenes", "sign flips and score of scenes"
 """Names of that of several seeds, and of changes, by this rule and the one before."""

@@ -19,7 +19,6 @@ from faultpath.trials.texts import LARGEST, read_names, read_seeds, read_sizes, 
 
 Generalise = Literal["scenes", "models"]
 StopWhen = Literal["decided", "all-decided"]
-Rule = Literal["exact", "unconditional", "graded"]
 
 
 @dataclass(frozen=True)
@@ -178,11 +177,6 @@ class AuditQuestion(Running):
         default=None,
         description="With --stop-when: a difference shown to be smaller than so many percentage "
         "points ends it too.",
-    )
-    rule: Rule = Field(
-        default="graded",
-        description="By which an audit without --stop-when is decided: that in force since "
-        "2026-11-26, or an earlier one for scenes that were seen under it.",
     )
     signals: bool = Field(
         default=True, description="Run the report's first scenes once more to plot their signals."

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal, cast
 
 from pydantic import BeforeValidator, Field
 
-from faultpath.trials.question import Asked, Flag, Generalise, Place, Rule
+from faultpath.trials.question import Asked, Flag, Generalise, Place
 from faultpath.trials.texts import several
 
 COLUMNS = (
@@ -87,11 +87,6 @@ class JudgeQuestion(Asked):
     generalise: Annotated[Generalise, Flag(panel="How it is decided")] = Field(
         default="scenes",
         description="What intervals speak of: new scenes, or newly trained models too, one a seed.",
-    )
-    rule: Annotated[Rule, Flag(panel="How it is decided")] = Field(
-        default="graded",
-        description="By which it is decided: that in force, or an earlier one for scenes that were "
-        "seen under it.",
     )
     folder: Annotated[Place, Flag("--out")] = Field(
         default=None, description="Run folder; default runs/judged-<arms>-<results>."
