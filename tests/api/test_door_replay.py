@@ -1,7 +1,6 @@
 """Trials of a finished run flown again: the same to the bit, heard, and in the report."""
 
 import shutil
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,7 +12,6 @@ from faultpath.api.folders import read_run
 from faultpath.api.replaying import chosen_scenes, keep_signals, replay
 from faultpath.cli.replay import replay as command
 from faultpath.core.errors import UserError
-from faultpath.trials.store.mcap import encode_mcap
 from faultpath.trials.store.signals import IN_FORCE, SIGNALS, Signal
 from faultpath.trials.store.tables import TrialAddress
 
@@ -79,49 +77,6 @@ def test_signals_stay_with_the_run_and_a_changed_file_is_refused(folder, found, 
     (run / SIGNALS).write_bytes((run / SIGNALS).read_bytes()[:-1] + b"x")
     with pytest.raises(UserError, match=r"signals.parquet changed since the run"):
         read_run(run)
-
-
-def test_exported_signals_are_read_back_equal(folder, found, tmp_path, capsys, monkeypatch) -> None:
-    reader = pytest.importorskip("mcap.reader", reason="the extra mcap is not installed")
-    to = tmp_path / "run.mcap"
-    assert command(folder, trust=True, scene=[SCENE], path=["shared"], export=to) == 0
-    assert f"Written: {to}" in capsys.readouterr().out
-    back: dict[tuple[str, str], list[np.ndarray]] = {}
-    with to.open("rb") as file:
-        for _, channel, message in reader.make_reader(file).iter_messages():
-            rows = back.setdefault((channel.metadata["variant"], channel.metadata["signal"]), [])
-            assert message.log_time == round(len(rows) * 0.1 * 1e9)
-            rows.append(np.frombuffer(message.data, "<f4", offset=4))
-    kept = {v: _signals(found, v, "shared") for v in ("calibrated", "blind")}
-    assert set(back) == {(variant, name) for variant, named in kept.items() for name in named}
-    for (variant, name), rows in back.items():
-        assert np.array_equal(np.stack(rows), kept[variant][name].values, equal_nan=True), name
-    with pytest.raises(UserError, match="is there already"):
-        command(folder, trust=True, scene=[SCENE], export=to)
-    monkeypatch.setitem(sys.modules, "mcap.writer", None)
-    with pytest.raises(UserError, match=r"pip install '\.\[mcap\]'"):
-        command(folder, trust=True, scene=[SCENE], export=tmp_path / "other.mcap")
-
-
-def test_topics_and_components_have_names_that_ros_takes(tmp_path) -> None:
-    """As rosbags finds them: what is no name there, or stands twice, is numbered."""
-    pytest.importorskip("mcap", reason="the extra mcap is not installed")
-    highlevel = pytest.importorskip("rosbags.highlevel", reason="the extra bags is not installed")
-    values, numbered = np.array([[1, np.nan], [3, 4]], np.float32), ["component_1", "component_2"]
-    parts = {"wind at a.b": ("East wind", "north"), "twice": ("a", "A"), "digit": ("1", "b")}
-    signals = tuple(Signal(name, name, "m/s", values, each) for name, each in parts.items())
-    address = TrialAddress("a+b", "p q", 1, "s/1")
-    (tmp_path / "x.mcap").write_bytes(encode_mcap({address: signals}, 0.1))
-    fields = {"wind@a/b": ["east_wind", "north"], "twice": numbered, "digit": numbered}
-    found: dict[str, list[list[float]]] = {}
-    with highlevel.AnyReader([tmp_path / "x.mcap"]) as bag:
-        for connection, _, raw in bag.messages():
-            name = connection.topic.removeprefix("/a+b/p_q/seed_1/s/1/")
-            told = bag.deserialize(raw, connection.msgtype)
-            found.setdefault(name, []).append([getattr(told, field) for field in fields[name]])
-    assert found.keys() == fields.keys()
-    for rows in found.values():
-        assert np.array_equal(np.array(rows, np.float32), values, equal_nan=True)
 
 
 def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:

@@ -46,7 +46,7 @@ def _declared(project: Path, *extras: str) -> set[str]:
 
 def test_the_engine_imports_what_is_declared_and_nothing_else(root: Path) -> None:
     files = sorted((root / "src").rglob("*.py"))
-    extras = ("gymnasium", "torch", "ray", "search", "sensitivity", "pytest", "mcap")
+    extras = ("gymnasium", "torch", "ray", "search", "sensitivity", "pytest")
     assert _third_party(files) == _declared(root, *extras)
 
 

@@ -21,8 +21,7 @@ from faultpath.trials.execution.again import difference
 from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.execution.provenance import amend
 from faultpath.trials.question import AuditQuestion, ask
-from faultpath.trials.store.atomic import check_output, write_file
-from faultpath.trials.store.mcap import encode_mcap
+from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.trials.store.tables import TrialAddress
 from faultpath.trials.trust import Received
@@ -174,15 +173,3 @@ def keep_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) -> 
     write_file(folder / SIGNALS, encode_signals(dict(sorted(signals.items()))), folder)
     amend(folder, held.provenance, [SIGNALS])
     return [folder / SIGNALS, *write_report(read_run(folder)[0], folder)]
-
-
-def check_export(to: Path) -> None:
-    """Raise `UserError` where signals cannot be exported to a file, before trials run for it."""
-    encode_mcap({}, 1.0)  # needs the package mcap
-    check_output(to)
-
-
-def export_signals(to: Path, held: ReportInput, found: Sequence[Replayed]) -> None:
-    """Write the signals to an MCAP file; `UserError` as `check_export`."""
-    signals = {each.address: each.signals for each in found if each.signals}
-    write_file(to, encode_mcap(signals, held.traces.dt_s))

@@ -24,10 +24,6 @@ def replay(
         bool,
         typer.Option("--signals", help="Keep the recorded signals, and make the report again."),
     ] = False,
-    export: Annotated[
-        Path | None,
-        typer.Option(parser=as_path, help="MCAP file to write the signals to, as for Foxglove."),
-    ] = None,
     trust: Trust = False,
 ) -> int:
     """Run trials of a finished run again and compare them with the run, to the bit. It runs the
@@ -35,13 +31,7 @@ def replay(
     differs."""
     from faultpath.api.display import SafeConsole
     from faultpath.api.folders import RECORD, read_provenance, read_run
-    from faultpath.api.replaying import (
-        check_export,
-        chosen_scenes,
-        export_signals,
-        keep_signals,
-        replay,
-    )
+    from faultpath.api.replaying import chosen_scenes, keep_signals, replay
     from faultpath.decisions.tables.terminal import STYLES
     from faultpath.decisions.wording import counted
 
@@ -49,8 +39,6 @@ def replay(
         raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")
     held, _ = read_run(folder)
     scenes = chosen_scenes(held, scene or (), path or ())
-    if export is not None:
-        check_export(export)
     console = SafeConsole()
     say = partial(console.print, markup=False)
     found = replay(held, scenes, path or (), say, trust)
@@ -72,7 +60,4 @@ def replay(
     if signals and len(unlike) < len(found):
         for written in keep_signals(folder, held, found):
             console.print(f"Written: {written}", markup=False, soft_wrap=True)
-    if export is not None and len(unlike) < len(found):
-        export_signals(export, held, found)
-        console.print(f"Written: {export}", markup=False, soft_wrap=True)
     return FOUND if unlike else 0
