@@ -289,7 +289,6 @@ def outputs(base: Path, here: Path, rng: Random) -> list[object]:
             ["plan", TOY, *ARMS, "--fault", "gain:scale=0.6", "--out", file],
             ["report", "audit", "judge", "--out", file],
             ["report", "audit", "judge", "--dependent-failures", file],
-            ["replay", "audit", "--export", file],
         )
     )
 

@@ -164,11 +164,11 @@ L3 = REFERENCE / "quadrotor-L3"
 TO_FILES = {
     "report --out": OUTPUTS["report --out"],
     "report --dependent-failures": ["report", L3, f"{L3}-20", "--dependent-failures"],
+    "report --dependent-failures of one": ["report", L3, "--dependent-failures"],
     "plan --out": [*OUTPUTS["plan --out"][:-1], "--fault=gain:scale=0.6", "--out"],
     "plan --dependent-failures": [*OUTPUTS["plan --out"][:-1], "--dependent-failures"],
     "audit --junit": [*COMMANDS["audit"], "--junit"],
     "audit --summary": [*COMMANDS["audit"], "--summary"],
-    "replay --export": ["replay", REFERENCE / "toy", "--export"],
 }
 
 

@@ -131,12 +131,12 @@ def test_the_two_numbers_below_the_headline_are_both_decided(path: Path) -> None
 def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:
     folder = tmp_path / "deep" / "report"
     written = write_report(one_seed, folder)
-    assert [p.name for p in written] == ["report.html", "table.md", "dependent-failures.csv"]
+    assert [p.name for p in written] == ["report.html", "table.md"]
     assert sorted(p.name for p in folder.iterdir()) == sorted(p.name for p in written)
     before = written[0].read_bytes()
     write_report(one_seed, folder)
     assert written[0].read_bytes() == before
-    assert len(list(folder.iterdir())) == 3
+    assert len(list(folder.iterdir())) == 2
 
 
 def test_an_interval_that_leaves_out_0_undetected_has_its_p_in_every_table(

@@ -98,6 +98,11 @@ def compare(runs: Sequence[str | PathLike[str] | Run]) -> Comparison:
     """
     if isinstance(runs, str | PathLike) or len(runs) < 2:
         raise UserError("comparing takes two or more runs: give the folders of finished audits.")
+    return beside(runs)
+
+
+def beside(runs: Sequence[str | PathLike[str] | Run]) -> Comparison:
+    """Return finished audits, one or more, each once; `UserError` as `compare`."""
     found: list[Compared] = []
     places: set[Path] = set()
     for number, each in enumerate(runs, 1):

@@ -32,7 +32,7 @@ DependentFailures = Annotated[
     typer.Option(
         "--dependent-failures",
         parser=as_path,
-        help="Write the table of dependent failures to this .csv file too.",
+        help="Write the table of dependent failures to this .csv file.",
     ),
 ]
 
@@ -187,13 +187,18 @@ def report(
     """Write the pages of a finished run again, or compare several audits; runs no code from any
     of them."""
     if len(folders) == 1:
-        if out is not None or dependent_failures is not None:
-            what = "--dependent-failures takes the table" if out is None else "--out takes the page"
-            raise UserError(f"{what} of a comparison: give two or more finished audits.")
+        if out is not None:
+            raise UserError(
+                "--out takes the page of a comparison: give two or more finished audits."
+            )
         if as_json:
             raise UserError("--json prints a comparison: record.json holds the record of a run.")
+        from faultpath.api.comparing import beside
         from faultpath.api.runs import open_run
 
+        if dependent_failures is not None:
+            typer.echo(beside(folders).dependent_failures(dependent_failures))
+            return
         for written in open_run(folders[0]).report():
             typer.echo(written)
         return

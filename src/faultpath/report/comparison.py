@@ -174,7 +174,8 @@ def dependent_failures(runs: Sequence[Compared]) -> Table | None:
         if run.held is not None
         for effects in [tuple(filter(None, (run.effect(p.name) for p in run.record.paths)))]
     ]
-    return of_runs(held, [str(run.number) for run in runs]) if len(held) == len(runs) else None
+    numbers = [str(run.number) for run in runs] if len(runs) > 1 else []
+    return of_runs(held, numbers) if len(held) == len(runs) else None
 
 
 def page(runs: Sequence[Compared]) -> str:
@@ -188,7 +189,6 @@ def page(runs: Sequence[Compared]) -> str:
         for path, title in titles(runs).items()
     }
     axis = shared_axis(list(panels.values()))
-    dependent = dependent_failures(runs)
     return render(
         "comparison.html.j2",
         ("tokens.css", "svg.css", "page.css"),
@@ -201,7 +201,5 @@ def page(runs: Sequence[Compared]) -> str:
         facts=Markup(html(facts_table(runs, found))) if found else "",
         same=same(runs),
         sizes=swept(runs),
-        dependent=Markup(html(dependent, "words")) if dependent else "",
-        dependent_notes=dependent.notes if dependent else (),
         w=wording,
     )

@@ -18,7 +18,7 @@ from faultpath.decisions.question import Question
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.report.inputs import ReportInput
 
-DEPENDENT, DEPENDENT_MARK = "dependent-failures.csv", b"Read at,Reaches further,Kind,Evidence"
+DEPENDENT_MARK = b"Read at,Reaches further,Kind,Evidence"
 NO_EVIDENCE = "no evidence"
 _COLUMNS = ("Read at", "Reaches further", "Kind", "Evidence", "Difference, pp", "To fly")
 _NOTES = (

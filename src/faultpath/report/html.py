@@ -8,10 +8,8 @@ from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.decisions.phrases import change
 from faultpath.decisions.summary import answers, in_short
-from faultpath.decisions.tables.csv import csv_text
 from faultpath.decisions.tables.html import html
 from faultpath.report.adding import adding, adding_panels
-from faultpath.report.dependent import DEPENDENT, of_runs
 from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.frame import render, write_pages
 from faultpath.report.inputs import ReportInput
@@ -31,7 +29,6 @@ def report_page(source: ReportInput) -> str:
     titles = {path.name: path.title for path in record.paths}
     effects = {effect.path: effect for effect in record.effects}
     why = adding(source, pairs)
-    dependent = of_runs([source])
     told = (ended(record), secondary(record), by_threshold(record))
     return render(
         "report.html.j2",
@@ -62,8 +59,6 @@ def report_page(source: ReportInput) -> str:
         forks=[Markup(fork_panel(fork)) for fork in forks(source)],
         frequency=[(Markup(picture), words) for picture, words in frequency_panels(record)],
         beta=[(Markup(picture), words) for picture, words in frequency_panels(record, beta=True)],
-        dependent=Markup(html(dependent, "words")) if dependent else "",
-        dependent_notes=dependent.notes if dependent else (),
         grids=[
             Markup(
                 pair_grid(
@@ -83,12 +78,11 @@ def report_page(source: ReportInput) -> str:
 
 
 def write_report(source: ReportInput, folder: Path) -> list[Path]:
-    """Write `report.html`, `table.md` and, where failures depend on each other, their table as CSV
-    into `folder`, and return their paths; `UserError` as `write_pages`.
+    """Write `report.html` and `table.md` into `folder`; return their paths.
+
+    `UserError` as `write_pages`.
     """
     made = {"report.html": report_page(source), "table.md": markdown_table(source.record)}
-    if dependent := of_runs([source]):
-        made[DEPENDENT] = csv_text(dependent)
     return write_pages(made, folder)
 
 
