@@ -206,5 +206,5 @@ $(BENCH_JAX)/ready: benchmarks/requirements-jax.txt
 	@echo "Installing the packages that examples audit into .venv-foreign"
 	@rm -rf .venv-foreign && $(PYTHON) -m venv .venv-foreign
 	@.venv-foreign/bin/python -m pip install --disable-pip-version-check --quiet \
-	  -e '.[rotorpy,do-mpc,basilisk,gymnasium]' hypothesis pytest pytest-xdist
+	  -e '.[rotorpy,do-mpc,basilisk,gymnasium,inspect]' hypothesis pytest pytest-xdist
 	@touch $@

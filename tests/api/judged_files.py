@@ -1,14 +1,9 @@
 """Results as other tools write them, made from who succeeded where."""
 
 import json
-import struct
-import zipfile
-import zlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
-
-import pyarrow as pa
 
 Successes = Mapping[str, Sequence[bool]]
 """By arm, scene by scene."""
@@ -66,38 +61,12 @@ def samples(won: Sequence[bool]) -> list[dict[str, Any]]:
 
 
 def inspect_log(path: Path, model: str, won: Sequence[bool]) -> str:
-    """Write a log of Inspect: JSON, or packed as it was and, for `.new.eval`, as it is now."""
+    """Write a log of Inspect as JSON, named as Inspect does, in a folder of its own."""
     about = {"version": 2, "status": "success", "eval": {"task": "sums", "model": model}}
-    if path.suffix == ".json":
-        folder = path.with_suffix("")
-        folder.mkdir()
-        log = folder / "2026-01-02T03-04-05-00-00_sums_kW3.json"
-        log.write_text(json.dumps({**about, "samples": samples(won)}))
-        return str(folder)
-    files = {"header.json": about}
-    files |= {f"samples/{each['id']}_epoch_1.json": each for each in samples(won)}
-    texts = {name: json.dumps(content).encode() for name, content in files.items()}
-    if ".new" not in path.suffixes:
-        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-            for name, text in texts.items():
-                archive.writestr(name, text)
-        return str(path)
-    path.write_bytes(zstandard(texts))
+    path.mkdir()
+    log = path / "2026-01-02T03-04-05-00-00_sums_kW3.json"
+    log.write_text(json.dumps({**about, "samples": samples(won)}))
     return str(path)
-
-
-def zstandard(texts: Mapping[str, bytes]) -> bytes:
-    """Return a zip file packed by a method that Python's own library learns in 3.14."""
-    data, places = b"", b""
-    for name, text in texts.items():
-        packed = pa.compress(text, codec="zstd", asbytes=True)
-        sizes = (zlib.crc32(text), len(packed), len(text), len(name), 0)
-        fields = struct.pack("<HHHHHIIIHH", 20, 0, 93, 0, 0, *sizes)
-        places += b"PK\1\2" + struct.pack("<H", 20) + fields
-        places += struct.pack("<HHHII", 0, 0, 0, 0, len(data)) + name.encode()
-        data += b"PK\3\4" + fields + name.encode() + packed
-    ends = struct.pack("<HHHHIIH", 0, 0, len(texts), len(texts), len(places), len(data), 0)
-    return data + places + b"PK\5\6" + ends
 
 
 def lm_eval(folder: Path, won: Sequence[bool]) -> str:

@@ -1,17 +1,18 @@
 """Files of results that are odd, damaged or packed to fill the memory: one sentence each."""
 
 import json
-import lzma
-import resource
+import sys
 import zipfile
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from judged_files import HEADER, inspect_log, lm_eval, samples, zstandard
+from judged_files import HEADER, inspect_log, lm_eval, samples
 
 import faultpath
 from faultpath import UserError
@@ -47,21 +48,17 @@ def written(path: Path, cell: object) -> Path:
         case "eval_info.json":
             episode = {"episode_ix": 0, "seed": None, "success": cell}
             path.write_text(json.dumps({"per_episode": [episode]}))
-        case "log.json" | "log.eval":
+        case "log.json":
             sample = {**samples(WON)[0], "scores": {"match": {"value": cell}}}
             about = {"eval": {"task": "sums", "model": "old"}}
-            if path.suffix == ".json":
-                path.write_text(json.dumps({**about, "samples": [sample]}))
-            else:
-                files = {"header.json": about, "samples/0_epoch_1.json": sample}
-                path.write_bytes(zstandard({k: json.dumps(v).encode() for k, v in files.items()}))
+            path.write_text(json.dumps({**about, "samples": [sample]}))
         case _:
             line = {"doc_id": 0, "doc_hash": "h", "metrics": ["exact_match"], "exact_match": cell}
             path.write_text(json.dumps(line) + "\n")
     return path
 
 
-FORMATS = ("a.csv", "a.jsonl", "a.parquet", "eval_info.json", "log.json", "log.eval", LM_EVAL)
+FORMATS = ("a.csv", "a.jsonl", "a.parquet", "eval_info.json", "log.json", LM_EVAL)
 
 
 @pytest.mark.parametrize("cell", [[1], [], {"0": True}, {"value": 1}, [[1, 0]]], ids=repr)
@@ -137,50 +134,82 @@ def test_a_label_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_label_names_the_arm_of_a_model_that_is_no_arm(tmp_path: Path) -> None:
-    logs = [inspect_log(tmp_path / f"{arm}.eval", "gpt", WON) for arm in ("a", "b")]
+    logs = [inspect_log(tmp_path / arm, "gpt", WON) for arm in ("a", "b")]
     labelled = [f"old={logs[0]}", f"new={logs[1]}"]
     assert judged(labelled, tmp_path).record.question.repair == "new"
-    logs = [inspect_log(tmp_path / f"{arm}.eval", arm, WON) for arm in ("old", "new")]
+    logs = [inspect_log(tmp_path / f"{arm}-named", arm, WON) for arm in ("old", "new")]
     said = refused([f"new={logs[0]}", f"old={logs[1]}"], tmp_path / "other")
     assert "the file says arm 'old' and the command line 'new'" in said
 
 
-@pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
-@pytest.mark.parametrize("cut", [0, 9])
-def test_a_log_packed_by_another_method_is_refused(method: int, cut: int, tmp_path: Path) -> None:
-    """Python unpacks these without a bound; damaged ones ended in a traceback."""
-    path = tmp_path / "old.eval"
-    with zipfile.ZipFile(path, "w", method) as archive:
-        archive.writestr("header.json", json.dumps({"eval": {"task": "t", "model": "old"}}))
-    data = bytearray(path.read_bytes())
-    data[60 : 60 + cut] = bytes(cut)
-    path.write_bytes(data)
-    assert "header.json is not packed as Inspect packs its logs" in refused(path, tmp_path)
+class Sample(SimpleNamespace):
+    """A sample as inspect_ai reads it."""
+
+    def model_dump(self, include: set[str]) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name in include}
 
 
-@pytest.mark.parametrize("kind", ["old.eval", "old.new.eval"])
-def test_a_log_that_is_cut_short_is_one_sentence(kind: str, tmp_path: Path) -> None:
-    data = Path(inspect_log(tmp_path / kind, "old", WON)).read_bytes()
-    for at in range(1, len(data), 101):
-        (tmp_path / "cut.eval").write_bytes(data[:at])
-        assert "cut.eval: is no sound zip file" in refused(tmp_path / "cut.eval", tmp_path)
-    (tmp_path / "cut.eval").write_bytes(lzma.compress(data))
-    assert "is no sound zip file" in refused(tmp_path / "cut.eval", tmp_path)
+def packed(path: Path, texts: Iterable[bytes] = ()) -> str:
+    """Write a zip file that is called a log."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for n, text in enumerate(texts):
+            archive.writestr(f"samples/{n}.json", text)
+    return str(path)
 
 
-def test_a_small_log_does_not_fill_the_memory(tmp_path: Path) -> None:
-    path = tmp_path / "old.eval"
-    for texts, says in (
-        ([b'"' + b"x" * 2**27 + b'"'], "samples/0.json unpacks to more than 64 MiB"),
-        ([b'"' + b"x" * 2**25 + b'"'] * 9, "unpacks to more than 256 MiB; give it in parts"),
-    ):
-        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-            archive.writestr("header.json", json.dumps({"eval": {"task": "t", "model": "old"}}))
-            for n, text in enumerate(texts):
-                archive.writestr(f"samples/{n}.json", text)
-        before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        assert says in refused(path, tmp_path)
-        assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 2**16  # KiB
+def reading(monkeypatch: pytest.MonkeyPatch, read: Callable[[str], Any]) -> None:
+    """Have inspect_ai installed, with this as what reads its logs."""
+    monkeypatch.setitem(sys.modules, "inspect_ai", ModuleType("inspect_ai"))
+    log = ModuleType("inspect_ai.log")
+    vars(log)["read_eval_log"] = read
+    monkeypatch.setitem(sys.modules, "inspect_ai.log", log)
+
+
+def test_packed_logs_are_read_by_their_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`tests/foreign/test_inspect_logs.py` reads logs that the package itself wrote."""
+
+    def read(path: str) -> Any:
+        about = SimpleNamespace(model=Path(path).stem, task="sums")
+        return SimpleNamespace(eval=about, samples=[Sample(**each) for each in samples(WON)])
+
+    reading(monkeypatch, read)
+    run = judged([packed(tmp_path / f"{arm}.eval") for arm in ("old", "new")], tmp_path)
+    assert run.record.scenes == len(WON)
+    assert run.record.question.judged is not None
+    assert run.record.question.judged.pairing == "hashes"
+
+
+def test_a_packed_log_needs_its_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "inspect_ai.log", None)
+    said = refused(packed(tmp_path / "old.eval"), tmp_path)
+    assert "inspect_ai" in said
+    assert "pip install '.[inspect]'" in said
+    assert "inspect log convert --to json" in said
+
+
+@pytest.mark.parametrize("error", [KeyError("eval"), ValueError("two\nlines"), RuntimeError()])
+def test_a_damaged_log_is_one_sentence(
+    error: Exception, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def read(_: str) -> Any:
+        raise error
+
+    reading(monkeypatch, read)
+    assert "old.eval: is no sound log of Inspect" in refused(
+        packed(tmp_path / "old.eval"), tmp_path
+    )
+    (tmp_path / "cut.eval").write_bytes(b"PK\3\4")
+    assert "cut.eval: is no sound log of Inspect" in refused(tmp_path / "cut.eval", tmp_path)
+
+
+def test_a_small_log_does_not_fill_the_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    reading(monkeypatch, lambda _: pytest.fail("it was read"))
+    path = packed(tmp_path / "old.eval", [b"x" * 2**25] * 9)
+    assert "unpacks to more than 256 MiB; give it in parts" in refused(path, tmp_path)
 
 
 @pytest.mark.parametrize("store_schema", [True, False])

@@ -31,7 +31,7 @@ from odd_inputs import (
 
 sys.path += [str(ROOT / "tests" / "api"), str(ROOT / "tests" / "quadrotor")]
 from flight_logs import MAP, flown, write, write_ulog
-from judged_files import inspect_log, lerobot, lm_eval, samples, zstandard
+from judged_files import inspect_log, lerobot, lm_eval
 
 Case = Callable[[Path, Path, Random], list[object]]
 """Takes the bases, the folder and what is drawn; returns the line of a command."""
@@ -124,23 +124,8 @@ def judge_tool(kind: str, base: Path, here: Path, rng: Random) -> list[object]:
     """Judge what LeRobot, Inspect or lm-eval wrote, one of the two files altered."""
     odd, names, more = rng.choice(("old", "new")), list[str](), list[object]()
     for arm, won in WON.items():
-        if kind.endswith(".eval"):
-            log = [{"eval": {"task": "sums", "model": arm}}, *samples(won)]
-            texts = {f"samples/{n}.json": json.dumps(each).encode() for n, each in enumerate(log)}
-            texts["header.json"] = texts.pop("samples/0.json")
-            if arm == odd and rng.random() < 0.6:
-                at = rng.choice(sorted(texts))
-                texts[at] = json_text(json.loads(texts[at]), rng)
-            data = zstandard(texts)
-            if kind == "old.eval":
-                data = Path(inspect_log(here / f"{arm}.eval", arm, won)).read_bytes()
-            (here / f"{arm}.eval").write_bytes(
-                torn(data, rng) if arm == odd and rng.random() < 0.6 else data
-            )
-            names.append(f"{arm}.eval")
-            continue
         if kind == "inspect":
-            found = Path(inspect_log(here / f"{arm}.json", arm, won))
+            found = Path(inspect_log(here / arm, arm, won))
         elif kind == "lm-eval":
             found = Path(lm_eval(here / arm, won).removeprefix("="))
             more = ["--column", f"success={rng.choice(('exact_match,strict-match', 'acc', 'x,y'))}"]
@@ -293,7 +278,7 @@ def outputs(base: Path, here: Path, rng: Random) -> list[object]:
     )
 
 
-TOOLS = ("episodes", "tasks", "inspect", "lm-eval", "old.eval", "new.eval")
+TOOLS = ("episodes", "tasks", "inspect", "lm-eval")
 CASES: dict[str, Case] = {
     **{f"judge {suffix}": partial(judge_table, suffix) for suffix in ("csv", "jsonl", "parquet")},
     **{f"judge {kind}": partial(judge_tool, kind) for kind in TOOLS},

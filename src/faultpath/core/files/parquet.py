@@ -82,12 +82,6 @@ def _batches(data: bytes) -> Iterator[pa.RecordBatch]:
         raise Unreadable(f"it unpacks to more than {most / 2**20:.0f} MiB")
 
 
-@_sound()
-def unpacked(data: bytes, size: int) -> bytes:
-    """Return the `size` bytes that were compressed by Zstandard; `Unreadable` for others."""
-    return pa.decompress(data, size, "zstd", asbytes=True)
-
-
 def read_rows(data: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the rows of anybody's Parquet file, numbered from one; `Unreadable` for another file.
 

@@ -84,8 +84,6 @@ def _as_expected(cells: Cells) -> Cells:
         raise Misread(f"lacks {error}, which files of its kind have") from None
     except (TypeError, AttributeError, ValueError, IndexError, OverflowError):
         raise Misread("is not laid out as files of its kind are") from None
-    except inspect_logs.UNSOUND as error:
-        raise Misread(f"is no sound zip file ({error})") from None
 
 
 def _cells(path: Path, data: bytes, asked: JudgeQuestion, label: str) -> Cells:
@@ -95,7 +93,7 @@ def _cells(path: Path, data: bytes, asked: JudgeQuestion, label: str) -> Cells:
         case ".parquet":
             yield from _named(((f", row {n}", row) for n, row in read_rows(data)), asked)
         case ".eval":
-            yield from inspect_logs.cells(inspect_logs.unzipped(data), asked, label)
+            yield from inspect_logs.cells(inspect_logs.unpacked(path), asked, label)
         case ".jsonl":
             lines = text_of(data).split("\n")  # other line separators may stand in a text
             rows = [

@@ -1,63 +1,53 @@
-"""Logs of Inspect: JSON, or a zip of it that is called `.eval`."""
+"""Logs of Inspect: JSON, read here, or `.eval`, read by the package inspect_ai."""
 
 import hashlib
-import io
 import json
-import struct
 import zipfile
-import zlib
 from collections.abc import Iterable, Iterator, Mapping
+from importlib import import_module
+from pathlib import Path
 from typing import Any, cast
 
 from faultpath.core.files.opening import most_unpacked
-from faultpath.core.files.parquet import unpacked
-from faultpath.core.files.plain import Misread, read_json
-from faultpath.core.text import listed
+from faultpath.core.files.plain import Misread
+from faultpath.core.text import extra, listed
 from faultpath.trials.received.question import JudgeQuestion
 
 LARGEST = 2**30
 """Bytes of a log."""
-_LARGEST_SAMPLE = 2**26
-"""Bytes of one sample of a packed log, which is read by itself."""
-UNSOUND = (zipfile.BadZipFile, zlib.error, struct.error, RuntimeError, OSError)
-"""Errors that damaged zip files raise."""
-_ZSTANDARD = 93
-"""How new logs are packed; Python's own reader of zip files does not know it before 3.14."""
 _GRADES = {"C": 1.0, "P": 0.5, "I": 0.0, "N": 0.0}
 """Correct, partly, incorrect, no answer: as Inspect itself counts them."""
+_READ = {"id", "epoch", "input", "target", "scores", "error", "total_time"}
+"""Fields of a sample that are read."""
 
 
-def unzipped(data: bytes) -> dict[str, Any]:
-    """Return the log in a zip file as its JSON would be, its samples read one by one; `Misread` or
-    one of `UNSOUND` for what is none."""
-    archive = zipfile.ZipFile(io.BytesIO(data))
-    files = {file.filename: file for file in archive.infolist()}
-    if "header.json" not in files:
-        raise Misread("holds no header.json, and is no finished log of Inspect")
-    samples = [files[name] for name in sorted(files) if name.startswith("samples/")]
-    if sum(file.file_size for file in samples) > (most := most_unpacked(len(data))):
-        raise Misread(f"unpacks to more than {most / 2**20:.0f} MiB; give it in parts")
-    log = read_json(_member(archive, files["header.json"], data))
-    return {**log, "samples": (read_json(_member(archive, each, data)) for each in samples)}
+def unpacked(path: Path) -> dict[str, Any]:
+    """Return an `.eval` log as its JSON would be; `Misread` for what is none.
 
-
-def _member(archive: zipfile.ZipFile, file: zipfile.ZipInfo, data: bytes) -> bytes:
-    if file.file_size > _LARGEST_SAMPLE:
-        raise Misread(f"{file.filename} unpacks to more than {_LARGEST_SAMPLE / 2**20:.0f} MiB")
-    # Other methods would unpack without a bound.
-    if file.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, _ZSTANDARD):
+    Needs inspect_ai, the package that writes these logs.
+    """
+    try:
+        read_eval_log = import_module("inspect_ai.log").read_eval_log
+    except ImportError:
         raise Misread(
-            f"{file.filename} is not packed as Inspect packs its logs; write the log again"
-        )
-    if file.compress_type != _ZSTANDARD:
-        with archive.open(file) as packed:
-            return packed.read()
-    name, extra = struct.unpack_from("<HH", data, file.header_offset + 26)
-    start = file.header_offset + 30 + name + extra
-    found = unpacked(data[start : start + file.compress_size], file.file_size)
-    if zlib.crc32(found) != file.CRC:
-        raise Misread(f"{file.filename} is damaged")
-    return found
+            "is a packed log of Inspect, which the package inspect_ai reads, not installed here: "
+            f"{extra('inspect')}; or give the log as JSON, by `inspect log convert --to json`"
+        ) from None
+    try:
+        with zipfile.ZipFile(path) as archive:
+            size = sum(file.file_size for file in archive.infolist())
+        if size > (most := most_unpacked(path.stat().st_size)):
+            raise Misread(f"unpacks to more than {most / 2**20:.0f} MiB; give it in parts")
+        log: Any = read_eval_log(str(path))
+    except Misread:
+        raise
+    except Exception as error:  # whatever a package of other people raises of a damaged file
+        reason = (str(error).splitlines() or [type(error).__name__])[0]
+        raise Misread(f"is no sound log of Inspect ({reason})") from None
+    samples = log.samples
+    if samples is not None:
+        samples = [sample.model_dump(include=_READ) for sample in samples]
+    return {"eval": {"model": log.eval.model, "task": log.eval.task}, "samples": samples}
 
 
 def cells(
