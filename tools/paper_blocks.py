@@ -1,11 +1,12 @@
 """Marked blocks of the documents about the shipped reproduction of the paper."""
 
+import hashlib
 from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 
 import blocks
-from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed
+from blocks import REFERENCE, ROOT, TAKE_AGAIN, Wrong, copied, parsed
 from faultpath_paper.answers import RUN, Reproduction
 from faultpath_paper.cells import SYSTEM, Setting
 from faultpath_paper.central import (
@@ -15,7 +16,6 @@ from faultpath_paper.central import (
     Case,
     Effect,
     answer,
-    by_training,
     case_of,
     detail,
     table_of,
@@ -73,7 +73,7 @@ def pictures() -> Mapping[Path, str]:
 def central_answer() -> str:
     """Return the paper's central question and our answer, in words that need no glossary."""
     cases = _cases()
-    return f"{QUESTION} **{answer(cases)}.** {detail(cases)} {by_training(load()[0])}"
+    return f"{QUESTION} **{answer(cases)}.** {detail(cases)}"
 
 
 def central_table() -> str:
@@ -87,8 +87,22 @@ def elsewhere() -> Mapping[Path, str]:
 
 
 def _cases() -> tuple[Case, ...]:
+    """Return what the shipped run detected, if it was flown on the platform that is here, and what
+    reference runs did."""
     own = case_of(load()[0])
-    return (*([own] if own else []), *_besides())
+    return (*([own] if own and not _former() else []), *_besides())
+
+
+def _former() -> str:
+    """Return a sentence where the shipped run was flown on another platform than the one here."""
+    name = "faultpath_quadrotor/platform.py"
+    digest = hashlib.sha256((ROOT / "quadrotor" / "src" / name).read_bytes()).hexdigest()
+    if load()[1].sources.get(name) == digest:
+        return ""
+    return (
+        "**On the platform before the present one**, in steadier winds; the paper has not been run "
+        "again on the present one yet. "
+    )
 
 
 def _besides() -> tuple[Case, ...]:
@@ -110,14 +124,21 @@ def _case(name: str) -> Case:
         reversal=any(
             change.isolated == _MODULE and change.turn == "reversal" for change in record.changes
         ),
+        reversing=sum(
+            one > 0 > two
+            for one, two in zip(
+                *(effects[path].success.per_seed or () for path in (_MODULE, SHARED)), strict=True
+            )
+        ),
+        trainings=len(question.seeds),
     )
 
 
 def _counts() -> str:
     record, ledger = load()[0], load()[0].ledger
     return (
-        f"{headline(ledger, record.profile)} ({ledger.scenes} scenes of `{ledger.library}`, seeds "
-        f"{', '.join(map(str, ledger.seeds))}; {record.trials:,} trials)."
+        f"{_former()}{headline(ledger, record.profile)} ({ledger.scenes} scenes of "
+        f"`{ledger.library}`, seeds {', '.join(map(str, ledger.seeds))}; {record.trials:,} trials)."
     )
 
 
@@ -136,10 +157,11 @@ def _picture(part: str) -> str:
 def _origin() -> str:
     origin = load()[1]
     place = f"[`docs/reference/{PLACE.relative_to(REFERENCE)}`]"
+    again = "" if _former() else _run_again()
     return (
         f"Finished on {origin.finished[:10]}, with {origin.workers} workers on "
         f"{origin.processor.replace('(R)', '')}, and concluded anew by the code that is here, "
-        f"which a test repeats. {flown_by(origin, SYSTEM, {})} {_run_again()}Everything is in "
+        f"which a test repeats. {flown_by(origin, SYSTEM, {})} {again}Everything is in "
         f"{place}({{reference}}/{PLACE.relative_to(REFERENCE)}): the report, the ledger and all "
         "tables."
     )

@@ -63,6 +63,16 @@ def test_a_clause_says_more_or_less_only_of_what_was_detected(sign: Sign) -> Non
     assert SIGNS[sign] in text
 
 
+def test_trainings_are_counted_where_there_are_several() -> None:
+    found = case(1, -1, reversal=True)
+    assert by_training(found) == ""
+    assert by_training(found.model_copy(update={"reversing": 1})) == ""
+    for count, verb in ((0, "rank"), (1, "ranks"), (3, "rank")):
+        text = by_training(found.model_copy(update={"reversing": count, "trainings": 3}))
+        assert f"{count} of 3 trained models {verb} the two" in text
+        assert text in detail([found.model_copy(update={"reversing": count, "trainings": 3})])
+
+
 def test_an_effect_takes_its_side_from_its_text_only_where_it_is_detected() -> None:
     for sign, text in SIGNS.items():
         assert Effect.of(text, detected=True).sign == (sign or 1)
@@ -77,7 +87,7 @@ def test_a_run_answers_by_the_papers_rules(found: Reproduction) -> None:
         assert bool(effect.sign) == (float(low) > 0 or float(high) < 0)
     claim = next(claim for claim in found.ledger.claims if claim.id == CLAIM)
     assert own.reversal == (claim.parts[0].answer == "confirmed")
-    assert "of 3 trained models" in by_training(found)
+    assert "of 3 trained models" in by_training(own)
 
 
 def test_a_page_answers_with_its_own_run_unless_it_is_quick(found: Reproduction) -> None:

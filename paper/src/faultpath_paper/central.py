@@ -55,6 +55,9 @@ class Case(Frozen):
     shared: Effect
     reversal: bool
     """Whether the run decides that the ranking reverses."""
+    reversing: int | None = None
+    """In how many trainings the estimates alone reverse, as the paper counts them."""
+    trainings: int = 1
 
 
 CASES: TypeAdapter[tuple[Case, ...]] = TypeAdapter(tuple[Case, ...])
@@ -84,6 +87,8 @@ def case_of(reproduction: Reproduction) -> Case | None:
         isolated=isolated,
         shared=shared,
         reversal=claim.parts[0].answer == "confirmed",
+        reversing=None if claim.parts[1].estimate is None else round(claim.parts[1].estimate),
+        trainings=len(ledger.seeds),
     )
 
 
@@ -98,13 +103,13 @@ def answer(cases: Sequence[Case]) -> str:
 
 def detail(cases: Sequence[Case]) -> str:
     """Return what the answer rests on: the last run that decides a reversal, else the last."""
-    reversing = [case for case in cases if case.reversal] or cases
-    if not reversing:
+    decisive = [case for case in cases if case.reversal] or cases
+    if not decisive:
         return ""
-    case = reversing[-1]
+    case = decisive[-1]
     alone = clause("With wrong values at the wind estimator alone", case.isolated)
     shared = clause("with the predictor sharing them", case.shared)
-    return f"{alone}; {shared} ({case.place})."
+    return f"{alone}; {shared} ({case.place}). {by_training(case)}".rstrip()
 
 
 def clause(where: str, effect: Effect) -> str:
@@ -115,18 +120,14 @@ def clause(where: str, effect: Effect) -> str:
     return f"{where} the retrained estimator succeeds {than} often ({effect.text} pp)"
 
 
-def by_training(reproduction: Reproduction) -> str:
+def by_training(case: Case) -> str:
     """Return in how many trainings the estimates reverse, as the paper counts them."""
-    claim = next(claim for claim in reproduction.ledger.claims if claim.id == CLAIM)
-    counted = claim.parts[1]
-    seeds = len(reproduction.ledger.seeds)
-    if counted.estimate is None:
+    if case.reversing is None or case.trainings == 1:
         return ""
-    count = round(counted.estimate)
-    rank = "ranks" if count == 1 else "rank"
+    rank = "ranks" if case.reversing == 1 else "rank"
     return (
-        f"By the estimates alone, {count} of {seeds} trained models {rank} the two as the paper "
-        "does; in the paper all three do."
+        f"By the estimates alone, {case.reversing} of {case.trainings} trained models {rank} the "
+        "two as the paper does; in the paper all three do."
     )
 
 
@@ -176,5 +177,5 @@ def of_page(reproduction: Reproduction) -> tuple[str, str, Table] | None:
     if reproduction.profile != words.QUICK:
         own = case_of(reproduction)
         cases = (*([own] if own else []), *cases)
-        return answer(cases), f"{detail(cases)} {by_training(reproduction)}", table_of(cases)
+        return answer(cases), detail(cases), table_of(cases)
     return answer(cases), f"{detail(cases)} {QUICK_RUN}", table_of(cases)
