@@ -129,6 +129,9 @@ def contrast(run: Run) -> str:
             "| :-- | --: | :-- |",
             row(f"the {opposed[0].path} alone, as in a test of one module", opposed[0].success),
             row("every module that reads the estimate, as in deployment", shared.success),
+            "",
+            f"{run.record.scenes} scenes, {wording.seeds(question.seeds)}; bold: significant at "
+            f"5 % after Holm's correction. Flown by commit `{run.provenance.commit[:12]}`.",
         ]
     )
 
