@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -94,7 +95,7 @@ def plan(record: DecisionRecord, scenes: int | None = None) -> Audit:
     place = asked.system if ".py:" not in asked.system else str(ROOT / asked.system)
     spec = SystemSpec(name=place, options=asked.options)
     system = load_system(spec)
-    return plan_audit(
+    audit = plan_audit(
         system,
         spec,
         AuditQuestion(
@@ -106,6 +107,7 @@ def plan(record: DecisionRecord, scenes: int | None = None) -> Audit:
         ),
         system.library(asked.library),
     )
+    return replace(audit, question=audit.question.by_the_rule_of(asked))
 
 
 @pytest.mark.parametrize(("name", "scenes"), [("quadrotor-L3", None), ("quadrotor-L3-20", 20)])
