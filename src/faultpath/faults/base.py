@@ -106,7 +106,7 @@ class Intervention(BaseModel, ABC):
     the memory is written to. `apply` is called at every delivery from the first on, also before
     the onset, so that a delay has a past to draw on; the tap takes the value within the window.
 
-    A subclass has a literal `kind`, states its fields, and is named once in `fault.py`.
+    A subclass has a literal `kind`, states its fields, and is added to `Listed` in `fault.py`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)

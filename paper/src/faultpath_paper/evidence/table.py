@@ -36,7 +36,7 @@ QUANTITIES: Mapping[Quantity, str] = {
     "acceleration-error": "m/s^2",
     "wind-term-error": "m/s^2",
 }
-"""Unit of each quantity. `docs/design/evidence.md` gives their formulas."""
+"""Unit of each quantity. `docs/design/studies.md` gives their formulas."""
 
 
 class Recording(Frozen):
