@@ -45,7 +45,7 @@ class PerturbationSettings(BaseModel):
     """Ranges of the perturbations; what an episode gets of them is drawn for it.
 
     Spread and correlation are those of the planner's candidates (`planner.SamplerSettings`): a
-    predictor is asked about such commands. The rest is derived (`docs/design/collection.md`).
+    predictor is asked about such commands. The rest is derived (`docs/design/learning.md`).
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -147,7 +147,7 @@ class Platform(_Frozen):
         return _hash({**content, "winds": winds})
 
     def scene(self, scene: Scene) -> Scene:
-        """Return a scene with the vehicle that flies there: the one drawn for it, with nominal drag."""
+        """Return a scene with the vehicle that flies: the one drawn for it, with nominal drag."""
         vehicle = scene.vehicle.model_copy(update={"drag_kgps": self.drag_kgps})
         return scene.model_copy(update={"vehicle": vehicle})
 
