@@ -205,3 +205,15 @@ def test_a_damaged_file_is_one_sentence(name: str, data: bytes, says: str, tmp_p
     (tmp_path / name).write_bytes(data)
     with pytest.raises(UserError, match=says):
         judged(tmp_path / name, tmp_path / "run")
+
+
+def test_the_same_results_keep_their_tests_and_others_take_todays(tmp_path: Path) -> None:
+    results, folder = table(tmp_path / "all.csv", {"nominal": WON}), tmp_path / "run"
+    judged(results, folder)
+    record = json.loads((folder / "record.json").read_text("utf-8"))
+    record["question"]["rule"] = "exact"
+    for name, rule in (("nominal", "exact"), ("fewer", "graded")):
+        (folder / "record.json").write_text(json.dumps(record), "utf-8")
+        if name == "fewer":
+            results = table(tmp_path / "fewer.csv", {"nominal": {a: w[:9] for a, w in WON.items()}})
+        assert judged(results, folder).record.question.rule == rule

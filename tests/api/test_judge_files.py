@@ -183,10 +183,9 @@ def test_packed_logs_are_read_by_their_package(
 
 def test_a_packed_log_needs_its_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "inspect_ai.log", None)
-    said = refused(packed(tmp_path / "old.eval"), tmp_path)
-    assert "inspect_ai" in said
-    assert "pip install '.[inspect]'" in said
-    assert "inspect log convert --to json" in said
+    message = refused(packed(tmp_path / "old.eval"), tmp_path)
+    for part in ("inspect_ai", "pip install '.[inspect]'", "inspect log convert --to json"):
+        assert part in message
 
 
 @pytest.mark.parametrize("error", [KeyError("eval"), ValueError("two\nlines"), RuntimeError()])

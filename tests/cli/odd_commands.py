@@ -125,20 +125,20 @@ def judge_tool(kind: str, base: Path, here: Path, rng: Random) -> list[object]:
     odd, names, more = rng.choice(("old", "new")), list[str](), list[object]()
     for arm, won in WON.items():
         if kind == "inspect":
-            found = Path(inspect_log(here / arm, arm, won))
+            folder = Path(inspect_log(here / arm, arm, won))
         elif kind == "lm-eval":
-            found = Path(lm_eval(here / arm, won).removeprefix("="))
+            folder = Path(lm_eval(here / arm, won).removeprefix("="))
             more = ["--column", f"success={rng.choice(('exact_match,strict-match', 'acc', 'x,y'))}"]
         else:
-            found = Path(lerobot(here / arm, won, kind == "episodes").removeprefix("="))
-        (path,) = (each for each in found.rglob("*") if each.is_file())
+            folder = Path(lerobot(here / arm, won, kind == "episodes").removeprefix("="))
+        (path,) = (each for each in folder.rglob("*") if each.is_file())
         if arm == odd:
             data = path.read_bytes()
             if kind == "lm-eval":
                 path.write_bytes(lines_of(list(map(json.loads, data.splitlines())), rng))
             else:
                 path.write_bytes(json_text(json.loads(data), rng))
-        names.append(f"{arm}={found.name}" if kind != "inspect" else found.name)
+        names.append(f"{arm}={folder.name}" if kind != "inspect" else folder.name)
     return ["judge", *names, *JUDGE, *more]
 
 

@@ -64,13 +64,13 @@ def test_a_clause_says_more_or_less_only_of_what_was_detected(sign: Sign) -> Non
 
 
 def test_trainings_are_counted_where_there_are_several() -> None:
-    found = case(1, -1, reversal=True)
-    assert by_training(found) == ""
-    assert by_training(found.model_copy(update={"reversing": 1})) == ""
+    one = case(1, -1, reversal=True)
+    assert by_training(one) == ""
+    assert by_training(one.model_copy(update={"reversing": 1})) == ""
     for count, verb in ((0, "rank"), (1, "ranks"), (3, "rank")):
-        text = by_training(found.model_copy(update={"reversing": count, "trainings": 3}))
-        assert f"{count} of 3 trained models {verb} the two" in text
-        assert text in detail([found.model_copy(update={"reversing": count, "trainings": 3})])
+        several = one.model_copy(update={"reversing": count, "trainings": 3})
+        assert f"{count} of 3 trained models {verb} the two" in by_training(several)
+        assert by_training(several) in detail([several])
 
 
 def test_an_effect_takes_its_side_from_its_text_only_where_it_is_detected() -> None:

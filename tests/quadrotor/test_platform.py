@@ -1,6 +1,7 @@
 """The platform is one value to which weights belong; what a user chooses is what is built."""
 
 import json
+from pathlib import Path
 
 import pytest
 from faultpath_quadrotor import choices, models
@@ -13,13 +14,18 @@ from faultpath_quadrotor.platform import PLATFORM, Platform
 
 from faultpath.core.errors import UserError
 
-MODELS = ("wm-a", "wm-u", "wm-a-wind", "gru", "gru-trajectory", "clearance")
+CARDS = sorted(shipped_folder().glob("*.json"))
+ROOT = Path(__file__).resolve().parents[2]
 
 
-@pytest.mark.parametrize("name", MODELS)
-def test_every_shipped_weight_belongs_to_the_platform(name):
-    card = json.loads((shipped_folder() / f"{name}-0.json").read_text())
-    assert card["platform"] == PLATFORM.weights_hash(name)
+@pytest.mark.parametrize("path", CARDS, ids=lambda path: path.stem)
+def test_every_shipped_weight_belongs_to_the_platform(path):
+    name = path.stem.rpartition("-")[0]
+    assert json.loads(path.read_text())["platform"] == PLATFORM.weights_hash(name)
+
+
+def test_the_note_names_the_platform_that_flies():
+    assert f"`{PLATFORM.hash}`" in (ROOT / "docs" / "design" / "platform.md").read_text("utf-8")
 
 
 def test_weights_belong_to_what_decided_their_data():

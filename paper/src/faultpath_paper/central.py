@@ -162,7 +162,7 @@ def shipped() -> str:
     cases = elsewhere()
     return (
         "\nThe same question with more scenes and three trainings, as the package ships it (make "
-        f"confirm runs it again, in about 20 minutes):\n{answer(cases)}. {detail(cases)}"
+        f"confirm runs it again):\n{answer(cases)}. {detail(cases)}"
     )
 
 

@@ -64,10 +64,12 @@ def judge(
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
     before = concluded_before(folder)
+    if before is not None and before.question.library_hash != laid.question.library_hash:
+        before = None  # other results
     if before is not None:
         laid = replace(laid, question=laid.question.by_the_rule_of(before.question))
     record = decide(laid.question, laid.paths, laid.table, laid.findings)
-    if before is not None and before.question.library_hash == laid.question.library_hash:
+    if before is not None:
         record = after_looks(record, (before,))
     begin(folder)
     with locked(folder, shown.say):

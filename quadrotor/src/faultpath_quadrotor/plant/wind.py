@@ -45,7 +45,7 @@ class Winds(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     means_mps: tuple[float, float, float, float] = (0.0, 0.468, 0.99, 1.8)
-    """Sustained speeds of L0 to L3, matched to the paper's success with and without a wind."""
+    """Sustained speeds of L0 to L3, matched to the paper's success with and without wind input."""
     pool_mean_mps: tuple[float, float] = (0.0, 6.0)
     """Sustained speeds of the training pool: beyond L3, as a shared fault asks the reconstruction
     for apparent winds that add to the true one."""
