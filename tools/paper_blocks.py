@@ -13,6 +13,7 @@ from faultpath_paper.central import (
     CASES,
     ELSEWHERE,
     QUESTION,
+    WEIGHTS,
     Case,
     Effect,
     answer,
@@ -95,10 +96,8 @@ def _cases() -> tuple[Case, ...]:
 
 def _former() -> str:
     """Return a sentence where the shipped run was flown on another platform than the one here."""
-    # Of all weights these are fitted anew for every change of the platform.
-    name = "checkpoints/gru-trajectory-0.safetensors"
-    weights = ROOT / "quadrotor" / "src" / "faultpath_quadrotor" / name
-    if load()[1].data[name] == hashlib.sha256(weights.read_bytes()).hexdigest():
+    weights = ROOT / "quadrotor" / "src" / "faultpath_quadrotor" / WEIGHTS
+    if load()[1].data[WEIGHTS] == hashlib.sha256(weights.read_bytes()).hexdigest():
         return ""
     return (
         "**On the platform before the present one**, in steadier winds; the paper has not been run "
@@ -111,7 +110,8 @@ def _besides() -> tuple[Case, ...]:
 
 
 def _case(name: str) -> Case:
-    record = blocks.load(name).record
+    run = blocks.load(name)
+    record = run.record
     effects = {effect.path: effect for effect in record.effects}
     isolated, shared = (
         Effect.of(wording.with_interval(effect.success), effect.detected)
@@ -132,6 +132,7 @@ def _case(name: str) -> Case:
             )
         ),
         trainings=len(question.seeds),
+        weights=run.provenance.data[WEIGHTS],
     )
 
 

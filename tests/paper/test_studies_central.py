@@ -7,6 +7,7 @@ from faultpath_paper.answers import RUN, Ledger, Reproduction, shipped_ledger
 from faultpath_paper.cells import published_claims
 from faultpath_paper.central import (
     CLAIM,
+    WEIGHTS,
     Case,
     Effect,
     answer,
@@ -91,15 +92,25 @@ def test_a_run_answers_by_the_papers_rules(found: Reproduction) -> None:
 
 
 def test_a_page_answers_with_its_own_run_unless_it_is_quick(found: Reproduction) -> None:
-    page = of_page(found)
+    here = {WEIGHTS: elsewhere()[0].weights}
+    page = of_page(found, here)
     assert page
     assert len(page[2].lines) == len(elsewhere()) + 2
-    quick = of_page(found.model_copy(update={"profile": "quick"}))
+    quick = of_page(found.model_copy(update={"profile": "quick"}), here)
     assert quick
     assert "too small" in quick[1]
     assert len(quick[2].lines) == len(elsewhere()) + 1
     none = found.ledger.model_copy(update={"claims": found.ledger.claims[:3]})
-    assert of_page(found.model_copy(update={"ledger": none})) is None
+    assert of_page(found.model_copy(update={"ledger": none}), here) is None
+
+
+def test_a_page_leaves_out_what_another_platform_showed(found: Reproduction) -> None:
+    own = case_of(found)
+    page = of_page(found, {WEIGHTS: "other"})
+    assert own
+    assert page
+    assert page[:2] == (answer([own]), detail([own]))
+    assert len(page[2].lines) == 2
 
 
 def test_the_main_job_shows_what_more_scenes_found() -> None:

@@ -4,7 +4,7 @@ Audits that ask it besides the reproduction itself stand in a file that comes wi
 Sentences come from what was detected, never from an estimate.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pydantic import TypeAdapter
@@ -21,6 +21,8 @@ from faultpath_paper.report import words
 CLAIM = "C26"
 BASELINE, REPAIR = "gru", "gru+dcc"
 ELSEWHERE = Path(__file__).parent / "data" / "reversal.json"
+WEIGHTS = "checkpoints/gru-trajectory-0.safetensors"
+"""Weights that are fitted anew for every change of the platform."""
 COLUMNS = ("Wrong values at the wind estimator alone", "Wrong values shared", "Reversal")
 QUESTION = (
     "The paper reports a reversal: a wind estimator that was retrained to tolerate wrong values of "
@@ -58,6 +60,8 @@ class Case(Frozen):
     reversing: int | None = None
     """In how many trainings the estimates alone reverse, as the paper counts them."""
     trainings: int = 1
+    weights: str = ""
+    """Digest of `WEIGHTS` as it flew: runs with another one are of another platform."""
 
 
 CASES: TypeAdapter[tuple[Case, ...]] = TypeAdapter(tuple[Case, ...])
@@ -166,14 +170,15 @@ def shipped() -> str:
     )
 
 
-def of_page(reproduction: Reproduction) -> tuple[str, str, Table] | None:
+def of_page(reproduction: Reproduction, data: Mapping[str, str]) -> tuple[str, str, Table] | None:
     """Return our answer, what it rests on, and its table for the page of a run.
 
-    `None` where the run is not about the question; a quick run has only the answers of others.
+    `data` are digests of the data that flew: what other platforms showed is left out. `None` where
+    the run is not about the question; a quick run has only the answers of others.
     """
     if all(claim.id != CLAIM for claim in reproduction.ledger.claims):
         return None
-    cases = elsewhere()
+    cases = tuple(case for case in elsewhere() if case.weights == data.get(WEIGHTS))
     if reproduction.profile != words.QUICK:
         own = case_of(reproduction)
         cases = (*([own] if own else []), *cases)
