@@ -1,4 +1,4 @@
-"""What runs on a node of a Ray cluster."""
+"""The counterpart of a local worker process on a node of a Ray cluster."""
 
 # Of Ray's types nothing is known.
 # pyright: reportUnknownMemberType=false, reportUnknownVariableType=false
