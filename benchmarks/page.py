@@ -3,9 +3,11 @@
 As in every document, `tools/documents.py` fills the blocks that are marked in it.
 """
 
+import json
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
-from benchmarks.results import Record, Target, load
+from benchmarks.results import DEVICE, Record, Target, load
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
 
@@ -72,5 +74,37 @@ def _target(target: Target | None) -> str:
     return f"{target.sense} {number(target.value)}{of}"
 
 
-KIND: Mapping[str, Callable[[], str]] = {"machine": machine, "rows": lambda: rows(load().records)}
+def gpu() -> str:
+    """Return what `device.json` holds: the steps of a flight on both devices, and two audits."""
+    figures = json.loads(DEVICE.read_text())
+    alone = next(flown for flown in figures["steps"] if flown["device"] == "cpu")
+    head = ("a step, ms", "worth, cores", "GPU busy, %", "memory, GiB")
+    lines = [_on_device(flown, alone) for flown in figures["steps"]]
+    audits = figures["audits"]
+    here, there = audits["successes"]
+    machine = (
+        f"{figures['gpu']}, torch {figures['torch']}; one core with kernels `{figures['kernels']}`."
+    )
+    return (
+        f"{machine}\n\n{grid(Table(columns=head, lines=tuple(lines)))}\n\n"
+        f"Of {audits['trials']} trials of `make audit` on that machine, {audits['alike']} end "
+        f"alike on both; {here} succeed on the processor and {there} on the GPU."
+    )
+
+
+def _on_device(steps: Mapping[str, Any], alone: Mapping[str, Any]) -> Line:
+    on_gpu = steps["device"] == "cuda"
+    cores = steps["scenes"] / steps["step_ms"] * alone["step_ms"] / alone["scenes"]
+    busy = f"{100 * steps['busy_ms'] / steps['step_ms']:.0f}" if on_gpu else ""
+    memory = f"{steps['memory_gib']:.1f}" if on_gpu else ""
+    values = (f"{steps['step_ms']:.0f}", f"{cores:.1f}", busy, memory)
+    name = f"{'GPU' if on_gpu else 'One core'}, {steps['scenes']} scenes"
+    return line(name, *(value or MISSING for value in values))
+
+
+KIND: Mapping[str, Callable[[], str]] = {
+    "gpu": gpu,
+    "machine": machine,
+    "rows": lambda: rows(load().records),
+}
 """The blocks of the page."""

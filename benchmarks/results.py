@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results.json"
+DEVICE = ROOT / "benchmarks" / "device.json"
 
 
 class _Frozen(BaseModel):

@@ -106,6 +106,11 @@ def test_only_what_is_the_users_counts_and_only_while_something_watches(tmp_path
             with pytest.raises(FileNotFoundError):
                 (tmp_path / "absent").read_text()
     assert (outer, inner) == ({str(file.resolve())}, set())
+    installed = tmp_path / "site" / "tool-1.0.dist-info" / "entry_points.txt"
+    installed.parent.mkdir(parents=True)
+    with reads() as inner:
+        old_text(installed).read_text()
+    assert inner == set()
     other = old_text(tmp_path / "other.txt")
     other.read_text()
     assert outer == {str(file.resolve())}

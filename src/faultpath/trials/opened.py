@@ -66,4 +66,6 @@ def _is_users(path: str) -> bool:
     if path.startswith(_OTHERS) or path.endswith((".py", ".pyc", ".so")):
         return False  # imports are followed from the sources
     place = Path(path)
+    if place.parent.suffix == ".dist-info":  # what is installed, wherever it is
+        return False
     return "__pycache__" not in path and place.is_file() and kind_of(place) == "local"

@@ -52,7 +52,7 @@ def features(points: Tensor) -> Tensor:
     torch.mul(points[1:], inverse, out=rows[5:7]).clamp_(-1.5, 1.5)
     distance.add_(0.25).reciprocal_()
     torch.sub(distance, 0.7, out=rows[7])
-    rows[8] = 1
+    rows[8].fill_(1)
     return rows
 
 
@@ -184,7 +184,7 @@ def _with_constant(weights: Tensor) -> Tensor:
     if rows == 1:
         return weights
     constant = weights.new_zeros(count, 1, columns)
-    constant[..., -1] = 1
+    constant[..., -1].fill_(1)
     return torch.cat((weights, constant), 1)
 
 

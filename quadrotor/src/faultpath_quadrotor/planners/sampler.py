@@ -33,7 +33,7 @@ def scales(settings: SamplerSettings, hover: Tensor) -> Tensor:
     scale = hover.new_empty(4, hover.shape[0], 1)
     scale[0, :, 0] = settings.thrust_sigma * hover
     for axis, sigma in enumerate(settings.rate_sigma_radps):
-        scale[axis + 1] = sigma
+        scale[axis + 1].fill_(sigma)
     return scale
 
 

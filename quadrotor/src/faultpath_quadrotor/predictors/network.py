@@ -215,7 +215,7 @@ def _folded(weight: Tensor, bias: Tensor, mean: Tensor, inverse_std: Tensor) -> 
 def _with_one(weights: Tensor) -> Tensor:
     """Add the row that passes the last input, a one, on."""
     row = torch.zeros_like(weights[:1])
-    row[0, -1] = 1
+    row[:, -1].fill_(1)
     return torch.cat((weights, row))
 
 
