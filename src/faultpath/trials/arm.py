@@ -60,7 +60,7 @@ class Study(Frozen):
     scenes: tuple[str, ...]
     rows: tuple[Row, ...]
     look: int = 0
-    """Of a sequential study: scenes from one look at the results to the next, in the order of
+    """Scenes of a sequential study from one look at the results to the next, in the order of
     `scenes`. 0 runs them all, in the blocks of their library."""
 
     def arms(self) -> tuple[Arm, ...]:

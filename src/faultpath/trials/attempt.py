@@ -102,28 +102,28 @@ def attempt(
     except UserError as error:
         return Wrong(located(error))
     except SystemExit as error:
-        said = f"the system called sys.exit({error.code!r}): raise an error or return outcomes"
-        return Raised(said, traceback.format_exc())
+        message = f"the system called sys.exit({error.code!r}): raise an error or return outcomes"
+        return Raised(message, traceback.format_exc())
     except Exception as error:
-        said = described(error)
-        if isinstance(error, ValueError) and "read-only" in said:
-            said += " (what a tap delivers cannot be written to: copy it first)"
-        return Raised(said, traceback.format_exc())
+        message = described(error)
+        if isinstance(error, ValueError) and "read-only" in message:
+            message += " (what a tap delivers cannot be written to: copy it first)"
+        return Raised(message, traceback.format_exc())
 
 
 def _checked(system: System, scenes: Sequence[str], returned: object) -> list[Outcome]:
     several = isinstance(returned, Iterable)
-    found = list(cast("Iterable[Any]", returned)) if several else []
-    odd = [type(each).__name__ for each in found if not isinstance(each, Outcome)]
+    outcomes = list(cast("Iterable[Any]", returned)) if several else []
+    odd = [type(outcome).__name__ for outcome in outcomes if not isinstance(outcome, Outcome)]
     if odd or not several:
         kind = f"{odd[0]} in place of an Outcome" if odd else type(returned).__name__
         raise WrongOutcomes(
             f"run() of system {system.name!r} returned a {kind}: it returns a list with one "
             "Outcome for each scene, in order"
         )
-    if (said := [outcome.scene for outcome in found]) != list(scenes):
+    if (names := [outcome.scene for outcome in outcomes]) != list(scenes):
         raise WrongOutcomes(
             f"system {system.name!r} was asked for scenes {list(scenes)} and returned outcomes of "
-            f"{said}: run() returns one for each, in order"
+            f"{names}: run() returns one for each, in order"
         )
-    return [checked(outcome, system.metrics) for outcome in found]
+    return [checked(outcome, system.metrics) for outcome in outcomes]

@@ -1,4 +1,4 @@
-"""What a user's system must be like, so that nothing fails halfway for want of it."""
+"""Requirements of a user's system, checked first so that nothing fails halfway."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -16,7 +16,7 @@ from faultpath.trials.outcome import Metric, Outcome, Status
 from faultpath.trials.system import System
 
 UNNAMED = ("held-out", "selection")
-"""What audits and checks ask for where no library is named."""
+"""Libraries that audits and checks run where none is named."""
 
 _COLUMNS = frozenset(
     {"variant", "path", "seed", "scene", "scene_index", "topology", "x_m", "y_m", "z_m"}
@@ -30,54 +30,54 @@ def library_of(system: System, name: str) -> Library:
 
     A system may have its one library under the names that stand for one where none is given.
     """
-    found: Any = system.library(name)
-    if not isinstance(found, Library):
+    library: Any = system.library(name)
+    if not isinstance(library, Library):
         raise SystemMistake(
-            f"system '{system.name}': `library` returned {shown(found)}: it must return a Library"
+            f"system '{system.name}': `library` returned {shown(library)}: it must return a Library"
         )
-    if name not in UNNAMED and found.name != name:
+    if name not in UNNAMED and library.name != name:
         raise SystemMistake(
-            f"system '{system.name}' gave library '{found.name}' for '{name}': ask for it by its "
+            f"system '{system.name}' gave library '{library.name}' for '{name}': ask for it by its "
             "own name, and let `library` raise UserError for any other"
         )
-    return found
+    return library
 
 
 def paths_of(system: System, attribute: str) -> tuple[str | PathLike[str], ...]:
     """Return paths that the system names; `SystemMistake` for what are none."""
-    found = _declared(system, attribute, f"system {system.name!r}")
-    if not isinstance(found, (str, bytes, PathLike)) and isinstance(found, Iterable):
-        several = tuple(cast("Iterable[Any]", found))
-        if all(isinstance(each, (str, PathLike)) for each in several):
+    paths = _declared(system, attribute, f"system {system.name!r}")
+    if not isinstance(paths, (str, bytes, PathLike)) and isinstance(paths, Iterable):
+        several = tuple(cast("Iterable[Any]", paths))
+        if all(isinstance(path, (str, PathLike)) for path in several):
             return several
     raise SystemMistake(
-        f"system {system.name!r}: `{attribute}` is {shown(found)}: give paths, as a tuple"
+        f"system {system.name!r}: `{attribute}` is {shown(paths)}: give paths, as a tuple"
     )
 
 
-def _positive(found: Any) -> bool:
-    return isinstance(found, Real) and 0 < float(found) < float("inf")
+def _positive(number: Any) -> bool:
+    return isinstance(number, Real) and 0 < float(number) < float("inf")
 
 
 def _mapping(holds: Callable[[Any, Any], bool], least: int = 0) -> Callable[[Any], bool]:
-    return lambda found: (
-        isinstance(found, Mapping)
-        and len(cast("Any", found)) >= least
-        and all(holds(key, value) for key, value in cast("Mapping[Any, Any]", found).items())
+    return lambda mapping: (
+        isinstance(mapping, Mapping)
+        and len(cast("Any", mapping)) >= least
+        and all(holds(key, value) for key, value in cast("Mapping[Any, Any]", mapping).items())
     )
 
 
 _PROMISED: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "control_dt_s": (_positive, "give the seconds of a control step"),
     "block_size": (
-        lambda found: isinstance(found, Integral) and int(found) >= 1,
+        lambda size: isinstance(size, Integral) and int(size) >= 1,
         "give a whole number, 1 or more",
     ),
-    "parallel": (lambda found: isinstance(found, int), "give True or False"),
-    "trained": (lambda found: isinstance(found, int), "give True or False"),
-    "time_limit_s": (lambda found: found is None or _positive(found), "give seconds, or None"),
+    "parallel": (lambda flag: isinstance(flag, int), "give True or False"),
+    "trained": (lambda flag: isinstance(flag, int), "give True or False"),
+    "time_limit_s": (lambda limit: limit is None or _positive(limit), "give seconds, or None"),
     "interface": (
-        lambda found: isinstance(found, Interface),
+        lambda interface: isinstance(interface, Interface),
         "give what `read_interface` returns",
     ),
     "metrics": (
@@ -104,7 +104,7 @@ _PROMISED: Mapping[str, tuple[Callable[[Any], bool], str]] = {
         "map the name of each Variant to it",
     ),
 }
-"""What an audit reads of every system, what must hold of it, and what to do where it does not."""
+"""Attributes that an audit reads of every system: a condition each, and advice where it fails."""
 
 
 def check_system(system: System, name: str) -> None:
@@ -112,30 +112,30 @@ def check_system(system: System, name: str) -> None:
 
     `name` is what the user calls it by.
     """
-    said = f"system {name!r}"
-    check_name(f"{said}: `name`", _declared(system, "name", said))
-    found: dict[str, Any] = {}
-    for attribute, (holds, wanted) in _PROMISED.items():
-        found[attribute] = _declared(system, attribute, said)
-        if not holds(found[attribute]):
-            raise SystemMistake(f"{said}: `{attribute}` is {shown(found[attribute])}: {wanted}")
-    for key, variant in found["variants"].items():
+    label = f"system {name!r}"
+    check_name(f"{label}: `name`", _declared(system, "name", label))
+    values: dict[str, Any] = {}
+    for attribute, (holds, advice) in _PROMISED.items():
+        values[attribute] = _declared(system, attribute, label)
+        if not holds(values[attribute]):
+            raise SystemMistake(f"{label}: `{attribute}` is {shown(values[attribute])}: {advice}")
+    for key, variant in values["variants"].items():
         try:
-            wire(found["interface"], variant.bindings, variant.consumers, variant.privileged, 0)
+            wire(values["interface"], variant.bindings, variant.consumers, variant.privileged, 0)
         except UserError as error:
-            raise SystemMistake(f"{said}: variant '{key}': {error}") from None
+            raise SystemMistake(f"{label}: variant '{key}': {error}") from None
 
 
-def _declared(system: System, attribute: str, said: str) -> Any:
+def _declared(system: System, attribute: str, label: str) -> Any:
     try:
-        found = getattr(system, attribute)
+        value = getattr(system, attribute)
     except (Exception, SystemExit) as error:
         # Without the attribute in its class there is no property that could fail.
         if not isinstance(error, AttributeError) or hasattr(type(system), attribute):
-            mistake = SystemMistake(f"{said}: `{attribute}` fails ({described(error)})")
+            mistake = SystemMistake(f"{label}: `{attribute}` fails ({described(error)})")
             mistake.place = place(error)
             raise mistake from error
-        found = None
-    if found is None and getattr(System, attribute, attribute) is not None:
-        raise SystemMistake(f"{said} declares no `{attribute}`: set it in the class")
-    return found
+        value = None
+    if value is None and getattr(System, attribute, attribute) is not None:
+        raise SystemMistake(f"{label} declares no `{attribute}`: set it in the class")
+    return value

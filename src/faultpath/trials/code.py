@@ -25,7 +25,7 @@ from faultpath.trials.system import System
 
 _NAMED = 3
 _ATTEMPT = Root("faultpath.trials.attempt")
-"""What runs a trial, whichever system it is."""
+"""Module that runs a trial, whichever system it is."""
 
 
 class CodeState(Frozen):
@@ -39,7 +39,7 @@ class CodeState(Frozen):
     """Versions of the installed packages that these files import."""
     python: str
     given: str = ""
-    """What the system says of itself beside."""
+    """Text of the system's `fingerprint()`, after its source where no file holds that."""
 
     @property
     def digest(self) -> str:
@@ -53,16 +53,16 @@ class CodeState(Frozen):
 
     def changed(self, other: "CodeState") -> tuple[str, ...]:
         """Say what `other` has otherwise: files, data files, packages, Python."""
-        found: list[str] = []
+        changes: list[str] = []
         for mine, theirs in (
             (self.files, other.files),
             (self.data, other.data),
             (self.packages, other.packages),
         ):
-            found += sorted(n for n in {*mine, *theirs} if mine.get(n) != theirs.get(n))
-        found += ["Python"] * (self.python != other.python)
-        found += ["what fingerprint() returns"] * (self.given != other.given)
-        return tuple(found)
+            changes += sorted(n for n in {*mine, *theirs} if mine.get(n) != theirs.get(n))
+        changes += ["Python"] * (self.python != other.python)
+        changes += ["what fingerprint() returns"] * (self.given != other.given)
+        return tuple(changes)
 
 
 def named(names: Sequence[str]) -> str:
@@ -101,27 +101,30 @@ class Watch:
 
     def changed(self) -> tuple[str, ...]:
         """Return the names of the files whose contents are not what they were."""
-        found: list[str] = []
+        names: list[str] = []
         for name, path in self._files.items():
             stamp = _stamp(path)
             if stamp is not None and stamp == self._stamps[name]:
                 continue
             if stamp is None or _digest(path) != self._digests[name]:
-                found.append(name)
+                names.append(name)
             else:
                 self._stamps[name] = stamp
-        return tuple(found)
+        return tuple(names)
 
 
 def _stamp(path: Path) -> tuple[int, int, int] | None:
     with suppress(OSError):
-        found = path.stat()
-        return found.st_mtime_ns, found.st_size, found.st_ino
+        stat = path.stat()
+        return stat.st_mtime_ns, stat.st_size, stat.st_ino
     return None
 
 
 def read_code(
-    roots: Iterable[Root], data: Iterable[Path] = (), base: Path | None = None, given: str = ""
+    roots: Iterable[Root],
+    data: Iterable[Path] = (),
+    base: Path | None = None,
+    fingerprint: str = "",
 ) -> Code:
     """Return what `roots` import, with some data files and folders.
 
@@ -139,8 +142,8 @@ def read_code(
     files: dict[str, tuple[Path, str]] = {}
     for place in (base / path for path in data):
         try:
-            held = [p for p in place.rglob("*") if p.is_file()] if place.is_dir() else [place]
-            for file in held:
+            paths = [p for p in place.rglob("*") if p.is_file()] if place.is_dir() else [place]
+            for file in paths:
                 name = file.relative_to(base) if file.is_relative_to(base) else file
                 files[name.as_posix()] = file, _digest(file)
         except OSError as error:
@@ -154,7 +157,7 @@ def read_code(
         data={name: digest for name, (_, digest) in files.items()},
         packages=dict(sorted(graph.packages.items())),
         python=platform.python_version(),
-        given=given,
+        given=fingerprint,
     )
     return Code(
         state,
@@ -172,32 +175,33 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     nothing can build again, that is the file of its class, or its source where it was typed into a
     notebook. `UserError` for a data file that cannot be read.
     """
-    given, root = system.fingerprint(), None if spec.is_object else factory_root(spec)
+    fingerprint, root = system.fingerprint(), None if spec.is_object else factory_root(spec)
     # A user's method returns what it likes.
-    if not isinstance(given, str):  # pyright: ignore[reportUnnecessaryIsInstance]
+    if not isinstance(fingerprint, str):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise SystemMistake(
-            f"system '{system.name}': `fingerprint` returned {shown(given)}: it must return text"
+            f"system '{system.name}': `fingerprint` returned {shown(fingerprint)}: it must return "
+            "text"
         )
     classes: dict[str, Root] = {}
-    for each in type(system).__mro__:
-        module, name = sys.modules.get(each.__module__), each.__module__
+    for kind in type(system).__mro__:
+        module, name = sys.modules.get(kind.__module__), kind.__module__
         file = getattr(module, "__file__", None)
         if not file or not Path(file).is_file():
             continue
-        if each is type(system) and spec.is_object:
+        if kind is type(system) and spec.is_object:
             root = Root(name, Path(file))
         elif root is None or name != root.module:
             findable = getattr(module, "__spec__", None) is not None
             classes[name] = Root(name, None if findable else Path(file), of_system=False)
     if root is None:
         with suppress(OSError, TypeError):
-            given = inspect.getsource(type(system)) + given
+            fingerprint = inspect.getsource(type(system)) + fingerprint
     parts = (factory_root(SystemSpec(name=str(name))) for name in paths_of(system, "parts"))
     code = read_code(
         ((root,) if root else ()) + (*classes.values(), *parts, _ATTEMPT),
         data=map(Path, paths_of(system, "data_files")),
         base=root.path.parent if root and root.path else None,
-        given=given,
+        fingerprint=fingerprint,
     )
     return code if root else replace(code, main=None)
 

@@ -1,4 +1,4 @@
-"""What a system declares: variants, libraries of scenes, floor plans; checked as they are made."""
+"""Declarations of a system: variants, libraries of scenes, floor plans; checked when made."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ from faultpath.core.text import one_line, steers
 
 _LONGEST_NAME = 200
 _LARGEST_INDEX = 2**63 - 1
-"""What the tables hold."""
+"""Largest index that the tables hold."""
 
 
 def check_name(what: str, name: Any) -> None:
@@ -43,13 +43,13 @@ class Variant:
     def __post_init__(self) -> None:
         """Raise `SystemMistake` for parts of another type."""
         check_name("the name of a variant", self.name)
-        said = f"variant '{self.name}'"
+        label = f"variant '{self.name}'"
         for what in ("consumers", "privileged"):
-            for name in _items(f"{said}: {what}", getattr(self, what)):
-                check_name(f"{said}: one of {what}", name)
+            for name in _items(f"{label}: {what}", getattr(self, what)):
+                check_name(f"{label}: one of {what}", name)
         bindings: Any = self.bindings
         if not isinstance(bindings, Mapping):
-            raise SystemMistake(f"{said}: bindings is {shown(bindings)}: map channels to sources")
+            raise SystemMistake(f"{label}: bindings is {shown(bindings)}: map channels to sources")
 
 
 @dataclass(frozen=True)
@@ -84,29 +84,29 @@ class Library:
     def __post_init__(self) -> None:
         """Raise `SystemMistake` for scenes that are none, or that share a name."""
         check_name("the name of a library", self.name)
-        said = f"library '{self.name}'"
-        check_name(f"the content hash of {said}", self.content_hash)
+        label = f"library '{self.name}'"
+        check_name(f"the content hash of {label}", self.content_hash)
         seen: set[str] = set()
-        for scene in _items(f"{said}: scenes", self.scenes):
+        for scene in _items(f"{label}: scenes", self.scenes):
             if not isinstance(scene, SceneRef):
-                raise SystemMistake(f"{said} holds {shown(scene)}: every scene is a SceneRef")
+                raise SystemMistake(f"{label} holds {shown(scene)}: every scene is a SceneRef")
             if scene.id in seen:
-                raise SystemMistake(f"{said} holds scene '{scene.id}' twice: name each scene once")
+                raise SystemMistake(f"{label} holds scene '{scene.id}' twice: name each scene once")
             seen.add(scene.id)
 
 
-def _items(what: str, found: Any) -> Iterable[Any]:
-    if isinstance(found, (str, bytes)) or not isinstance(found, Iterable):
-        raise SystemMistake(f"{what} is {shown(found)}: give several, as a tuple or a set")
-    return cast("Iterable[Any]", found)
+def _items(what: str, members: Any) -> Iterable[Any]:
+    if isinstance(members, (str, bytes)) or not isinstance(members, Iterable):
+        raise SystemMistake(f"{what} is {shown(members)}: give several, as a tuple or a set")
+    return cast("Iterable[Any]", members)
 
 
-def shown(found: Any) -> str:
+def shown(value: Any) -> str:
     """Return a wrong value in a line that is short enough for a message."""
     try:
-        text = one_line(repr(found))
+        text = one_line(repr(value))
     except Exception:  # whatever a system's own object does when it is printed
-        return f"a {type(found).__name__}"
+        return f"a {type(value).__name__}"
     return text if len(text) <= 80 else f"{text[:80]}…"
 
 

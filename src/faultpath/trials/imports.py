@@ -21,7 +21,7 @@ _COMPUTED = (
     *(b"import_module", b"__import__", b"spec_from_file_location", b"SourceFileLoader"),
     *(b"exec_module", b"run_path", b"run_module", b"walk_packages", b"iter_modules"),
 )
-"""What imports, in a source, by a name or path that may be known only when it runs."""
+"""Words in a source that import by a name or path which may be known only when it runs."""
 _INSTALLED = frozenset({"site-packages", "dist-packages"})
 _NO_SOURCE = frozenset({"__pycache__", "node_modules"})
 
@@ -71,15 +71,16 @@ class Graph:
     def _module(self, name: str) -> None:
         """Take in the packages that a module lies in, as an import does, and the module."""
         parts = name.split(".")
-        for each in (".".join(parts[:end]) for end in range(1, len(parts) + 1)):
-            if each in self.seen or (ours(each) and "." not in each):  # front doors decide nothing
+        for module in (".".join(parts[:end]) for end in range(1, len(parts) + 1)):
+            # Front doors decide nothing.
+            if module in self.seen or (ours(module) and "." not in module):
                 continue
-            self.seen.add(each)
-            spec = locate(each)
+            self.seen.add(module)
+            spec = locate(module)
             path = file_of(spec)
             if spec is None or path is None:
                 continue
-            kind = "local" if ours(each) else kind_of(path)
+            kind = "local" if ours(module) else kind_of(path)
             if kind == "standard":
                 continue
             if kind == "installed" and parts[0] not in self._entered:
@@ -87,39 +88,39 @@ class Graph:
                 if version is not None:
                     self.packages[parts[0]] = version
                     continue
-            stem = each.replace(".", "/")
+            stem = module.replace(".", "/")
             label = f"{stem}/{path.name}" if path.stem == "__init__" else f"{stem}{path.suffix}"
             folder = spec.submodule_search_locations is not None
-            self._file(path, label, each if folder else each.rpartition(".")[0], each)
+            self._file(path, label, module if folder else module.rpartition(".")[0], module)
 
     def _file(self, path: Path, label: str, package: str, name: str) -> None:
         path = Path(os.path.realpath(path))
         if path in self._paths:
             return
         self._paths.add(path)
-        found = _contents(name, path)
+        contents = _contents(name, path)
         if label in self.files:
             label = f"{path.parent.name}/{label}"
-        self.files[label] = (path, found.sha256)
-        for module, names in found.imports:
+        self.files[label] = (path, contents.sha256)
+        for module, names in contents.imports:
             try:
                 base = resolve_name(module, package)
             except ImportError:  # a file of its own has no package to look in
                 continue
             self._module(base)
-            for each in names:
-                self._module(f"{base}.{each}")
-        if not found.computed or ours(name):
+            for member in names:
+                self._module(f"{base}.{member}")
+        if not contents.computed or ours(name):
             return
         for place, folders, files in os.walk(path.parent):
             folders[:] = sorted(
-                each
-                for each in folders
-                if not each.startswith(".")
-                and each not in _NO_SOURCE
-                and not os.path.exists(os.path.join(place, each, "pyvenv.cfg"))
+                folder
+                for folder in folders
+                if not folder.startswith(".")
+                and folder not in _NO_SOURCE
+                and not os.path.exists(os.path.join(place, folder, "pyvenv.cfg"))
             )
-            for beside in (Path(place, each) for each in sorted(files) if each.endswith(".py")):
+            for beside in (Path(place, file) for file in sorted(files) if file.endswith(".py")):
                 parts = beside.relative_to(path.parent).with_suffix("").parts
                 inside = ".".join(part for part in (package, *parts[:-1]) if part)
                 below = beside.relative_to(path.parent.parent).as_posix()
@@ -149,7 +150,7 @@ def locate(name: str) -> ModuleSpec | None:
             continue
         except KeyError:  # a folder without `__init__.py` whose parent is not imported
             spec = ModuleSpec(name, None, is_package=True)
-            spec.submodule_search_locations = [os.path.join(each, last) for each in path or ()]
+            spec.submodule_search_locations = [os.path.join(folder, last) for folder in path or ()]
         if spec is not None:
             return spec
     return None
@@ -169,7 +170,7 @@ def kind_of(path: Path) -> Literal["standard", "installed", "local"]:
 
     def lies_in(*names: str) -> bool:
         folders = filter(None, map(sysconfig.get_path, names))
-        return real.startswith(tuple(os.path.realpath(each) + os.sep for each in folders))
+        return real.startswith(tuple(os.path.realpath(folder) + os.sep for folder in folders))
 
     if not _INSTALLED.isdisjoint(path.parent.parts) or lies_in("purelib", "platlib"):
         return "installed"
@@ -186,17 +187,17 @@ def release(package: str) -> str | None:
     if package in sys.stdlib_module_names:  # no distribution has them, and looking takes seconds
         return None
     try:
-        found = distribution(package)
+        holder = distribution(package)
     except (PackageNotFoundError, ValueError):
         names = packages_distributions().get(package)
         if not names:
             return None
-        found = distribution(names[0])
-    if found.read_text("direct_url.json") is None:
-        return found.version
-    lines = (found.read_text("RECORD") or "").splitlines()
-    held = sorted(line for line in lines if "sha256=" in line and "dist-info" not in line)
-    return f"{found.version} ({sha256(repr(held).encode()).hexdigest()[:16]})"
+        holder = distribution(names[0])
+    if holder.read_text("direct_url.json") is None:
+        return holder.version
+    lines = (holder.read_text("RECORD") or "").splitlines()
+    records = sorted(line for line in lines if "sha256=" in line and "dist-info" not in line)
+    return f"{holder.version} ({sha256(repr(records).encode()).hexdigest()[:16]})"
 
 
 @dataclass(frozen=True)
@@ -213,7 +214,7 @@ class _Contents:
 _read: dict[str, _Contents] = {}
 """By digest: a file is taken apart once."""
 _loaded: WeakKeyDictionary[ModuleType, _Contents] = WeakKeyDictionary()
-"""What a module was when it was first asked for: later edits do not reach what is loaded."""
+"""Contents of a module when it was first looked up: later edits do not reach what is loaded."""
 
 
 def _contents(name: str, path: Path) -> _Contents:

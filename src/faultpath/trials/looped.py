@@ -17,7 +17,7 @@ from faultpath.trials.system import System, Variant
 
 @dataclass(frozen=True)
 class Wiring:
-    """What a variant is, beside its modules."""
+    """Description and bindings of a variant, beside its modules."""
 
     description: str
     bindings: Mapping[str, str] = field(default_factory=dict[str, str])
@@ -55,7 +55,7 @@ class LoopSystem(System):
 
     @cached_property
     def _variants(self) -> Mapping[str, Variant]:
-        found: dict[str, Variant] = {}
+        variants: dict[str, Variant] = {}
         for name, wiring in self.wirings.items():
             parts = self._graph(name, None)
             bound = {parts.bindings[port.channel] for part in parts.parts for port in part.ports}
@@ -64,14 +64,14 @@ class LoopSystem(System):
                 for source in bound
                 if self.interface.source(source).provenance is Provenance.PRIVILEGED
             ]
-            found[name] = Variant(
+            variants[name] = Variant(
                 name,
                 wiring.description,
                 consumers(parts.parts),
                 wiring.bindings,
                 frozenset(privileged),
             )
-        return found
+        return variants
 
     def loop(self, variant: str, seed: int | None) -> Loop:
         """Return the executable loop of a variant.
@@ -99,7 +99,7 @@ class LoopSystem(System):
             state = instant.state
             path.append(plant.position(state))
         drawn = [h for part in loop.graph.modules if (h := part.noise_hashes(batch)) is not None]
-        noise = ["-".join(each) for each in zip(*drawn, strict=True)] or ["none"] * len(scenes)
+        noise = ["-".join(hashes) for hashes in zip(*drawn, strict=True)] or ["none"] * len(scenes)
         # Reading the end of the trials waits for the plant's device, once a batch.
         end = plant.progress(state)
         initial, disturbed = plant.conditions(state)

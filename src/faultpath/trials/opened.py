@@ -28,13 +28,13 @@ def reads() -> Generator[set[str]]:
     At its end, those that were written meanwhile, by this process or another, are left out.
     """
     _hook()
-    read, made, began = set[str](), set[str](), time.time_ns()
-    _watching.append(mine := (read, made))
+    read, written, began = set[str](), set[str](), time.time_ns()
+    _watching.append(mine := (read, written))
     try:
         yield read
     finally:
-        _watching[:] = (each for each in _watching if each is not mine)
-        paths = {os.path.realpath(path) for path in read - made}
+        _watching[:] = (watcher for watcher in _watching if watcher is not mine)
+        paths = {os.path.realpath(path) for path in read - written}
         read.clear()
         ended = time.time_ns()
         read |= {
@@ -57,9 +57,9 @@ def _note(event: str, arguments: tuple[Any, ...]) -> None:
         caller = sys._getframe(2).f_back  # pyright: ignore[reportPrivateUsage]
         if caller and caller.f_globals.get("__name__") == "faultpath.faults.recorded":
             return
-    for read, made in _watching:
+    for read, written in _watching:
         changes = flags & (os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
-        (made if changes else read).add(os.path.abspath(os.fsdecode(path)))
+        (written if changes else read).add(os.path.abspath(os.fsdecode(path)))
 
 
 def _is_users(path: str) -> bool:

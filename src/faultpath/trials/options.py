@@ -34,12 +34,12 @@ class Option:
     name: str
     help: str = ""
     choices: tuple[str, ...] = ()
-    """What may be chosen, as text; empty where the values cannot be listed."""
+    """Choices, as text; empty where the values cannot be listed."""
     default: str | None = None
     """`None` where there is none, or where other options decide."""
     required: bool = field(default=False, compare=False, repr=False)
     values: Mapping[str, Any] = field(default_factory=dict[str, Any], compare=False, repr=False)
-    """What the choices stand for, by their text."""
+    """Values that the choices stand for, by their text."""
     annotation: Any = field(default=None, compare=False, repr=False)
     factories: bool = field(default=False, compare=False, repr=False)
 
@@ -79,7 +79,7 @@ def options_of(factory: Factory) -> tuple[Option, ...]:
     return tuple(_declared(factory)[0].values())
 
 
-def call(factory: Callable[..., _Built], given: Mapping[str, str], system: str) -> _Built:
+def call(factory: Callable[..., _Built], texts: Mapping[str, str], system: str) -> _Built:
     """Return what a factory builds from options given as text.
 
     Raises `UserError`, naming `system`, for an option that the factory does not take or lacks, and
@@ -87,15 +87,15 @@ def call(factory: Callable[..., _Built], given: Mapping[str, str], system: str) 
     """
     options, model, any_other = _declared(factory)
     names = ", ".join(options)
-    for name in given:
+    for name in texts:
         if name not in options and not any_other:
             raise UserError(
                 f"the options of {system} do not include '{name}': it takes {names or 'none'}."
             )
     for name, option in options.items():
-        if option.required and name not in given:
+        if option.required and name not in texts:
             raise UserError(f"{system} needs the option '{name}': give it, it takes {names}.")
-    values = {k: options[k].read(v, system) if k in options else v for k, v in given.items()}
+    values = {k: options[k].read(v, system) if k in options else v for k, v in texts.items()}
     if model is None:
         return factory(**values)
     try:
@@ -109,11 +109,11 @@ def builds(factory: Factory, kinds: Sequence[type]) -> bool:
 
     Names of the classes that are imported for type checkers only are known.
     """
-    made: Any = inspect.unwrap(factory)
+    builder: Any = inspect.unwrap(factory)
     known = {kind.__name__: kind for kind in kinds}
-    kind = made if isinstance(made, type) else _hints(made, known).get("return")
+    kind = builder if isinstance(builder, type) else _hints(builder, known).get("return")
     several = get_args(kind) or (kind,)
-    return all(isinstance(each, type) and issubclass(each, tuple(kinds)) for each in several)
+    return all(isinstance(member, type) and issubclass(member, tuple(kinds)) for member in several)
 
 
 def as_text(options: Mapping[str, object]) -> dict[str, str]:
@@ -144,27 +144,31 @@ def _declared(factory: Factory) -> tuple[dict[str, Option], type[BaseModel] | No
             default = ... if parameter.default is parameter.empty else parameter.default
             fields[name] = FieldInfo.from_annotated_attribute(hints.get(name, known), default)
     options = dict[str, Option]()
-    for name, each in fields.items():
-        offered = next((note for note in each.metadata if isinstance(note, Offered)), None)
-        values = _values(each.annotation) if offered is None else offered.choices
-        required = each.is_required()
+    for name, info in fields.items():
+        offered = next((note for note in info.metadata if isinstance(note, Offered)), None)
+        values = _values(info.annotation) if offered is None else offered.choices
+        required = info.is_required()
         options[name] = Option(
             name,
-            " ".join(note for note in each.metadata if isinstance(note, str)),
+            " ".join(note for note in info.metadata if isinstance(note, str)),
             tuple(values),
-            None if required or each.default is None else _text(each.default),
+            None if required or info.default is None else _text(info.default),
             required,
             values,
-            each.annotation,
+            info.annotation,
             bool(offered and offered.factories),
         )
-    return options, model, any(each.kind is each.VAR_KEYWORD for each in parameters.values())
+    return (
+        options,
+        model,
+        any(argument.kind is argument.VAR_KEYWORD for argument in parameters.values()),
+    )
 
 
-def _hints(made: Any, known: Mapping[str, type]) -> dict[str, Any]:
+def _hints(builder: Any, known: Mapping[str, type]) -> dict[str, Any]:
     """Return the annotations that can be read; `known` is what names mean that nothing defines."""
-    names, hints = {**known, **getattr(made, "__globals__", {})}, dict[str, Any]()
-    for name, written in getattr(made, "__annotations__", {}).items():
+    names, hints = {**known, **getattr(builder, "__globals__", {})}, dict[str, Any]()
+    for name, written in getattr(builder, "__annotations__", {}).items():
         holder = types.SimpleNamespace(__annotations__={name: written})
         with suppress(NameError, TypeError, AttributeError, SyntaxError):  # for type checkers only
             hints |= typing.get_type_hints(holder, names, include_extras=True)

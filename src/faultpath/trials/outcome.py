@@ -1,4 +1,4 @@
-"""What one trial leaves behind: how it ended, and metrics by name."""
+"""Outcome of one trial: how it ended, and metrics by name."""
 
 import math
 from collections.abc import Collection, Mapping
@@ -25,9 +25,9 @@ class Metric(Frozen):
     """`1` for a number without a unit."""
     better: Literal["less", "more"]
     words: Words = ""
-    """What it is called within a sentence; empty for its name without the unit."""
+    """Words for it within a sentence; empty for its name without the unit."""
     title: Words = ""
-    """What it is called above a picture; empty for its words."""
+    """Heading above a picture; empty for its words."""
 
     def said(self, name: str) -> str:
         """Return its words, given its name."""
@@ -74,7 +74,7 @@ class Outcome:
     disturbance_hash: str
     planner_noise_hash: str
     metrics: Mapping[str, float | None] = field(default_factory=dict[str, float | None])
-    """What else there is to measure, by name, as the system's `metrics` declare it."""
+    """Other measurements, by name, as the system's `metrics` declare it."""
     faulted_steps: int = 0
     """Control steps at which a fault was in force at some tap that delivered."""
     altered_steps: int = 0

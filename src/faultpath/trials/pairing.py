@@ -32,7 +32,7 @@ class Side:
     variant: str
     path: str
     once: int | None = None
-    """Of what no seed trains anew, the seed of its only run, which is paired with every seed."""
+    """Seed of the only run of what no seed trains anew; that run is paired with every seed."""
 
     def __str__(self) -> str:
         return f"{self.variant} under {self.path}"
@@ -87,8 +87,8 @@ class Mismatch:
 def mismatch_words(mismatches: Iterable[Mismatch]) -> tuple[str, ...]:
     """Return one sentence for each two sides, which counts their mismatches and shows the first."""
     sides: dict[tuple[Side, Side], list[Mismatch]] = {}
-    for each in mismatches:
-        sides.setdefault((each.first, each.second), []).append(each)
+    for mismatch in mismatches:
+        sides.setdefault((mismatch.first, mismatch.second), []).append(mismatch)
     return tuple(
         f"{first}; {len(more)} more of their pairs are void for such a reason."
         if more
@@ -114,14 +114,14 @@ class Pairs:
     void: int
     all_scenes: tuple[str, ...]
     ended: tuple[Trials, Trials]
-    """Of both sides, over `all_scenes`, void pairs included."""
+    """Trials of both sides, over `all_scenes`, void pairs included."""
     mismatches: tuple[Mismatch, ...] = ()
     """The pairs that are void because their trials met different conditions."""
 
     def only(self, scenes: Iterable[str]) -> "Pairs":
         """Return the pairs of `scenes`, to cut several contrasts to what all of them have."""
-        wanted = set(scenes)
-        keep = np.array([scene in wanted for scene in self.scenes], dtype=np.bool_)
+        selection = set(scenes)
+        keep = np.array([scene in selection for scene in self.scenes], dtype=np.bool_)
         return replace(
             self,
             scenes=tuple(compress(self.scenes, keep)),
@@ -176,8 +176,8 @@ def pair(
         drawn_alike = not other_noise and first.at(seed) == second.at(seed)
         hashes = [name for name in _HASHES if name != "planner_noise_hash" or drawn_alike]
         for scene, (a, b) in enumerate(zip(one, two, strict=True)):
-            if found := unlike(a.outcome, b.outcome, hashes):
-                mismatches.append(Mismatch(first, second, a.outcome.scene, seed, found))
+            if differences := unlike(a.outcome, b.outcome, hashes):
+                mismatches.append(Mismatch(first, second, a.outcome.scene, seed, differences))
                 void[scene, at] = True
     keep: Bools = np.asarray(~void.any(axis=1), dtype=np.bool_)
     return Pairs(

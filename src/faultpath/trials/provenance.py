@@ -49,20 +49,20 @@ class RunProvenance(Shown):
     platform: str
     processor: str
     backend: str = ""
-    """What computed the trials, where a system says so."""
+    """Name of what computed the trials, where a system says so."""
     workers: int
     executor: str = ""
     """On what they were, where that is not this machine; platform and processor are this one's."""
     started: str
     finished: str
     wall_s: float
-    """Of the last invocation; shards kept from earlier ones are not counted."""
+    """Wall time of the last invocation; shards kept from earlier ones are not counted."""
     blocks_computed: int
     blocks_kept: int
     system_fingerprint: str
     """Hash of the sources, data files and packages that ran, and of what the system says."""
     system_commit: str | None = None
-    """Of the repository in which the system's file is tracked."""
+    """Commit of the repository in which the system's file is tracked."""
     system_dirty: bool | None = None
     """Whether a file that ran differs from that commit."""
     sources: dict[str, str] = Field(default_factory=dict[str, str])
@@ -72,6 +72,6 @@ class RunProvenance(Shown):
     library_hash: str
     outcomes_sha256: str
     rechecks: tuple[Recheck, ...] = ()
-    """What ran a second time, to see whether results repeat."""
+    """Trials that ran a second time, to see whether results repeat."""
     files: dict[FileName, Sha256] = Field(default_factory=dict[str, str])
     """The files beside this one that a report is made from, so that a change of one is seen."""

@@ -1,4 +1,4 @@
-"""What `faultpath.trials` offers."""
+"""Names that `faultpath.trials` offers."""
 
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.checks import library_of

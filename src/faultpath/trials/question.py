@@ -1,4 +1,4 @@
-"""What can be asked: every option of an audit, map, search, plan, check and trace, declared once.
+"""Questions of a user: every option of an audit, map, search, plan, check and trace, declared once.
 
 The flags of the command line, Python's keywords, their help, the study file and the checks follow
 from these models. Texts are taken where the command line gives them, as in `seeds="0,1,2"`.
@@ -35,26 +35,26 @@ class Flag:
 Sizes = Annotated[tuple[float, ...], BeforeValidator(read_sizes)]
 Place = Annotated[
     Path | None,
-    BeforeValidator(lambda given: Path(given) if isinstance(given, str) else given),
+    BeforeValidator(lambda place: Path(place) if isinstance(place, str) else place),
     PlainSerializer(lambda path: path and str(path)),
 ]
 Scenes = Annotated[str, Field(description="Library of scenes, by name or file.")]
 
 
 class Asked(Frozen, strict=True, allow_inf_nan=False):
-    """What a call asks."""
+    """Question of a call."""
 
     panel: ClassVar[str] = ""
     """Heading in the help of the fields that a class declares."""
 
 
 class Request(Asked):
-    """What is asked of a system."""
+    """Question about a system."""
 
     library: Scenes = "selection"
     options: Annotated[
         dict[str, Any],
-        BeforeValidator(lambda given: {} if given is None else given),
+        BeforeValidator(lambda options: {} if options is None else options),
         Flag("--set", several=True),
     ] = Field(
         default_factory=dict,
@@ -69,7 +69,7 @@ class Request(Asked):
 
 
 class TraceQuestion(Request):
-    """What a trace shows."""
+    """Question of a trace."""
 
     variant: str | None = Field(default=None, description="Variant; default the first.")
     steps: int = Field(default=3, ge=1, description="Control steps to trace.")
@@ -81,7 +81,7 @@ class TraceQuestion(Request):
 
 
 class CheckQuestion(Request):
-    """What is checked."""
+    """Question of a check."""
 
     variants: Annotated[tuple[str, ...], BeforeValidator(read_names)] = Field(
         default=(),
@@ -148,7 +148,7 @@ class Running(Placed, Question):
 
 
 class AuditQuestion(Running):
-    """What an audit asks."""
+    """Question that an audit answers."""
 
     panel: ClassVar[str] = "How it is decided"
 
@@ -184,7 +184,7 @@ class AuditQuestion(Running):
 
 
 class MapQuestion(Running):
-    """What a reversal map asks."""
+    """Question that a reversal map answers."""
 
     panel: ClassVar[str] = "What is mapped"
 
@@ -212,13 +212,13 @@ class MapQuestion(Running):
 
 
 class SearchQuestion(Running):
-    """What a search asks."""
+    """Question that a search answers."""
 
     panel: ClassVar[str] = "What is searched"
 
     within: Annotated[
         Path,
-        BeforeValidator(lambda given: Path(given) if isinstance(given, str) else given),
+        BeforeValidator(lambda path: Path(path) if isinstance(path, str) else path),
         PlainSerializer(str),
     ] = Field(
         description="File of bounds: the faults with their sizes, and the module that an isolated "
@@ -233,7 +233,7 @@ class SearchQuestion(Running):
 
 
 class PlanQuestion(Question):
-    """What a plan starts from."""
+    """Question that a plan answers."""
 
     panel: ClassVar[str] = "What is planned"
 
@@ -252,10 +252,10 @@ class PlanQuestion(Question):
 _Asked = TypeVar("_Asked", bound=Frozen)
 
 
-def ask(model: type[_Asked], given: Mapping[str, object], command: bool = False) -> _Asked:
+def ask(model: type[_Asked], fields: Mapping[str, object], command: bool = False) -> _Asked:
     """Return what is asked; `UserError` for what does not fit, by its flag if `command`."""
     try:
-        return model.model_validate(dict(given))
+        return model.model_validate(dict(fields))
     except ValidationError as error:
         wrong = misfit_of(error, model)
         first = str(wrong.place[0]) if wrong.place else ""

@@ -42,7 +42,7 @@ _EXTRAS = frozenset({"torch", "gymnasium"})
 @cache
 def installed_systems() -> dict[str, str]:
     """Return the factories that distributions declare, by the name of their system."""
-    return {each.name: each.value for each in entry_points(group=GROUP)}
+    return {entry_point.name: entry_point.value for entry_point in entry_points(group=GROUP)}
 
 
 def load_system(spec: SystemSpec) -> System:
@@ -58,17 +58,17 @@ def load_system(spec: SystemSpec) -> System:
     at the end of `sys.path`. Where loading fails both are put back.
     """
     with _loading(spec.name):
-        said = ":".join(_target(spec.name))
+        target = ":".join(_target(spec.name))
         try:
             system = call(_factory(spec.name), spec.options, f"system {spec.name!r}")
         except (Exception, SystemExit) as error:
             if isinstance(error, UserError) or _installed(spec.name) or where(error):
                 raise  # what has no place is no code of anybody's
             raise SystemMistake(
-                f"{said} builds no system ({described(error)}): name a function that returns one"
+                f"{target} builds no system ({described(error)}): name a function that returns one"
             ) from error
         if not isinstance(system, System):
-            raise UserError(f"{said} returned a {type(system).__name__}: it must return a System")
+            raise UserError(f"{target} returned a {type(system).__name__}: it must return a System")
         check_system(system, spec.name)
         return system
 
@@ -99,13 +99,13 @@ def load_parts(names: Iterable[str], kinds: Sequence[type]) -> dict[str, Factory
     is not declared to return one of `kinds`.
     """
     modules: dict[str, ModuleType] = {}
-    found: dict[str, Factory] = {}
+    factories: dict[str, Factory] = {}
     for name in names:
         place, attribute = _split(name)
         with _loading(name):
             modules[place] = modules.get(place) or _module(place, name)
-        found[name] = _attribute(modules[place], place, attribute, kinds)
-    return found
+        factories[name] = _attribute(modules[place], place, attribute, kinds)
+    return factories
 
 
 def _factory(name: str) -> Factory:
@@ -232,14 +232,14 @@ def _check_own(root: Root, folder: Path) -> None:
     graph = Graph()
     graph.add(root)
     for name in sorted(graph.seen):
-        place, found = folder.joinpath(*name.split(".")), file_of(locate(name))
+        place, origin = folder.joinpath(*name.split(".")), file_of(locate(name))
         files = (place / "__init__.py", place.with_name(f"{place.name}.py"))
         own = next((file for file in files if os.path.isfile(file)), None)
-        if own is None or found is None or ours(name):
+        if own is None or origin is None or ours(name):
             continue
-        if os.path.realpath(own) != os.path.realpath(found) and kind_of(found) == "local":
+        if os.path.realpath(own) != os.path.realpath(origin) and kind_of(origin) == "local":
             raise UserError(
-                f"{root.file or root.module} imports {name!r}, which is {found} in this process "
+                f"{root.file or root.module} imports {name!r}, which is {origin} in this process "
                 f"and not its own {own}: rename one of the two, or load them in processes of "
                 "their own"
             )

@@ -26,7 +26,7 @@ class VariantShown(Frozen, allow_inf_nan=False):
 
 
 class SystemShown(Frozen, allow_inf_nan=False):
-    """What a run keeps of the system beside its trials; written as `system.json`.
+    """Description of the system that a run keeps beside its trials; written as `system.json`.
 
     Raises `ValueError` for variants that do not fit the interface.
     """

@@ -20,15 +20,15 @@ Values: TypeAlias = NDArray[np.float64]
 
 
 class Recorded(Protocol):
-    """What was recorded of one trial, `[T, P]`: a row a control step, not a number where nothing
+    """Readings recorded in one trial, `[T, P]`: a row a control step, not a number where nothing
     was read. `KeyError` for what the variant has not got."""
 
     def held(self, source: str) -> Values:
-        """What a source held."""
+        """Return what a source held."""
         ...
 
     def got(self, channel: str, consumer: str) -> Values:
-        """What a tap delivered, faults included."""
+        """Return what a tap delivered, faults included."""
         ...
 
 
@@ -50,7 +50,7 @@ class ErrorSum:
     """
 
     words: str
-    """What they are errors of: `error of the expected acceleration`."""
+    """Quantity that both change: `error of the expected acceleration`."""
     unit: str
     terms: tuple[ErrorTerm, ErrorTerm]
 
@@ -74,9 +74,9 @@ class System(ABC):
     trained: bool = False
     """Whether variants hold trained models: results then speak of these models, as trained."""
     metrics: Mapping[str, Metric] = MappingProxyType({})
-    """What its outcomes measure beside status and time, by name."""
+    """Measurements of its outcomes beside status and time, by name."""
     ends: Mapping[Status, str] = MappingProxyType({})
-    """What a trial's end is called where it is not the status itself, for example `missed`."""
+    """Words for a trial's end where it is not called by its status, for example `missed`."""
     errors: ErrorSum | None = None
     """Two errors that act together, for the report; no trial reads them."""
     more_signals: str = ""
@@ -87,7 +87,7 @@ class System(ABC):
     @property
     @abstractmethod
     def interface(self) -> Interface:
-        """What the modules read, and from where."""
+        """Channels that the modules read, and the sources they come from."""
 
     @property
     @abstractmethod
@@ -142,7 +142,7 @@ class System(ABC):
 
     @property
     def backend(self) -> str:
-        """What computes the trials, in words, where that depends on the machine."""
+        """Name of what computes the trials, where that depends on the machine."""
         return ""
 
     def floor_plan(self, scene: str) -> FloorPlan | None:

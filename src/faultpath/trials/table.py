@@ -1,4 +1,4 @@
-"""What a study leaves behind: the outcome table, one row a scene, variant, path and seed; and what
+"""Tables of a study: the outcome table, one row a scene, variant, path and seed; and what
 the taps did in every arm, from their receipts."""
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -114,7 +114,7 @@ class Deliveries(Result):
     format: Literal[1] = 1
     rows: tuple[RowDeliveries, ...] = ()
     findings: tuple[str, ...] = ()
-    """What the run found that a reader of its results has to know, a sentence or two each."""
+    """Findings that a reader of the run's results has to know, a sentence or two each."""
 
     @classmethod
     def of(
@@ -167,9 +167,12 @@ def unread(counts: Iterable[tuple[str, TapCount]]) -> tuple[str, ...]:
 
 def unproven(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
     """Say so where the hashes are the same in all scenes, and so prove nothing about the pairs."""
-    sound = [each for each in outcomes if not each.failed]
-    scenes = {each.scene for each in sound}
-    met = {(each.initial_hash, each.disturbance_hash, each.planner_noise_hash) for each in sound}
+    sound = [outcome for outcome in outcomes if not outcome.failed]
+    scenes = {outcome.scene for outcome in sound}
+    met = {
+        (outcome.initial_hash, outcome.disturbance_hash, outcome.planner_noise_hash)
+        for outcome in sound
+    }
     if len(scenes) < 2 or len(met) > 1:
         return ()
     return (

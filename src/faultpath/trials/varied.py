@@ -1,4 +1,4 @@
-"""What a sensitivity analysis asks; flags, keywords and help follow, as for the other questions."""
+"""Question of a sensitivity analysis; flags, keywords and help follow, as for others."""
 
 from typing import Annotated, ClassVar
 
@@ -16,7 +16,7 @@ def _power_of_two(points: int) -> int:
 
 
 class SensitivityQuestion(Placed, Request):
-    """What a sensitivity analysis asks."""
+    """Question that a sensitivity analysis answers."""
 
     panel: ClassVar[str] = "What is varied"
 

@@ -32,21 +32,24 @@ def difference(first: Sequence[Outcome], reply: Reply) -> str:
         return f"could not be run again ({reply.how}), which differs"
     if not isinstance(reply, Done):
         return f"failed the second time ({reply.error}), which differs"
-    found = _gaps(first, reply)
-    if not found:
+    differences = _gaps(first, reply)
+    if not differences:
         return ""
-    ends = sum("status" in gaps for gaps in found.values())
+    ends = sum("status" in gaps for gaps in differences.values())
     parts = [f"{ends} end otherwise" if ends else "none ends otherwise"]
-    for name in dict.fromkeys(name for gaps in found.values() for name in gaps if name != "status"):
-        most = max(gaps.get(name, 0.0) for gaps in found.values())
+    for name in dict.fromkeys(
+        name for gaps in differences.values() for name in gaps if name != "status"
+    ):
+        most = max(gaps.get(name, 0.0) for gaps in differences.values())
         parts.append(f"{name} by up to {most:.3g}" if math.isfinite(most) else f"{name} too")
-    said = ", ".join(parts)
-    return f"differs in {len(found)} of {len(first)}, {next(iter(found))!r} for one ({said})"
+    summary = ", ".join(parts)
+    scene = next(iter(differences))
+    return f"differs in {len(differences)} of {len(first)}, {scene!r} for one ({summary})"
 
 
 def _gaps(first: Sequence[Outcome], again: Done) -> dict[str, dict[str, float]]:
     """Return by scene and name how far outcomes lie apart; infinity for what is no number."""
-    found: dict[str, dict[str, float]] = {}
+    gaps: dict[str, dict[str, float]] = {}
     for one, two in zip(first, again.outcomes, strict=True):
         mine: dict[str, Any] = {**vars(one), **one.metrics}
         theirs: dict[str, Any] = {**vars(two), **two.metrics}
@@ -58,19 +61,19 @@ def _gaps(first: Sequence[Outcome], again: Done) -> dict[str, dict[str, float]]:
             gap = math.inf
             if isinstance(a, int | float) and isinstance(b, int | float):
                 gap = abs(a - b)
-            found.setdefault(one.scene, {})[name] = gap
-    return found
+            gaps.setdefault(one.scene, {})[name] = gap
+    return gaps
 
 
 class _Kept(Frozen):
-    """What `rechecks.json` holds."""
+    """Contents of `rechecks.json`."""
 
     format: Literal[4] = 4
     flown: tuple[Recheck, ...] = ()
 
 
 class Rechecks:
-    """What runs again of a run that is done, and what that found; kept in the run's folder.
+    """Trials of a finished run that run again, and how they differ; kept in the run's folder.
 
     `outcomes` are those of `units`, by arm key and scene.
     """
@@ -82,7 +85,9 @@ class Rechecks:
         kept = _Kept()
         with suppress(OSError, Misread):
             kept = model_of(contents(folder.rechecks, LARGEST_TEXT), _Kept)
-        self._kept = {(each.unit, each.why, each.scenes): each for each in kept.flown}
+        self._kept = {
+            (recheck.unit, recheck.why, recheck.scenes): recheck for recheck in kept.flown
+        }
 
     def tasks(self) -> tuple[Task, ...]:
         """Return what is to run again; empty when nothing is left.
@@ -100,16 +105,21 @@ class Rechecks:
         # anything could have been kept. It has so many scenes that some are left out.
         first = {unit.block: unit.key for unit in reversed(self._units)}
         follow = [unit for unit in sound if unit.key != first[unit.block]]
-        unit = min(follow or sound, key=lambda each: (len(each.scenes) <= SAMPLE, _lot(each.key)))
+        unit = min(
+            follow or sound,
+            key=lambda candidate: (len(candidate.scenes) <= SAMPLE, _lot(candidate.key)),
+        )
         scenes = unit.scenes
         if len(scenes) > SAMPLE:
             by_lot = sorted(scenes[1:], key=lambda scene: _lot(unit.key, scene))[:SAMPLE]
             scenes = tuple(scene for scene in scenes if scene in by_lot)
-        others = [each for each in sound if each is not unit] or [unit]
-        other = min(others, key=lambda each: (len(each.scenes) == 1, _lot("guard", each.key)))
-        alone = min(other.scenes[1:] or other.scenes, key=lambda each: _lot(other.key, each))
-        wanted = (Task(unit, scenes, recheck="sample"), Task(other, (alone,), recheck="guarded"))
-        return tuple(t for t in wanted if (t.unit.key, t.recheck, t.scenes) not in self._kept)
+        others = [candidate for candidate in sound if candidate is not unit] or [unit]
+        other = min(
+            others, key=lambda candidate: (len(candidate.scenes) == 1, _lot("guard", candidate.key))
+        )
+        alone = min(other.scenes[1:] or other.scenes, key=lambda scene: _lot(other.key, scene))
+        tasks = (Task(unit, scenes, recheck="sample"), Task(other, (alone,), recheck="guarded"))
+        return tuple(t for t in tasks if (t.unit.key, t.recheck, t.scenes) not in self._kept)
 
     def settle(self, task: Task, reply: Reply) -> None:
         """Compare what came of a second run with the first; keep what that showed."""
@@ -133,7 +143,7 @@ class Rechecks:
             differs="" if wrote else difference(first, reply),
             other=other,
         )
-        kept = _Kept(flown=tuple(each for _, each in sorted(self._kept.items())))
+        kept = _Kept(flown=tuple(recheck for _, recheck in sorted(self._kept.items())))
         self._folder.save_rechecks(f"{kept.model_dump_json(indent=1)}\n")
 
     def flown(self) -> tuple[Recheck, ...]:

@@ -38,7 +38,7 @@ class UndeclaredFile(SystemMistake):
 
 @dataclass(frozen=True)
 class Job:
-    """What a worker builds: a system, the library of its scenes, and what both have to be."""
+    """System that a worker builds, the library of its scenes, and what both have to be."""
 
     system: SystemSpec
     library: str
@@ -83,10 +83,10 @@ class Built:
         """Raise `UndeclaredFile` for a file that was read, now or when the system was built, and
         is neither source nor data. No trial of an object is ever taken for another's."""
         name, code = self.job.system.name, self.code
-        if self.job.system.is_object or not (found := {*opened, *opened_by(name)}):
+        if self.job.system.is_object or not (files := {*opened, *opened_by(name)}):
             return
         known = map(os.path.realpath, (*code.sources.values(), *code.data.values()))
-        if unknown := sorted(found.difference(known)):
+        if unknown := sorted(files.difference(known)):
             names = [os.path.relpath(path, (code.main or Path()).parent) for path in unknown]
             raise UndeclaredFile(
                 f"system {name!r} reads {named(names)}, which it does not declare: an edit there "
@@ -159,11 +159,11 @@ def dispatch(
                 again.append((ended.task, True))
             else:
                 settle(ended.task, Died(end.how))
-        for worker, each in tuple(running.items()):
-            allowed = limit_s if each.started else max(LEAST_S, limit_s)
-            if time.monotonic() - each.since <= allowed:
+        for worker, attempt in tuple(running.items()):
+            allowed = limit_s if attempt.started else max(LEAST_S, limit_s)
+            if time.monotonic() - attempt.since <= allowed:
                 continue
-            if not each.started:
+            if not attempt.started:
                 raise UserError(
                     f"system {built.job.system.name!r} was not built in a worker process within "
                     f"{allowed:g} s: look for what its factory or its file waits for, or allow "
@@ -171,12 +171,12 @@ def dispatch(
                 )
             executor.cancel(worker)
             del running[worker]
-            settle(each.task, Died(f"it was stopped at the time limit of {allowed:g} s"))
+            settle(attempt.task, Died(f"it was stopped at the time limit of {allowed:g} s"))
         report()
 
 
 _built: list[Built] = []
-"""What this worker process has built last."""
+"""System that this worker process built last."""
 
 
 def _elsewhere(job: Job, work: Callable[[System, Any], Any], task: Any) -> Any:
@@ -220,11 +220,11 @@ def _build(job: Job) -> Built:
     return built
 
 
-def _check_same(before: CodeState, now: CodeState) -> None:
+def _check_same(before: CodeState, after: CodeState) -> None:
     """Raise `UserError` where a file has other contents now; files in one of them alone may be."""
     changed = [
         name
-        for mine, theirs in ((before.files, now.files), (before.data, now.data))
+        for mine, theirs in ((before.files, after.files), (before.data, after.data))
         for name, digest in mine.items()
         if theirs.get(name, digest) != digest
     ]

@@ -38,9 +38,9 @@ def run_provenance(
         ran = (*result.code[0].sources.values(), *result.code[0].data.values())
         system_commit, system_dirty = checkout(main, ran)
     imported = {
-        name.replace("_", "-"): found
+        name.replace("_", "-"): release
         for code in result.code
-        for name, found in code.state.packages.items()
+        for name, release in code.state.packages.items()
     }
     finished = datetime.now(UTC)
     provenance = RunProvenance(
@@ -63,8 +63,8 @@ def run_provenance(
         system_fingerprint=result.system_fingerprint,
         system_commit=system_commit,
         system_dirty=system_dirty,
-        sources={name: found for code in result.code for name, found in code.state.files.items()},
-        data={name: found for code in result.code for name, found in code.state.data.items()},
+        sources={name: digest for code in result.code for name, digest in code.state.files.items()},
+        data={name: digest for code in result.code for name, digest in code.state.data.items()},
         library_hash=result.library_hash,
         outcomes_sha256=result.outcomes_sha256,
         rechecks=result.rechecks,
@@ -106,13 +106,13 @@ def processor() -> str:
 
 def packages() -> dict[str, str]:
     """Return the versions of the packages that numbers depend on, of those installed."""
-    found: dict[str, str] = {}
+    versions: dict[str, str] = {}
     for name in _PACKAGES:
         try:
-            found[name] = version(name)
+            versions[name] = version(name)
         except PackageNotFoundError:
             continue
-    return found
+    return versions
 
 
 def _git(folder: Path, *arguments: str) -> str | None:

@@ -44,7 +44,7 @@ class RunResult:
 
     outcomes: OutcomeTable
     deliveries: Deliveries
-    """What the taps did, row by row, and what a reader of the results has to know."""
+    """Deliveries of the taps, row by row, and what a reader of the results has to know."""
     traces: Mapping[TrialAddress, Trace]
     """Position at each control step, `[T, 3]`, metres, world frame."""
     blocks_computed: int
@@ -52,16 +52,16 @@ class RunResult:
     failures: tuple[Failure, ...]
     outcomes_sha256: str
     system_fingerprint: str
-    """Of `code`, shortened; for several runs together, of all of them."""
+    """Digest of `code`, shortened; for several runs together, of all of them."""
     code: tuple[Code, ...]
-    """What ran, of each run that this is made of."""
+    """Code that ran, of each run that this is made of."""
     library_hash: str
     rechecks: tuple[Recheck, ...] = ()
-    """What ran a second time, to see whether results repeat."""
+    """Trials that ran a second time, to see whether results repeat."""
 
     @property
     def findings(self) -> tuple[str, ...]:
-        """What the run found that a reader has to know: results that do not repeat, consumers that
+        """Findings that a reader has to know: results that do not repeat, consumers that
         never read or that write, hashes that prove nothing."""
         return self.deliveries.findings
 
@@ -70,7 +70,7 @@ def run_study(
     study: Study,
     folder: Path | str,
     workers: int = 2,
-    progress: Callable[[Progress], None] = lambda now: None,
+    progress: Callable[[Progress], None] = lambda report: None,
     notice: Callable[[str], None] = _log.warning,
     system: System | None = None,
     shared: bool = False,
@@ -103,7 +103,7 @@ def run_study(
         Stopped: Ctrl-C; everything finished is stored.
         Exception: An error of `faultpath.loop.taps`, when the audit itself is wrong.
     """
-    held = local(workers) if executor is None else nullcontext(executor)
+    manager = local(workers) if executor is None else nullcontext(executor)
     if (workers if executor is None else executor.count) == 0 and time_limit_s is not None:
         raise UserError("a time limit needs worker processes: this one cannot stop itself")
     system = load_system(study.system) if system is None else system
@@ -127,7 +127,7 @@ def run_study(
         with run.open(manifest, notice, shared):
             schedule = Schedule(state.resume(notice), study.look > 0)
             progress(state.progress())
-            with held as workforce:
+            with manager as workforce:
                 dispatch(
                     workforce,
                     built,
@@ -148,8 +148,8 @@ def run_study(
                         again.settle,
                         time_limit_s,
                     )
-            table, found = state.table(), tuple(again.findings())
-            deliveries = Deliveries.of(study, state.taps(), table, found)
+            table, findings = state.table(), tuple(again.findings())
+            deliveries = Deliveries.of(study, state.taps(), table, findings)
             digest = run.save_tables(table, deliveries)
     except KeyboardInterrupt:
         # What is on disk counts: the run may have been stopped between storing and noting.

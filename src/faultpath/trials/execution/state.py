@@ -113,8 +113,8 @@ class RunState:
             case Wrong():
                 raise reply.error
         partial = self._partial.setdefault(unit.key, _Partial())
-        for scene, said in details.items():
-            partial.tracebacks.append(f"{scene}: {unit.arm.model_dump_json()}\n{said}\n")
+        for scene, detail in details.items():
+            partial.tracebacks.append(f"{scene}: {unit.arm.model_dump_json()}\n{detail}\n")
         partial.outcomes |= {outcome.scene: outcome for outcome in outcomes}
         partial.taps = added((*partial.taps, *taps))
         self._ended += len(outcomes)
@@ -165,7 +165,7 @@ class RunState:
     @property
     def units(self) -> tuple[Unit, ...]:
         """The units whose trials count."""
-        return tuple(each for each in self._units if not self._stop or each.block < self._looks)
+        return tuple(unit for unit in self._units if not self._stop or unit.block < self._looks)
 
     def taps(self) -> dict[str, tuple[TapCount, ...]]:
         """Return what the taps did in the units that count, by the key of their arm."""
@@ -178,12 +178,12 @@ class RunState:
         """Return how far the run is, and how long it takes yet at the pace that it had."""
         trials = rows = done = rows_done = 0
         for unit in self._units:
-            each, some = self._rows[unit.arm.key()], len(unit.scenes)
-            trials, rows = trials + some, rows + each * some
+            repeats, some = self._rows[unit.arm.key()], len(unit.scenes)
+            trials, rows = trials + some, rows + repeats * some
             if unit.key not in self._taps:
                 partial = self._partial.get(unit.key)
                 some = len(partial.outcomes) if partial else 0
-            done, rows_done = done + some, rows_done + each * some
+            done, rows_done = done + some, rows_done + repeats * some
         left = None
         if self._ended:
             left = (trials - done) * (time.monotonic() - self._began) / self._ended

@@ -8,6 +8,7 @@ import hashlib
 import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from os import PathLike
 from pathlib import Path
 from typing import Any, cast
@@ -22,7 +23,7 @@ from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import Given, Received, received
 
 _READ = ("eval_info.json", "samples_*.jsonl", "*.eval", "????-??-??T*.json")
-"""What is looked for in a folder and those in it; the last are Inspect's logs in JSON."""
+"""Patterns of files read from a folder and those in it; the last are Inspect's logs in JSON."""
 _SAMPLES = re.compile(r"samples_(.+)_\d{4}-\d\d-\d\dT[\d.-]+\.jsonl")
 _OF_SAMPLES = ("doc_id", "target", "filter", "metrics")
 
@@ -31,7 +32,7 @@ Cells = Iterator[tuple[str, Mapping[str, Any]]]
 
 
 def read_results(
-    results: Sequence[str | PathLike[str]], asked: JudgeQuestion
+    results: Sequence[str | PathLike[str]], question: JudgeQuestion
 ) -> tuple[list[Received], dict[str, str]]:
     """Return the trials in some files, and the SHA-256 of each file.
 
@@ -39,16 +40,16 @@ def read_results(
     the condition too, `mine@shared=runs/b`. Raises `UserError` for a file that cannot be read, and
     as `received`.
     """
-    found: list[Received] = []
+    trials: list[Received] = []
     digests: dict[str, str] = {}
-    for given in (each for result in results for each in _files(str(result))):
-        path = Path(given.path)
+    for file in chain.from_iterable(_files(str(result)) for result in results):
+        path = Path(file.path)
         try:
             data = contents(path, LARGEST_TEXT if path.suffix != ".eval" else inspect_logs.LARGEST)
-            before = len(found)
-            for where, cells in _as_expected(_cells(path, data, asked, given.arm)):
-                found.append(received(f"{path}{where}", cells, given, asked))
-            if len(found) == before:
+            before = len(trials)
+            for where, cells in _as_expected(_cells(path, data, question, file.arm)):
+                trials.append(received(f"{path}{where}", cells, file, question))
+            if len(trials) == before:
                 raise Misread("holds no trial; give a file with one in each row")
         except OSError as error:
             raise UserError(f"{path}: cannot be read ({error.strerror}): give a file.") from None
@@ -57,7 +58,7 @@ def read_results(
         except Unreadable as error:
             raise UserError(f"{path}: cannot be read ({error}): write it anew.") from None
         digests[str(path)] = hashlib.sha256(data).hexdigest()
-    return found, digests
+    return trials, digests
 
 
 def _files(result: str) -> list[Given]:
@@ -86,14 +87,14 @@ def _as_expected(cells: Cells) -> Cells:
         raise Misread("is not laid out as files of its kind are") from None
 
 
-def _cells(path: Path, data: bytes, asked: JudgeQuestion, label: str) -> Cells:
+def _cells(path: Path, data: bytes, question: JudgeQuestion, label: str) -> Cells:
     match path.suffix:
         case ".csv":
-            yield from _named(_csv(text_of(data)), asked)
+            yield from _named(_csv(text_of(data)), question)
         case ".parquet":
-            yield from _named(((f", row {n}", row) for n, row in read_rows(data)), asked)
+            yield from _named(((f", row {n}", row) for n, row in read_rows(data)), question)
         case ".eval":
-            yield from inspect_logs.cells(inspect_logs.unpacked(path), asked, label)
+            yield from inspect_logs.cells(inspect_logs.unpacked(path), question, label)
         case ".jsonl":
             lines = text_of(data).split("\n")  # other line separators may stand in a text
             rows = [
@@ -102,13 +103,13 @@ def _cells(path: Path, data: bytes, asked: JudgeQuestion, label: str) -> Cells:
                 if line.strip()
             ]
             if rows and "doc_id" in rows[0][1]:
-                yield from _samples(path, rows, asked)
+                yield from _samples(path, rows, question)
             else:
-                yield from _named(iter(rows), asked)
+                yield from _named(iter(rows), question)
         case ".json":
             log = _object(data)
             if isinstance(log.get("eval"), dict):
-                yield from inspect_logs.cells(log, asked, label)
+                yield from inspect_logs.cells(log, question, label)
             else:
                 yield from _episodes(log)
         case _:
@@ -117,11 +118,11 @@ def _cells(path: Path, data: bytes, asked: JudgeQuestion, label: str) -> Cells:
 
 def _object(data: bytes, line: int | None = None) -> dict[str, Any]:
     try:
-        found = read_json(data)
+        content = read_json(data)
     except Misread as error:
         raise Misread(str(error), line or error.line) from None
-    if isinstance(found, dict):
-        return cast("dict[str, Any]", found)
+    if isinstance(content, dict):
+        return cast("dict[str, Any]", content)
     raise Misread("is no group of fields, {...}", line)
 
 
@@ -133,20 +134,20 @@ def _csv(text: str) -> Cells:
             raise Misread(f"column '{twice[0]}' appears twice; drop one", 1)
         for row in filter(None, rows):
             if len(row) != len(names):
-                said = f"has {len(row)} cells where the first line names {len(names)} columns"
-                raise Misread(said, rows.line_num)
+                problem = f"has {len(row)} cells where the first line names {len(names)} columns"
+                raise Misread(problem, rows.line_num)
             yield f", line {rows.line_num}", dict(zip(names, row, strict=True))
     except csv.Error as error:
         raise Misread(f"is not CSV ({error})", rows.line_num) from None
 
 
-def _named(rows: Cells, asked: JudgeQuestion) -> Cells:
+def _named(rows: Cells, question: JudgeQuestion) -> Cells:
     """Yield trials by the names that are asked for; a column that was named has to be there."""
     for where, row in rows:
-        for name, column in asked.columns.items():
+        for name, column in question.columns.items():
             if column not in row:
                 raise Misread(f"--column {name}={column}: {unknown('column', column, row)}")
-        yield where, {**row, **{name: row[column] for name, column in asked.columns.items()}}
+        yield where, {**row, **{name: row[column] for name, column in question.columns.items()}}
 
 
 def _episodes(info: Mapping[str, Any]) -> Cells:
@@ -163,9 +164,9 @@ def _episodes(info: Mapping[str, Any]) -> Cells:
             "is neither LeRobot's eval_info.json (per_task or per_episode) nor a log of Inspect "
             "(eval and samples); give one of these, or columns as CSV"
         )
-    for each in _listed(info["per_task"]):
-        task = f"{each['task_group']}/{each['task_id']}"
-        metrics: dict[str, list[Any]] = each["metrics"]
+    for evaluation in _listed(info["per_task"]):
+        task = f"{evaluation['task_group']}/{evaluation['task_id']}"
+        metrics: dict[str, list[Any]] = evaluation["metrics"]
         lists = {"success": "successes", "sum_reward": "sum_rewards", "max_reward": "max_rewards"}
         columns = {name: _listed(metrics[key]) for name, key in lists.items() if key in metrics}
         for at, row in enumerate(zip(*columns.values(), strict=True)):
@@ -180,11 +181,13 @@ def _listed(value: Any) -> list[Any]:
     return cast("list[Any]", value)
 
 
-def _samples(path: Path, rows: Sequence[tuple[str, dict[str, Any]]], asked: JudgeQuestion) -> Cells:
+def _samples(
+    path: Path, rows: Sequence[tuple[str, dict[str, Any]]], question: JudgeQuestion
+) -> Cells:
     """Yield the documents of lm-eval's `samples_<task>_<date>.jsonl`, by the hash of each."""
     named = _SAMPLES.fullmatch(path.name)
     task = named[1] if named else path.stem
-    metric, _, wanted = asked.columns.get("success", "").partition(",")
+    metric, _, filter_name = question.columns.get("success", "").partition(",")
     filters = list(dict.fromkeys(str(row.get("filter", "none")) for _, row in rows))
     metrics = _listed(rows[0][1].get("metrics") or []) or [
         name
@@ -194,13 +197,13 @@ def _samples(path: Path, rows: Sequence[tuple[str, dict[str, Any]]], asked: Judg
     if not metrics:
         raise Misread("names no metric, and has no number that could be one; give --column success")
     metric = metric or (str(metrics[0]) if len(metrics) == 1 else "")
-    wanted = wanted or (filters[0] if len(filters) == 1 else "")
-    if metric not in metrics or wanted not in filters:
+    filter_name = filter_name or (filters[0] if len(filters) == 1 else "")
+    if metric not in metrics or filter_name not in filters:
         raise Misread(
             f"has the metrics {listed(map(str, metrics))} and the filters {listed(filters)}; say "
             f"which of them is success, as in --column success={metrics[0]},{filters[0]}"
         )
     for where, row in rows:
-        if str(row.get("filter", "none")) == wanted:
+        if str(row.get("filter", "none")) == filter_name:
             same = {"task": task, "scene": row["doc_id"], "initial": row.get("doc_hash")}
             yield where, {**row, **same, "success": row.get(metric)}

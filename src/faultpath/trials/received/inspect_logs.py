@@ -51,7 +51,7 @@ def unpacked(path: Path) -> dict[str, Any]:
 
 
 def cells(
-    log: Mapping[str, Any], asked: JudgeQuestion, label: str = ""
+    log: Mapping[str, Any], question: JudgeQuestion, label: str = ""
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the samples of a log: scenes by their id, seeds by the epoch, the arm by the model, or
     by `label` where the model is not called as an arm."""
@@ -59,13 +59,13 @@ def cells(
     if samples is None:
         raise Misread("holds no samples; write the log with them")
     model = about["model"]
-    model = label if label and model not in (asked.baseline, asked.repair) else model
-    wanted = asked.columns.get("success", "")
+    model = label if label and model not in (question.baseline, question.repair) else model
+    scorer = question.columns.get("success", "")
     for sample in samples:
         scores: dict[str, Any] = sample.get("scores") or {}
         wrong: dict[str, Any] = sample.get("error") or {}
         where = f", sample {sample['id']}"
-        name = wanted or (next(iter(scores)) if len(scores) == 1 else "")
+        name = scorer or (next(iter(scores)) if len(scores) == 1 else "")
         if scores and name not in scores:
             raise Misread(
                 f"sample {sample['id']} is scored by {listed(scores)}; say which of them is "
@@ -89,9 +89,9 @@ def cells(
 
 def _asked(sample: Mapping[str, Any]) -> str:
     """Return a hash of what the model was asked; of messages their ids, which vary, left out."""
-    given = sample.get("input")
-    if not isinstance(given, str):
-        messages = cast("list[dict[str, Any]]", given or [])
-        given = [(each.get("role"), str(each.get("content"))) for each in messages]
-    text = json.dumps([given, sample.get("target")], sort_keys=True)
+    prompt = sample.get("input")
+    if not isinstance(prompt, str):
+        messages = cast("list[dict[str, Any]]", prompt or [])
+        prompt = [(message.get("role"), str(message.get("content"))) for message in messages]
+    text = json.dumps([prompt, sample.get("target")], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -1,4 +1,4 @@
-"""What can be asked of results that other tools wrote."""
+"""Question about results that other tools wrote."""
 
 from collections.abc import Mapping, Sequence
 from typing import Annotated, ClassVar, Literal, cast
@@ -18,34 +18,34 @@ COLUMNS = (
     "initial",
     "time_s",
 )
-"""What is read of a trial, and the name of its column where none is given."""
+"""Properties read of a trial; each is also the name of its column where none is given."""
 
 
-def _columns(given: object) -> object:
-    if isinstance(given, Mapping):
-        found = dict(cast("Mapping[str, str]", given))
+def _columns(flags: object) -> object:
+    if isinstance(flags, Mapping):
+        columns = dict(cast("Mapping[str, str]", flags))
     else:
-        pairs = [str(each).partition("=") for each in several(given)]
+        pairs = [str(flag).partition("=") for flag in several(flags)]
         if bad := [name for name, equals, column in pairs if not (name and equals and column)]:
             raise ValueError(f"'{bad[0]}' is not of the form scene=episode_id")
-        found = {name: column for name, _, column in pairs}
-        if len(found) < len(pairs):
+        columns = {name: column for name, _, column in pairs}
+        if len(columns) < len(pairs):
             raise ValueError("gives one of them two columns: name each once")
-    if odd := sorted(set(found) - set(COLUMNS)):
+    if odd := sorted(set(columns) - set(COLUMNS)):
         raise ValueError(f"'{odd[0]}' is nothing that is read: choose from {', '.join(COLUMNS)}")
-    return found
+    return columns
 
 
-def _metrics(given: object) -> object:
-    found = several(given)
-    names = [str(each).partition(":")[0] for each in cast("Sequence[object]", found)]
+def _metrics(flags: object) -> object:
+    metrics = several(flags)
+    names = [str(metric).partition(":")[0] for metric in cast("Sequence[object]", metrics)]
     if len(set(names)) < len(names):
         raise ValueError("names a metric twice: name each once")
-    return found
+    return metrics
 
 
 class JudgeQuestion(Asked):
-    """What is asked of results that other tools wrote."""
+    """Question about results that other tools wrote."""
 
     panel: ClassVar[str] = "What is compared"
 

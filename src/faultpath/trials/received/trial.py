@@ -56,15 +56,17 @@ class Given:
         return label or cell
 
 
-def received(where: str, cells: Mapping[str, Any], given: Given, asked: JudgeQuestion) -> Received:
+def received(
+    where: str, cells: Mapping[str, Any], file: Given, question: JudgeQuestion
+) -> Received:
     """Return the trial in `cells`, by the names of `COLUMNS` and of metrics.
 
     `UserError` for a trial without an arm, scene or success, and for cells that cannot be.
     """
-    arm, condition = given.label("arm", cells, where), given.label("condition", cells, where)
+    arm, condition = file.label("arm", cells, where), file.label("condition", cells, where)
     if not arm:
         raise UserError(
-            f"{where} names no arm: write it before the file, as in {asked.repair}={given.path}, "
+            f"{where} names no arm: write it before the file, as in {question.repair}={file.path}, "
             "or name the column with --column arm=NAME."
         )
     scene = _text(cells.get("scene"), f"{where}: the scene")
@@ -77,12 +79,12 @@ def received(where: str, cells: Mapping[str, Any], given: Given, asked: JudgeQue
     for name, text in {"arm": arm, "scene": scene, "condition": condition, **texts}.items():
         if text:
             check_name(f"{where}: the {name}", text)
-    status = _status(cells["success"], where, asked.success_from)
+    status = _status(cells["success"], where, question.success_from)
     time_s = _number(cells.get("time_s"), f"{where}: time_s")
     if time_s is not None and time_s <= 0.0:
         raise UserError(f"{where}: time_s is {time_s:g}: give seconds above 0, or leave it empty.")
     metrics: dict[str, float] = {}
-    for name in (each.partition(":")[0] for each in asked.metrics):
+    for name in (metric.partition(":")[0] for metric in question.metrics):
         if name not in cells:
             raise UserError(f"{where}: {unknown('metric', name, map(str, cells))}.")
         value = _number(cells[name], f"{where}: {name}")

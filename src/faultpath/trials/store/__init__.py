@@ -1,1 +1,1 @@
-"""What a run leaves behind: a folder of shards, and the tables assembled from them."""
+"""Files of a run: a folder of shards, and the tables assembled from them."""

@@ -84,7 +84,7 @@ def begin(folder: Path) -> None:
 
 def check_free(folder: Path) -> None:
     """Raise `UserError` for a folder with files that a run which begins there might replace."""
-    if names := sorted(each.name for each in folder.glob("*") if each.suffix in _KINDS):
+    if names := sorted(file.name for file in folder.glob("*") if file.suffix in _KINDS):
         raise UserError(f"{folder} holds {names[0]}, which is not of this run: give a new folder.")
 
 

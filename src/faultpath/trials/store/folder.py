@@ -33,7 +33,7 @@ from faultpath.trials.store.tables import (
 from faultpath.trials.table import Deliveries, OutcomeTable
 
 OUTCOMES, TRACES, DELIVERIES = "outcomes.parquet", "traces.parquet", "deliveries.json"
-"""What is assembled at the end of a run."""
+"""Files that are assembled at the end of a run."""
 AGAIN = "run it again, into a new folder"
 FORMAT = 2
 """Version of the folder's layout and of its columns."""
@@ -75,7 +75,7 @@ def read_manifest(path: Path) -> Manifest | None:
         ) from error
 
 
-def check_same(folder: Path, found: Manifest, asked: Manifest, shared: bool = False) -> None:
+def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: bool = False) -> None:
     """Raise `UserError` unless `folder` may go on with the study that is asked for.
 
     The selection of scenes may differ: a quick look at some scenes grows into the whole library
@@ -83,22 +83,22 @@ def check_same(folder: Path, found: Manifest, asked: Manifest, shared: bool = Fa
     arms may differ as well.
     """
     same_study = (
-        ("set of variants, faults or seeds", found.study.rows, asked.study.rows),
-        ("number of scenes from look to look", found.study.look, asked.study.look),
+        ("set of variants, faults or seeds", previous.study.rows, manifest.study.rows),
+        ("number of scenes from look to look", previous.study.look, manifest.study.look),
     )
     differences = [
         what
         for what, one, two in (
-            ("version of faultpath", found.faultpath_version, asked.faultpath_version),
-            ("name", found.study.name, asked.study.name),
-            ("system", found.study.system, asked.study.system),
-            ("library", found.study.library, asked.study.library),
-            ("state of the library", found.library_hash, asked.library_hash),
+            ("version of faultpath", previous.faultpath_version, manifest.faultpath_version),
+            ("name", previous.study.name, manifest.study.name),
+            ("system", previous.study.system, manifest.study.system),
+            ("library", previous.study.library, manifest.study.library),
+            ("state of the library", previous.library_hash, manifest.library_hash),
             *(() if shared else same_study),
         )
         if one != two
     ]
-    changed = found.code.changed(asked.code)
+    changed = previous.code.changed(manifest.code)
     if changed and not differences:
         raise UserError(
             f"{folder} holds trials of other code than this (changed since: {named(changed)}): "
@@ -149,14 +149,14 @@ class RunFolder:
             atomic.check_free(self.path)
         make_folder(self.path)
         with locked(self.path, notice):
-            found = read_manifest(self.manifest)
-            if found is not None:
-                check_same(self.path, found, manifest, shared)
+            previous = read_manifest(self.manifest)
+            if previous is not None:
+                check_same(self.path, previous, manifest, shared)
             for folder in (self.shards, self.failures):
                 make_folder(folder)
             for folder in (self.path, self.shards, self.failures):
                 atomic.sweep(folder)
-            if found != manifest:
+            if previous != manifest:
                 self._write(self.manifest, manifest.encode())
             yield
 
@@ -176,7 +176,7 @@ class RunFolder:
 
     def load_shard(self, key: str, scenes: Sequence[str], notice: Say) -> Shard | None:
         """Return a finished block, or `None` without a whole one; a damaged one is removed."""
-        found: list[Shard] = []
+        shards: list[Shard] = []
         for path in self.files_of(key):
             try:
                 data = contents(path)
@@ -192,9 +192,9 @@ class RunFolder:
                 notice(f"{path} is damaged ({error}); removing it and running its trials again")
                 path.unlink()
             else:
-                found.append(shard)
+                shards.append(shard)
         # A process killed between writing and tidying leaves two; the later one failed less often.
-        return min(found, key=lambda shard: sum(o.failed for o in shard.outcomes), default=None)
+        return min(shards, key=lambda shard: sum(o.failed for o in shard.outcomes), default=None)
 
     def save_failure(self, key: str, text: str) -> None:
         """Store what is known about the failed trials of a block; without any, forget the last."""
@@ -263,14 +263,14 @@ def unseal(folder: Path, digests: Mapping[str, str], needed: Iterable[str]) -> d
             f"{folder / 'provenance.json'} has no digest of {', '.join(unnamed)}, as if an earlier "
             f"faultpath had written it: {AGAIN}."
         )
-    found = {name: read_regular(folder / name) for name in digests}
-    changed = [name for name, data in found.items() if _digest(data) != digests[name]]
+    files = {name: read_regular(folder / name) for name in digests}
+    changed = [name for name, data in files.items() if _digest(data) != digests[name]]
     if changed:
         raise UserError(
             f"{folder}: {', '.join(changed)} changed since the run, by the SHA-256 in "
             f"provenance.json: bring back what the run wrote, or {AGAIN}."
         )
-    return found
+    return files
 
 
 def _digest(data: bytes) -> str:

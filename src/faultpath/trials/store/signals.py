@@ -36,7 +36,7 @@ _SCHEMA = {
 
 @dataclass(frozen=True)
 class Signal:
-    """What one name stood for over a trial."""
+    """Values that one name stood for over a trial."""
 
     name: str
     topic: str
@@ -45,7 +45,7 @@ class Signal:
     values: NDArray[np.float32]
     """`[T, P]`: a row a control step from the first on, not a number where nothing was read."""
     parts: tuple[str, ...] = ()
-    """What the components are called, where somebody named them."""
+    """Names of the components, where somebody named them."""
 
 
 Signals: TypeAlias = Mapping[TrialAddress, tuple[Signal, ...]]
@@ -56,16 +56,16 @@ def encode_signals(signals: Signals) -> bytes:
     rows = [
         {
             **address._asdict(),
-            "signal": each.name,
-            "topic": each.topic,
-            "unit": each.unit,
+            "signal": signal.name,
+            "topic": signal.topic,
+            "unit": signal.unit,
             "component": component,
-            "part": each.parts[component] if each.parts else "",
+            "part": signal.parts[component] if signal.parts else "",
             "values": np.ascontiguousarray(values, np.float32),
         }
         for address, named in signals.items()
-        for each in named
-        for component, values in enumerate(each.values.T)
+        for signal in named
+        for component, values in enumerate(signal.values.T)
     ]
     return encode(_SCHEMA, rows)
 
@@ -73,7 +73,7 @@ def encode_signals(signals: Signals) -> bytes:
 def decode_signals(data: bytes) -> dict[TrialAddress, tuple[Signal, ...]]:
     """Return the signals of a Parquet file; `Unreadable` when it holds none."""
     rows, _ = decode(data, _SCHEMA)
-    found: dict[TrialAddress, list[Signal]] = {}
+    trials: dict[TrialAddress, list[Signal]] = {}
     same = itemgetter("variant", "path", "seed", "scene", "signal", "topic", "unit")
     for key, group in groupby(rows, key=same):
         parts = tuple(group)
@@ -85,5 +85,5 @@ def decode_signals(data: bytes) -> dict[TrialAddress, tuple[Signal, ...]]:
             raise Unreadable(f"the signal '{name}' is infinite")
         named = tuple(str(part["part"]) for part in parts if part["part"])
         signal = Signal(name, topic, unit, np.stack(columns, axis=1), named)
-        found.setdefault(TrialAddress(*address), []).append(signal)
-    return {address: tuple(signals) for address, signals in found.items()}
+        trials.setdefault(TrialAddress(*address), []).append(signal)
+    return {address: tuple(signals) for address, signals in trials.items()}

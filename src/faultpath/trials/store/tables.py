@@ -59,7 +59,7 @@ class Shard:
 
     outcomes: tuple[Outcome, ...]
     taps: tuple[TapCount, ...]
-    """What the taps did in the trials that did not fail."""
+    """Counts of the taps in the trials that did not fail."""
 
 
 def encode_shard(key: str, shard: Shard) -> bytes:
@@ -129,9 +129,9 @@ def traces_of(table: OutcomeTable) -> dict[TrialAddress, Trace]:
 
 def _columns(outcomes: Iterable[Outcome]) -> Schema:
     """Return the columns of some outcomes; a metric that only some of them have is one too."""
-    found = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
-    vehicle = VEHICLE if any(name in VEHICLE for name in found) else ()
-    return {**_END, **dict.fromkeys((*vehicle, *found), NUMBER), **_RESULT}
+    metrics = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
+    vehicle = VEHICLE if any(name in VEHICLE for name in metrics) else ()
+    return {**_END, **dict.fromkeys((*vehicle, *metrics), NUMBER), **_RESULT}
 
 
 def _cells(outcome: Outcome) -> Row:
@@ -169,8 +169,8 @@ def _outcome(row: Mapping[str, Any], trace: Trace | None, untimed: bool = False)
     if min(outcome.faulted_steps, outcome.altered_steps) < 0:
         wrong = "a count of steps is below 0"
     elif not outcome.failed:
-        found = checked(replace(outcome, time_s=1.0) if unknown else outcome, metrics)
-        wrong = found.error if found.failed else None
+        verdict = checked(replace(outcome, time_s=1.0) if unknown else outcome, metrics)
+        wrong = verdict.error if verdict.failed else None
     elif fields["time_s"] is not None and not np.isfinite(fields["time_s"]):
         wrong = "time_s is not finite"
     if wrong:

@@ -1,4 +1,4 @@
-"""What an executor is, and how a list of calls runs on one."""
+"""Executors, and how a list of calls runs on one."""
 
 import sys
 from abc import ABC, abstractmethod
@@ -42,7 +42,7 @@ def one_thread() -> Generator[None]:
 T = TypeVar("T")
 
 Call = Callable[[], Any]
-"""What a worker runs: a function of a module, bound to its arguments with `functools.partial`, or
+"""Work of a worker: a function of a module, bound to its arguments with `functools.partial`, or
 a method of a plain object. Unless it runs in this process, it and what it returns are pickled."""
 OnMessage = Callable[[Any], None]
 """Called, in the process that submitted, with what the call tells on its way."""

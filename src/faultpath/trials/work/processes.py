@@ -51,11 +51,11 @@ _BOOT = (
 
 def passed_on(message: tuple[Any], on_message: OnMessage) -> None:
     """Show a notice of a worker's, once for all workers; hand over what else its call tells."""
-    (said,) = message
-    if isinstance(said, Notice):
-        warnings.warn(said, stacklevel=2)  # which shows the same text once
+    (content,) = message
+    if isinstance(content, Notice):
+        warnings.warn(content, stacklevel=2)  # which shows the same text once
     else:
-        on_message(said)
+        on_message(content)
 
 
 def local(workers: int) -> Executor:
@@ -203,7 +203,7 @@ def served(packed: bytes, on_message: OnMessage) -> memoryview:
             pickle.loads(ForkingPickler.dumps(end))
         return ForkingPickler.dumps(end)
     except Exception as error:
-        said = end.error if isinstance(end, Failed) else error
-        instead = RuntimeError(f"{type(said).__name__}: {said}")
-        instead.__notes__ = getattr(said, "__notes__", [])
+        cause = end.error if isinstance(end, Failed) else error
+        instead = RuntimeError(f"{type(cause).__name__}: {cause}")
+        instead.__notes__ = getattr(cause, "__notes__", [])
         return ForkingPickler.dumps(Failed(instead))

@@ -61,7 +61,7 @@ class _Worker:
     """The reference of its first answer; `None` once that came."""
     place: str = "a node that it did not reach"
     stream: Any = None
-    """What its call tells and returns; `None` without a call."""
+    """Stream of what its call tells and returns; `None` without a call."""
     on_message: OnMessage = ignore
 
 
@@ -96,8 +96,8 @@ class RayWorkers(Executor):
         """Return the workers that run and have no call; wait for one where none has a call."""
         while True:
             workers = self._workers.items()
-            free = [n for n, each in workers if each.starting is None and each.stream is None]
-            if free or any(each.stream is not None for _, each in workers):
+            free = [n for n, worker in workers if worker.starting is None and worker.stream is None]
+            if free or any(worker.stream is not None for _, worker in workers):
                 return free
             for _ in self.completions(0.5):  # none has a call that could end
                 pass
@@ -114,9 +114,9 @@ class RayWorkers(Executor):
     def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
         """Wait for the actors; one that was lost, or did not come up, is asked for anew."""
         awaited = {
-            number: each.stream if each.starting is None else each.starting
-            for number, each in self._workers.items()
-            if each.starting is not None or each.stream is not None
+            number: candidate.stream if candidate.starting is None else candidate.starting
+            for number, candidate in self._workers.items()
+            if candidate.starting is not None or candidate.stream is not None
         }
         refs = list(awaited.values())
         if not refs or not _ray.wait(refs, num_returns=1, timeout=timeout_s)[0]:
@@ -161,7 +161,9 @@ class RayWorkers(Executor):
 
     def _started(self) -> _Worker:
         own = (os.path.realpath(sys.prefix), os.path.realpath(sys.base_prefix))
-        path = [each for each in sys.path if each and not os.path.realpath(each).startswith(own)]
+        path = [
+            folder for folder in sys.path if folder and not os.path.realpath(folder).startswith(own)
+        ]
         actor = self._kind.remote(os.getcwd(), path)
         return _Worker(actor, actor.ready.remote())
 
@@ -196,34 +198,34 @@ def _connect(address: str, count: int | None) -> bool:
     Without an address, and where nothing runs here, a cluster of this machine alone starts, and
     ends with this process.
     """
-    asked = address or os.environ.get("RAY_ADDRESS", "")
+    target = address or os.environ.get("RAY_ADDRESS", "")
     if _ray.is_initialized():
-        now = _ray.get_runtime_context().gcs_address
-        if address not in ("", "auto", now):
+        cluster = _ray.get_runtime_context().gcs_address
+        if address not in ("", "auto", cluster):
             raise UserError(
-                f"this process is connected to the Ray cluster at {now}: name that one, or leave "
-                "the address out"
+                f"this process is connected to the Ray cluster at {cluster}: name that one, or "
+                "leave the address out"
             )
         return False
-    if asked not in ("", "auto"):  # tried first with a plain connection: Ray waits for minutes
-        host, _, port = asked.rpartition(":")
+    if target not in ("", "auto"):  # tried first with a plain connection: Ray waits for minutes
+        host, _, port = target.rpartition(":")
         try:
-            if "/" in asked:
+            if "/" in target:
                 raise OSError("it is no HOST:PORT")
             socket.create_connection((host.strip("[]"), int(port)), 10.0).close()
         except (OSError, OverflowError, ValueError) as error:
             raise UserError(
-                f"no Ray cluster answers at {asked!r} ({error}): give HOST:PORT of its head, as in "
-                "ray:10.0.0.1:6379, start one there with `ray start --head`, or send the command "
-                "with `ray job submit` from a machine that does not belong to it"
+                f"no Ray cluster answers at {target!r} ({error}): give HOST:PORT of its head, as "
+                "in ray:10.0.0.1:6379, start one there with `ray start --head`, or send the "
+                "command with `ray job submit` from a machine that does not belong to it"
             ) from error
     quiet = {"logging_level": "ERROR", "log_to_driver": False}
     with _as_before():
         try:
-            _ray.init(address=asked or "auto", **quiet)
+            _ray.init(address=target or "auto", **quiet)
         except (RuntimeError, ConnectionError) as error:  # other versions of Ray, or none there
-            if asked or isinstance(error, RuntimeError):
-                where = asked or "on this machine"
+            if target or isinstance(error, RuntimeError):
+                where = target or "on this machine"
                 raise UserError(
                     f"cannot use the Ray cluster {where}: {' '.join(str(error).split())[:300]}"
                 ) from error
@@ -240,14 +242,14 @@ def _connect(address: str, count: int | None) -> bool:
 def _as_before() -> Generator[None]:
     """Keep the handler of SIGTERM; a cluster of our own reports nothing to Ray's makers."""
     main = threading.current_thread() is threading.main_thread()
-    handler, asked = signal.getsignal(signal.SIGTERM), os.environ.get(_REPORTS)
-    os.environ[_REPORTS] = asked or "0"
+    handler, setting = signal.getsignal(signal.SIGTERM), os.environ.get(_REPORTS)
+    os.environ[_REPORTS] = setting or "0"
     try:
         yield
     finally:
         if main:
             signal.signal(signal.SIGTERM, handler)
-        if asked is None:
+        if setting is None:
             del os.environ[_REPORTS]
 
 

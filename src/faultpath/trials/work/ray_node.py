@@ -33,7 +33,7 @@ class OnNode:
     def __init__(self, folder: str, path: Sequence[str]) -> None:
         if os.path.isdir(folder):
             os.chdir(folder)
-        sys.path += [each for each in path if each not in sys.path]
+        sys.path += [place for place in path if place not in sys.path]
         warnings.showwarning = show
         self._place = f"node {socket.gethostname()} of the Ray cluster"
         live_on(self._place)
