@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from blocks import load
+from blocks import Wrong, load
 from state_blocks import audits_of
 
-from faultpath.decisions import wording
+from faultpath.decisions import model, wording
 
 PAGES = {
     "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor"),
@@ -71,14 +71,16 @@ def table() -> str:
 def _references() -> Iterator[Audit]:
     for name, (title, page) in PAGES.items():
         record = load(name).record
-        effects = {
-            effect.path: Effect(
-                effect.success.value, *effect.success.interval, 0 if effect.extreme else effect.sign
-            )
-            for effect in record.effects
-        }
+        effects = {effect.path: _effect(effect) for effect in record.effects}
         turns = {change.isolated: change.turn for change in record.changes}
         yield Audit(f"[{title}]({{docs}}/{page}.md)", record.question.repair, effects, turns)
+
+
+def _effect(effect: model.Effect) -> Effect:
+    value, ends = effect.success.value, effect.success.interval
+    if ends is None:
+        raise Wrong(f"{effect.path} has no interval: the table of all audits cannot show it")
+    return Effect(value, *ends, 0 if effect.extreme else effect.sign)
 
 
 def _sensors() -> Iterator[Audit]:
