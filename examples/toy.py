@@ -35,7 +35,7 @@ from faultpath.trials import (
 )
 
 DT_S, STEPS, TOLERANCE_M = 0.1, 100, 0.25
-LIBRARY = "carts"
+LIBRARIES = ("carts", "selection", "held-out")  # the same scenes under three names
 
 FACTS = """
 name: toy
@@ -201,8 +201,8 @@ class Toy(LoopSystem):
         return Observer(variant == "calibrated"), Controller()
 
     def library(self, name: str) -> Library:
-        if name != LIBRARY:
-            raise UserError(f"the toy has no library '{name}': choose {LIBRARY}.")
+        if name not in LIBRARIES:
+            raise UserError(f"the toy has no library '{name}': choose {' or '.join(LIBRARIES)}.")
         scenes = tuple(SceneRef(f"cart/{i:03d}", i) for i in range(100))
         return Library(name, scenes, "carts-2")
 
