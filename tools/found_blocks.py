@@ -24,7 +24,7 @@ PAGES = {
 REVERSAL, MISSED, ALONE = "reversal", "missed by the isolated test", "only in the isolated test"
 SIZE, SAME, OPEN = "another size", "same", "inconclusive"
 WORDS = (REVERSAL, MISSED, ALONE, SIZE, SAME, OPEN)
-"""What an isolated test can say of deployment; of several modules the first of these is shown."""
+"""Words for what an isolated test says of deployment; of several modules the first is shown."""
 
 
 class Effect(NamedTuple):

@@ -32,7 +32,7 @@ class Entry:
     example: str
     """What follows the name in a call."""
     line: str = ""
-    """What it does, for the list of all verbs; by default its help."""
+    """Its line in the list of all verbs; by default its help."""
     of_a_system: bool = False
     """Whether it takes the flags of the system that its line names."""
 
