@@ -239,6 +239,7 @@ def fence(info: str, body: str) -> str:
 PARTS: dict[str, tuple[str, str]] = {
     "verdict": ("Verdict", ".masthead, #verdict > *"),
     "interface": ("What the fault strikes", "[aria-labelledby=interface] > *"),
+    "readers": ("Who gets the fault", ".forks .panels"),
     "effects": ("Effects of the repair", "[aria-labelledby=effects] figure"),
     "flights": ("Some flights", "[aria-labelledby=flights] > *"),
 }

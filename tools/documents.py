@@ -22,6 +22,7 @@ from typing import Any
 
 import blocks
 import carry_blocks
+import found_blocks
 import map_blocks
 import model_blocks
 import paper_blocks
@@ -41,6 +42,7 @@ TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md")
 KINDS: Mapping[str, Any] = {
     **blocks.KINDS,
     "carry": carry_blocks.KIND,
+    "found": found_blocks.table,
     "map": map_blocks.KIND,
     "central": {"answer": paper_blocks.central_answer, "table": paper_blocks.central_table},
     "models": model_blocks.table,
@@ -83,7 +85,8 @@ def fill(name: str, document: Path) -> str:
             )
         filler = filler[kind]
     text = filler(*words)
-    for word, folder in (("{images}", IMAGES), ("{reference}", REFERENCE)):
+    folders = {"{docs}": ROOT / "docs", "{images}": IMAGES, "{reference}": REFERENCE}
+    for word, folder in folders.items():
         text = text.replace(word, Path(os.path.relpath(folder, document.parent)).as_posix())
     return text
 

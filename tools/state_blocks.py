@@ -40,6 +40,11 @@ def _read(name: str) -> Any:
     return json.loads(file.read_text("utf-8"))
 
 
+def audits_of(library: str) -> Any:
+    """Return the audits of a library: fault, repair, effects by place, and what is decided."""
+    return _read(f"{library}/found.json")
+
+
 def _effect(effect: Sequence[float]) -> Entry:
     """Return a difference in percentage points with its interval, and whether it is decided."""
     value, low, high, sign = effect
@@ -48,7 +53,7 @@ def _effect(effect: Sequence[float]) -> Entry:
 
 
 def _effects(library: str) -> str:
-    audits = _read(f"{library}/found.json")
+    audits = audits_of(library)
     places = [name for name in TITLES if name in audits[0]["effects"]]
     columns = ("repair", *(TITLES[name] for name in places))
     lines: list[Line] = []
@@ -60,7 +65,7 @@ def _effects(library: str) -> str:
 
 def _success(library: str) -> str:
     """Return the baseline's success in percent, fault by fault and place by place."""
-    rates = {audit["fault"]: audit["success"] for audit in _read(f"{library}/found.json")}
+    rates = {audit["fault"]: audit["success"] for audit in audits_of(library)}
     places = [name for name in TITLES if name in next(iter(rates.values()))]
     columns = tuple(TITLES[name] for name in places)
     lines = [
@@ -89,7 +94,7 @@ def said(audits: Sequence[Mapping[str, Any]]) -> list[str]:
 
 def pictures() -> Mapping[Path, str]:
     """Return the picture of the fresh scenes' audits, by its path."""
-    audits = _read("sensors/found.json")
+    audits = audits_of("sensors")
     rows = [
         (audit, name) for audit in audits for name in (SHARED, *audit["turns"]) if name != "correct"
     ]
@@ -119,12 +124,12 @@ def pictures() -> Mapping[Path, str]:
 
 
 def _picture() -> str:
-    lead = said(_read("sensors/found.json"))[0]
+    lead = said(audits_of("sensors"))[0]
     return f"![Repairs under faults of sensors. {lead}]({{images}}/state-errors.svg)"
 
 
 def _said(library: str) -> str:
-    return "\n".join(f"- {sentence}" for sentence in said(_read(f"{library}/found.json")))
+    return "\n".join(f"- {sentence}" for sentence in said(audits_of(library)))
 
 
 def _errors(library: str) -> str:

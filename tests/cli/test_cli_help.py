@@ -1,5 +1,6 @@
 """What `faultpath --help` shows: verbs in groups, one example of each that can be typed."""
 
+import re
 import shlex
 import subprocess
 import sys
@@ -19,7 +20,15 @@ def test_every_verb_stands_in_a_group_with_an_example() -> None:
     assert set(VERBS) == set(command.commands)
     shown = faultpath("--help").out
     assert all(f"│ {verb} " in shown for verb in VERBS)
-    assert shown.index("Your system") < shown.index("│ check") < shown.index("Audits")
+    assert shown.index("Begin here") < shown.index("│ report") < shown.index("More")
+
+
+def test_what_few_ask_for_stands_below_what_everybody_does() -> None:
+    ordinary, advanced = faultpath("audit", "--help").out.split("Advanced")
+    assert len(re.findall(r"^│ [* ] *--", ordinary, flags=re.MULTILINE)) <= 14
+    assert len(ordinary.splitlines()) <= 50
+    assert "--baseline" in ordinary
+    assert "--fail-if" in advanced
 
 
 @pytest.mark.parametrize("verb", VERBS)

@@ -219,18 +219,18 @@ def test_the_recursion_takes_outputs_and_inputs_and_what_makes_them():
 def test_the_plan_of_the_toy(planned):
     audits = planned.plan.study.audits
     assert [(each.fault, each.why) for each in audits] == [
-        ("velocity:offset=0.1", "first by rank"),
-        ("gain:scale=1.25", "input of observer, which makes observed_slope"),
+        ("gain:scale=1.25", "first by rank"),
+        ("velocity:offset=0.1", "input of observer, which makes observed_slope"),
         ("slope:offset=0.2", "output of observer"),
     ]
-    roles = {arm.path: arm.role for arm in audits[1].arms}
+    roles = {arm.path: arm.role for arm in audits[0].arms}
     assert roles == {
         "correct": "correct",
         "controller": "attribution",
         "observer": "repaired",
         "shared": "shared",
     }
-    assert planned.plan.trials == (160, 120, 80)
+    assert planned.plan.trials == (120, 160, 80)
     said = " ".join(planned.sentences)
     assert "360 trials in all" in said
     assert "without an audit: odometer (declares no uncertainty)" in said
@@ -239,12 +239,12 @@ def test_the_plan_of_the_toy(planned):
 
 def test_the_trials_told_are_those_flown(planned, tmp_path):
     runs = planned.audit(tmp_path, workers=0, progress=False)
-    assert [run.folder.name for run in runs] == ["speedometer", "gain_estimate", "observed_slope"]
+    assert [run.folder.name for run in runs] == ["gain_estimate", "speedometer", "observed_slope"]
     flown = [{path.name for path in (run.folder / "shards").iterdir()} for run in runs]
     assert tuple(20 * len(each) for each in flown) == planned.plan.trials  # a block an arm
     first = faultpath.audit(
         DECLARED,
-        fault="velocity:offset=0.1",
+        fault="gain:scale=1.25",
         folder=tmp_path / "alone",
         workers=0,
         progress=False,

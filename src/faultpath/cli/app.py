@@ -31,45 +31,75 @@ class Entry:
     command: Callable[..., Any]
     example: str
     """What follows the name in a call."""
+    line: str = ""
+    """Its line in the list of all verbs; by default its help."""
     of_a_system: bool = False
     """Whether it takes the flags of the system that its line names."""
 
 
 _PANELS = {
-    "Your system": (
-        Entry("demo", demo.demo, "--out runs/demo"),
-        Entry("init", systems.init, "mine --with numpy"),
-        Entry("trace", systems.trace, _TOY, of_a_system=True),
-        Entry("check", systems.check, _TOY, of_a_system=True),
+    "Begin here": (
+        Entry("demo", demo.demo, "--out runs/demo", "Audit a small system that ships along."),
+        Entry("init", systems.init, "mine --with numpy", "Write a system of your own to start."),
+        Entry("check", systems.check, _TOY, "Check that a system can be audited.", True),
+        Entry(
+            "audit",
+            audits.audit,
+            f"{_ASKED}=0.6 --library carts",
+            "Compare a repair with a baseline, module by module and shared.",
+            True,
+        ),
+        Entry(
+            "judge",
+            audits.judge,
+            "results.csv --baseline old --repair new",
+            "Decide from trials that other tools ran.",
+        ),
+        Entry(
+            "report",
+            audits.report,
+            "runs/one runs/two --out comparison.html",
+            "Write the pages of finished runs, or compare them.",
+        ),
     ),
-    "Audits": (
-        Entry("plan", audits.plan, f"{_ASKED}=0.6 --library carts", of_a_system=True),
-        Entry("audit", audits.audit, f"{_ASKED}=0.6 --library carts", of_a_system=True),
+    "More": (
+        Entry("trace", systems.trace, _TOY, "Show which module reads which source.", True),
+        Entry(
+            "plan",
+            audits.plan,
+            f"{_ASKED}=0.6 --library carts",
+            "Say which sources to audit first, as a study file.",
+            True,
+        ),
         Entry(
             "map",
             designs.reversal_map,
             f"{_ASKED} --against controller,observer --up-to 0.4 --library carts",
-            of_a_system=True,
+            "Compare over the errors of two modules.",
+            True,
         ),
         Entry(
             "search",
             designs.search,
             f"{_TOY} --baseline calibrated --repair blind --within examples/toy_bounds.yaml "
             "--library carts",
-            of_a_system=True,
+            "Look for the fault that an isolated test misjudges most.",
+            True,
         ),
         Entry(
             "sensitivity",
             designs.sensitivity,
             f"{_TOY} --variant calibrated --fault gain:scale=1.4 --fault velocity:offset=0.2 "
             "--library carts",
-            of_a_system=True,
+            "Say which source is worth improving.",
+            True,
         ),
-    ),
-    "Finished runs": (
-        Entry("judge", audits.judge, "results.csv --baseline old --repair new"),
-        Entry("report", audits.report, "runs/one runs/two --out comparison.html"),
-        Entry("replay", replay.replay, "runs/mine --scene cart/003 --signals"),
+        Entry(
+            "replay",
+            replay.replay,
+            "runs/mine --scene cart/003 --signals",
+            "Run trials again and compare them to the bit.",
+        ),
     ),
 }
 """The engine's verbs, by the heading under which the help shows them."""
@@ -112,8 +142,9 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
             elif entry.name == verb and entry.of_a_system:
                 command = with_system_flags(verb, command, rest)
             # Typer would keep the line breaks of a docstring.
-            said = " ".join((getdoc(command) or "").split())
-            app.command(entry.name, help=said, **shown)(command)
+            text = " ".join((getdoc(command) or "").split())
+            line = entry.line or text
+            app.command(entry.name, help=text, short_help=line, **shown)(command)
     return app
 
 

@@ -13,7 +13,7 @@ from typer.models import OptionInfo
 
 from faultpath.cli.options import literal, path
 from faultpath.core.errors import UserError
-from faultpath.trials.question import Asked, Flag, flag
+from faultpath.trials.question import ADVANCED, Asked, Flag, flag
 
 _Verb = TypeVar("_Verb", bound=Callable[..., Any])
 _KEYWORD = inspect.Parameter.KEYWORD_ONLY
@@ -55,6 +55,7 @@ def takes(model: type[Asked], *without: str) -> Callable[[_Verb], _Verb]:
         own = inspect.signature(verb).parameters.values()
         every = [each for each in own if each.kind != each.VAR_KEYWORD]
         every += [_parameter(model, name) for name in fields]
+        every.sort(key=_advanced)
         # Arguments go before, then what is required; typer keeps the order within a panel.
         parameters = [each.replace(kind=_KEYWORD) for each in every]
         vars(command)["__signature__"] = inspect.Signature(parameters)
@@ -62,6 +63,12 @@ def takes(model: type[Asked], *without: str) -> Callable[[_Verb], _Verb]:
         return command  # pyright: ignore[reportReturnType]
 
     return decorate
+
+
+def _advanced(parameter: inspect.Parameter) -> bool:
+    """Return whether a parameter is an option that stands last in the help."""
+    notes = getattr(parameter.annotation, "__metadata__", ())
+    return any(getattr(note, "rich_help_panel", None) == ADVANCED for note in notes)
 
 
 def _parameter(model: type[Asked], name: str) -> inspect.Parameter:

@@ -11,11 +11,11 @@ from faultpath.cli.options import FOUND
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
+from faultpath.trials.question import ADVANCED
 
 if TYPE_CHECKING:
     from faultpath.api.runs import Run
 
-_PANEL = "For a build"
 _ASKS = ("reversal", "repair-behind", "undecided", "void")  # those of `faultpath.decisions.gate`
 
 FailIf = Annotated[
@@ -25,12 +25,14 @@ FailIf = Annotated[
         metavar=f"<{'|'.join(_ASKS)}>",
         help="Exit with 1 where this is found; repeat the option for more. undecided is about the "
         "primary contrast.",
-        rich_help_panel=_PANEL,
+        rich_help_panel=ADVANCED,
     ),
 ]
 Junit = Annotated[
     Path | None,
-    typer.Option("--junit", parser=as_path, help="Write JUnit's XML here.", rich_help_panel=_PANEL),
+    typer.Option(
+        "--junit", parser=as_path, help="Write JUnit's XML here.", rich_help_panel=ADVANCED
+    ),
 ]
 Summary = Annotated[
     Path | None,
@@ -38,7 +40,7 @@ Summary = Annotated[
         "--summary",
         parser=as_path,
         help="Add a summary in Markdown to this file.",
-        rich_help_panel=_PANEL,
+        rich_help_panel=ADVANCED,
     ),
 ]
 

@@ -32,6 +32,8 @@ class Flag:
     """Heading in the help; by default that of the class which declares the field."""
 
 
+ADVANCED = "Advanced"
+"""Heading of what few ask for; it stands last in a help."""
 Sizes = Annotated[tuple[float, ...], BeforeValidator(read_sizes)]
 Place = Annotated[
     Path | None,
@@ -55,7 +57,7 @@ class Request(Asked):
     options: Annotated[
         dict[str, Any],
         BeforeValidator(lambda options: {} if options is None else options),
-        Flag("--set", several=True),
+        Flag("--set", several=True, panel=ADVANCED),
     ] = Field(
         default_factory=dict,
         description="System option, key=value; where a flag has the same name, or in scripts.",
@@ -85,7 +87,7 @@ class CheckQuestion(Request):
 
     variants: Annotated[tuple[str, ...], BeforeValidator(read_names)] = Field(
         default=(),
-        description="Variants to check: wm-a,wm-a+dcc. Default all, or two of more than 4.",
+        description="Variants to check: old,new. Default all, or two of more than 4.",
     )
     scenes: int = Field(default=4, description="Run the first N scenes.")
     seed: int = Field(default=0, ge=0, le=LARGEST, description="Seed of the trials.")
@@ -110,12 +112,12 @@ class Placed(Asked):
         description="Worker processes, 0 for this process alone; default one per core if that "
         "helps.",
     )
-    executor: str = Field(
+    executor: Annotated[str, Flag(panel=ADVANCED)] = Field(
         default="local",
         description="local, or ray for a Ray cluster: the one that RAY_ADDRESS names or that runs "
         "here, else one of its own; ray:HOST:PORT names it.",
     )
-    time_limit_s: float | None = Field(
+    time_limit_s: Annotated[float | None, Flag(panel=ADVANCED)] = Field(
         default=None,
         description="Seconds that a block of scenes may take; default what the system says, else "
         "3600.",
@@ -128,7 +130,7 @@ class Question(Request):
     panel: ClassVar[str] = "What is compared"
 
     baseline: str = Field(
-        description="Variant to compare with; for the quadrotor also your file.py:factory."
+        description="Variant to compare with, or your file.py:factory where the system takes one."
     )
     repair: str = Field(description="Variant that is meant to help, named likewise.")
     library: Scenes = "held-out"
@@ -153,32 +155,32 @@ class AuditQuestion(Running):
     panel: ClassVar[str] = "How it is decided"
 
     fault: Annotated[str, Flag(panel=Question.panel)] = Field(
-        description="`calibration=+0.1`, `wind:delay=5@predictor`, `gain:scale=2,onset=20`, ...; "
-        "several sizes, `mass:scale=0.9,1.1` or `calibration=-0.2..0.2/9`, are an audit each."
+        description="`gain:scale=0.6`, `gain:delay=5@observer`, `gain:scale=2,onset=20`, ...; "
+        "several sizes, `gain:scale=0.9,1.1` or `gain:offset=-0.2..0.2/9`, are an audit each."
     )
     primary: str | None = Field(
         default=None, description="Path of the primary contrast, a module or shared (default)."
     )
-    generalise: Generalise = Field(
+    generalise: Annotated[Generalise, Flag(panel=ADVANCED)] = Field(
         default="scenes",
         description="What intervals speak of: new scenes, or newly trained models too (several "
         "seeds).",
     )
     metric: str = Field(default="", description="Metric of the system to show beside success.")
-    thresholds: Sizes = Field(
+    thresholds: Annotated[Sizes, Flag(panel=ADVANCED)] = Field(
         default=(), description="Of that metric, to judge success anew: 0.02,0.05,0.1."
     )
-    stop_when: StopWhen | None = Field(
+    stop_when: Annotated[StopWhen | None, Flag(panel=ADVANCED)] = Field(
         default=None,
         description="Stop once the primary contrast is decided, or the effect on every path: "
         "scenes in random order, at most --scenes of them.",
     )
-    margin_pp: float | None = Field(
+    margin_pp: Annotated[float | None, Flag(panel=ADVANCED)] = Field(
         default=None,
         description="With --stop-when: a difference shown to be smaller than so many percentage "
         "points ends it too.",
     )
-    signals: bool = Field(
+    signals: Annotated[bool, Flag(panel=ADVANCED)] = Field(
         default=True, description="Run the report's first scenes once more to plot their signals."
     )
 
@@ -189,10 +191,10 @@ class MapQuestion(Running):
     panel: ClassVar[str] = "What is mapped"
 
     fault: Annotated[str, Flag(panel=Question.panel)] = Field(
-        description="Without its size: `calibration`, `gain`, `gain:offset`, `gain,onset=9`."
+        description="Without its size: `gain`, `gain:offset`, `gain,onset=9`."
     )
     against: Annotated[tuple[str, ...], BeforeValidator(read_names)] = Field(
-        description="The two modules whose errors are mapped: reconstruction,predictor."
+        description="The two modules whose errors are mapped: controller,observer."
     )
     up_to: float | None = Field(
         default=None, description="Largest error, of either sign; default three declared spreads."

@@ -1,0 +1,33 @@
+"""The word that the table of all audits has for what an isolated test says of deployment."""
+
+import found_blocks
+import pytest
+from found_blocks import ALONE, MISSED, OPEN, REVERSAL, SAME, SIZE, Effect, verdict
+
+
+@pytest.mark.parametrize(
+    ("alone", "shared", "turn", "word"),
+    [
+        (1, -1, "reversal", REVERSAL),
+        (0, -1, "interaction", MISSED),
+        (-1, 0, "interaction", ALONE),
+        (1, 1, "interaction", SIZE),
+        (1, 1, "none", SAME),
+        (0, 1, "none", OPEN),
+        (1, 0, "none", OPEN),
+        (0, 0, "none", OPEN),
+        (0, 0, "interaction", OPEN),
+    ],
+)
+def test_only_what_is_decided_makes_a_word(alone, shared, turn, word) -> None:
+    effects = (Effect(-30.0, -40.0, 40.0, sign) for sign in (alone, shared))
+    assert verdict(*effects, turn) == word
+
+
+def test_the_table_has_every_audit_and_the_module_that_says_least() -> None:
+    head, _, *rows = found_blocks.table().splitlines()
+    assert len(rows) == len(found_blocks.PAGES) + len(found_blocks.audits_of("sensors"))
+    assert all(row.count("|") == head.count("|") for row in rows)
+    docking = next(row for row in rows if "`ranges`" in row)
+    assert "| speedometer **" in docking
+    assert docking.endswith("| **reversal** |")

@@ -1,0 +1,110 @@
+"""The table of what every audit of the documents came to."""
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from blocks import Wrong, load
+from state_blocks import audits_of
+
+from faultpath.decisions import model, wording
+
+PAGES = {
+    "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor"),
+    "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor"),
+    "toy": ("Cart", "tutorial"),
+    "dock": ("Docking boat", "audit-your-own-system"),
+    "pendulum": ("Pendulum of Gymnasium", "gymnasium"),
+    "learned-pendulum": ("Learned world model", "learned-world-model"),
+    "rotorpy": ("RotorPy", "rotorpy"),
+    "do-mpc": ("do-mpc", "do-mpc"),
+    "motulator": ("motulator", "motulator"),
+    "basilisk": ("Basilisk", "basilisk"),
+}
+"""Title and page of the audits that reference runs hold, in the order of the table."""
+REVERSAL, MISSED, ALONE = "reversal", "missed by the isolated test", "only in the isolated test"
+SIZE, SAME, OPEN = "another size", "same", "inconclusive"
+WORDS = (REVERSAL, MISSED, ALONE, SIZE, SAME, OPEN)
+"""Words for what an isolated test says of deployment; of several modules the first is shown."""
+
+
+class Effect(NamedTuple):
+    """A difference in success, pp, its interval, and the sign that is decided, or 0."""
+
+    value: float
+    low: float
+    high: float
+    sign: int
+
+
+class Audit(NamedTuple):
+    """An audit of the table; `turns` says by module what is decided of shared against alone."""
+
+    title: str
+    repair: str
+    effects: Mapping[str, Effect]
+    turns: Mapping[str, str]
+
+
+def verdict(alone: Effect, shared: Effect, turn: str) -> str:
+    """Return what the test at one module says of deployment.
+
+    `turn` is `none`, `interaction` or `reversal`: what is decided of the two effects' difference.
+    """
+    if turn == "none":
+        return SAME if alone.sign == shared.sign != 0 else OPEN
+    if alone.sign and shared.sign:
+        return REVERSAL if turn == "reversal" else SIZE
+    return MISSED if shared.sign else ALONE if alone.sign else OPEN
+
+
+def table() -> str:
+    """Return every audit in a row: without a fault, at the module that tells most, and shared."""
+    return "\n".join(
+        [
+            "| system, repair | no fault | fault at one module | fault shared | isolated test |",
+            "| :-- | --: | --: | --: | :-- |",
+            *map(_row, (*_references(), *_sensors())),
+        ]
+    )
+
+
+def _references() -> Iterator[Audit]:
+    for name, (title, page) in PAGES.items():
+        record = load(name).record
+        effects = {effect.path: _effect(effect) for effect in record.effects}
+        turns = {change.isolated: change.turn for change in record.changes}
+        yield Audit(f"[{title}]({{docs}}/{page}.md)", record.question.repair, effects, turns)
+
+
+def _effect(effect: model.Effect) -> Effect:
+    value, ends = effect.success.value, effect.success.interval
+    if ends is None:
+        raise Wrong(f"{effect.path} has no interval: the table of all audits cannot show it")
+    return Effect(value, *ends, 0 if effect.extreme else effect.sign)
+
+
+def _sensors() -> Iterator[Audit]:
+    for audit in audits_of("sensors"):
+        title = f"[Quadrotor's filter]({{docs}}/state-errors.md), {audit['fault']}"
+        effects = {name: Effect(*effect) for name, effect in audit["effects"].items()}
+        yield Audit(title, audit["repair"], effects, audit["turns"])
+
+
+def _row(audit: Audit) -> str:
+    effects, shared = audit.effects, audit.effects["shared"]
+    words = {name: verdict(effects[name], shared, turn) for name, turn in audit.turns.items()}
+    module = min(words, key=lambda name: (WORDS.index(words[name]), -abs(effects[name].value)))
+    cells = (
+        f"{audit.title}, `{audit.repair}`",
+        _shown(effects["correct"], interval=False),
+        f"{module} {_shown(effects[module])}",
+        _shown(shared),
+        f"**{words[module]}**" if words[module] == REVERSAL else words[module],
+    )
+    return f"| {' | '.join(cells)} |"
+
+
+def _shown(effect: Effect, *, interval: bool = True) -> str:
+    value, low, high = (wording.signed(number, 1) for number in effect[:3])
+    bold = f"**{value}**" if effect.sign else value
+    return f"{bold} [{low}, {high}]" if interval else bold
