@@ -4,19 +4,20 @@ python -m benchmarks.device                          time control steps, on a ma
 python -m benchmarks.device --audits CPU_RUN GPU_RUN add one audit, flown on both
 
 One process on one core flies blocks of 50 scenes with the fastest kernels, as a worker of an audit
-does; one process feeds the GPU blocks of 100 scenes, as `--device cuda` does, and of 300. Both fly
-the GRU in the strongest wind with the model of depth. The first steps, in which libraries load,
-are not counted.
+does; one process feeds the GPU blocks of 100 scenes, as `--device cuda` does, and of 200. They take
+turns, and all fly the GRU in the strongest wind with the model of depth, in scenes on which nothing
+is decided. The first steps, in which libraries load, are not counted.
 """
 
 import argparse
 import json
 import time
 from collections.abc import Iterator
+from datetime import UTC, datetime
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
-import pyarrow.parquet as pq
 import torch
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import arithmetic
@@ -24,13 +25,15 @@ from faultpath_quadrotor.system import Quadrotor
 from torch.profiler import ProfilerActivity, profile
 
 from benchmarks.results import DEVICE
+from faultpath import open_run
 from faultpath.loop import Batch
 from faultpath.trials import Arm, SystemSpec, load_system
 from faultpath.trials.attempt import taps_of
 
 FLOWN = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
-SIZES = {"cpu": (50,), "cuda": (100, 300)}
-VARIANT, WARM_UP, STEPS = "gru", 5, 20
+LIBRARIES = "training", "selection"
+BLOCKS = (("cpu", 50), ("cuda", 100), ("cuda", 200))
+VARIANT, WARM_UP, ROUNDS, STEPS = "gru", 5, 7, 4
 
 
 def main() -> None:
@@ -51,62 +54,75 @@ def main() -> None:
 
 
 def measured() -> dict[str, Any]:
-    """Return what control steps take on each device."""
-    kernels = native.kernels()
+    """Return what control steps take on each device, ms, round by round."""
+    kernels, sides = native.kernels(), [_flying(*block) for block in BLOCKS]
+    times: list[list[float]] = [[] for _ in sides]
+    with torch.no_grad(), arithmetic():
+        for steps in sides:
+            _step(steps, WARM_UP)
+        for _ in range(ROUNDS):
+            for steps, taken in zip(sides, times, strict=True):
+                begun = time.perf_counter()
+                _step(steps, STEPS)
+                taken.append((time.perf_counter() - begun) / STEPS * 1e3)
+        rest = [
+            _profiled(steps) if device == "cuda" else {}
+            for steps, (device, _) in zip(sides, BLOCKS, strict=True)
+        ]
     return {
         "gpu": torch.cuda.get_device_name(),
         "torch": torch.__version__,
         "kernels": native.PORTABLE if kernels is None else kernels.isa,
-        "steps": [timed(device, size) for device, many in SIZES.items() for size in many],
+        "date": datetime.now(UTC).date().isoformat(),
+        "steps": [
+            {"device": device, "scenes": size, "step_ms": taken, **more}
+            for (device, size), taken, more in zip(BLOCKS, times, rest, strict=True)
+        ],
     }
 
 
-def timed(device: str, size: int) -> dict[str, Any]:
-    """Fly `STEPS` control steps of `size` scenes; return what one takes, ms, and more of a GPU."""
+def _flying(device: str, size: int) -> Iterator[Any]:
     built = load_system(SystemSpec(name="quadrotor", options={**FLOWN, "device": device}))
     assert isinstance(built, Quadrotor)
-    scenes = tuple(scene.id for scene in built.library("confirmation").scenes[:size])
+    every = (scene.id for name in LIBRARIES for scene in built.library(name).scenes)
+    scenes = tuple(islice(every, size))
     taps = taps_of(built, Arm(variant=VARIANT, faults=()), scenes)
-    with torch.no_grad(), arithmetic():
-        steps = built.loop(VARIANT, seed=0).execute(Batch(scenes, 0, built.control_dt_s), taps)
-        _step(steps, WARM_UP, device)
-        begun = time.perf_counter()
-        _step(steps, STEPS, device)
-        step_ms = (time.perf_counter() - begun) / STEPS * 1e3
-        rest = _profiled(steps) if device == "cuda" else {}
-    return {"device": device, "scenes": size, "step_ms": step_ms, **rest}
+    return built.loop(VARIANT, seed=0).execute(Batch(scenes, 0, built.control_dt_s), taps)
 
 
-def _step(steps: Iterator[Any], count: int, device: str) -> None:
+def _step(steps: Iterator[Any], count: int) -> None:
     for _ in range(count):
         next(steps)
-    if device == "cuda":
-        torch.cuda.synchronize()
+    torch.cuda.synchronize()
 
 
 def _profiled(steps: Iterator[Any]) -> dict[str, float]:
-    """Return the kernels of one control step, how long they compute, and the memory in use."""
+    """Return the kernels of one control step, and how long they compute."""
     both = [ProfilerActivity.CUDA, ProfilerActivity.CPU]
     with profile(activities=both, acc_events=True) as watched:
-        _step(steps, 1, "cuda")
+        _step(steps, 1)
     kernels = [event for event in watched.events() if event.device_type.name == "CUDA"]
     return {
         "kernels": len(kernels),
         "busy_ms": sum(kernel.self_device_time_total for kernel in kernels) / 1e3,
-        "memory_gib": torch.cuda.max_memory_allocated() / 2**30,
     }
 
 
-def compared(*runs: Path) -> dict[str, Any]:
-    """Return how many trials of an audit end alike on both devices, and the successes of both."""
-    columns = ["variant", "path", "seed", "scene", "status"]
-    rows = [pq.read_table(run / "outcomes.parquet", columns=columns).to_pylist() for run in runs]
-    ends = [{tuple(row.values())[:-1]: row["status"] for row in trials} for trials in rows]
+def compared(*folders: Path) -> dict[str, Any]:
+    """Return how many trials and decisions of an audit are alike on both devices."""
+    runs = [open_run(folder) for folder in folders]
+    ends = [
+        {(row["variant"], row["path"], row["seed"], row["scene"]): row["status"] for row in rows}
+        for rows in (run.table().to_pylist() for run in runs)
+    ]
     assert ends[0].keys() == ends[1].keys(), "the runs do not hold the same trials"
+    signs = [[effect.sign for effect in run.record.effects] for run in runs]
     return {
         "trials": len(ends[0]),
         "alike": sum(ends[0][trial] == ends[1][trial] for trial in ends[0]),
         "successes": [sum(end == "success" for end in ended.values()) for ended in ends],
+        "paths": len(signs[0]),
+        "decided_alike": sum(one == other for one, other in zip(*signs, strict=True)),
     }
 
 

@@ -5,9 +5,9 @@ As in every document, `tools/documents.py` fills the blocks that are marked in i
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from statistics import median
 
-from benchmarks.results import DEVICE, Record, Target, load
+from benchmarks.results import DEVICE, Record, Target, load, record
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
 
@@ -77,29 +77,25 @@ def _target(target: Target | None) -> str:
 def gpu() -> str:
     """Return what `device.json` holds: the steps of a flight on both devices, and two audits."""
     figures = json.loads(DEVICE.read_text())
-    alone = next(flown for flown in figures["steps"] if flown["device"] == "cpu")
-    head = ("a step, ms", "worth, cores", "GPU busy, %", "memory, GiB")
-    lines = [_on_device(flown, alone) for flown in figures["steps"]]
+    core, *blocks = figures["steps"]
+    alone = [taken / core["scenes"] for taken in core["step_ms"]]
+    records = []
+    for block in blocks:
+        busy = 100 * block["busy_ms"] / median(block["step_ms"])
+        scenes = [taken / block["scenes"] for taken in block["step_ms"]]
+        name = f"Control step of a scene, blocks of {block['scenes']}"
+        note = f"{block['kernels']} kernels a step, computed in {number(busy)} % of the time"
+        measured = record(name, "ms", scenes, alone, "one core")
+        records.append(measured.model_copy(update={"note": note}))
     audits = figures["audits"]
     here, there = audits["successes"]
-    machine = (
-        f"{figures['gpu']}, torch {figures['torch']}; one core with kernels `{figures['kernels']}`."
-    )
     return (
-        f"{machine}\n\n{grid(Table(columns=head, lines=tuple(lines)))}\n\n"
+        f"Measured on {figures['date']}: {figures['gpu']}, torch {figures['torch']}; one core with "
+        f"kernels `{figures['kernels']}`.\n\n{rows(records)}\n\n"
         f"Of {audits['trials']} trials of `make audit` on that machine, {audits['alike']} end "
-        f"alike on both; {here} succeed on the processor and {there} on the GPU."
+        f"alike on both; {here} succeed on the processor and {there} on the GPU. Of "
+        f"{audits['paths']} paths, {audits['decided_alike']} are decided alike."
     )
-
-
-def _on_device(steps: Mapping[str, Any], alone: Mapping[str, Any]) -> Line:
-    on_gpu = steps["device"] == "cuda"
-    cores = steps["scenes"] / steps["step_ms"] * alone["step_ms"] / alone["scenes"]
-    busy = f"{100 * steps['busy_ms'] / steps['step_ms']:.0f}" if on_gpu else ""
-    memory = f"{steps['memory_gib']:.1f}" if on_gpu else ""
-    values = (f"{steps['step_ms']:.0f}", f"{cores:.1f}", busy, memory)
-    name = f"{'GPU' if on_gpu else 'One core'}, {steps['scenes']} scenes"
-    return line(name, *(value or MISSING for value in values))
 
 
 KIND: Mapping[str, Callable[[], str]] = {

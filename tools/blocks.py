@@ -117,10 +117,9 @@ def contrast(run: Run) -> str:
         raise Wrong(f"{run.name} has not decided one reversal: the block has nothing to say")
 
     def row(name: str, success: Any) -> str:
-        low, high = (wording.signed(end, 1) for end in success.interval)
-        sign = wording.signed(success.value, 1)
         ahead = question.repair if success.value > 0 else question.baseline
-        return f"| {name} | **{sign}** [{low}, {high}] | `{ahead}` |"
+        shown = difference(success.value, *success.interval, bold=True)
+        return f"| {name} | {shown} | `{ahead}` |"
 
     return "\n".join(
         [
@@ -134,6 +133,13 @@ def contrast(run: Run) -> str:
             f"5 % after Holm's correction. Flown by commit `{run.provenance.commit[:12]}`.",
         ]
     )
+
+
+def difference(value: float, low: float, high: float, *, bold: bool) -> str:
+    """Return a difference with its interval, in Markdown."""
+    text = wording.signed(value, 1)
+    ends = ", ".join(wording.signed(end, 1) for end in (low, high))
+    return f"{f'**{text}**' if bold else text} [{ends}]"
 
 
 def terminal(run: Run) -> str:

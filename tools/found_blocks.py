@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from blocks import Wrong, load
+from blocks import Wrong, difference, load
 from state_blocks import audits_of
 
-from faultpath.decisions import model, wording
+from faultpath.decisions import model
 
 PAGES = {
     "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor"),
@@ -96,7 +96,7 @@ def _row(audit: Audit) -> str:
     module = min(words, key=lambda name: (WORDS.index(words[name]), -abs(effects[name].value)))
     cells = (
         f"{audit.title}, `{audit.repair}`",
-        _shown(effects["correct"], interval=False),
+        _shown(effects["correct"]).partition(" [")[0],
         f"{module} {_shown(effects[module])}",
         _shown(shared),
         f"**{words[module]}**" if words[module] == REVERSAL else words[module],
@@ -104,7 +104,5 @@ def _row(audit: Audit) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def _shown(effect: Effect, *, interval: bool = True) -> str:
-    value, low, high = (wording.signed(number, 1) for number in effect[:3])
-    bold = f"**{value}**" if effect.sign else value
-    return f"{bold} [{low}, {high}]" if interval else bold
+def _shown(effect: Effect) -> str:
+    return difference(*effect[:3], bold=bool(effect.sign))

@@ -99,10 +99,7 @@ def _former() -> str:
     weights = ROOT / "quadrotor" / "src" / "faultpath_quadrotor" / WEIGHTS
     if load()[1].data[WEIGHTS] == hashlib.sha256(weights.read_bytes()).hexdigest():
         return ""
-    return (
-        "**On the platform before the present one**, in steadier winds; the paper has not been run "
-        "again on the present one yet. "
-    )
+    return "**On a platform before the present one.** "
 
 
 def _besides() -> tuple[Case, ...]:

@@ -41,13 +41,15 @@ _PANELS = {
     "Begin here": (
         Entry("demo", demo.demo, "--out runs/demo", "Audit a small system that ships along."),
         Entry("init", systems.init, "mine --with numpy", "Write a system of your own to start."),
-        Entry("check", systems.check, _TOY, "Check that a system can be audited.", True),
+        Entry(
+            "check", systems.check, _TOY, "Check that a system can be audited.", of_a_system=True
+        ),
         Entry(
             "audit",
             audits.audit,
             f"{_ASKED}=0.6 --library carts",
             "Compare a repair with a baseline, module by module and shared.",
-            True,
+            of_a_system=True,
         ),
         Entry(
             "judge",
@@ -63,20 +65,22 @@ _PANELS = {
         ),
     ),
     "More": (
-        Entry("trace", systems.trace, _TOY, "Show which module reads which source.", True),
+        Entry(
+            "trace", systems.trace, _TOY, "Show which module reads which source.", of_a_system=True
+        ),
         Entry(
             "plan",
             audits.plan,
             f"{_ASKED}=0.6 --library carts",
             "Say which sources to audit first, as a study file.",
-            True,
+            of_a_system=True,
         ),
         Entry(
             "map",
             designs.reversal_map,
             f"{_ASKED} --against controller,observer --up-to 0.4 --library carts",
             "Compare over the errors of two modules.",
-            True,
+            of_a_system=True,
         ),
         Entry(
             "search",
@@ -84,7 +88,7 @@ _PANELS = {
             f"{_TOY} --baseline calibrated --repair blind --within examples/toy_bounds.yaml "
             "--library carts",
             "Look for the fault that an isolated test misjudges most.",
-            True,
+            of_a_system=True,
         ),
         Entry(
             "sensitivity",
@@ -92,7 +96,7 @@ _PANELS = {
             f"{_TOY} --variant calibrated --fault gain:scale=1.4 --fault velocity:offset=0.2 "
             "--library carts",
             "Say which source is worth improving.",
-            True,
+            of_a_system=True,
         ),
         Entry(
             "replay",

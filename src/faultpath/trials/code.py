@@ -177,6 +177,7 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     """
     fingerprint, root = system.fingerprint(), None if spec.is_object else factory_root(spec)
     # A user's method returns what it likes.
+    # A user's class may return anything, whatever the type says.
     if not isinstance(fingerprint, str):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise SystemMistake(
             f"system '{system.name}': `fingerprint` returned {shown(fingerprint)}: it must return "
