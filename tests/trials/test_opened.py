@@ -1,5 +1,6 @@
 """Files that a system reads and does not declare: an edit would go unnoticed."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -90,6 +91,15 @@ def test_what_a_system_wrote_itself_is_no_input(tmp_path) -> None:
     write = "Path('scratch').write_text('1'); Path('scratch').read_text()"
     run = "import subprocess; subprocess.run(['touch', 'other']); Path('other').read_text()"
     audit(mine(stepped=f"{write}; {run}"), **ASKED, workers=0, folder=tmp_path / "run")
+
+
+def test_a_file_written_at_once_is_no_input(tmp_path) -> None:
+    file = old_text(tmp_path / "mine.txt")
+    for _ in range(50):  # files are stamped by a clock that lags behind the finer one
+        with reads() as opened:
+            os.utime(file)
+            file.read_text()
+        assert opened == set()
 
 
 def test_only_what_is_the_users_counts_and_only_while_something_watches(tmp_path) -> None:

@@ -17,6 +17,7 @@ _OTHERS = (
 )
 """Places of the machine, of Python, and of what programs keep in hidden folders at home."""
 _EVENTS = ("open", "sqlite3.connect")
+_LINUX_COARSE = 5  # CLOCK_REALTIME_COARSE of Linux, which `time` does not name
 _watching: list[tuple[set[str], set[str]]] = []
 """Files opened to be read and files opened to be made, for each who watches."""
 
@@ -28,7 +29,7 @@ def reads() -> Generator[set[str]]:
     At its end, those that were written meanwhile, by this process or another, are left out.
     """
     _hook()
-    read, written, began = set[str](), set[str](), time.time_ns()
+    read, written, began = set[str](), set[str](), _file_time_ns()
     _watching.append(mine := (read, written))
     try:
         yield read
@@ -42,6 +43,15 @@ def reads() -> Generator[set[str]]:
             for path in paths
             if _is_users(path) and not began <= os.stat(path).st_mtime_ns <= ended
         }
+
+
+def _file_time_ns() -> int:
+    """The time now, by the clock that stamps files.
+
+    Linux stamps them with a clock that lags by up to a tick: by the finer one, a file written just
+    after `now` would seem to be from before.
+    """
+    return time.clock_gettime_ns(_LINUX_COARSE) if sys.platform == "linux" else time.time_ns()
 
 
 @cache
