@@ -3,13 +3,13 @@
 Whoever reads nothing else reads these, so what qualifies a decision is said here too.
 """
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from faultpath.decisions import phrases
+from faultpath.decisions import phrases, wording
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
 from faultpath.decisions.phrases import adjusted, margin, only_alone
+from faultpath.decisions.tables import MISSING
 from faultpath.decisions.wording import capital, counted, series, where
 
 MOST_WORDS = 20
@@ -188,11 +188,10 @@ def _answers(record: DecisionRecord) -> dict[str, list[str]]:
         pass  # it is said of how trials were paired
     elif record.question.generalise == "scenes" and any(each.sign for each in record.effects):
         sure.append("Of audits of two equal systems, at most 5 % would decide anything.")
-    return {
-        "What follows": list(_follows(record)),
-        "How sure": sure,
-        "Not decided": list(_left_open(record)),
-    }
+    said = {"What follows": list(_follows(record)), "How sure": sure}
+    open_ = {"Not decided": list(_left_open(record))}
+    # Where nothing is significant, what was not seen is the result.
+    return {**said, **open_} if any(each.sign for each in record.effects) else {**open_, **said}
 
 
 def _follows(record: DecisionRecord) -> Iterator[str]:
@@ -235,23 +234,41 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
                 yield f"By the share of trials with the fault, {where(each.path)}: {each.words}."
 
 
+def _undetected(record: DecisionRecord) -> Iterator[str]:
+    """Say where no difference is detected, and how large one would have been found."""
+    found: dict[str, str] = {}
+    extreme: dict[str, list[str]] = {}
+    for each in record.effects:
+        if not each.acted or each.sign or each.unsettled or record.is_small(each):
+            continue
+        if each.extreme:
+            extreme.setdefault(each.extreme, []).append(where(each.path))
+        else:
+            found[where(each.path)] = wording.detectable(each)
+    for end, at in extreme.items():
+        both = "fail" if end == "floor" else "succeed"
+        yield f"No difference is detected {series(at)}, where both nearly always {both}."
+    if found:
+        yield f"No difference is detected {series(list(found))}{_would_be_found(found)}."
+
+
+def _would_be_found(sizes: Mapping[str, str]) -> str:
+    """Return how large a true difference 8 of 10 audits find, in order of the places."""
+    if MISSING in sizes.values():
+        return ""
+    if len(set(sizes.values())) == 1:
+        true = f"a true one of {next(iter(sizes.values()))} pp"
+    else:
+        true = f"true ones of {series(list(sizes.values()))} pp, in this order,"
+    return f"; {true} would be found in 8 of 10 audits"
+
+
 def _left_open(record: DecisionRecord) -> Iterator[str]:
     if idle := [where(each.path) for each in record.effects if not each.acted]:
         yield f"The fault never acted {series(idle)}: nothing was tested there."
     if unsettled := [where(each.path) for each in record.effects if each.unsettled]:
         yield f"Who is ahead {series(unsettled)} depends on trials that failed."
-    missed: list[str] = []
-    for each in record.effects:
-        least, aside = each.minimum_detectable_pp, ""
-        if not each.acted or each.sign or each.unsettled or record.is_small(each):
-            continue
-        if each.extreme:
-            aside = f" (both nearly always {'fail' if each.extreme == 'floor' else 'succeed'})"
-        elif least is not None:
-            aside = f" (a true one of {math.ceil(least)} pp would be found in 8 of 10 audits)"
-        missed.append(where(each.path) + aside)
-    if missed:
-        yield f"No difference is detected {series(missed)}."
+    yield from _undetected(record)
     yield from not_standing(record)
     if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
         at = " or the ".join(same)
