@@ -9,8 +9,8 @@ from state_blocks import audits_of
 from faultpath.decisions import model
 
 PAGES = {
-    "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor"),
-    "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor"),
+    "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor-results"),
+    "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor-results"),
     "toy": ("Cart", "tutorial"),
     "dock": ("Docking boat", "audit-your-own-system"),
     "pendulum": ("Pendulum of Gymnasium", "gymnasium"),
