@@ -7,11 +7,13 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from statistics import median
 
-from benchmarks.results import DEVICE, Record, Target, load, record
-from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
+from benchmarks.results import DEVICE, Record, load, record
+from faultpath.decisions.tables import MISSING, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
 
-_COLUMNS = ("faultpath", "compared with", "ratio", "target", "met")
+_COLUMNS = ("faultpath", "compared with", "ratio")
+_STEPS = "vehicle-steps/s"
+"""Unit of the plant's rows: shown as a time, without a ratio, since the models differ."""
 
 
 def rows(records: Sequence[Record]) -> str:
@@ -50,13 +52,13 @@ def number(value: float) -> str:
 
 
 def _line(record: Record) -> Line:
-    target = _target(record.target)
     if record.ours is None:
-        return line(record.name, MISSING, MISSING, MISSING, target, MISSING)
-    peer = "" if record.peer is None else f"{number(record.peer)} ({record.peer_name})"
-    met = {True: Entry(text="yes"), False: Entry(text="no", tone="bad"), None: Entry(text="")}
-    ours = f"{number(record.ours)} {record.unit}"
-    return line(record.name, ours, peer, _ratio(record), target, met[record.met])
+        return line(record.name, MISSING, MISSING, MISSING)
+    ours, peer, unit, ratio = record.ours, record.peer, record.unit, _ratio(record)
+    if unit == _STEPS and peer:
+        ours, peer, unit, ratio = 1e6 / ours, 1e6 / peer, "µs a vehicle and step", ""
+    against = "" if peer is None else f"{number(peer)} ({record.peer_name})"
+    return line(record.name, f"{number(ours)} {unit}", against, ratio)
 
 
 def _ratio(record: Record) -> str:
@@ -65,13 +67,6 @@ def _ratio(record: Record) -> str:
     if record.low is None or record.high is None:
         return number(record.ratio)
     return f"{number(record.ratio)} [{number(record.low)}, {number(record.high)}]"
-
-
-def _target(target: Target | None) -> str:
-    if target is None:
-        return ""
-    of = "" if target.of == "ratio" else " itself"
-    return f"{target.sense} {number(target.value)}{of}"
 
 
 def gpu() -> str:
@@ -93,8 +88,9 @@ def gpu() -> str:
         f"Measured on {figures['date']}: {figures['gpu']}, torch {figures['torch']}; one core with "
         f"kernels `{figures['kernels']}`.\n\n{rows(records)}\n\n"
         f"Of {audits['trials']} trials of `make audit` on that machine, {audits['alike']} end "
-        f"alike on both; {here} succeed on the processor and {there} on the GPU. Of "
-        f"{audits['paths']} paths, {audits['decided_alike']} are decided alike."
+        f"alike on both; {here} succeed on the processor and {there} on the GPU. The audit finds "
+        f"the same on both, significant or not, on {audits['decided_alike']} of "
+        f"{audits['paths']} paths."
     )
 
 

@@ -82,11 +82,11 @@ def table(run: Run) -> str:
         [
             grid(table),
             f"{question.n_scenes} scenes of `{question.library}`, {wording.seeds(question.seeds)}, "
-            f"fault `{question.fault}`. Bold: a detected difference (interval and test agree, and "
-            f"it stands after Holm's correction for {record.hypotheses} contrasts). Floor, "
-            f"ceiling: both below 10 % or above 90 %, no headline. Break-even: the estimate of the "
-            f"fault frequency at which neither is ahead, and the frequencies at which none is "
-            f"decided to be. Intervals are for {record.estimand}. Void pairs: "
+            f"fault `{question.fault}`. Bold: significant (interval and test agree after Holm's "
+            f"correction for {record.hypotheses} contrasts). Floor, ceiling: both below 10 % or "
+            f"above 90 %, no headline. Break-even: the fault frequency at which neither is ahead, "
+            f"estimated, and those at which neither is significantly ahead. Intervals are for "
+            f"{record.estimand}. Void pairs: "
             f"{sum(effect.void_pairs for effect in record.effects)}.{_tests(run)} {flown(run)}",
         ]
     )

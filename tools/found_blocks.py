@@ -4,13 +4,13 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from blocks import Wrong, difference, load
-from state_blocks import audits_of
+from state_blocks import PLACES, audits_of
 
 from faultpath.decisions import model
 
 PAGES = {
-    "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor"),
-    "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor"),
+    "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor-results"),
+    "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor-results"),
     "toy": ("Cart", "tutorial"),
     "dock": ("Docking boat", "audit-your-own-system"),
     "pendulum": ("Pendulum of Gymnasium", "gymnasium"),
@@ -73,7 +73,7 @@ def _references() -> Iterator[Audit]:
         record = load(name).record
         effects = {effect.path: _effect(effect) for effect in record.effects}
         turns = {change.isolated: change.turn for change in record.changes}
-        yield Audit(f"[{title}]({{docs}}/{page}.md)", record.question.repair, effects, turns)
+        yield Audit(f"[{title}]({{docs}}/{page}.md)", f"`{record.question.repair}`", effects, turns)
 
 
 def _effect(effect: model.Effect) -> Effect:
@@ -95,9 +95,9 @@ def _row(audit: Audit) -> str:
     words = {name: verdict(effects[name], shared, turn) for name, turn in audit.turns.items()}
     module = min(words, key=lambda name: (WORDS.index(words[name]), -abs(effects[name].value)))
     cells = (
-        f"{audit.title}, `{audit.repair}`",
+        f"{audit.title}, {audit.repair}",
         _shown(effects["correct"]).partition(" [")[0],
-        f"{module} {_shown(effects[module])}",
+        f"{PLACES.get(module, module)} {_shown(effects[module])}",
         _shown(shared),
         f"**{words[module]}**" if words[module] == REVERSAL else words[module],
     )

@@ -16,19 +16,21 @@ from faultpath.report.svg import Svg, covering, tick_label
 
 PLACE = ROOT / "experiments" / "state-errors"
 SHARED = "shared"
+PLACES = {
+    "present": "predictor's state",
+    "history": "predictor's history",
+    "reconstruction": "reconstruction",
+    "camera": "camera's frame",
+}
 TITLES = {
     "correct": "no fault",
-    SHARED: "at the sensor: shared",
-    "present": "at the predictor's present",
-    "history": "at its history",
-    "reconstruction": "at the reconstruction",
-    "camera": "at the camera's frame",
+    SHARED: "at the sensor (shared)",
+    **{name: f"at the {place}" for name, place in PLACES.items()},
 }
-SIDES = {1: "ahead", -1: "behind", 0: "not decided"}
-TURNS = {
-    "reversal": "The ranking is decided to be the reverse of that",
-    "interaction": "The shared effect is decided to differ from that",
-}
+REPAIRS = {"accelerometer": "inertial observer", "withheld": "no wind input"}
+"""Names of repairs in the documents, where those of the records mislead."""
+SOURCES = {"sensors": "fresh", "selection": "selection"}
+"""Scenes of each library, in words."""
 _WIDTH, _LEFT, _TOP, _PITCH = 820.0, 420.0, 30.0, 24.0
 UNITS = {"position": "m", "velocity": "m/s", "attitude": "deg", "body_rate": "rad/s"}
 
@@ -41,26 +43,43 @@ def _read(name: str) -> Any:
 
 
 def audits_of(library: str) -> Any:
-    """Return the audits of a library: fault, repair, effects by place, and what is decided."""
-    return _read(f"{library}/found.json")
+    """Return the audits of a library: fault, repair, effects by place, and what is significant."""
+    audits = _read(f"{library}/found.json")
+    return [audit | {"repair": REPAIRS.get(audit["repair"], audit["repair"])} for audit in audits]
+
+
+def _significant(audit: Mapping[str, Any]) -> bool:
+    return any(effect[3] for effect in audit["effects"].values())
 
 
 def _effect(effect: Sequence[float]) -> Entry:
-    """Return a difference in percentage points with its interval, and whether it is decided."""
+    """Return a difference in percentage points with its interval, bold where significant."""
     value, low, high, sign = effect
     ends = ", ".join(wording.signed(end, 1) for end in (low, high))
     return Entry(text=f"{wording.signed(value, 1)} [{ends}]", detected=bool(sign))
 
 
-def _effects(library: str) -> str:
-    audits = audits_of(library)
-    places = [name for name in TITLES if name in audits[0]["effects"]]
-    columns = ("repair", *(TITLES[name] for name in places))
+def _rows(audits: Sequence[Mapping[str, Any]], *scenes: str) -> str:
+    """Return a table of audits; `scenes` says of each on which scenes it was, or of none."""
+    places = [n for n in TITLES if all(n in audit["effects"] for audit in audits)]
+    columns = ("repair", *(["scenes"] if scenes else []), *(TITLES[name] for name in places))
     lines: list[Line] = []
-    for audit in audits:
+    for index, audit in enumerate(audits):
         effects = (_effect(audit["effects"][name]) for name in places)
-        lines.append(line(audit["fault"], audit["repair"], *effects))
+        lines.append(line(audit["fault"], audit["repair"], *scenes[index : index + 1], *effects))
     return grid(Table(corner="fault", columns=columns, words=columns, lines=tuple(lines)))
+
+
+def _effects() -> str:
+    """Return the audits of both libraries in which an effect is significant."""
+    rows = [(a, words) for name, words in SOURCES.items() for a in audits_of(name)]
+    rows = [(audit, words) for audit, words in rows if _significant(audit)]
+    return _rows([audit for audit, _ in rows], *(words for _, words in rows))
+
+
+def _rest(library: str) -> str:
+    """Return a library's audits in which no effect is significant."""
+    return _rows([audit for audit in audits_of(library) if not _significant(audit)])
 
 
 def _success(library: str) -> str:
@@ -75,21 +94,41 @@ def _success(library: str) -> str:
     return grid(Table(corner="fault", columns=columns, words=columns, lines=tuple(lines)))
 
 
-def said(audits: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Return the decisions: whether a ranking reverses, then each audit in a sentence or two."""
-    turned = sum("reversal" in audit["turns"].values() for audit in audits)
-    lead = "No reversal was decided" if not turned else f"A reversal was decided in {turned}"
-    sentences = [f"{lead}{' in' if not turned else ' of'} {counted(len(audits), 'audit')}."]
-    for audit in audits:
-        sides = {name: SIDES[effect[3]] for name, effect in audit["effects"].items()}
-        alone = [f"{sides[place]} {TITLES[place]}" for place in audit["turns"]]
-        text = f"{audit['repair']}, {audit['fault']}: {sides[SHARED]} with the fault shared"
-        text += f"; {wording.series(alone)}." if alone else "."
-        for turn, words in TURNS.items():
-            places = [TITLES[place] for place, of in audit["turns"].items() if of == turn]
-            text += f" {words} {wording.series(places)}." if places else ""
-        sentences.append(text)
-    return sentences
+def reading(audits: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return in sentences what is significant when shared, what isolated tests detect, the rest."""
+    signs = {sign: [a for a in audits if a["effects"][SHARED][3] == sign] for sign in (1, -1, 0)}
+    shared = [*signs[1], *signs[-1]]
+    sentences = [
+        f"Of {counted(len(audits), 'audit')} on fresh scenes with the fault at the sensor, the "
+        f"repair succeeds significantly more often than the baseline in {_named(signs[1])} and "
+        f"less often in {_named(signs[-1])}."
+    ]
+    places = [place for place in PLACES if any(place in audit["turns"] for audit in shared)]
+    if places:
+        tests = "; ".join(_isolated(shared, place) for place in places)
+        sentences.append(f"Of these {counted(len(shared), 'difference')}, {tests}.")
+    reversals = sum("reversal" in audit["turns"].values() for audit in audits)
+    start = f"A reversal was found in {reversals}"
+    if not reversals:
+        start = "No reversal was found, which does not show that there is none"
+    return [*sentences, f"{start}; inconclusive with the fault at the sensor: {_named(signs[0])}."]
+
+
+def _named(audits: Sequence[Mapping[str, Any]]) -> str:
+    names = wording.series(
+        [f"{audit['repair']} under {audit['fault']}" for audit in audits] or [""]
+    )
+    return f"{len(audits)} ({names})" if names else "none"
+
+
+def _isolated(audits: Sequence[Mapping[str, Any]], place: str) -> str:
+    """Return in how many audits a test at one place detects what is significant when shared."""
+    same = sum(a["effects"][place][3] == a["effects"][SHARED][3] for a in audits)
+    differ = sum(a["turns"].get(place, "none") != "none" for a in audits)
+    return (
+        f"a test {TITLES[place]} alone detects {same or 'none'} "
+        f"(significantly different from the shared effect: {differ or 'none'})"
+    )
 
 
 def pictures() -> Mapping[Path, str]:
@@ -99,7 +138,7 @@ def pictures() -> Mapping[Path, str]:
         (audit, name) for audit in audits for name in (SHARED, *audit["turns"]) if name != "correct"
     ]
     ends = [end for audit, name in rows for end in audit["effects"][name][:3]]
-    text = "; ".join(said(audits))
+    text = " ".join(reading(audits))
     svg = Svg(_WIDTH, _TOP + _PITCH * len(rows) + 40, "Repairs under faults of sensors", text)
     axis = covering(ends, least=10.0).at(_LEFT, _WIDTH - 8)
     zero, bottom = axis(0.0), _TOP + _PITCH * len(rows)
@@ -124,12 +163,11 @@ def pictures() -> Mapping[Path, str]:
 
 
 def _picture() -> str:
-    lead = said(audits_of("sensors"))[0]
-    return f"![Repairs under faults of sensors. {lead}]({{images}}/state-errors.svg)"
+    return "![Repairs under faults of sensors, on fresh scenes]({images}/state-errors.svg)"
 
 
-def _said(library: str) -> str:
-    return "\n".join(f"- {sentence}" for sentence in said(audits_of(library)))
+def _reading() -> str:
+    return " ".join(reading(audits_of("sensors")))
 
 
 def _errors(library: str) -> str:
@@ -148,12 +186,16 @@ def _map() -> str:
     columns = tuple(f"calibration {100 * float(error):+g} %" for error in errors)
     lines = [
         line(
-            f"accelerometer {100 * float(scale):+g} %",
+            f"accelerometer scale {100 * float(scale):+g} %",
             *(_effect(cells[f"{scale},{error}"]["effect"]) for error in errors),
         )
         for scale in scales
     ]
-    return grid(Table(corner="", columns=columns, words=columns, lines=tuple(lines)))
+    significant = sum(bool(cell["effect"][3]) for cell in cells.values())
+    return (
+        f"{grid(Table(corner='', columns=columns, words=columns, lines=tuple(lines)))}\n\n"
+        f"Significant: {significant or 'none'} of {len(cells)}."
+    )
 
 
 def _accuracy() -> str:
@@ -177,8 +219,9 @@ def _cost() -> str:
 
 KIND: Mapping[str, Callable[..., str]] = {
     "effects": _effects,
+    "rest": _rest,
     "success": _success,
-    "said": _said,
+    "reading": _reading,
     "errors": _errors,
     "map": _map,
     "accuracy": _accuracy,

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from benchmarks import planning
+from benchmarks import page, planning
 from benchmarks.peers import rows
 from benchmarks.results import Target, load, record
 from benchmarks.rows import ROWS, SIDES
@@ -22,6 +22,16 @@ def test_every_row_was_measured_or_says_why_not_and_is_shown():
         else:
             assert (each.peer is None) == (each.ratio is None)
             assert (each.target is None) == (each.met is None)
+
+
+def test_the_plants_have_times_and_no_ratio():
+    head, _, *lines = page.rows(load().records).partition("\n\n")[0].splitlines()
+    assert head.replace(" ", "") == "||faultpath|comparedwith|ratio|"
+    plants = [line for line in lines if "plant" in line]
+    assert len(plants) == sum(row.unit == "vehicle-steps/s" for row in ROWS)
+    for line in plants:
+        assert "µs a vehicle and step" in line
+        assert line.rsplit("|", 2)[1].strip() == ""
 
 
 def test_a_ratio_is_formed_within_each_round():

@@ -129,6 +129,20 @@ def test_the_main_reference_is_what_make_audit_runs(name: str, scenes: int | Non
     assert scenes is None or asked.n_scenes == scenes
 
 
+@pytest.mark.parametrize(
+    ("target", "name"), [("audit", "quadrotor-L3"), ("confirm", "quadrotor-L3-confirmation")]
+)
+def test_the_page_of_the_quadrotor_shows_the_command_of_make(target: str, name: str) -> None:
+    text = (ROOT / "Makefile").read_text("utf-8").replace("\\\n", "")
+    recipe = re.search(rf"(?m)^{target}: .*\n\t\$\(BIN\)/(.*) \$\(ARGS\)$", text)
+    assert recipe is not None
+    command = re.sub(r"\$\(call unless_given,(\S+?),(\S+?)\)", r"\1 \2", recipe[1])
+    page = (ROOT / "docs" / "quadrotor.md").read_text("utf-8")
+    shown = re.search(rf"begin:command:{name}:not-run -->\n```[^\n]*\n\$ (.*?)\n```", page, re.S)
+    assert shown is not None
+    assert command.split() == shown[1].replace("\\\n", "").split()
+
+
 @pytest.mark.parametrize("folder", RUNS, ids=lambda path: path.name)
 def test_a_reference_run_was_made_in_one_go(folder: Path) -> None:
     made = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())

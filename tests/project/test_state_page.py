@@ -1,4 +1,4 @@
-"""The page about sensors' faults says what was decided, and nothing of what was not."""
+"""The page about sensors' faults says what is significant, and nothing of what is not."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from faultpath.decisions.family import decide_paths
 
 
 def audit(scenes: int, alone: int, shared: int) -> dict:
-    """Decide an audit in which the arms differ in all scenes, to a side or (0) in none."""
+    """Decide an audit in which the versions differ in all scenes, to a side or (0) in none."""
 
     def arms(side: int):
         won, lost = (np.full((scenes, 1), side == of) for of in (1, -1))
@@ -23,27 +23,35 @@ def audit(scenes: int, alone: int, shared: int) -> dict:
 
 
 @pytest.mark.parametrize("scenes", [1, 2, 4])
-def test_few_scenes_decide_nothing(scenes):
-    told = blocks.said([audit(scenes, 1, -1), audit(scenes, 0, 0)])
-    open_ = (
-        "filter, bias: not decided with the fault shared; not decided at the predictor's present."
-    )
-    assert told == ["No reversal was decided in 2 audits.", open_, open_]
+def test_few_scenes_are_inconclusive(scenes):
+    first, last = blocks.reading([audit(scenes, 1, -1), audit(scenes, 0, 0)])
+    assert "more often than the baseline in none and less often in none." in first
+    assert last.startswith("No reversal was found, which does not show that there is none")
+    assert "2 (filter under bias and filter under bias)" in last
 
 
 def test_no_audit_is_no_sentence_about_repairs():
-    assert blocks.said([]) == ["No reversal was decided in 0 audits."]
+    first, last = blocks.reading([])
+    assert first.startswith("Of 0 audits ")
+    assert last.endswith("at the sensor: none.")
 
 
-def test_many_scenes_say_which_side_and_where_it_did_not_show():
-    lead, told = blocks.said([audit(40, 1, -1)])
-    assert lead == "A reversal was decided in 1 of 1 audit."
-    assert "behind with the fault shared; ahead at the predictor's present." in told
-    assert told.endswith("the reverse of that at the predictor's present.")
-    lead, told = blocks.said([audit(40, 0, 1)])
-    assert lead == "No reversal was decided in 1 audit."
-    assert "ahead with the fault shared; not decided at the predictor's present." in told
-    assert told.endswith("to differ from that at the predictor's present.")
-    _, ties = blocks.said([audit(40, 0, 0)])
-    assert "ahead" not in ties
-    assert "behind" not in ties
+def test_many_scenes_say_which_side_and_what_an_isolated_test_detects():
+    first, alone, last = blocks.reading([audit(40, 1, -1)])
+    assert first.endswith("in none and less often in 1 (filter under bias).")
+    assert "detects none (significantly different from the shared effect: 1)" in alone
+    assert last.startswith("A reversal was found in 1;")
+    first, alone, last = blocks.reading([audit(40, 0, 1)])
+    assert "in 1 (filter under bias) and less often in none." in first
+    assert "detects none (significantly different from the shared effect: 1)" in alone
+    assert last.startswith("No reversal was found")
+    _, alone, _ = blocks.reading([audit(40, 1, 1)])
+    assert "detects 1 (significantly different from the shared effect: none)" in alone
+
+
+def test_every_audit_is_shown_once_and_a_repair_has_no_name_of_a_sensor():
+    tables = [blocks.KIND["effects"](), *map(blocks.KIND["rest"], blocks.SOURCES)]
+    rows = [row for table in tables for row in table.splitlines()[2:]]
+    audits = [audit for library in blocks.SOURCES for audit in blocks.audits_of(library)]
+    assert len(rows) == len(audits)
+    assert not {audit["repair"] for audit in audits} & {"accelerometer", "gyroscope"}
