@@ -76,7 +76,7 @@ def _environment(package: str) -> tuple[Environment, ChoiceLoader]:
     blocks: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
     strict: dict[str, Any] = {"autoescape": True, "undefined": StrictUndefined}
     environment = Environment(loader=sources, finalize=shown, **strict, **blocks)
-    environment.filters["whole"] = whole
+    environment.filters["whole"] = whole  # pyright: ignore[reportUnknownMemberType]
     return environment, sources
 
 
