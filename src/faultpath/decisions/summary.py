@@ -167,7 +167,7 @@ def in_words(record: DecisionRecord) -> dict[str, Any]:
 
 
 def answers(record: DecisionRecord) -> dict[str, str]:
-    """Return `What follows`, `How sure` and `Not decided`, each with a sentence or a few.
+    """Return `What follows`, `How sure` and `Left open`, each with a sentence or a few.
 
     With too few scenes nothing follows, and only the other two are there.
     """
@@ -181,15 +181,15 @@ def _answers(record: DecisionRecord) -> dict[str, list[str]]:
             f"Too few scenes to decide: {counted(record.scenes, 'scene')} compared, and this "
             f"question needs at least {record.scenes_needed}. The numbers are theirs alone."
         )
-        return {"Not decided": [few], "How sure": sure}
+        return {"Left open": [few], "How sure": sure}
     if record.earlier:
         sure.append(phrases.looks(record))
     elif record.question.judged:
         pass  # it is said of how trials were paired
     elif record.question.generalise == "scenes" and any(each.sign for each in record.effects):
-        sure.append("Of audits of two equal systems, at most 5 % would decide anything.")
+        sure.append("Of audits of two equal systems, at most 5 % would find any difference.")
     said = {"What follows": list(_follows(record)), "How sure": sure}
-    open_ = {"Not decided": list(_left_open(record))}
+    open_ = {"Left open": list(_left_open(record))}
     # Where nothing is significant, what was not seen is the result.
     return {**said, **open_} if any(each.sign for each in record.effects) else {**open_, **said}
 
@@ -199,9 +199,9 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
     leading = [each for each in tested if each.leads]
     if not leading:
         if any(each.sign and each.uneven for each in tested):
-            yield "No choice can rest on what is decided: one arm's trials failed more often."
+            yield "No choice can rest on what is significant: one arm's trials failed more often."
         elif any(each.sign for each in tested):
-            yield "What is decided lies at the floor or ceiling, where no choice can rest on it."
+            yield "What is significant lies at the floor or ceiling, where no choice can rest on it."
         else:
             yield "Nothing that was tested gives a reason to prefer either."
     turned = reversed_at(record)
