@@ -201,7 +201,7 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
         if any(each.sign and each.uneven for each in tested):
             yield "No choice can rest on what is significant: one arm's trials failed more often."
         elif any(each.sign for each in tested):
-            yield "What is significant lies at the floor or ceiling, where no choice can rest on it."
+            yield "What is significant lies at the floor or ceiling: no choice can rest on it."
         else:
             yield "Nothing that was tested gives a reason to prefer either."
     turned = reversed_at(record)
