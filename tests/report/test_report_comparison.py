@@ -3,14 +3,16 @@
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from rich.console import Console
 
 from faultpath.decisions.model import Path as FaultPath
 from faultpath.report.compared import Compared, differing, titles, together
-from faultpath.report.comparison import effects, facts_table, headline, page, sentences
+from faultpath.report.comparison import effects, facts_table, headline, page, sentences, shown
 from faultpath.report.inputs import ReportInput
 
 if TYPE_CHECKING:
@@ -89,6 +91,21 @@ def test_sizes_of_one_fault_are_drawn_over_the_size_and_decided_as_one_family(
         tab = context.new_page()
         tab.goto((tmp_path / "sweep.html").as_uri())
         assert tab.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+@pytest.mark.parametrize("width", [80, 120])
+def test_long_names_leave_the_numbers_whole_on_the_terminal(
+    one_seed: ReportInput, width: int
+) -> None:
+    long = "runs/mine.py_create-blind-vs-calibrated-gain_scale=0.6-held-out-100-scenes-4c1f"
+    runs = tuple(run(one_seed, number, f"{long}{number}") for number in (1, 2))
+    printed = StringIO()
+    Console(width=width, file=printed).print(shown(runs))
+    table = printed.getvalue().partition("bold is decided")[2]
+    assert "1  mine.py_create-" in table
+    for row in effects(runs).lines:
+        for entry in row.entries[:2]:
+            assert f" {entry.text}" in table
 
 
 def test_decided_in_opposite_directions(two: Given) -> None:

@@ -8,12 +8,13 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from faultpath.core.text import shortened
 from faultpath.decisions import wording
 from faultpath.decisions.family import ALPHA
 from faultpath.decisions.model import SHARED
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
-from faultpath.decisions.tables.terminal import drawn
+from faultpath.decisions.tables.terminal import Parted, drawn
 from faultpath.decisions.wording import series, where
 from faultpath.report.compared import (
     Compared,
@@ -29,6 +30,9 @@ from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
 from faultpath.report.svg import tick_label
 from faultpath.report.tables import decided_for
+
+_LABEL = 28
+"""Letters of a label on the terminal."""
 
 
 def headline(runs: Sequence[Compared]) -> str:
@@ -168,9 +172,15 @@ def shown(runs: Sequence[Compared]) -> RenderableType:
     for run in runs:
         verdict = Padding.indent(Text(run.headline), 3)
         parts += [Text(f"{run.number}  {run.folder}"), verdict]
-    parts += [Text(""), drawn(effects(runs)), Text("")]
+    parts += [Text(""), Parted(_short(effects(runs))), Text("")]
     parts += [drawn(facts_table(runs, found))] if found else [Text(same(runs))]
     return Group(*parts, Text(""), *map(Text, sentences(runs)))
+
+
+def _short(table: Table) -> Table:
+    """Return a table whose labels leave room for its numbers; above it stand the whole names."""
+    lines = [row.model_copy(update={"label": shortened(row.label, _LABEL)}) for row in table.lines]
+    return table.model_copy(update={"lines": tuple(lines), "words": ()})
 
 
 def dependent_failures(runs: Sequence[Compared]) -> Table | None:
