@@ -188,10 +188,11 @@ def _answers(record: DecisionRecord) -> dict[str, list[str]]:
         pass  # it is said of how trials were paired
     elif record.question.generalise == "scenes" and any(each.sign for each in record.effects):
         sure.append("Of audits of two equal systems, at most 5 % would find any difference.")
-    said = {"What follows": list(_follows(record)), "How sure": sure}
-    open_ = {"Left open": list(_left_open(record))}
+    sentences = {"What follows": list(_follows(record)), "How sure": sure}
+    left_open = {"Left open": list(_left_open(record))}
     # Where nothing is significant, what was not seen is the result.
-    return {**said, **open_} if any(each.sign for each in record.effects) else {**open_, **said}
+    significant = any(effect.sign for effect in record.effects)
+    return {**sentences, **left_open} if significant else {**left_open, **sentences}
 
 
 def _follows(record: DecisionRecord) -> Iterator[str]:
@@ -236,20 +237,20 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
 
 def _undetected(record: DecisionRecord) -> Iterator[str]:
     """Say where no difference is detected, and how large one would have been found."""
-    found: dict[str, str] = {}
+    sizes: dict[str, str] = {}
     extreme: dict[str, list[str]] = {}
-    for each in record.effects:
-        if not each.acted or each.sign or each.unsettled or record.is_small(each):
+    for effect in record.effects:
+        if not effect.acted or effect.sign or effect.unsettled or record.is_small(effect):
             continue
-        if each.extreme:
-            extreme.setdefault(each.extreme, []).append(where(each.path))
+        if effect.extreme:
+            extreme.setdefault(effect.extreme, []).append(where(effect.path))
         else:
-            found[where(each.path)] = wording.detectable(each)
+            sizes[where(effect.path)] = wording.detectable(effect)
     for end, at in extreme.items():
         both = "fail" if end == "floor" else "succeed"
         yield f"No difference is detected {series(at)}, where both nearly always {both}."
-    if found:
-        yield f"No difference is detected {series(list(found))}{_would_be_found(found)}."
+    if sizes:
+        yield f"No difference is detected {series(list(sizes))}{_would_be_found(sizes)}."
 
 
 def _would_be_found(sizes: Mapping[str, str]) -> str:

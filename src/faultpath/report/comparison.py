@@ -40,8 +40,8 @@ def headline(runs: Sequence[Compared]) -> str:
     are, and where they are decided in opposite directions."""
     if sweep := swept(runs):
         primary = next((p for p in titles(runs) if p == runs[0].asked.primary), SHARED)
-        said = _by_size(runs, primary, sweep[1])
-        return f"{len(runs)} sizes of {sweep[0]}, {where(primary)}: {said}"
+        answer = _by_size(runs, primary, sweep[1])
+        return f"{len(runs)} sizes of {sweep[0]}, {where(primary)}: {answer}"
     opposed = [title for path, title in titles(runs).items() if list(_opposite(runs, path))]
     count = f"{len(runs)} audits side by side"
     return f"{count}: decided in opposite directions on {series(opposed)}" if opposed else count

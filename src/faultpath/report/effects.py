@@ -9,9 +9,9 @@ from faultpath.decisions.summary import in_short
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, shortened, text_width, tick_label
 
 _PITCH, _TOP, _NUMBERS = 48.0, 44.0, 146.0
-"""Of a panel: height of a row, where the first begins, and the column of the numbers."""
+"""Height of a panel's row, where the first begins, and width of the column of numbers."""
 _WIDE, _HIGH = 330.0, 42.0
-"""Of the picture of one effect, which stands in a table."""
+"""Size of the picture of one effect, which stands in a table."""
 _ROOM = 26.0
 """Pixels beside zero that a label of a side needs."""
 

@@ -85,8 +85,8 @@ def whole(text: str, names: Sequence[str]) -> Markup:
     short = sorted((name for name in names if 0 < len(name) <= _SHORT), key=len, reverse=True)
     if not short:
         return escape(visible(text))
-    found = re.compile(rf"(?<![\w-])({'|'.join(map(re.escape, short))})(?![\w-])")
-    parts = (escape(visible(part)) for part in found.split(text))
+    pattern = re.compile(rf"(?<![\w-])({'|'.join(map(re.escape, short))})(?![\w-])")
+    parts = (escape(visible(part)) for part in pattern.split(text))
     return Markup("").join(
         Markup('<span class="whole">{}</span>').format(part) if place % 2 else part
         for place, part in enumerate(parts)
