@@ -244,10 +244,10 @@ def fence(info: str, body: str) -> str:
 
 PARTS: dict[str, tuple[str, str]] = {
     "verdict": ("Verdict", ".masthead, #verdict > *"),
-    "interface": ("What the fault strikes", "[aria-labelledby=interface] > *"),
+    "interface": ("Who gets the fault", "#interface > *"),
     "readers": ("Who gets the fault", ".forks .panels"),
-    "effects": ("Effects of the repair", "[aria-labelledby=effects] figure"),
-    "flights": ("Some flights", "[aria-labelledby=flights] > *"),
+    "effects": ("Effects of the repair", "#effects"),
+    "flights": ("Some flights", "#flights > *"),
 }
 """Parts of a report that may be pictured: name in words, and selector in the page."""
 

@@ -209,6 +209,32 @@ def test_without_a_folder_the_run_is_called_after_its_question(tmp_path):
     assert len(list((tmp_path / "runs").iterdir())) == 2
 
 
+def test_another_metric_of_the_kept_trials_runs_nothing(tmp_path):
+    assert audit(scenes=2).status == 0
+    (folder,) = (tmp_path / "runs").iterdir()
+    times = {path: path.stat().st_mtime_ns for path in shards(folder)}
+    for more in ([], ["--thresholds", "0.1,0.5"]):
+        ended = audit("--metric", "terminal_distance_m", *more, scenes=2)
+        assert ended.status == 0
+        assert "Kept 16 of 16 trials" in ended.out
+    assert list((tmp_path / "runs").iterdir()) == [folder]
+    assert {path: path.stat().st_mtime_ns for path in shards(folder)} == times
+    assert open_run(folder).record.question.metric == "terminal_distance_m"
+
+
+def test_the_name_of_a_run_says_nothing_of_where_its_system_is(tmp_path):
+    for place in ("one", "two"):
+        system = tmp_path / place / "toy.py"
+        system.parent.mkdir()
+        shutil.copy(ROOT / "examples" / "toy.py", system)
+        assert audit(system=f"{system}:create", scenes=2).status == 0
+    folders = [*(tmp_path / "runs").iterdir()]
+    assert len(folders) == 2
+    for folder in folders:
+        assert folder.name.startswith("toy.py_create-blind-vs-calibrated-gain_scale=0.6-carts-")
+        assert tmp_path.name not in folder.name
+
+
 def test_after_an_edit_a_run_starts_anew_beside_the_other(tmp_path):
     system = tmp_path / "mine" / "toy.py"
     system.parent.mkdir()

@@ -27,3 +27,12 @@ def test_make_audit_gives_what_its_user_does_not(given):
     options = [word.partition("=")[0] for word in words if word.startswith("--")]
     assert sorted(options) == sorted(set(options))
     assert {"--baseline", "--repair", "--fault", "--library", "--wind"} <= set(options)
+
+
+def test_make_audit_runs_the_command_that_the_page_gives():
+    made = ["make", "--no-print-directory", "--dry-run", "--always-make", "audit"]
+    shown = subprocess.run(made, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    lines = [" ".join(line.split()) for line in shown.replace("\\\n", " ").splitlines()]
+    (line,) = [line for line in lines if "faultpath audit quadrotor" in line]
+    page = " ".join((ROOT / "docs" / "quadrotor.md").read_text().replace("\\\n", " ").split())
+    assert f"$ {line.removeprefix('.venv/bin/')} ```" in page

@@ -202,8 +202,8 @@ def check(made: DecisionRecord) -> None:
     plain = answers(made)
     advised = "Ask which" in " ".join(plain.values())
     if made.scenes < made.scenes_needed:
-        assert list(plain) == ["Not decided", "How sure"]
-        assert plain["Not decided"].startswith("Too few scenes to decide")
+        assert list(plain) == ["Left open", "How sure"]
+        assert plain["Left open"].startswith("Too few scenes to decide")
         assert not advised
     else:
         assert advised == bool(turned - extreme and SHARED not in extreme)

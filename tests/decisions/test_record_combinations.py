@@ -164,7 +164,7 @@ def test_an_interval_that_leaves_out_0_undetected_has_its_p_and_the_reason() -> 
     p = f"p = {shared.adjusted_p_value:.3f} after Holm"
     assert in_short(it, shared) == f"no difference detected ({p})"
     (said,) = not_standing(it)
-    assert said in answers(it)["Not decided"]
+    assert said in answers(it)["Left open"]
     assert p in said
     assert f"{it.hypotheses} contrasts" in said
     clear = record({CORRECT: (50, 3, 3), "a": (40, 30, 2), SHARED: (50, 5, 5)})

@@ -76,7 +76,7 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     assert "failed" in said
     assert "failed" in open_.headline
     assert "no difference" not in " ".join((open_.headline, said)).lower()
-    assert "depends on trials that failed" in answers(open_)["Not decided"]
+    assert "depends on trials that failed" in answers(open_)["Left open"]
     safe = audit((lost, [*[NO] * 20, *rest[15:], YES]))
     assert safe.effects[0].sign == 1
     assert "new is ahead" in safe.headline

@@ -78,7 +78,7 @@ def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
     words = " ".join(made.sentences)
     (effect,) = (e for e in made.effects if e.path == CORRECT)
     least = re.search(
-        r"correct inputs \(a true one of (\d+) pp would be found in 8 of 10 audits\)", words
+        r"detected under correct inputs; a true one of (\d+) pp would be found in 8 of 10", words
     )
     assert least is not None
     assert effect.minimum_detectable_pp <= int(least[1]) < effect.minimum_detectable_pp + 1

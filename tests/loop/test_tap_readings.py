@@ -62,9 +62,13 @@ def test_a_second_delivery_is_the_first_one_with_a_null_fault_and_without(
 @pytest.mark.parametrize(
     ("value", "sentence"),
     [
-        (np.zeros(3), "the reading has 3 rows for 2 scenes"),
+        (np.zeros(3), "the reading has 3 rows for 2 scenes: its shape is [3], and has to be [2], "),
         (np.zeros(()), "the reading has no rows for 2 scenes"),
-        (np.zeros((2, 3)), "the reading of one scene has the shape [3], but source 'scale' is"),
+        (
+            np.zeros((2, 3)),
+            "the reading of one scene has the shape [3], but source 'scale' declares `shape: []`: "
+            "declare `shape: [3]` there",
+        ),
         (partial(to_torch, np.zeros((2, 1))), "the reading of one scene has the shape [1]"),
         ([1.0, 2.0], "the reading's value is a list"),
         (1.0, "the reading's value is a float"),

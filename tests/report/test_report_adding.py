@@ -52,9 +52,13 @@ def test_the_first_scene_shows_both_errors_and_their_sum_on_every_path(heard) ->
     assert "under the shared fault" in shown.caption
     assert shown.caption.count("2.0 and 1.8 m/s²") == 2
     page = report_page(heard)
-    first = page[: page.index('<section aria-labelledby="effects"')]
+    first = page[: page.index('<section aria-labelledby="pairs"')]
     assert first.count('class="term both') == 6
-    assert f"Why: {TOPIC}" in first
+    assert f"{TOPIC.capitalize()}, believed minus true" in first
+    quiet = tuple(e.model_copy(update={"sign": 0}) for e in heard.record.effects)
+    null = replace(heard, record=heard.record.model_copy(update={"effects": quiet}))
+    assert 'id="why"' in page
+    assert 'id="why"' not in report_page(null), "nothing is to be explained"
 
 
 def test_a_few_large_values_do_not_squeeze_the_others(heard) -> None:

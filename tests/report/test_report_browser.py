@@ -102,3 +102,21 @@ def test_a_cell_leads_to_its_trial_and_the_address_brings_it_back(page: Page) ->
     assert chosen.get_attribute("data-path") == "shared"
     page.goto(page.url.partition("#")[0] + "#scene=no&seed=%E0%A4%A")
     assert chosen.get_attribute("data-path") == "shared"
+
+
+def test_the_list_of_scenes_is_filtered_by_who_succeeds(page: Page) -> None:
+    show, scenes = page.locator("#viewer-show"), page.locator("#viewer-scene")
+    whole = scenes.locator("option").count()
+    labels = show.locator("option").all_inner_texts()
+    assert labels[0].startswith("all trials (")
+    chosen = next(n for n, label in enumerate(labels) if "only the repair succeeds" in label)
+    show.select_option(index=chosen)
+    count = int(labels[chosen].rpartition("(")[2].rstrip(")"))
+    assert scenes.locator("option").count() == count < whole
+    title = labels[chosen].partition(":")[0]
+    column = page.locator(".column").filter(has=page.get_by_role("heading", name=title))
+    assert "repair: ✓" in column.inner_text()
+    assert "baseline: ✓" not in column.inner_text()
+    page.goto(page.url.partition("#")[0] + "#scene=" + "no")
+    page.locator("[data-pairs] svg a").first.click()
+    assert scenes.locator("option").count() == whole

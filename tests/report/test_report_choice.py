@@ -92,13 +92,13 @@ def test_the_path_that_is_shown_first_was_announced(
 
 @pytest.mark.parametrize("sign", [0, 1])
 def test_what_is_decided_at_the_floor_announces_nothing(one_seed: ReportInput, sign: int) -> None:
-    """Nothing announced: what most scenes do comes first, and of ties the lowest index."""
+    """Nothing announced: first scenes in which trials end apart, then what most scenes do."""
     record = announcing(one_seed, reconstruction=sign)
     floor = tuple(e.model_copy(update={"extreme": "floor"}) for e in record.effects)
     quiet = tuple(c.model_copy(update={"turn": "none"}) for c in record.changes)
     record = record.model_copy(update={"effects": floor, "changes": quiet})
     pairs = scenes(one_seed, "rrrr", "bbrb", "nnnn", "bbbb", "nnnn", "bbbb")
-    assert begun(one_seed, record, pairs) == [2, 3, 4, 5, 0, 1]
+    assert begun(one_seed, record, pairs) == [0, 1, 2, 3, 4, 5]
     said = captions(pairs)[next(p.scene for p in pairs if p.index == 0), 0]
     assert said.startswith("1 of 6 scenes goes like this one:")
 

@@ -4,7 +4,7 @@ import re
 from xml.etree import ElementTree
 
 from faultpath.decisions.model import DecisionRecord, PathBreakEven
-from faultpath.report.effects import forest, frequency_panels
+from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, panel, shared_axis
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import pair_grid, pair_key, read_pairs
 from faultpath.report.svg import Svg, covering, shortened, text_width
@@ -22,7 +22,9 @@ def test_all_figures_are_xml(one_seed: ReportInput) -> None:
     record = one_seed.record
     pairs = read_pairs(one_seed.outcomes, record)
     drawn = [
-        forest(record),
+        *(row.picture for row in effect_rows(record)),
+        effect_axis(record),
+        _forest(record),
         pair_grid('"<title>"', pairs, {"timeout": "<late>"}),
         pair_grid("nothing", (), {}),
         *(sign for sign, _ in pair_key(pairs)),
@@ -35,7 +37,8 @@ def test_all_figures_are_xml(one_seed: ReportInput) -> None:
 
 def _forest(record: DecisionRecord, **changes: object) -> str:
     effect = record.effects[0].model_copy(update=changes)
-    return forest(record.model_copy(update={"effects": (effect,)}))
+    rows = [("Correct inputs", "", effect)]
+    return panel("All", rows, shared_axis([rows]))
 
 
 def test_only_what_is_decided_is_bold_and_filled(one_seed: ReportInput) -> None:

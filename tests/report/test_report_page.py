@@ -58,7 +58,7 @@ def test_verdict_comes_first_and_headings_do_not_skip(source: ReportInput, page:
     assert levels.count(1) == 1
     assert all(b - a <= 1 for a, b in pairwise(levels))
     assert source.record.headline in page.text
-    assert page.text.index(source.record.headline) < page.text.index("What the repair changes")
+    assert page.text.index(source.record.headline) < page.text.index("in the same scenes")
 
 
 def test_ids_are_unique_and_links_lead_somewhere(page: Page, source: ReportInput) -> None:

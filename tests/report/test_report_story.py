@@ -46,14 +46,14 @@ def test_each_path_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
 
 def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> None:
     said = screen(one_seed)
-    open_ = said[: said.index("What would change this")]
+    open_ = said[: said.index("what would change this")]
     for effect in one_seed.record.effects:
         low, high = effect.success.low or 0.0, effect.success.high or 0.0
         shown = f"[{low:.1f}, {high:.1f}]".replace("-", "−")
         assert open_.count(shown) == 1
-        rates = f"{effect.baseline_percent:.1f} → {effect.repair_percent:.1f} % success"
+        rates = f"{effect.baseline_percent:.1f} → {effect.repair_percent:.1f}"
         assert open_.count(rates) >= 1
-        assert open_.count(f"{effect.success.value:+.1f} pp".replace("-", "−")) <= 2
+        assert open_.count(f"{effect.success.value:+.1f}".replace("-", "−")) <= 2
     assert "gru succeeds more often" in open_
     assert "%" not in one_seed.record.headline
 

@@ -1,6 +1,7 @@
 """Markdown and terminal tables: escaped, complete, and with the record's numbers."""
 
 import io
+import math
 import re
 from pathlib import Path
 
@@ -35,7 +36,7 @@ def _expected(record: DecisionRecord) -> dict[str, list[str]]:
         "p, alone": [_p(e.p_value) for e in effects],
         "p, Holm": [_p(e.adjusted_p_value) for e in effects],
         "Decided for": [_decided(e) for e in effects],
-        "80 % power, pp": [f"{e.minimum_detectable_pp:.1f}" for e in effects],
+        "80 % power, pp": [str(math.ceil(e.minimum_detectable_pp)) for e in effects],
         "Scenes": [str(e.scenes) for e in effects],
         "Void pairs": [str(e.void_pairs) for e in effects],
         "Break-even, %": [frequency(e.path) for e in effects],

@@ -10,7 +10,8 @@ import pytest
 from faultpath.cli.main import main
 from faultpath.core.errors import UserError
 from faultpath.systems.checks.check import check_system
-from faultpath.trials import SystemSpec, load_system
+from faultpath.systems.checks.room import ENOUGH, without_room
+from faultpath.trials import Outcome, Status, SystemSpec, load_system
 from faultpath.trials.question import CheckQuestion
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -43,7 +44,7 @@ SAID = {
     "another source": ("declared reads", "the reading is of source 'sonar'"),
     "keeps": ("fault delivery", "Tap range -> guard.limit of variant 'guarded', faulted in 4"),
     "nan": ("shape and unit", "source 'laser' at step 10, read by pilot.approach, is not finite"),
-    "shape": ("shape and unit", "'laser' is declared with []"),
+    "shape": ("shape and unit", "'laser' declares `shape: []`"),
     "millimetres": ("shape and unit", "its largest reading is 2.78e+03; give it in m"),
 }
 
@@ -68,6 +69,32 @@ def test_a_sound_system_passes(name, library):
     report = check(name if name == BROKEN else f"{ROOT / name}", library=library, **options)
     assert failed(report) == {}
     assert {each.status for each in report.checks} == {"passed"}
+
+
+def test_a_baseline_that_always_ends_alike_leaves_an_audit_no_room():
+    def ends(count: int, *others: Status) -> list[Outcome]:
+        statuses = (*[Status.SUCCESS] * (count - len(others)), *others)
+        return [Outcome(f"w{i}", how, 1.0, "a", "b", "c") for i, how in enumerate(statuses)]
+
+    crashes = ends(ENOUGH, *[Status.CRASH] * ENOUGH)
+    above, below = without_room({"bare": ends(ENOUGH), "guarded": ends(ENOUGH), "lost": crashes})
+    assert above.startswith("Variants 'bare', 'guarded' succeed in all of 20 checked scenes")
+    assert "no repair of such a baseline to be better" in above
+    assert below.startswith("Variant 'lost' succeeds in none of 20 checked scenes")
+    assert "harder scenes" in above
+    assert "easier scenes" in below
+    assert without_room({"bare": ends(ENOUGH - 1)}) == ()  # too few to say so
+    for odd in (Status.CRASH, Status.FAILED):
+        assert without_room({"bare": ends(ENOUGH, odd)}) == ()
+
+
+def test_a_check_says_that_a_system_is_at_its_ceiling():
+    asked = CheckQuestion(workers=0, library="carts", scenes=ENOUGH, variants=("calibrated",))
+    name = f"{ROOT / 'examples/toy.py'}:create"
+    spec = SystemSpec(name=name, options={})
+    trials = check_system(load_system(spec), spec, asked, lambda done, known: None).checks[0]
+    assert trials.status == "passed"
+    assert trials.remarks[0].startswith("Variant 'calibrated' succeeds in all of 20 checked scenes")
 
 
 def test_rounding_is_told_from_dependence_by_its_size():

@@ -40,6 +40,23 @@ def test_mistakes_are_told_in_a_sentence():
         forgets.step(Inputs("forgets", 0, {}, {}), None)
 
 
+def test_a_number_that_is_given_is_one_value_for_every_scene():
+    running, at = np.ones(3, bool), Port("now", "now")
+    double = writes("twice")(lambda now: 2 * now).given(now=1)
+    (twice,) = double.step(Inputs("double", 0, {}, {}, running), None)[0].values()
+    assert (twice.tolist(), twice.dtype) == ([2.0, 2.0, 2.0], np.float64)
+
+    @writes("sum")
+    def columns(now, scale):
+        return now * scale[:, 0]
+
+    said = r"test_\w+\.py, line \d+: module 'columns' fails \(TypeError: .*one number for every "
+    with pytest.raises(SystemMistake, match=f"{said}scene as its scale, .* one value a scene"):
+        columns.given(scale=1.0).step(Inputs("columns", 0, {at: np.ones(3)}, {}, running), None)
+    with pytest.raises(TypeError):  # what fails later had a first step that went well
+        columns.given(scale=1.0).step(Inputs("columns", 1, {at: np.ones(3)}, {}, running), None)
+
+
 def test_rows_are_computed_one_at_a_time():
     sizes = []
 

@@ -75,8 +75,6 @@ def audit(
     asked, chosen, library, display = begin("audit", AuditQuestion, system, given, progress)
     laid = plan_audit(chosen.system, chosen.spec, asked, library)
     named = [laid.study.name, asked.fault, Path(asked.library).stem]
-    if asked.metric:
-        named.append(f"{asked.metric}-{','.join(f'{each:g}' for each in asked.thresholds)}")
     if asked.stop_when is not None:
         small = "" if asked.margin_pp is None else f"-within-{asked.margin_pp:g}"
         named.append(f"until-{asked.stop_when}{small}")
@@ -127,15 +125,20 @@ def run_folder(asked: Running | SensitivityQuestion, chosen: Chosen, named: Sequ
     """Return the folder of a run.
 
     Without a folder of the caller's it is named after everything that makes it another study,
-    which begins with `named`, and after the code as it is. `UserError` for one that holds a run of
-    an object, which may have been another.
+    which begins with `named`, and after the code as it is; of an absolute path, which says more of
+    the machine than of the study, a digest stands for the folders. `UserError` for one that holds a
+    run of an object, which may have been another.
     """
     parts = [*named, *(f"{key}-{value}" for key, value in sorted(chosen.spec.options.items()))]
     if asked.scenes is not None:
         parts.append(f"{asked.scenes}-scenes")
     if asked.seeds != (0,):
         parts.append(f"seeds-{','.join(map(str, asked.seeds))}")
-    name = re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", "-".join(parts)).strip("._")
+    joined = "-".join(parts)
+    short = re.sub(r"(?:^|(?<=[:,=-]))/(?:[^/:,]*/)*", "", joined)
+    if short != joined:
+        short = f"{short}-{hashlib.sha256(joined.encode()).hexdigest()[:8]}"
+    name = re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", short).strip("._")
     if len(name) > _LONGEST_NAME:
         name = f"{name[:_LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
     if asked.folder is None and not chosen.own:

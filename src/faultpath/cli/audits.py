@@ -27,6 +27,12 @@ Details = Annotated[
     ),
 ]
 
+StudyFile = typer.Option(
+    "--study",
+    parser=as_path,
+    help="Study file that `faultpath plan` wrote, to carry out without system and question.",
+)
+
 DependentFailures = Annotated[
     Path | None,
     typer.Option(
@@ -85,6 +91,7 @@ def plan(
 @takes(AuditQuestion)
 def audit(
     system: SystemName,
+    study: Annotated[Path | None, StudyFile] = None,
     details: Details = False,
     as_json: Json = False,
     fail_if: FailIf = None,
@@ -93,9 +100,8 @@ def audit(
     **given: Any,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
-    alone, and under the shared fault.
-
-    `faultpath audit --study FILE` carries out what `faultpath plan` wrote instead."""
+    alone, and under the shared fault."""
+    del study  # `build` hands a line with it to the function below
     gate = Gate.of(fail_if, junit, summary)
     # What builds a system may load for seconds; until then this is all that there is to see.
     arms = f"{one_line(given['repair'])} with {one_line(given['baseline'])}"
@@ -122,9 +128,7 @@ def audit(
 
 @takes(Running, *Question.model_fields)
 def study(
-    study: Annotated[
-        Path, typer.Option(parser=as_path, help="Study file that `faultpath plan` wrote.")
-    ],
+    study: Annotated[Path, StudyFile],
     trust: Trust = False,
     as_json: Json = False,
     fail_if: FailIf = None,

@@ -105,6 +105,17 @@ def _parameter(model: type[Asked], name: str) -> inspect.Parameter:
     return inspect.Parameter(name, _KEYWORD, default=default, annotation=annotation)
 
 
+def flags_of(verb: Callable[..., Any]) -> set[str]:
+    """Return the flags that a verb takes."""
+    own = {"--help"}
+    for parameter in inspect.signature(verb).parameters.values():
+        for note in getattr(parameter.annotation, "__metadata__", ()):
+            if isinstance(note, OptionInfo):
+                named = note.default if isinstance(note.default, str) else ""
+                own |= {named or f"--{parameter.name}", *(note.param_decls or ())}
+    return own
+
+
 def with_system_flags(
     name: str, verb: Callable[..., Any], arguments: Sequence[str]
 ) -> Callable[..., Any]:
@@ -114,13 +125,7 @@ def with_system_flags(
     but only where the line asks for help or holds a flag that the verb itself has not got.
     `UserError` for a flag that neither of the two has, and for a system that cannot be asked.
     """
-    own = {"--help"}
-    signature = inspect.signature(verb)
-    for parameter in signature.parameters.values():
-        for note in getattr(parameter.annotation, "__metadata__", ()):
-            if isinstance(note, OptionInfo):
-                named = note.default if isinstance(note.default, str) else ""
-                own |= {named or f"--{parameter.name}", *(note.param_decls or ())}
+    own, signature = flags_of(verb), inspect.signature(verb)
     if "--" in arguments:
         arguments = arguments[: arguments.index("--")]
     helps = "--help" in arguments

@@ -41,14 +41,14 @@ def estimand(question: Question) -> str:
 def reach(record: DecisionRecord) -> Iterator[str]:
     """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
     asked = record.question
-    holds = "The intervals hold" if record.few else "What is decided holds"
+    holds = "The intervals hold" if record.few else "What is significant holds"
     given = asked.trained and asked.generalise == "scenes"
     yield f"{holds} for {record.estimand}{'; models trained anew may differ' if given else ''}."
     if asked.judged:
         yield _PAIRED[asked.judged.pairing]
         yield (
-            "Of two equal arms at most 5 % of such judgements would decide anything, if the number "
-            "of scenes was fixed before anybody looked: other tools do not tell."
+            "Of two equal arms at most 5 % of such judgements would find a difference, if the "
+            "number of scenes was fixed before anybody looked: other tools do not tell."
         )
     run = len(asked.seeds)
     if asked.generalise == "models" and run < FEW_TRAININGS:

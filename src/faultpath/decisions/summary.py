@@ -3,13 +3,13 @@
 Whoever reads nothing else reads these, so what qualifies a decision is said here too.
 """
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from faultpath.decisions import phrases
+from faultpath.decisions import phrases, wording
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
 from faultpath.decisions.phrases import adjusted, margin, only_alone
+from faultpath.decisions.tables import MISSING
 from faultpath.decisions.wording import capital, counted, series, where
 
 MOST_WORDS = 20
@@ -167,7 +167,7 @@ def in_words(record: DecisionRecord) -> dict[str, Any]:
 
 
 def answers(record: DecisionRecord) -> dict[str, str]:
-    """Return `What follows`, `How sure` and `Not decided`, each with a sentence or a few.
+    """Return `What follows`, `How sure` and `Left open`, each with a sentence or a few.
 
     With too few scenes nothing follows, and only the other two are there.
     """
@@ -181,18 +181,18 @@ def _answers(record: DecisionRecord) -> dict[str, list[str]]:
             f"Too few scenes to decide: {counted(record.scenes, 'scene')} compared, and this "
             f"question needs at least {record.scenes_needed}. The numbers are theirs alone."
         )
-        return {"Not decided": [few], "How sure": sure}
+        return {"Left open": [few], "How sure": sure}
     if record.earlier:
         sure.append(phrases.looks(record))
     elif record.question.judged:
         pass  # it is said of how trials were paired
     elif record.question.generalise == "scenes" and any(each.sign for each in record.effects):
-        sure.append("Of audits of two equal systems, at most 5 % would decide anything.")
-    return {
-        "What follows": list(_follows(record)),
-        "How sure": sure,
-        "Not decided": list(_left_open(record)),
-    }
+        sure.append("Of audits of two equal systems, at most 5 % would find any difference.")
+    sentences = {"What follows": list(_follows(record)), "How sure": sure}
+    left_open = {"Left open": list(_left_open(record))}
+    # Where nothing is significant, what was not seen is the result.
+    significant = any(effect.sign for effect in record.effects)
+    return {**sentences, **left_open} if significant else {**left_open, **sentences}
 
 
 def _follows(record: DecisionRecord) -> Iterator[str]:
@@ -200,9 +200,9 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
     leading = [each for each in tested if each.leads]
     if not leading:
         if any(each.sign and each.uneven for each in tested):
-            yield "No choice can rest on what is decided: one arm's trials failed more often."
+            yield "No choice can rest on what is significant: one arm's trials failed more often."
         elif any(each.sign for each in tested):
-            yield "What is decided lies at the floor or ceiling, where no choice can rest on it."
+            yield "What is significant lies at the floor or ceiling: no choice can rest on it."
         else:
             yield "Nothing that was tested gives a reason to prefer either."
     turned = reversed_at(record)
@@ -235,23 +235,41 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
                 yield f"By the share of trials with the fault, {where(each.path)}: {each.words}."
 
 
+def _undetected(record: DecisionRecord) -> Iterator[str]:
+    """Say where no difference is detected, and how large one would have been found."""
+    sizes: dict[str, str] = {}
+    extreme: dict[str, list[str]] = {}
+    for effect in record.effects:
+        if not effect.acted or effect.sign or effect.unsettled or record.is_small(effect):
+            continue
+        if effect.extreme:
+            extreme.setdefault(effect.extreme, []).append(where(effect.path))
+        else:
+            sizes[where(effect.path)] = wording.detectable(effect)
+    for end, at in extreme.items():
+        both = "fail" if end == "floor" else "succeed"
+        yield f"No difference is detected {series(at)}, where both nearly always {both}."
+    if sizes:
+        yield f"No difference is detected {series(list(sizes))}{_would_be_found(sizes)}."
+
+
+def _would_be_found(sizes: Mapping[str, str]) -> str:
+    """Return how large a true difference 8 of 10 audits find, in order of the places."""
+    if MISSING in sizes.values():
+        return ""
+    if len(set(sizes.values())) == 1:
+        true = f"a true one of {next(iter(sizes.values()))} pp"
+    else:
+        true = f"true ones of {series(list(sizes.values()))} pp, in this order,"
+    return f"; {true} would be found in 8 of 10 audits"
+
+
 def _left_open(record: DecisionRecord) -> Iterator[str]:
     if idle := [where(each.path) for each in record.effects if not each.acted]:
         yield f"The fault never acted {series(idle)}: nothing was tested there."
     if unsettled := [where(each.path) for each in record.effects if each.unsettled]:
         yield f"Who is ahead {series(unsettled)} depends on trials that failed."
-    missed: list[str] = []
-    for each in record.effects:
-        least, aside = each.minimum_detectable_pp, ""
-        if not each.acted or each.sign or each.unsettled or record.is_small(each):
-            continue
-        if each.extreme:
-            aside = f" (both nearly always {'fail' if each.extreme == 'floor' else 'succeed'})"
-        elif least is not None:
-            aside = f" (a true one of {math.ceil(least)} pp would be found in 8 of 10 audits)"
-        missed.append(where(each.path) + aside)
-    if missed:
-        yield f"No difference is detected {series(missed)}."
+    yield from _undetected(record)
     yield from not_standing(record)
     if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
         at = " or the ".join(same)

@@ -42,6 +42,12 @@ def with_interval(estimate: Estimate | None, digits: int = 1) -> str:
     return f"{signed(estimate.value, digits)} {interval(estimate, digits)}".rstrip()
 
 
+def detectable(effect: Effect) -> str:
+    """Return the difference that 8 of 10 audits would find, in whole percentage points."""
+    least = effect.minimum_detectable_pp
+    return "–" if least is None else str(math.ceil(least))
+
+
 def wins_losses(wins: tuple[int, ...], losses: tuple[int, ...]) -> str:
     """Return `2:15/2:11/2:9`, one pair of counts a seed."""
     return "/".join(f"{w}:{lost}" for w, lost in zip(wins, losses, strict=True))
@@ -58,7 +64,7 @@ def p_value(value: float) -> str:
 def break_even(result: BreakEven) -> str:
     """Return the frequencies at which nobody is decided to be ahead, in percent.
 
-    `59 % [33, 80]` with the estimate in front where there is one; `[0, 12] and [80, 100]` for two
+    `59 [33, 80]` with the estimate in front where there is one; `[0, 12] and [80, 100]` for two
     pieces; `none` where one arm is ahead throughout; `any` where at no frequency it is decided who
     is. Ends are rounded outwards.
     """
@@ -67,7 +73,7 @@ def break_even(result: BreakEven) -> str:
     if result.kind == "whole":
         return "any"
     pieces = " and ".join(f"[{last(low)}, {first(high)}]" for low, high in result.pieces)
-    return pieces if result.p_star is None else f"{100.0 * result.p_star:.0f} % {pieces}"
+    return pieces if result.p_star is None else f"{100.0 * result.p_star:.0f} {pieces}"
 
 
 def first(frequency: float) -> int:

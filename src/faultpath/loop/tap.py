@@ -151,11 +151,13 @@ class Tap:
         if shape[:1] != declared[:1]:
             rows = str(shape[0]) if shape else "no"
             raise MalformedReading(
-                f"tap {self}: the reading has {rows} rows for {declared[0]} scenes"
+                f"tap {self}: the reading has {rows} rows for {declared[0]} scenes: its shape is "
+                f"{shape}, and has to be {declared}, one row a scene"
             )
         raise MalformedReading(
             f"tap {self}: the reading of one scene has the shape {shape[1:]}, but source "
-            f"'{self.source}' is declared with {declared[1:]}; mend one of the two"
+            f"'{self.source}' declares `shape: {declared[1:]}`: declare `shape: {shape[1:]}` "
+            "there, or deliver what is declared"
         )
 
     def check_finite(self, scenes: tuple[str, ...]) -> None:

@@ -8,12 +8,14 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from faultpath.core.text import shortened
 from faultpath.decisions import wording
 from faultpath.decisions.family import ALPHA
+from faultpath.decisions.model import SHARED
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
-from faultpath.decisions.tables.terminal import drawn
-from faultpath.decisions.wording import series
+from faultpath.decisions.tables.terminal import Parted, drawn
+from faultpath.decisions.wording import series, where
 from faultpath.report.compared import (
     Compared,
     Facts,
@@ -29,13 +31,20 @@ from faultpath.report.frame import render
 from faultpath.report.svg import tick_label
 from faultpath.report.tables import decided_for
 
+_LABEL = 28
+"""Letters of a label on the terminal."""
+
 
 def headline(runs: Sequence[Compared]) -> str:
-    """Return how many audits there are, and where they are decided in opposite directions."""
-    where = [title for path, title in titles(runs).items() if list(_opposite(runs, path))]
-    sweep = swept(runs)
-    count = f"{len(runs)} {f'sizes of {sweep[0]}' if sweep else 'audits'} side by side"
-    return f"{count}: decided in opposite directions on {series(where)}" if where else count
+    """Return what all sizes of a sweep answer on the primary path; of other runs how many there
+    are, and where they are decided in opposite directions."""
+    if sweep := swept(runs):
+        primary = next((p for p in titles(runs) if p == runs[0].asked.primary), SHARED)
+        answer = _by_size(runs, primary, sweep[1])
+        return f"{len(runs)} sizes of {sweep[0]}, {where(primary)}: {answer}"
+    opposed = [title for path, title in titles(runs).items() if list(_opposite(runs, path))]
+    count = f"{len(runs)} audits side by side"
+    return f"{count}: decided in opposite directions on {series(opposed)}" if opposed else count
 
 
 def same(runs: Sequence[Compared]) -> str:
@@ -46,8 +55,8 @@ def same(runs: Sequence[Compared]) -> str:
 
 
 def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
-    """Return the caveat, what sizes decide together, where audits are decided in opposite
-    directions, and what qualifies it.
+    """Return what sizes decide together, where audits are decided in opposite directions, what
+    qualifies it, and the caveat.
 
     Audits of other arms ask something else, and are not held against each other.
     """
@@ -65,7 +74,7 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
         "Setting verdicts side by side is no test between the audits: where one detects a "
         "difference and another does not, the two are not shown to differ."
     )
-    return caveat, *_over_sizes(runs), *told
+    return *_over_sizes(runs), *told, caveat
 
 
 def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
@@ -74,20 +83,25 @@ def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
     if sweep is None:
         return
     for path, title in titles(runs).items():
-        at: dict[str, list[str]] = {}
-        for run, size in sorted(zip(runs, sweep[1], strict=True), key=lambda each: each[1]):
-            sign = effect.sign if (effect := run.effect(path)) else 0
-            ahead = {1: f"{run.asked.repair} ahead", -1: f"{run.asked.baseline} ahead"}
-            at.setdefault(ahead.get(sign, "not decided"), []).append(tick_label(size))
-        if len(at) > 1:
-            said = "; ".join(f"{words} at {series(where)}" for words, where in at.items())
-            yield f"{title}, verdicts differ with the size: {said}."
+        yield f"{title}: {_by_size(runs, path, sweep[1])}."
     if same_correct_trials(runs):
         yield "Correct inputs are the same trials at every size, and count once."
     yield (
         f"All {len(runs)} sizes are one family here: what is called decided, and what is bold, is "
         f"wrong in at most {100 * ALPHA:g} % of such sweeps, all sizes together (Holm)."
     )
+
+
+def _by_size(runs: Sequence[Compared], path: str, sizes: Sequence[float]) -> str:
+    """Return who is ahead at which sizes: `gru ahead at 0.1 and 0.2; not decided at 0.05`."""
+    at: dict[str, list[str]] = {}
+    for run, size in sorted(zip(runs, sizes, strict=True), key=lambda each: each[1]):
+        sign = effect.sign if (effect := run.effect(path)) else 0
+        ahead = {1: f"{run.asked.repair} ahead", -1: f"{run.asked.baseline} ahead"}
+        at.setdefault(ahead.get(sign, "not decided"), []).append(tick_label(size))
+    if len(at) == 1:
+        return f"{next(iter(at))} at every size"
+    return "; ".join(f"{words} at {series(of)}" for words, of in at.items())
 
 
 def _opposite(runs: Sequence[Compared], path: str) -> Iterator[str]:
@@ -158,9 +172,15 @@ def shown(runs: Sequence[Compared]) -> RenderableType:
     for run in runs:
         verdict = Padding.indent(Text(run.headline), 3)
         parts += [Text(f"{run.number}  {run.folder}"), verdict]
-    parts += [Text(""), drawn(effects(runs)), Text("")]
+    parts += [Text(""), Parted(_short(effects(runs))), Text("")]
     parts += [drawn(facts_table(runs, found))] if found else [Text(same(runs))]
     return Group(*parts, Text(""), *map(Text, sentences(runs)))
+
+
+def _short(table: Table) -> Table:
+    """Return a table whose labels leave room for its numbers; above it stand the whole names."""
+    lines = [row.model_copy(update={"label": shortened(row.label, _LABEL)}) for row in table.lines]
+    return table.model_copy(update={"lines": tuple(lines), "words": ()})
 
 
 def dependent_failures(runs: Sequence[Compared]) -> Table | None:

@@ -1,12 +1,17 @@
 """Effects with their intervals, path by path, and over the frequency of the fault."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord, Effect
+from faultpath.decisions.summary import in_short
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, shortened, text_width, tick_label
 
-_PITCH, _TOP = 48.0, 44.0
+_PITCH, _TOP, _NUMBERS = 48.0, 44.0, 146.0
+"""Height of a panel's row, where the first begins, and width of the column of numbers."""
+_WIDE, _HIGH = 330.0, 42.0
+"""Size of the picture of one effect, which stands in a table."""
 _ROOM = 26.0
 """Pixels beside zero that a label of a side needs."""
 
@@ -14,14 +19,61 @@ Row = tuple[str, str, Effect | str]
 """A label, what stands beside it, and the effect or why there is none."""
 
 
-def forest(record: DecisionRecord) -> str:
-    """Return the success differences of an audit, percentage points, one row a path."""
-    titles, asked = {path.name: path.title for path in record.paths}, record.question
-    rows: list[Row] = [
-        (titles.get(each.path, each.path), "primary" if each.path == asked.primary else "", each)
-        for each in record.effects
-    ]
-    return panel(f"{asked.repair} minus {asked.baseline}", rows, shared_axis([rows]), 480)
+@dataclass(frozen=True)
+class EffectRow:
+    """An effect as the page lists it, its numbers beside its picture."""
+
+    title: str
+    notes: str
+    rates: str
+    """Success of the baseline and of the repair, %."""
+    difference: str
+    side: str
+    """The arm that is significantly ahead, or `open`."""
+    words: str
+    picture: str
+
+
+def effect_rows(record: DecisionRecord) -> list[EffectRow]:
+    """Return a row for every path, all pictures on one axis."""
+    effects = {effect.path: effect for effect in record.effects}
+    plot = _axis_of(record).at(6, _WIDE - 6)
+    rows: list[EffectRow] = []
+    for path in record.paths:
+        primary = "primary" if path.name == record.question.primary else ""
+        effect, words = effects.get(path.name), in_short(record, effects.get(path.name))
+        svg = Svg(_WIDE, _HIGH, f"{path.title}: repair minus baseline, pp")
+        _grid(svg, plot, 0, _HIGH)
+        if effect is None:
+            rows.append(EffectRow(path.title, primary, "", "", "open", words, svg.render()))
+            continue
+        _mark(svg, plot, effect, _HIGH / 2)
+        rates = (effect.baseline_percent, effect.repair_percent)
+        rows.append(
+            EffectRow(
+                title=path.title,
+                notes=", ".join(filter(None, (primary, wording.reservation(effect)))),
+                rates=" → ".join(map(wording.plain, rates)),
+                difference=wording.with_interval(effect.success),
+                side={1: "repair", -1: "baseline", 0: "open"}[effect.sign],
+                words=words,
+                picture=svg.render(),
+            )
+        )
+    return rows
+
+
+def effect_axis(record: DecisionRecord) -> str:
+    """Return the axis below the pictures of `effect_rows`, with whose side is which."""
+    plot = _axis_of(record).at(6, _WIDE - 6)
+    svg = Svg(_WIDE, 38, "Success of the repair minus success of the baseline, percentage points")
+    _tick_labels(svg, plot, 12)
+    _sides(svg, plot, 32)
+    return svg.render()
+
+
+def _axis_of(record: DecisionRecord) -> Axis:
+    return shared_axis([[("", "", effect) for effect in record.effects]])
 
 
 def shared_axis(panels: Sequence[Sequence[Row]]) -> Axis:
@@ -52,33 +104,45 @@ def panel(title: str, rows: Sequence[Row], axis: Axis, width: float = 350.0) -> 
     name = f"{title}: success of the repair minus success of the baseline, percentage points"
     svg = Svg(width, bottom + 40, name, described)
     svg.text(0, 14, title, "head", room=width)
-    plot = axis.at(8, width - 8)
-    zero = plot(0.0)
-    if zero - plot.start > 96:
-        svg.text(zero - 8, 33, "← baseline better", "small baseline", "end")
-    if plot.end - zero > 88:
-        svg.text(zero + 8, 33, "repair better →", "small repair", "start")
-    for tick in plot.ticks(6):
-        svg.line((plot(tick), _TOP - 4), (plot(tick), bottom), "zero" if tick == 0 else "axis")
-        svg.text(plot(tick), bottom + 16, tick_label(tick), "small soft", "middle")
-    svg.text(width / 2, bottom + 34, "repair minus baseline, pp", "small soft", "middle")
+    plot = axis.at(8, width - _NUMBERS)
+    _sides(svg, plot, 33)
+    _grid(svg, plot, _TOP - 4, bottom)
+    _tick_labels(svg, plot, bottom + 16)
+    svg.text((plot.start + plot.end) / 2, bottom + 34, "difference, pp", "small soft", "middle")
     for index, ((label, note, effect), value) in enumerate(zip(rows, values, strict=True)):
         y, sign = _TOP + _PITCH * index, 0
         if not isinstance(effect, str):
             note = ", ".join(filter(None, (note, wording.reservation(effect))))
             sign = effect.sign
-        right, beside = text_width(value, 12), text_width(note, 11)
-        room = width - right - beside - 18
+        beside = text_width(note, 11)
+        room = width - beside - 12
         left = text_width(shortened(label, room, 12), 12)
-        svg.rect(0, y + 3, left + (beside + 12 if note else 6), 18, "paper")
-        svg.rect(width - right - 6, y + 3, right + 6, 18, "paper")
-        svg.text(0, y + 16, label, room=room)
+        svg.rect(0, y, left + (beside + 12 if note else 6), 20, "paper")
+        svg.text(0, y + 14, label, room=room)
         if note:
-            svg.text(left + 6, y + 16, note, "small soft")
-        svg.text(width, y + 16, value, "bold" if sign else "", "end")
+            svg.text(left + 6, y + 14, note, "small soft")
+        svg.text(width, y + 38, value, "bold" if sign else "", "end", room=width)
         if not isinstance(effect, str):
             _mark(svg, plot, effect, y + 34)
     return svg.render()
+
+
+def _grid(svg: Svg, plot: Axis, top: float, bottom: float) -> None:
+    for tick in plot.ticks(6):
+        svg.line((plot(tick), top), (plot(tick), bottom), "zero" if tick == 0 else "axis")
+
+
+def _tick_labels(svg: Svg, plot: Axis, y: float) -> None:
+    for tick in plot.ticks(6):
+        svg.text(plot(tick), y, tick_label(tick), "small soft", "middle")
+
+
+def _sides(svg: Svg, plot: Axis, y: float) -> None:
+    zero = plot(0.0)
+    if zero - plot.start > 96:
+        svg.text(zero - 8, y, "← baseline better", "small baseline", "end")
+    if plot.end - zero > 88:
+        svg.text(zero + 8, y, "repair better →", "small repair", "start")
 
 
 def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
@@ -141,7 +205,7 @@ def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[s
             svg.line((x(100 * low), y(0)), (x(100 * high), y(0)), "star-range")
         if found.p_star is not None and found.regions:
             at = wording.break_even(found)
-            tip = f"no {noun} is decided" if at == "any" else f"not decided at {at}"
+            tip = f"no {noun} is decided" if at == "any" else f"not decided at {at} %"
             svg.circle((x(100 * found.p_star), y(0)), 5, "star", tip)
         if y(0) - y.end > _ROOM:
             svg.text(x.start + 6, y.end + 12, "repair better", "small repair halo")

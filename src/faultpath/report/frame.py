@@ -6,6 +6,7 @@ script, no handler in an attribute, no style attribute, no picture, frame, form 
 """
 
 import hashlib
+import re
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from functools import cache
@@ -13,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from faultpath.core.version import __version__
 from faultpath.decisions.tables.escapes import visible
@@ -21,6 +22,8 @@ from faultpath.trials.store.atomic import begin, check_mark, write_text
 
 PAGE = b'<meta name="generator" content="faultpath '
 """Text in the head of every page."""
+_SHORT = 24
+"""Letters of a name that still fit into a line of a telephone."""
 
 
 def render(
@@ -72,4 +75,19 @@ def _environment(package: str) -> tuple[Environment, ChoiceLoader]:
     sources = ChoiceLoader([PackageLoader(package), PackageLoader("faultpath.report")])
     blocks: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True}
     strict: dict[str, Any] = {"autoescape": True, "undefined": StrictUndefined}
-    return Environment(loader=sources, finalize=shown, **strict, **blocks), sources
+    environment = Environment(loader=sources, finalize=shown, **strict, **blocks)
+    environment.filters["whole"] = whole  # pyright: ignore[reportUnknownMemberType]
+    return environment, sources
+
+
+def whole(text: str, names: Sequence[str]) -> Markup:
+    """Return text in which no line breaks inside one of the short `names` of variants."""
+    short = sorted((name for name in names if 0 < len(name) <= _SHORT), key=len, reverse=True)
+    if not short:
+        return escape(visible(text))
+    pattern = re.compile(rf"(?<![\w-])({'|'.join(map(re.escape, short))})(?![\w-])")
+    parts = (escape(visible(part)) for part in pattern.split(text))
+    return Markup("").join(
+        Markup('<span class="whole">{}</span>').format(part) if place % 2 else part
+        for place, part in enumerate(parts)
+    )

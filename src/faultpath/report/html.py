@@ -7,10 +7,10 @@ from markupsafe import Markup
 from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.decisions.phrases import change
-from faultpath.decisions.summary import answers, in_short
+from faultpath.decisions.summary import answers
 from faultpath.decisions.tables.html import html
 from faultpath.report.adding import adding, adding_panels
-from faultpath.report.effects import forest, frequency_panels
+from faultpath.report.effects import effect_axis, effect_rows, frequency_panels
 from faultpath.report.frame import render, write_pages
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Kind, pair_grid, pair_key, read_pairs
@@ -27,8 +27,8 @@ def report_page(source: ReportInput) -> str:
     pairs = read_pairs(source.outcomes, record)
     viewer = viewer_data(source, pairs)
     titles = {path.name: path.title for path in record.paths}
-    effects = {effect.path: effect for effect in record.effects}
-    why = adding(source, pairs)
+    decided = any(effect.sign for effect in record.effects)
+    why = adding(source, pairs) if decided else None
     told = (ended(record), secondary(record), by_threshold(record))
     return render(
         "report.html.j2",
@@ -40,10 +40,7 @@ def report_page(source: ReportInput) -> str:
         sources=source.provenance.data if asked.judged else {},
         n_trials=len(source.outcomes.rows),
         paths=titles,
-        tiles=[
-            (name, title, effects.get(name), in_short(record, effects.get(name)))
-            for name, title in titles.items()
-        ],
+        names=(asked.baseline, asked.repair),
         plain=answers(record),
         finding=_finding(record),
         changes=[(each.turn, change(record, each)) for each in record.changes],
@@ -51,8 +48,9 @@ def report_page(source: ReportInput) -> str:
         adding_panels=list(map(Markup, adding_panels(why))) if why else (),
         void=[pair for pair in pairs if pair.kind is Kind.VOID],
         pairs=pairs,
-        forest=Markup(forest(record)),
-        effects=Markup(html(by_path(record, SHOWN, "Effects; bold is decided"))),
+        effects=effect_rows(record),
+        axis=effect_axis(record),
+        numbers=Markup(html(by_path(record, SHOWN, "Effects; bold is significant"))),
         fault="; ".join(each.aimed_at("*").describe() for each in asked.faults)
         or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.variants, strict=True)),

@@ -12,7 +12,7 @@ from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
 from faultpath.decisions.tables.terminal import Parted
-from faultpath.report.effects import forest
+from faultpath.report.effects import effect_axis, effect_rows
 from faultpath.report.frame import render, write_pages
 from faultpath.report.svg import Axis, Svg, tick_label
 from faultpath.report.tables import DIFFERENCE, by_path
@@ -105,8 +105,9 @@ def write_search(record: SearchRecord, provenance: RunProvenance, folder: Path) 
         picture=Markup(picture(record).render()),
         tried=Markup(html(tried)),
         notes=tried.notes,
-        forest=Markup(forest(record.confirmed)) if record.confirmed else "",
-        effects=Markup(html(effects[0])) if effects else "",
+        effects=effect_rows(record.confirmed) if record.confirmed else [],
+        axis=effect_axis(record.confirmed) if record.confirmed else "",
+        numbers=Markup(html(effects[0])) if effects else "",
         w=wording,
     )
     made = {

@@ -27,7 +27,7 @@ def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str
     """Return all that a record says of a path, by the name of the quantity."""
     found = {b.path: wording.break_even(b.result) for b in record.break_even}
     betas = {b.path: wording.break_even(b.result) for b in record.break_even_beta}
-    beside, power = effect.mcnemar_p_value, effect.minimum_detectable_pp
+    beside = effect.mcnemar_p_value
     return {
         "baseline": wording.plain(effect.baseline_percent),
         "repair": wording.plain(effect.repair_percent),
@@ -42,7 +42,7 @@ def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str
         "mcnemar": MISSING if beside is None else wording.p_value(beside),
         "holm": wording.adjusted(effect),
         "decided": decided_for(record, effect),
-        "power": MISSING if power is None else wording.plain(power),
+        "power": wording.detectable(effect),
         "scenes": str(effect.scenes),
         "void": Entry(text=str(effect.void_pairs), tone="bad" if effect.void_pairs else ""),
         "break-even": found.get(effect.path, MISSING),

@@ -132,6 +132,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
                 "pairs": [
                     {
                         "path": pair.path,
+                        "kind": pair.kind.value,
                         "void": pair.void_reason,
                         "baseline": packed(asked.baseline, pair, pair.baseline),
                         "repair": packed(asked.repair, pair, pair.repair),

@@ -2,9 +2,9 @@
 
 A scene with one seed shows who succeeded on each path: its pattern. Patterns come first that show
 the most detected reversals, then those that show the most decided effects, less what they
-contradict, then those that more scenes have. Of each of the first six patterns the scene with the
-lowest index is shown; places left over are filled in the same order. They are examples, not a
-sample.
+contradict, then those in which not everything ends alike, then those that more scenes have. Of
+each of the first six patterns the scene with the lowest index is shown; places left over are
+filled in the same order. They are examples, not a sample.
 """
 
 from collections import Counter
@@ -35,7 +35,8 @@ def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
             and shown.get(change.isolated) == shown.get(change.shared) == 1
             for change in record.changes
         )
-        return -reversals, -sum(shown.values()), -counts[pattern], index[at], at[1]
+        alike = len({kind for _, kind in pattern}) == 1 and pattern[0][1] not in arms
+        return -reversals, -sum(shown.values()), alike, -counts[pattern], index[at], at[1]
 
     ranked = sorted(patterns, key=order)
     chosen: list[At] = []

@@ -1,6 +1,6 @@
 """Functions as modules: what one is called with is what it reads."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from inspect import Parameter, signature
 from typing import Any, cast
 
@@ -8,6 +8,7 @@ import numpy as np
 from typing_extensions import override
 
 from faultpath.core.arrays import is_array, namespace
+from faultpath.core.error_source import described, place
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
@@ -93,16 +94,33 @@ class FunctionModule(Module):
         self.reads = frozenset(read - self.reads_past) | self.at_read
 
     def given(self, **values: Any) -> "FunctionModule":
-        """Return it with other values for some arguments, which it then reads no more."""
+        """Return it with other values for some arguments, which it then reads no more.
+
+        A value is handed over as it is: a number is one for every scene, where a reading has one a
+        scene, `[B]`.
+        """
         values = self._given | values
         source = self.writes[0]
         return FunctionModule(self._function, source, self._past, self._before, values, self._of)
 
     def __str__(self) -> str:
         """Return its name and the numbers that it was given."""
-        numbers = {n: v for n, v in self._given.items() if isinstance(v, int | float)}
-        words = [f"{name} {value:g}" for name, value in numbers.items()]
+        words = [f"{name} {value:g}" for name, value in self._numbers.items()]
         return f"{self.name} ({', '.join(words)})" if words else self.name
+
+    @property
+    def _numbers(self) -> dict[str, int | float]:
+        return {n: v for n, v in self._given.items() if isinstance(v, int | float)}
+
+    def _refused(self, numbers: Iterable[str], error: Exception) -> SystemMistake:
+        """Return what to tell of an error at the first step of a module that was given numbers."""
+        mistake = SystemMistake(
+            f"module '{self.name}' fails ({described(error)}) with one number for every scene as "
+            f"its {' and '.join(numbers)}, where a reading has one value a scene: let it take "
+            "both, or correct it there"
+        )
+        mistake.place = place(error)
+        return mistake
 
     @override
     def before(self, batch: Batch) -> Outputs:
@@ -125,10 +143,19 @@ class FunctionModule(Module):
                     with scene.reading(inputs, i) as objects:
                         scene.last = np.array(self._function(objects, **row))
             return {self.writes[0]: np.stack([scene.last for scene in memory])}, memory
-        values = rows | self._given
+        more = {MEMORY: memory} if self._remembers else {}
+        try:
+            pair: Any = self._function(**rows, **self._given, **more)
+        except (TypeError, ValueError, AttributeError, LookupError) as error:
+            if inputs.step == 0 and (numbers := self._numbers):
+                raise self._refused(numbers, error) from error
+            raise
         if not self._remembers:
-            return {self.writes[0]: self._function(**values)}, None
-        pair: Any = self._function(**values, memory=memory)
+            if not rows and isinstance(pair, int | float) and inputs.running is not None:
+                pair = np.full(
+                    len(inputs.running), pair, bool if isinstance(pair, bool) else np.float64
+                )
+            return {self.writes[0]: pair}, None
         if not isinstance(pair, tuple) or len(cast("tuple[Any, ...]", pair)) != 2:
             raise SystemMistake(
                 f"module '{self.name}' has a memory and returned no pair: return (value, memory)"

@@ -60,7 +60,7 @@ def sentences(record: MapRecord) -> tuple[str, ...]:
     asked, run = record.question, len(record.points)
     if record.scenes < MIN_SCENES:
         return (_distribution(record),)
-    said = [f"What is decided holds for {record.estimand}.", _distribution(record)]
+    said = [f"What is significant holds for {record.estimand}.", _distribution(record)]
     for found in record.joint.asked:
         where = f"With a correlation of {found.correlation:g}".replace("-", MINUS)
         at = {0.0: "With independent errors", 1.0: "With errors that are correlated fully"}

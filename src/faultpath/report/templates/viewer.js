@@ -139,7 +139,21 @@ if (document.getElementById("viewer-data")) {
       }
       return made;
     };
-    get("scene").replaceChildren(...(data.picked.length ? [group("Shown first", data.picked)] : []), group("All", [...data.scenes.keys()]));
+    // The list has all scenes, or those in which one arm alone succeeds on one path.
+    const every = [...data.scenes.keys()];
+    const apart = data.paths.flatMap(({ name, title }) => ["repair", "baseline"].map((arm) => {
+      const places = every.filter((place) => data.scenes[place].pairs.some((p) => p.path === name && p.kind === `${arm}-only`));
+      return { label: `${title}: only the ${arm} succeeds`, places };
+    })).filter(({ places }) => places.length);
+    const all = { label: several ? "all trials" : "all scenes", places: every };
+    get("show").replaceChildren(...[all, ...apart].map(({ label, places }, n) => make("option", `${label} (${places.length})`, { value: n })));
+    const offer = (n) => {
+      const { places } = [all, ...apart][n];
+      get("show").value = String(n);
+      get("scene").replaceChildren(...(n === 0 && data.picked.length ? [group("Shown first", data.picked)] : []), group("All", places));
+      if (!places.includes(state.scene)) state.scene = places[0];
+    };
+    offer(0);
     const columns = data.paths.map(({ name: path, title }) => {
       const column = make("div", "", { class: "column", "data-path": path });
       const plan = make("div", "", { class: "plan" }), plot = make("div", "", { class: "signal" });
@@ -217,6 +231,7 @@ if (document.getElementById("viewer-data")) {
       if (place < 0) return false;
       stop();
       state.scene = place;
+      offer(0);
       if (data.paths.some((p) => p.name === asked.path)) state.path = asked.path;
       reset(Number.isFinite(Number(asked.t ?? NaN)) ? Math.round(Number(asked.t) / dt) : undefined);
       document.getElementById("viewer").scrollIntoView({ block: "start" });
@@ -240,6 +255,7 @@ if (document.getElementById("viewer-data")) {
     };
 
     get("scene").addEventListener("change", (e) => { stop(); state.scene = Number(e.target.value); reset(); tell(); });
+    get("show").addEventListener("change", (e) => { stop(); offer(Number(e.target.value)); reset(); tell(); });
     get("signal").addEventListener("change", (e) => { chooseSignal(Number(e.target.value)); redraw(); });
     get("time").addEventListener("input", (e) => { stop(); show(Number(e.target.value)); tell(); });
     get("play").addEventListener("click", () => { if (state.playing) { stop(); tell(); } else play(); });

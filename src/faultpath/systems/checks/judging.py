@@ -9,6 +9,7 @@ import numpy as np
 
 from faultpath.core.results import Result
 from faultpath.systems.checks.blocks import MISTAKES, TRIALS, RecordedBlock
+from faultpath.systems.checks.room import without_room
 from faultpath.trials import System, Variant
 from faultpath.trials.attempt import Done
 from faultpath.trials.execution.again import difference
@@ -99,7 +100,8 @@ def judged(seen: Seen) -> tuple[Check, ...]:
         "shape and unit": _readings,
         "data files": lambda name, _: Check(name=name, says="Python opens declared ones alone"),
     }
-    checks = [Check(name=TRIALS, says=f"{count} under correct inputs")]
+    remarks = without_room({name: run.outcomes for name, run in seen.firsts()})
+    checks = [Check(name=TRIALS, says=f"{count} under correct inputs", remarks=remarks)]
     for name, judge in judges.items():
         none = Check(name=name, says="no variant ran to its end", judged=False)
         checks.append(judge(name, seen) if count else none)
@@ -110,10 +112,8 @@ def judged(seen: Seen) -> tuple[Check, ...]:
             if run.fails == check.name and why != "tap"
         }
         remedy = "; let every trial end in an outcome, see it with `faultpath audit --workers 0`"
-        errors = tuple(
-            f"Variant '{variant}': {error}{'' if check.name in MISTAKES else remedy}."
-            for error, variant in stopped.items()
-        )
+        more = "" if check.name in MISTAKES else remedy
+        errors = tuple(f"Variant '{name}': {error}{more}." for error, name in stopped.items())
         checks[at] = check.model_copy(update={"failures": (*errors, *check.failures)})
     return tuple(checks)
 
@@ -126,7 +126,7 @@ def _determinism(name: str, seen: Seen) -> Check:
         for variant, _ in seen.firsts()
         if (differs := seen.differs(variant, "again"))
     )
-    where = "in two processes" if seen.apart else "in one process"
+    where = f"in {'two processes' if seen.apart else 'one process'}"
     return Check(name=name, says=f"run twice {where}, the same bits", failures=failures)
 
 

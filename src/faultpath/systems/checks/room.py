@@ -1,0 +1,44 @@
+"""Whether the scenes of a check leave an audit room to see an effect."""
+
+from collections.abc import Mapping, Sequence
+
+from faultpath.trials.outcome import Outcome
+
+ENOUGH = 20
+"""So many scenes that all end alike: with 95 % confidence at most 14 % of scenes end otherwise."""
+
+_ENDS = {
+    True: (
+        "succeed in all",
+        "an audit could show no repair of such a baseline to be better under correct inputs: "
+        "choose a library of harder scenes, or a stricter rule of success",
+    ),
+    False: (
+        "succeed in none",
+        "an audit could show no fault and no repair to make such a baseline worse: choose a "
+        "library of easier scenes, or a milder rule of success",
+    ),
+}
+
+
+def without_room(outcomes: Mapping[str, Sequence[Outcome]]) -> tuple[str, ...]:
+    """Return a sentence for each direction in which variants leave no room.
+
+    `outcomes` are those of each variant without a fault. Fewer than `ENOUGH` scenes, and trials
+    that failed, say nothing.
+    """
+    sentences: list[str] = []
+    for success, (how, so) in _ENDS.items():
+        names = [
+            f"'{name}'"
+            for name, rows in outcomes.items()
+            if len(rows) >= ENOUGH
+            and not any(row.failed for row in rows)
+            and all((row.status == "success") is success for row in rows)
+        ]
+        if names:
+            scenes = {len(rows) for rows in outcomes.values()}
+            who = f"Variants {', '.join(names)}" if names[1:] else f"Variant {names[0]}"
+            verb = how if names[1:] else how.replace("succeed", "succeeds")
+            sentences.append(f"{who} {verb} of {max(scenes)} checked scenes without a fault; {so}.")
+    return tuple(sentences)
