@@ -1,16 +1,12 @@
-"""One camera for where you are and where you want to be: a latent world model and repairs of it.
+"""One camera for where you are and where you want to be: a latent world model and its repairs.
 
-A dot in two rooms with a door between them is to end at a goal. Like DINO-WM, PLDM, LeWM or
-V-JEPA 2-AC, the controller gets both as pictures. One encoder makes a latent state of the live
-picture and of the goal picture, and the planner takes the actions that it imagines to bring the
-first closest to the second (cross-entropy method). Three numbers say what the camera does to a
-picture, its exposure, gamma and shift, and two modules read them:
+A dot in two rooms with a door between them is to end at a goal. As with DINO-WM, LeWM, PLDM or
+V-JEPA 2-AC, the controller gets both as pictures, one encoder makes latent states of them, and the
+planner looks for actions that bring the one closest to the other (cross-entropy method). Three
+numbers say what the camera does to a picture, and two modules take pictures with it:
 
-    observation   takes and encodes the live picture
-    goal          takes and encodes the goal picture
-
-An error in one of the two, as after a change of the camera, moves one latent state away from the
-other. An error in both, as of a camera that was never calibrated, moves the two together.
+    observation   the live picture, at every step
+    goal          the picture of the goal, once, beforehand
 
     faultpath audit examples/latent_camera.py:create --baseline plain --repair augmented \
         --fault exposure:scale=0.85 --library selection --scenes 20
@@ -21,7 +17,6 @@ The weights lie beside this file. `python examples/latent_camera.py` fits others
 
 # --- pictures ---
 import argparse
-from dataclasses import dataclass, replace
 from functools import cached_property
 from hashlib import sha256
 from os.path import relpath
@@ -34,16 +29,7 @@ from torch import nn
 from torch.nn import functional
 
 from faultpath import UserError, generator
-from faultpath.learning import (
-    Learned,
-    Schedule,
-    Windows,
-    errors,
-    fit,
-    load,
-    matched,
-    uncertainty_training,
-)
+from faultpath.learning import Schedule, Windows, fit, load, matched, uncertainty_training
 from faultpath.loop import Module, Plant, Port, Progress, interface_of
 from faultpath.trials import Library, LoopSystem, Metric, SceneRef, Status, Wiring
 
@@ -96,8 +82,8 @@ class WorldModel(nn.Module):
     def __init__(self, rooms: Rooms = "marked", edges: bool = False):
         super().__init__()
         self.rooms, self.edges = rooms, edges
-        sizes, parts = (1, 16, 32, 64), []
-        for inputs, outputs in zip(sizes, sizes[1:], strict=False):
+        parts = []
+        for inputs, outputs in ((1, 16), (16, 32), (32, 64)):
             conv = nn.Conv2d(inputs, outputs, 3, stride=2, padding=1, bias=False)
             parts += [conv, nn.BatchNorm2d(outputs), nn.ReLU()]
         encoder = nn.Sequential(*parts, nn.Flatten(), nn.Linear(1024, LATENT))
@@ -151,36 +137,35 @@ class Rectified:
         one = torch.ones(len(self.shifts))
         self.empty = picture(None, one, one, self.shifts, "marked").flatten(1).log()
 
-    def __call__(self, pictures):
-        return torch.cat([self.undone(seen) for seen in pictures.split(1)])
-
-    def undone(self, seen):
+    def __call__(self, seen):
         light = seen.flatten().log()
         floor = (light <= light.quantile(0.97)).float()  # without the dot, which is brightest
-        count = floor.sum()
-        mean, empty = (floor * light).sum() / count, self.empty @ floor / count
+        mean, empty = (floor * light).sum() / floor.sum(), self.empty @ floor / floor.sum()
         apart = (self.empty - empty[:, None]) * floor
         covariance, variance = apart @ (light - mean), apart.square().sum(dim=1)
         best = (covariance**2 / variance).argmax()
-        gamma = covariance[best] / variance[best]
-        light = (seen.log() - mean) / gamma + empty[best]
+        light = empty[best] + (light - mean) * variance[best] / covariance[best]
+        dot = (light.exp() - self.empty[best].exp()).view(1, 1, SIDE, SIDE)
         by = 2 * self.shifts[best] / SIDE
-        turn = torch.tensor([[[1.0, 0.0, by[0]], [0.0, 1.0, by[1]]]])
-        where = functional.affine_grid(turn, [1, 1, SIDE, SIDE], align_corners=False)
-        return functional.grid_sample(
-            light.exp().clamp(max=1), where, padding_mode="border", align_corners=False
-        )
+        back = torch.tensor([[[1.0, 0.0, by[0]], [0.0, 1.0, by[1]]]])
+        where = functional.affine_grid(back, [1, 1, SIDE, SIDE], align_corners=False)
+        rooms = self.empty[len(self.shifts) // 2].exp().view(1, 1, SIDE, SIDE)
+        return (rooms + functional.grid_sample(dot, where, align_corners=False)).clamp(1e-4, 1)
+
+
+def as_it_is(seen):
+    return seen
 
 
 # --- modules ---
 class Eye(Module):
     """Takes a picture through the camera and encodes it; `once` where it was taken beforehand."""
 
-    def __init__(self, name, view, latent, model, rectified=None, once=False):
+    def __init__(self, name, view, latent, model, prepared, once=False):
         self.name, self.writes = name, (latent,)
         self.reads = frozenset(Port(channel, "picture") for channel in (view, *CAMERA))
         self.at_read = self.reads if once else frozenset()
-        self.view, self.model, self.rectified, self.once = view, model, rectified, once
+        self.view, self.model, self.prepared, self.once = view, model, prepared, once
 
     @torch.no_grad()
     def step(self, inputs, memory):
@@ -188,11 +173,10 @@ class Eye(Module):
             return {self.writes[0]: memory}, memory
         read = [inputs[channel, "picture"] for channel in (self.view, *CAMERA)]
         pictures = picture(*(torch.tensor(x, dtype=torch.float32) for x in read), self.model.rooms)
-        if self.rectified is not None:
-            pictures = self.rectified(pictures)
         # One by one: a convolution may round a picture by those beside it.
-        latent = torch.cat([self.model.encode(seen) for seen in pictures.split(1)])
-        return {self.writes[0]: latent.numpy().astype(float)}, latent.numpy().astype(float)
+        encoded = [self.model.encode(self.prepared(seen)) for seen in pictures.split(1)]
+        latent = torch.cat(encoded).numpy().astype(float)
+        return {self.writes[0]: latent}, latent
 
 
 class Planner(Module):
@@ -302,71 +286,44 @@ def drawn(rng, count, side=None):
     return place
 
 
-@dataclass(frozen=True)
-class Seen:
-    """Every array has a row a scene."""
-
-    start: np.ndarray
-    goal: np.ndarray
-    place: np.ndarray
-    step: int = 0
-
-
 class TwoRooms(Plant):
     name, steps = "rooms", STEPS
     senses = ("here", "there", *CAMERA)
     reads = frozenset({Port("action", "motor")})
 
     def start(self, batch):
-        start, goal = [], []
+        ends = []
         for scene in batch.scenes:
             rng = generator("latent_camera/scene", scene, 0)
             side = rng.integers(2)
-            start.append(drawn(rng, 1, side)[0])
-            goal.append(drawn(rng, 1, 1 - side)[0])
-        return Seen(np.array(start), np.array(goal), np.array(start))
+            ends.append([drawn(rng, 1, side)[0], drawn(rng, 1, 1 - side)[0]])
+        start, goal = np.array(ends).swapaxes(0, 1)
+        return start, goal, start, 0
 
     def sense(self, state):
-        one = np.ones(len(state.goal))
-        shift = np.zeros((len(one), 2))
-        return {"here": state.place, "there": state.goal} | dict(
-            zip(CAMERA, (one, one, shift), strict=True)
-        )
+        _, goal, place, _ = state
+        one, shift = np.ones(len(goal)), np.zeros((len(goal), 2))
+        return dict(zip(self.senses, (place, goal, one, one, shift), strict=True))
 
     def advance(self, state, inputs):
-        place = moved(state.place, inputs["action", "motor"])
-        return replace(state, place=place, step=state.step + 1)
+        start, goal, place, step = state
+        return start, goal, moved(place, inputs["action", "motor"]), step + 1
 
     def progress(self, state):
-        missed = np.linalg.norm(state.place - state.goal, axis=1)
-        running = np.full(len(missed), state.step < STEPS)
-        return Progress(
-            running=running,
-            succeeded=~running & (missed <= NEAR),
-            crashed=np.zeros(len(missed), bool),
-            time_s=np.full(len(missed), float(state.step)),
-            metrics={"missed_px": missed},
-        )
+        _, goal, place, step = state
+        missed = np.linalg.norm(place - goal, axis=1)
+        over, none = np.full(len(missed), step >= STEPS), np.zeros(len(missed), bool)
+        times, metrics = np.full(len(missed), float(step)), {"missed_px": missed}
+        return Progress(~over, over & (missed <= NEAR), none, times, metrics)
 
     def conditions(self, state):
-        both = np.concatenate([state.start, state.goal], axis=1)
-        hashes = [sha256(row.tobytes()).hexdigest()[:16] for row in both]
-        return hashes, ["none"] * len(hashes)
-
-    def position(self, state):
-        return np.concatenate([state.place, np.zeros((len(state.place), 1))], axis=1)
+        ends = np.concatenate(state[:2], axis=1)
+        return [sha256(row.tobytes()).hexdigest()[:16] for row in ends], ["none"] * len(ends)
 
 
 # --- system ---
-SIZES = {"exposure": 0.15, "gamma": 0.15, "shift": 1.0}  # as declared: standard deviations
 LIBRARIES = {"training": 100, "selection": 100, "held-out": 300}
-FITTED = {  # how each is fitted: whether it sees edges, and how long an error of the camera lasts
-    "plain": (False, None),
-    "augmented": (False, "step"),
-    "clip": (False, "window"),
-    "edges": (True, None),
-}
-WORDS = {
+VARIANTS = {
     "plain": "Fitted to what a calibrated camera sees.",
     "augmented": "Fitted with errors of the camera, drawn anew for every frame.",
     "clip": "Fitted with errors of the camera, drawn once a clip.",
@@ -374,6 +331,7 @@ WORDS = {
     "rectified": "As plain; the live picture is rectified, goal pictures stay as they were taken.",
     "rectified-both": "As plain; the live picture and the goal picture are rectified.",
 }
+BLANK = ("plain", "augmented")  # variants where nothing is seen but the dot
 
 
 class LatentCamera(LoopSystem):
@@ -388,8 +346,8 @@ class LatentCamera(LoopSystem):
 
     @property
     def wirings(self):
-        names = WORDS if self.rooms == "marked" else ("plain", "augmented")
-        return {name: Wiring(WORDS[name]) for name in names}
+        names = VARIANTS if self.rooms == "marked" else BLANK
+        return {name: Wiring(VARIANTS[name]) for name in names}
 
     @cached_property
     def interface(self):
@@ -400,14 +358,14 @@ class LatentCamera(LoopSystem):
 
     def modules(self, variant, seed):
         fitted = "plain" if variant.startswith("rectified") else variant
-        model = WorldModel(self.rooms, FITTED[fitted][0]).eval()
+        model = WorldModel(self.rooms, edges=fitted == "edges").eval()
         if seed is not None:
             path = self.folder / f"{self.rooms}-{fitted}-{seed}.safetensors"
             if not path.is_file():
                 raise UserError(f"no weights in {path}: python {__file__} --seed {seed} fits some.")
             load(model, path)
-        live = Rectified() if variant.startswith("rectified") else None
-        goal = live if variant == "rectified-both" else None
+        live = Rectified() if variant.startswith("rectified") else as_it_is
+        goal = live if variant == "rectified-both" else as_it_is
         return (
             Eye("observation", "live_view", "latent", model, live),
             Eye("goal", "goal_view", "goal_latent", model, goal, once=True),
@@ -434,6 +392,9 @@ def create(
 
 
 # --- fit ---
+LASTING = {"augmented": "noise", "clip": "bias"}  # errors of one frame, and of a window
+
+
 def windows(interface, count):
     """Return windows of random walks, three actions each."""
     rng = generator("latent_camera/windows", "all", 0)
@@ -454,26 +415,16 @@ def windows(interface, count):
 
 
 def fitted(name, rooms, seed, data, folder, epochs):
-    """Fit one model, unless the folder has it."""
+    """Return a fitted model; one that the folder has is not fitted again."""
     path = folder / f"{rooms}-{name}-{seed}.safetensors"
-    edges, lasts = FITTED[name]
     if path.with_suffix(".json").is_file():
-        return load(WorldModel(rooms, edges), path)
-    repair = ()
-    if lasts is not None:
-        lights = errors({"exposure": SIZES["exposure"], "gamma": SIZES["gamma"]}, lasts)
-        moves = errors({"shift": SIZES["shift"]}, lasts, relative=False)
-        repair = uncertainty_training(lights, moves)
-    return fit(
-        lambda: WorldModel(rooms, edges),
-        data,
-        latent_loss,
-        repair=repair,
-        seed=seed,
-        schedule=Schedule(epochs=epochs, batch_size=64, learning_rate=1e-3),
-        name=f"{rooms}-{name}",
-        folder=folder,
-    )
+        return load(WorldModel(rooms, name == "edges"), path)
+    schedule = Schedule(epochs=epochs, batch_size=64, learning_rate=1e-3)
+    told = {"seed": seed, "schedule": schedule, "name": f"{rooms}-{name}", "folder": folder}
+    if name in LASTING:  # of the sizes that the interface declares
+        lights = [f"{channel}:{LASTING[name]}=0.15,relative" for channel in ("exposure", "gamma")]
+        told["repair"] = uncertainty_training(*lights, f"shift:{LASTING[name]}=1")
+    return fit(lambda: WorldModel(rooms, name == "edges"), data, latent_loss, **told)
 
 
 def main():
@@ -491,10 +442,8 @@ def main():
         name: fitted(name, given.rooms, given.seed, data, given.folder, given.epochs)
         for name in given.names.split(",")
     }
-    for name, each in fits.items():
-        print(f"{name}: loss {each.record.training_loss[-1]:.3f}, {each.record.duration_s:.0f} s")
-        if name not in ("plain", "edges") and "plain" in fits:
-            print(matched(fits["plain"], each))
+    for name in LASTING.keys() & fits.keys():
+        print(f"{name}: {matched(fits['plain'], fits[name])}")
 
 
 if __name__ == "__main__":
