@@ -33,7 +33,7 @@ from faultpath.learning import Schedule, Windows, fit, load, matched, uncertaint
 from faultpath.loop import Module, Plant, Port, Progress, interface_of
 from faultpath.trials import Library, LoopSystem, Metric, SceneRef, Status, Wiring
 
-SIDE, RADIUS, REACH, STEPS, HORIZON, LATENT = 32, 2.0, 2.5, 20, 6, 32  # pixels; px a step; steps
+SIDE, RADIUS, REACH, STEPS, HORIZON, LATENT = 32, 2.0, 4.0, 12, 6, 32  # pixels; px a step; steps
 SHIPPED = Path(__file__).with_suffix("")
 WINDOW, ROUNDS, SAMPLES, ELITES = 4, 8, 64, 6  # frames of a window; of the planner
 WALL, DOOR, LEAST, MOST = (15.0, 17.0), (11.0, 21.0), 3.0, 29.0  # the wall, its door, the rooms
