@@ -33,8 +33,8 @@ from faultpath.learning import Schedule, Windows, fit, load, matched, uncertaint
 from faultpath.loop import Module, Plant, Port, Progress, interface_of
 from faultpath.trials import Library, LoopSystem, Metric, SceneRef, Status, Wiring
 
-SIDE, RADIUS, REACH, STEPS, HORIZON, LATENT = 32, 2.0, 4.0, 12, 6, 32  # pixels; px a step; steps
 SHIPPED = Path(__file__).with_suffix("")
+SIDE, RADIUS, REACH, STEPS, HORIZON, LATENT = 32, 2.0, 4.0, 12, 6, 32  # pixels; px a step; steps
 WINDOW, ROUNDS, SAMPLES, ELITES = 4, 8, 64, 6  # frames of a window; of the planner
 WALL, DOOR, LEAST, MOST = (15.0, 17.0), (11.0, 21.0), 3.0, 29.0  # the wall, its door, the rooms
 NEAR = 2.5  # px from the goal at the end that count as success
@@ -119,12 +119,8 @@ def latent_loss(output, actions):
     apart = (covariance - covariance.diagonal().diag()).square().sum() / LATENT
     ahead = functional.mse_loss(model.imagine(latents[:, 0], actions), latents[:, 1:])
     recognised = model.inverse(torch.cat([latents[:, :-1], latents[:, 1:]], dim=2))
-    return (
-        25 * ahead
-        + 25 * (1 - spread).clamp(min=0).mean()
-        + apart
-        + functional.mse_loss(recognised, actions)
-    )
+    narrow = (1 - spread).clamp(min=0).mean()
+    return 25 * ahead + 25 * narrow + apart + functional.mse_loss(recognised, actions)
 
 
 # --- rectification ---
@@ -153,10 +149,6 @@ class Rectified:
         return (rooms + functional.grid_sample(dot, where, align_corners=False)).clamp(1e-4, 1)
 
 
-def as_it_is(seen):
-    return seen
-
-
 # --- modules ---
 class Eye(Module):
     """Takes a picture through the camera and encodes it; `once` where it was taken beforehand."""
@@ -183,7 +175,8 @@ class Planner(Module):
     """Actions from -1 to 1 by the cross-entropy method, on distances of latent states."""
 
     name, writes = "planner", ("action",)
-    reads = frozenset({Port("latent", "start"), Port("goal_latent", "target")})
+    start, target = Port("latent", "start"), Port("goal_latent", "target")
+    reads = frozenset({start, target})
 
     def __init__(self, model):
         self.model = model
@@ -196,7 +189,7 @@ class Planner(Module):
 
     def step(self, inputs, memory):
         batch, plans = memory
-        start, target = (torch.tensor(inputs[port]).float() for port in sorted(self.reads)[::-1])
+        start, target = (torch.tensor(inputs[end]).float() for end in (self.start, self.target))
         noise = np.empty((len(batch.scenes), ROUNDS, SAMPLES, HORIZON, 2), np.float32)
         for i, scene in enumerate(batch.scenes):
             rng = generator("latent_camera/planner", scene, batch.seed, inputs.step)
@@ -224,16 +217,15 @@ class Planner(Module):
     def cost(self, start, target, plans):
         """Return the squared distances to the target, summed over the horizon, `[B, N]`."""
         first, _, last = self.model.dynamics
-        b = len(start)
 
-        def layer(values, weight, bias):  # scene by scene, each with a product of its own
-            return torch.baddbmm(bias, values, weight.T.expand(b, *weight.T.shape))
+        def layer(values, part):  # scene by scene, each with a product of its own
+            return torch.baddbmm(part.bias, values, part.weight.T.expand(len(start), -1, -1))
 
-        latent = start[:, None].expand(b, plans.shape[1], LATENT)
+        latent = start[:, None].expand(-1, plans.shape[1], -1)
         cost = torch.zeros(plans.shape[:2])
         for action in plans.unbind(2):
-            pushed = layer(torch.cat([latent, action], dim=2), first.weight, first.bias)
-            latent = latent + layer(pushed.relu_(), last.weight, last.bias)
+            pushed = layer(torch.cat([latent, action], dim=2), first)
+            latent = latent + layer(pushed.relu_(), last)
             cost += (latent - target[:, None]).square().sum(dim=2)
         return cost
 
@@ -335,7 +327,7 @@ BLANK = ("plain", "augmented")  # variants where nothing is seen but the dot
 
 
 class LatentCamera(LoopSystem):
-    name, control_dt_s, block_size, trained = "latent_camera", 1.0, 100, True
+    name, control_dt_s, block_size, trained = "latent_camera", 1.0, 25, True
     metrics = {  # noqa: RUF012 - never changed
         "missed_px": Metric(unit="px", better="less", words="distance from the goal")
     }
@@ -364,13 +356,11 @@ class LatentCamera(LoopSystem):
             if not path.is_file():
                 raise UserError(f"no weights in {path}: python {__file__} --seed {seed} fits some.")
             load(model, path)
-        live = Rectified() if variant.startswith("rectified") else as_it_is
-        goal = live if variant == "rectified-both" else as_it_is
-        return (
-            Eye("observation", "live_view", "latent", model, live),
-            Eye("goal", "goal_view", "goal_latent", model, goal, once=True),
-            Planner(model),
-        )
+        live = Rectified() if variant.startswith("rectified") else nn.Identity()
+        there = live if variant == "rectified-both" else nn.Identity()
+        observation = Eye("observation", "live_view", "latent", model, live)
+        goal = Eye("goal", "goal_view", "goal_latent", model, there, once=True)
+        return observation, goal, Planner(model)
 
     @property
     def data_files(self):
@@ -438,10 +428,8 @@ def main():
     given = parser.parse_args()
     torch.set_num_threads(1)
     data = windows(create(given.rooms).interface, given.windows)
-    fits = {
-        name: fitted(name, given.rooms, given.seed, data, given.folder, given.epochs)
-        for name in given.names.split(",")
-    }
+    told = given.rooms, given.seed, data, given.folder, given.epochs
+    fits = {name: fitted(name, *told) for name in given.names.split(",")}
     for name in LASTING.keys() & fits.keys():
         print(f"{name}: {matched(fits['plain'], fits[name])}")
 
