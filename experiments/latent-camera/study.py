@@ -16,6 +16,7 @@ import yaml
 from faultpath.decisions.family import Family, compared, decide_paths
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.faults import resolve
+from faultpath.statistics.estimate import RULE
 from faultpath.trials import Arm, OutcomeTable, Row, Side, Study, SystemSpec, load_system, pair
 from faultpath.trials.execution.runner import run_study
 
@@ -84,7 +85,7 @@ def decided(design: Design, repair: str, table: OutcomeTable) -> list[dict]:
         arms = compared(repair, design.baseline, paths.values(), table).arms
         success = {name: arms[path] for name, path in paths.items()}
         alpha = 0.05 / (len(design.faults) * len(design.repairs))
-        family = decide_paths(success, rule="unconditional", alpha=alpha)
+        family = decide_paths(success, rule=RULE, alpha=alpha)
         found.append({"fault": fault, "repair": repair, **_said(success, family)})
     return found
 
@@ -99,7 +100,7 @@ def cancelled(design: Design, table: OutcomeTable) -> list[dict]:
             Side(design.baseline, f"{fault}/{OBSERVATION}"),
         )
         success[fault] = both.first.success, both.second.success
-    said = _said(success, decide_paths(success, rule="unconditional"))
+    said = _said(success, decide_paths(success, rule=RULE))
     return [
         {"fault": fault, "success": said["success"][fault], "effect": said["effects"][fault]}
         for fault in success
