@@ -68,9 +68,9 @@ def success(rooms: str) -> str:
 def cancelled(rooms: str) -> str:
     """Return whether an error in both pictures costs the baseline less than in the live one."""
     lines: list[Line] = []
-    for each in _read(f"{rooms}-held-out")["baseline"]:
-        rates = map(_percent, reversed(each["success"]))
-        lines.append(line(FAULTS[each["fault"]], *rates, _effect(each["effect"])))
+    for row in _read(f"{rooms}-held-out")["baseline"]:
+        rates = map(_percent, reversed(row["success"]))
+        lines.append(line(FAULTS[row["fault"]], *rates, _effect(row["effect"])))
     columns = (f"{PATHS[ALONE]}, %", f"{PATHS[SHARED]}, %", "difference, pp")
     return _grid("error of the camera", columns, lines)
 
@@ -86,12 +86,12 @@ def effects(rooms: str) -> str:
 
 def said(rooms: str) -> str:
     """Return what the audits decide, in sentences."""
-    flown = _read(f"{rooms}-held-out")
-    audits = flown["audits"]
+    study = _read(f"{rooms}-held-out")
+    audits = study["audits"]
     turned = [audit for audit in audits if "reversal" in audit["turns"].values()]
     lead = f"A reversal was decided in {len(turned)} of" if turned else "No reversal was decided in"
-    less = [FAULTS[each["fault"]] for each in flown["baseline"] if each["effect"][3] > 0]
-    more = [FAULTS[each["fault"]] for each in flown["baseline"] if each["effect"][3] < 0]
+    less = [FAULTS[row["fault"]] for row in study["baseline"] if row["effect"][3] > 0]
+    more = [FAULTS[row["fault"]] for row in study["baseline"] if row["effect"][3] < 0]
     sentences = [f"{lead} {counted(len(audits), 'audit')}."]
     for names, word in ((less, "more"), (more, "less")):
         if names:
@@ -116,23 +116,23 @@ def _sentence(audit: Mapping[str, Any]) -> str:
 
 def flown(rooms: str) -> str:
     """Return how much was flown."""
-    found = _read(f"{rooms}-held-out")
-    seeds = ", ".join(map(str, found["seeds"]))
-    return f"{found['scenes']} scenes of `held-out`, trainings {seeds}; bold: decided."
+    study = _read(f"{rooms}-held-out")
+    seeds = ", ".join(map(str, study["seeds"]))
+    return f"{study['scenes']} scenes of `held-out`, trainings {seeds}; bold: decided."
 
 
 def moves(rooms: str) -> str:
     """Return what errors do to latent states."""
     lines = [
         line(
-            each["variant"],
-            FAULTS[each["fault"]],
-            wording.plain(each["moved"], 2),
-            _percent(each["common"]),
-            wording.plain(each["missed_observation_px"], 1),
-            wording.plain(each["missed_shared_px"], 1),
+            move["variant"],
+            FAULTS[move["fault"]],
+            wording.plain(move["moved"], 2),
+            _percent(move["common"]),
+            wording.plain(move["missed_observation_px"], 1),
+            wording.plain(move["missed_shared_px"], 1),
         )
-        for each in _read(f"{rooms}-latents")
+        for move in _read(f"{rooms}-latents")
     ]
     columns = (
         "error of the camera",
