@@ -24,6 +24,15 @@ FAULTS = {
     "contrast": "gamma 1.3 times as large",
     "moved": "shifted by 2 px",
 }
+MISSED = {
+    "missed_correct_px": "nearest place misses, no error, px",
+    "missed_observation_px": "live picture alone, px",
+    "missed_shared_px": "both pictures, px",
+}
+IMAGINED = {
+    "imagined_correct": "an imagined action misses, no error, actions",
+    "imagined_error": "with the error, actions",
+}
 SIDES = {1: "ahead", -1: "behind", 0: "not decided"}
 
 
@@ -129,8 +138,8 @@ def moves(rooms: str) -> str:
             FAULTS[move["fault"]],
             wording.plain(move["moved"], 2),
             _percent(move["common"]),
-            wording.plain(move["missed_observation_px"], 1),
-            wording.plain(move["missed_shared_px"], 1),
+            *(wording.plain(move[name], 1) for name in MISSED),
+            *(wording.plain(move[name], 2) for name in IMAGINED),
         )
         for move in _read(f"{rooms}-latents")
     ]
@@ -138,8 +147,8 @@ def moves(rooms: str) -> str:
         "error of the camera",
         "latent state moves, actions",
         "of that common to all places, %",
-        "nearest place misses, live picture alone, px",
-        "both pictures, px",
+        *MISSED.values(),
+        *IMAGINED.values(),
     )
     return _grid("variant", columns, lines)
 

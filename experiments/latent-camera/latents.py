@@ -2,9 +2,11 @@
 
     python experiments/latent-camera/latents.py DESIGN.yaml
 
-Of 400 places, seed by seed: how far an error moves a latent state, in moves by one action of 4 px;
-which part of that is one common move of all places, which a distance of two of them does not feel;
-and how far from a goal the place is whose latent state is nearest to the goal's. Flies nothing.
+Of 400 places, seed by seed: how far an error moves the latent state of the live picture, in moves
+by one action; which part of that is one common move of all places, which a distance of two of them
+does not feel; how far from 400 goals the places are whose live latent states are nearest to the
+goals', without an error, with it in the live picture and in both; and how far an imagined action
+ends from the latent state that follows, without and with the error. Flies nothing.
 """
 
 import argparse
@@ -22,33 +24,43 @@ import latent_camera as camera
 from faultpath.trials import load_system
 
 
-def measured(model, prepared, rooms: str, told: dict) -> dict[str, float]:
-    """Return what an error of the camera does to a model's latent states."""
-    rng = np.random.default_rng(0)
-    places = camera.drawn(rng, 400)
-    angle = rng.uniform(0, 2 * np.pi, 400)
-    beside = camera.moved(places, np.stack([np.cos(angle), np.sin(angle)], axis=1))
+def measured(observation, goal, rooms: str, error: dict) -> dict[str, float]:
+    """Return what an error of the camera does to the latent states of two modules."""
+    model, rng = observation.model, np.random.default_rng(0)
+    places, goals = camera.drawn(rng, 400), camera.drawn(rng, 400)
+    angles = rng.uniform(0, 2 * np.pi, 400)
+    actions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    apart = torch.cdist(torch.tensor(goals), torch.tensor(places))
 
-    def latents(where, error):
-        numbers = {"exposure": 1.0, "gamma": 1.0, "shift": (0.0, 0.0)} | error
+    def latents(eye, where, wrong=None):
+        numbers = {"exposure": 1.0, "gamma": 1.0, "shift": (0.0, 0.0)} | (wrong or {})
         numbers = (torch.tensor(each).expand(400, *np.shape(each)) for each in numbers.values())
         seen = camera.picture(torch.tensor(where).float(), *numbers, rooms)
         with torch.no_grad():
-            return torch.cat([model.encode(prepared(one)) for one in seen.split(1)])
+            return torch.cat([model.encode(eye.prepared(one)) for one in seen.split(1)])
 
-    right, wrong = latents(places, {}), latents(places, told)
-    moved = wrong - right
-    action = (latents(beside, {}) - right).norm(dim=1).mean()
-    apart = torch.cdist(torch.tensor(places), torch.tensor(places))
+    def missed(wrong_live, wrong_goal) -> float:
+        live, target = latents(observation, places, wrong_live), latents(goal, goals, wrong_goal)
+        return apart[torch.arange(400), torch.cdist(target, live).argmin(dim=1)].mean().item()
 
-    def missed(live, goal) -> float:
-        return apart[torch.cdist(goal, live).argmin(dim=1), torch.arange(400)].mean().item()
+    def imagined(wrong) -> float:
+        live = latents(observation, places, wrong)
+        following = latents(observation, camera.moved(places, actions), wrong)
+        with torch.no_grad():
+            ahead = model.imagine(live, torch.tensor(actions).float()[:, None])[:, 0]
+        return ((ahead - following).norm(dim=1).mean() / action).item()
 
+    right = latents(observation, places)
+    action = (latents(observation, camera.moved(places, actions)) - right).norm(dim=1).mean()
+    moved = latents(observation, places, error) - right
     return {
         "moved": (moved.norm(dim=1).mean() / action).item(),
         "common": (moved.mean(dim=0).square().sum() / moved.square().sum(dim=1).mean()).item(),
-        "missed_observation_px": missed(wrong, right),
-        "missed_shared_px": missed(wrong, wrong),
+        "missed_correct_px": missed(None, None),
+        "missed_observation_px": missed(error, None),
+        "missed_shared_px": missed(error, error),
+        "imagined_correct": imagined(None),
+        "imagined_error": imagined(error),
     }
 
 
@@ -70,11 +82,11 @@ def main() -> None:
             fault = system.fault(text)
             change = getattr(fault.intervention, "factor", None) or fault.intervention.by
             told = {fault.channel: change}
-            each = []
+            rows = []
             for seed in design.seeds:
-                eye = system.modules(variant, seed)[0]
-                each.append(measured(eye.model, eye.prepared, system.rooms, told))
-            mean = {key: float(np.mean([one[key] for one in each])) for key in each[0]}
+                observation, goal, _ = system.modules(variant, seed)
+                rows.append(measured(observation, goal, system.rooms, told))
+            mean = {key: float(np.mean([row[key] for row in rows])) for key in rows[0]}
             found.append({"variant": variant, "fault": name, **mean})
             print(found[-1], flush=True)
     asked.out.mkdir(parents=True, exist_ok=True)
