@@ -23,6 +23,7 @@ from typing import Any
 import blocks
 import carry_blocks
 import found_blocks
+import latent_blocks
 import map_blocks
 import model_blocks
 import paper_blocks
@@ -43,6 +44,7 @@ KINDS: Mapping[str, Any] = {
     **blocks.KINDS,
     "carry": carry_blocks.KIND,
     "found": found_blocks.table,
+    "latent": latent_blocks.KIND,
     "map": map_blocks.KIND,
     "central": {"answer": paper_blocks.central_answer, "table": paper_blocks.central_table},
     "models": model_blocks.table,

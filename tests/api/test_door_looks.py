@@ -18,7 +18,7 @@ ASKED = {
     "workers": 0,
     "progress": False,
 }
-FIVE_PERCENT = "at most 5 % would decide"
+FIVE_PERCENT = "at most 5 % would find any difference"
 
 
 @pytest.fixture(autouse=True)

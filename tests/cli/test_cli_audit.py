@@ -148,7 +148,6 @@ def test_a_damaged_shard_is_named_and_run_again(damage, run, monkeypatch):
         ({"fault": "gain:scale=0.7"}, "set of variants, faults or seeds"),
         ({"seeds": "1"}, "set of variants, faults or seeds"),
         ({"baseline": "blind", "repair": "calibrated"}, "study"),
-        ({"library": "selection"}, "library"),
     ],
 )
 def test_a_folder_of_another_study_is_left_alone(options, says, run, monkeypatch):
@@ -171,6 +170,7 @@ def test_a_folder_of_another_study_is_left_alone(options, says, run, monkeypatch
             "other code than this (changed since: ",
         ),
         ({"study": 3}, "cannot be read as a manifest"),
+        ({"library_hash": "0"}, "another state of the library"),
     ],
 )
 def test_a_folder_of_another_version_is_left_alone(change, says, run, monkeypatch):

@@ -20,6 +20,7 @@ from faultpath.learning import (
     uncertainty_training,
     withholding,
 )
+from faultpath.learning.model_card import weights_sha256
 from faultpath.learning.windows import delivered
 
 BY_STEP = uncertainty_training(errors({"gain": 0.2}, "step", 0.0))
@@ -136,6 +137,12 @@ def test_files_are_safe_whole_and_give_the_module_back(tmp_path) -> None:
     assert again.record == fitted.record
     assert evaluate(again, windows()) == evaluate(fitted, windows())
     assert not again.module.training
+
+
+def test_weights_of_any_memory_order_are_kept(tmp_path) -> None:
+    conv = torch.nn.Conv2d(2, 3, 3).to(memory_format=torch.channels_last)
+    assert not conv.weight.is_contiguous()
+    assert weights_sha256(conv) == weights_sha256(conv.to(memory_format=torch.contiguous_format))
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from playwright.sync_api import Browser, expect
 
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.html import report_page
@@ -59,6 +60,27 @@ def test_the_first_scene_shows_both_errors_and_their_sum_on_every_path(heard) ->
     null = replace(heard, record=heard.record.model_copy(update={"effects": quiet}))
     assert 'id="why"' in page
     assert 'id="why"' not in report_page(null), "nothing is to be explained"
+
+
+@pytest.mark.browser
+def test_the_lines_are_drawn_anew_in_the_time_that_they_took(
+    heard, browser: Browser, tmp_path
+) -> None:
+    (tmp_path / "why.html").write_text(report_page(heard))
+    with browser.new_context(offline=True) as context:
+        page = context.new_page()
+        page.goto((tmp_path / "why.html").as_uri())
+        strip, play = page.locator(".adding .until").first, page.locator("#why-play")
+        whole = float(strip.get_attribute("width") or 0)
+        assert float(play.get_attribute("data-seconds") or 0) > 0
+        play.click()
+        page.wait_for_function(
+            "(whole) => document.querySelector('.adding .until').getAttribute('width') < whole",
+            arg=whole,
+        )
+        play.click()
+        assert float(strip.get_attribute("width") or 0) == whole
+        expect(play).to_have_text("Play")
 
 
 def test_a_few_large_values_do_not_squeeze_the_others(heard) -> None:

@@ -67,11 +67,12 @@ def test_sizes_of_one_fault_are_drawn_over_the_size_and_decided_as_one_family(
         f"3 sizes of calibration, under the shared fault: {baseline} ahead at every size"
     )
     said = " ".join(sentences(three))
+    assert "nothing significant at any size" in said
     assert "All 3 sizes are one family" in said
     assert "Correct inputs are the same trials at every size" in said
     mixed = together([*apart[:2], signed(apart[2], "shared", -1, p_value=0.04)])
     assert mixed[2].effect("shared").sign == 0, "its own audit decides it, all sizes do not"
-    answer = f"{baseline} ahead at −0.1 and 0.1; not decided at 0.2"
+    answer = f"{baseline} ahead at −0.1 and 0.1; nothing significant at 0.2"
     assert headline(mixed).endswith(answer)
     assert any(each.endswith(f": {answer}.") for each in sentences(mixed))
     shared = titles(three)["shared"]

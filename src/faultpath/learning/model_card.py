@@ -189,8 +189,13 @@ def fill(net: nn.Module, path: Path, kind: type[CardKind]) -> CardKind:
 
 
 def tensors(net: nn.Module) -> dict[str, Tensor]:
-    """Return parameters and buffers by name, each with memory of its own."""
-    return {name: value.detach().cpu().clone() for name, value in net.state_dict().items()}
+    """Return parameters and buffers by name, each with memory of its own, in row-major order."""
+    from torch import contiguous_format as rows  # safetensors takes no other order
+
+    return {
+        name: value.detach().cpu().clone(memory_format=rows)
+        for name, value in net.state_dict().items()
+    }
 
 
 def encoded(net: nn.Module) -> bytes:

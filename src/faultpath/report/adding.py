@@ -62,6 +62,11 @@ class Adding:
     """Whether some values lie outside that range."""
     dt_s: float
 
+    @property
+    def longest_s(self) -> float:
+        """Time that the longest trial took."""
+        return max(arm.trial.time_s for _, arms in self.paths for arm in arms)
+
 
 def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
     """Return the first scene of the viewer of which both errors are known on a path of the fault.
@@ -128,13 +133,13 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
 def adding_panels(shown: Adding) -> list[str]:
     """Return a picture of each path, the baseline above the repair, all on the same axes."""
     upward = covering(shown.span, least=1e-9)
-    longest = max(arm.trial.time_s for _, arms in shown.paths for arm in arms)
-    x = Axis(0.0, longest, _LEFT, _WIDTH - _RIGHT)
+    x = Axis(0.0, shown.longest_s, _LEFT, _WIDTH - _RIGHT)
     panels: list[str] = []
     for title, arms in shown.paths:
         told = "; ".join(f"{arm.role} {arm.name}: {arm.ended}" for arm in arms)
         svg = Svg(_WIDTH, _TOP + _PITCH * len(arms) - 16, f"{title}: {shown.words} over time", told)
         svg.text(0, 14, title, "head", room=_WIDTH)
+        until = svg.clip("until", x.start, x.end - x.start, "until")
         for place, arm in enumerate(arms):
             top = _TOP + _PITCH * place
             y = upward.at(top + _PLOT, top)
@@ -143,14 +148,16 @@ def adding_panels(shown: Adding) -> list[str]:
             svg.text(_WIDTH, top - 10, arm.ended, "small soft", "end")
             draw_axes(svg, x, y, 4, x.ticks(4) if arm is arms[-1] else ())
             svg.text(_LEFT - 6, y.start + 14, shown.unit, "small soft", "end")
-            _terms(svg, arm, x, y, shown.dt_s)
+            with svg.group(clip_path=until):
+                _terms(svg, arm, x, y, shown.dt_s)
+            _end(svg, arm, x(arm.trial.time_s), y)
         svg.text(_WIDTH, svg.height - 7, "s", "small soft", "end")
         panels.append(svg.render())
     return panels
 
 
 def _terms(svg: Svg, arm: Lines, x: Axis, y: Axis, dt_s: float) -> None:
-    """Draw both errors and their sum, what the sum leaves, and how the trial ended."""
+    """Draw both errors and their sum, and what the sum leaves."""
     steps = dt_s * np.arange(arm.values.shape[1], dtype=np.float64)
     lines: list[list[Point]] = []
     for values in np.clip(arm.values, y.low, y.high):
@@ -160,7 +167,10 @@ def _terms(svg: Svg, arm: Lines, x: Axis, y: Axis, dt_s: float) -> None:
         svg.polygon([(both[0][0], y(0)), *both, (both[-1][0], y(0))], f"left-over {arm.role}")
     for points, cls in zip(lines, ("one", "two", f"both {arm.role}"), strict=True):
         svg.polyline(points, f"term {cls}")
-    end = x(arm.trial.time_s)
+
+
+def _end(svg: Svg, arm: Lines, end: float, y: Axis) -> None:
+    """Draw when and how the trial ended."""
     svg.line((end, y.start), (end, y.end), "ended")
     with svg.group(transform=f"translate({end:.1f} {y.end + 8:.1f})"):
         svg.path(_SIGN.get(arm.trial.status, _OTHER), f"end-sign {arm.role}")

@@ -93,14 +93,15 @@ def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
 
 
 def _by_size(runs: Sequence[Compared], path: str, sizes: Sequence[float]) -> str:
-    """Return who is ahead at which sizes: `gru ahead at 0.1 and 0.2; not decided at 0.05`."""
+    """Return who is ahead at which sizes: `gru ahead at 0.1; nothing significant at 0.05`."""
     at: dict[str, list[str]] = {}
     for run, size in sorted(zip(runs, sizes, strict=True), key=lambda each: each[1]):
         sign = effect.sign if (effect := run.effect(path)) else 0
         ahead = {1: f"{run.asked.repair} ahead", -1: f"{run.asked.baseline} ahead"}
-        at.setdefault(ahead.get(sign, "not decided"), []).append(tick_label(size))
+        at.setdefault(ahead.get(sign, "nothing significant"), []).append(tick_label(size))
     if len(at) == 1:
-        return f"{next(iter(at))} at every size"
+        (words,) = at
+        return f"{words} at {'every' if words.endswith('ahead') else 'any'} size"
     return "; ".join(f"{words} at {series(of)}" for words, of in at.items())
 
 

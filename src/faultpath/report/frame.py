@@ -81,7 +81,9 @@ def _environment(package: str) -> tuple[Environment, ChoiceLoader]:
 
 
 def whole(text: str, names: Sequence[str]) -> Markup:
-    """Return text in which no line breaks inside one of the short `names` of variants."""
+    """Return text in which no line breaks inside one of the short `names` of variants, nor between
+    a number and its unit."""
+    text = re.sub(r"(?<=\d) (?=%|pp\b)", "\N{NO-BREAK SPACE}", text)
     short = sorted((name for name in names if 0 < len(name) <= _SHORT), key=len, reverse=True)
     if not short:
         return escape(visible(text))

@@ -140,6 +140,15 @@ class Svg:
         )
         return f"url(#{key})"
 
+    def clip(self, name: str, x: float, w: float, cls: str) -> str:
+        """Define an upright strip of the picture and return the `clip-path` that shows only it."""
+        key = f"{self.uid}-{name}"
+        self._parts.append(
+            f'<defs><clipPath id="{key}"><rect class="{escape(cls)}" x="{number(x)}" y="0" '
+            f'width="{number(w)}" height="{number(self.height)}"/></clipPath></defs>'
+        )
+        return f"url(#{key})"
+
     def render(self, standalone: bool = False) -> str:
         """Return the markup; `standalone` carries its own style and opens as a file."""
         style, margin = "", 0

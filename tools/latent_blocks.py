@@ -1,0 +1,164 @@
+"""Blocks of the page about a latent world model with one camera."""
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from blocks import ROOT, Wrong
+
+from faultpath.decisions import wording
+from faultpath.decisions.phrases import counted
+from faultpath.decisions.tables import Entry, Line, Table, line
+from faultpath.decisions.tables.markdown import grid
+
+PLACE = ROOT / "experiments" / "latent-camera"
+SHARED, ALONE = "shared", "observation"
+PATHS = {
+    "correct": "no fault",
+    ALONE: "live picture alone",
+    "goal": "picture of the goal alone",
+    SHARED: "both pictures",
+}
+FAULTS = {
+    "darker": "15 % darker",
+    "contrast": "gamma 1.3 times as large",
+    "moved": "shifted by 2 px",
+}
+MISSED = {
+    "missed_correct_px": "nearest place misses, no error, px",
+    "missed_observation_px": "live picture alone, px",
+    "missed_shared_px": "both pictures, px",
+}
+IMAGINED = {
+    "imagined_correct": "an imagined action misses, no error, actions",
+    "imagined_error": "with the error, actions",
+}
+SIDES = {1: "ahead", -1: "behind", 0: "not decided"}
+
+
+def _read(name: str) -> Any:
+    file = PLACE / f"{name}.json"
+    if not file.is_file():
+        raise Wrong(f"{file.relative_to(ROOT)} is missing: fly it as {PLACE.name}/README.md says")
+    return json.loads(file.read_text("utf-8"))
+
+
+def _effect(effect: Sequence[float]) -> Entry:
+    """Return a difference in percentage points with its interval, and whether it is decided."""
+    value, low, high, sign = effect
+    ends = ", ".join(wording.signed(end, 1) for end in (low, high))
+    return Entry(text=f"{wording.signed(value, 1)} [{ends}]", detected=bool(sign))
+
+
+def _grid(corner: str, columns: Sequence[str], lines: Sequence[Line]) -> str:
+    return grid(Table(corner=corner, columns=tuple(columns), words=tuple(columns), lines=(*lines,)))
+
+
+def _percent(share: float) -> str:
+    return wording.plain(100 * share, 1)
+
+
+def success(rooms: str) -> str:
+    """Return success of every variant in percent, fault by fault and path by path."""
+    audits = _read(f"{rooms}-held-out")["audits"]
+    repairs = list(dict.fromkeys(audit["repair"] for audit in audits))
+    rates: dict[tuple[str, str], dict[str, float]] = {}
+    for audit in audits:
+        for path, (repair, baseline) in audit["success"].items():
+            row = rates.setdefault((audit["fault"] if path != "correct" else "", path), {})
+            row |= {"plain": baseline, audit["repair"]: repair}
+    lines = [
+        line(FAULTS.get(fault, ""), PATHS[path], *(_percent(row[n]) for n in ("plain", *repairs)))
+        for (fault, path), row in rates.items()
+    ]
+    return _grid("error of the camera", ("in", "plain", *repairs), lines)
+
+
+def cancelled(rooms: str) -> str:
+    """Return whether an error in both pictures costs the baseline less than in the live one."""
+    lines: list[Line] = []
+    for row in _read(f"{rooms}-held-out")["baseline"]:
+        rates = map(_percent, reversed(row["success"]))
+        lines.append(line(FAULTS[row["fault"]], *rates, _effect(row["effect"])))
+    columns = (f"{PATHS[ALONE]}, %", f"{PATHS[SHARED]}, %", "difference, pp")
+    return _grid("error of the camera", columns, lines)
+
+
+def effects(rooms: str) -> str:
+    """Return repair minus baseline, audit by audit and path by path."""
+    lines: list[Line] = []
+    for audit in _read(f"{rooms}-held-out")["audits"]:
+        differences = (_effect(audit["effects"][path]) for path in PATHS)
+        lines.append(line(audit["repair"], FAULTS[audit["fault"]], *differences))
+    return _grid("repair", ("error of the camera", *PATHS.values()), lines)
+
+
+def said(rooms: str) -> str:
+    """Return what the audits decide, in sentences."""
+    study = _read(f"{rooms}-held-out")
+    audits = study["audits"]
+    turned = [audit for audit in audits if "reversal" in audit["turns"].values()]
+    lead = f"A reversal was decided in {len(turned)} of" if turned else "No reversal was decided in"
+    less = [FAULTS[row["fault"]] for row in study["baseline"] if row["effect"][3] > 0]
+    more = [FAULTS[row["fault"]] for row in study["baseline"] if row["effect"][3] < 0]
+    sentences = [f"{lead} {counted(len(audits), 'audit')}."]
+    for names, word in ((less, "more"), (more, "less")):
+        if names:
+            sentences.append(
+                f"`plain` is decided to succeed {word} often with the error in both pictures than "
+                f"in the live one alone: {wording.series(names)}."
+            )
+    if not less and not more:
+        sentences.append("Of `plain`, both pictures against the live one alone is not decided.")
+    sentences += [_sentence(audit) for audit in audits]
+    return "\n".join(f"- {sentence}" for sentence in sentences)
+
+
+def _sentence(audit: Mapping[str, Any]) -> str:
+    sides = {path: SIDES[effect[3]] for path, effect in audit["effects"].items()}
+    text = f"`{audit['repair']}`, {FAULTS[audit['fault']]}: {sides[SHARED]} with the error in both"
+    text += f" pictures, {sides[ALONE]} with it in the live one alone."
+    turn = audit["turns"].get(ALONE, "none")
+    words = {"reversal": "The ranking reverses.", "interaction": "The two are decided to differ."}
+    return f"{text} {words[turn]}" if turn in words else text
+
+
+def flown(rooms: str) -> str:
+    """Return how much was flown."""
+    study = _read(f"{rooms}-held-out")
+    seeds = ", ".join(map(str, study["seeds"]))
+    return f"{study['scenes']} scenes of `held-out`, trainings {seeds}; bold: decided."
+
+
+def moves(rooms: str) -> str:
+    """Return what errors do to latent states."""
+    lines = [
+        line(
+            move["variant"],
+            FAULTS[move["fault"]],
+            wording.plain(move["moved"], 2),
+            _percent(move["common"]),
+            *(wording.plain(move[name], 1) for name in MISSED),
+            *(wording.plain(move[name], 2) for name in IMAGINED),
+        )
+        for move in _read(f"{rooms}-latents")
+    ]
+    columns = (
+        "error of the camera",
+        "latent state moves, actions",
+        "of that common to all places, %",
+        *MISSED.values(),
+        *IMAGINED.values(),
+    )
+    return _grid("variant", columns, lines)
+
+
+KIND = {
+    "success": success,
+    "cancelled": cancelled,
+    "effects": effects,
+    "said": said,
+    "flown": flown,
+    "moves": moves,
+}
+"""Functions that fill `latent` blocks; the last word names the rooms."""
