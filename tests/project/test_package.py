@@ -86,7 +86,9 @@ def test_what_is_to_be_installed_exists(declared: dict[str, Any], root: Path) ->
     assert {"torch", "gymnasium"} <= set(_EXTRAS) <= extras
 
 
-def test_the_readme_names_the_paper_that_is_to_be_cited(declared: dict[str, Any], root: Path) -> None:
+def test_the_readme_names_the_paper_that_is_to_be_cited(
+    declared: dict[str, Any], root: Path
+) -> None:
     cited = yaml.safe_load((root / "CITATION.cff").read_text("utf-8"))
     project = declared["project"]
     assert (cited["title"], cited["version"]) == (project["name"], project["version"])
