@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from blocks import Wrong, difference, load
+from latent_blocks import FAULTS
+from latent_blocks import audits_of as audits_of_rooms
 from state_blocks import PLACES, audits_of
 
 from faultpath.decisions import model
@@ -63,7 +65,7 @@ def table() -> str:
         [
             "| system, repair | no fault | fault at one module | fault shared | isolated test |",
             "| :-- | --: | --: | --: | :-- |",
-            *map(_row, (*_references(), *_sensors())),
+            *map(_row, (*_references(), *_cameras(), *_sensors())),
         ]
     )
 
@@ -81,6 +83,13 @@ def _effect(effect: model.Effect) -> Effect:
     if ends is None:
         raise Wrong(f"{effect.path} has no interval: the table of all audits cannot show it")
     return Effect(value, *ends, 0 if effect.extreme else effect.sign)
+
+
+def _cameras() -> Iterator[Audit]:
+    for audit in audits_of_rooms("marked"):
+        title = f"[One camera]({{docs}}/latent-camera.md), {FAULTS[audit['fault']]}"
+        effects = {name: Effect(*effect) for name, effect in audit["effects"].items()}
+        yield Audit(title, f"`{audit['repair']}`", effects, audit["turns"])
 
 
 def _sensors() -> Iterator[Audit]:

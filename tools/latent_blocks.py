@@ -33,7 +33,7 @@ IMAGINED = {
     "imagined_correct": "an imagined action misses, no error, actions",
     "imagined_error": "with the error, actions",
 }
-SIDES = {1: "ahead", -1: "behind", 0: "not decided"}
+SIDES = {1: "ahead", -1: "behind", 0: "no difference detected"}
 
 
 def _read(name: str) -> Any:
@@ -44,7 +44,7 @@ def _read(name: str) -> Any:
 
 
 def _effect(effect: Sequence[float]) -> Entry:
-    """Return a difference in percentage points with its interval, and whether it is decided."""
+    """Return a difference in percentage points with its interval, and whether it is significant."""
     value, low, high, sign = effect
     ends = ", ".join(wording.signed(end, 1) for end in (low, high))
     return Entry(text=f"{wording.signed(value, 1)} [{ends}]", detected=bool(sign))
@@ -58,9 +58,14 @@ def _percent(share: float) -> str:
     return wording.plain(100 * share, 1)
 
 
+def audits_of(rooms: str) -> list[dict[str, Any]]:
+    """Return every audit on the scenes held out: fault, repair, effects and turns."""
+    return _read(f"{rooms}-held-out")["audits"]
+
+
 def success(rooms: str) -> str:
     """Return success of every variant in percent, fault by fault and path by path."""
-    audits = _read(f"{rooms}-held-out")["audits"]
+    audits = audits_of(rooms)
     repairs = list(dict.fromkeys(audit["repair"] for audit in audits))
     rates: dict[tuple[str, str], dict[str, float]] = {}
     for audit in audits:
@@ -87,29 +92,32 @@ def cancelled(rooms: str) -> str:
 def effects(rooms: str) -> str:
     """Return repair minus baseline, audit by audit and path by path."""
     lines: list[Line] = []
-    for audit in _read(f"{rooms}-held-out")["audits"]:
+    for audit in audits_of(rooms):
         differences = (_effect(audit["effects"][path]) for path in PATHS)
         lines.append(line(audit["repair"], FAULTS[audit["fault"]], *differences))
     return _grid("repair", ("error of the camera", *PATHS.values()), lines)
 
 
 def said(rooms: str) -> str:
-    """Return what the audits decide, in sentences."""
+    """Return what the audits show, in sentences."""
     study = _read(f"{rooms}-held-out")
     audits = study["audits"]
     turned = [audit for audit in audits if "reversal" in audit["turns"].values()]
-    lead = f"A reversal was decided in {len(turned)} of" if turned else "No reversal was decided in"
+    lead = f"A reversal is significant in {len(turned)} of" if turned else "No reversal in"
     less = [FAULTS[row["fault"]] for row in study["baseline"] if row["effect"][3] > 0]
     more = [FAULTS[row["fault"]] for row in study["baseline"] if row["effect"][3] < 0]
     sentences = [f"{lead} {counted(len(audits), 'audit')}."]
     for names, word in ((less, "more"), (more, "less")):
         if names:
             sentences.append(
-                f"`plain` is decided to succeed {word} often with the error in both pictures than "
+                f"`plain` succeeds significantly {word} often with the error in both pictures than "
                 f"in the live one alone: {wording.series(names)}."
             )
     if not less and not more:
-        sentences.append("Of `plain`, both pictures against the live one alone is not decided.")
+        sentences.append(
+            "Of `plain`, no difference is detected between the error in both pictures and in the "
+            "live one alone."
+        )
     sentences += [_sentence(audit) for audit in audits]
     return "\n".join(f"- {sentence}" for sentence in sentences)
 
@@ -119,7 +127,10 @@ def _sentence(audit: Mapping[str, Any]) -> str:
     text = f"`{audit['repair']}`, {FAULTS[audit['fault']]}: {sides[SHARED]} with the error in both"
     text += f" pictures, {sides[ALONE]} with it in the live one alone."
     turn = audit["turns"].get(ALONE, "none")
-    words = {"reversal": "The ranking reverses.", "interaction": "The two are decided to differ."}
+    words = {
+        "reversal": "The ranking reverses.",
+        "interaction": "The two effects differ significantly.",
+    }
     return f"{text} {words[turn]}" if turn in words else text
 
 
@@ -127,7 +138,7 @@ def flown(rooms: str) -> str:
     """Return how much was flown."""
     study = _read(f"{rooms}-held-out")
     seeds = ", ".join(map(str, study["seeds"]))
-    return f"{study['scenes']} scenes of `held-out`, trainings {seeds}; bold: decided."
+    return f"{study['scenes']} scenes of `held-out`, trainings {seeds}; bold: significant."
 
 
 def moves(rooms: str) -> str:

@@ -1,8 +1,10 @@
-"""The example of one camera: its pictures, its planner, and a fit and an audit in quick form."""
+"""The example of one camera: its pictures ("latent_camera_pictures.py"), its planner, and a fit and
+an audit in quick form."""
 
 import runpy
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -17,10 +19,12 @@ EXAMPLE = ROOT / "examples" / "latent_camera.py"
 FIT_AND_AUDIT = """
 import runpy
 import sys
+from pathlib import Path
 
 import faultpath
 
 example = sys.argv[1]
+sys.path.insert(0, str(Path(example).parent))
 sys.argv = [example, "--windows", "150", "--epochs", "1", "--names", "plain,augmented"]
 runpy.run_path(example, run_name="__main__")
 run = faultpath.audit(
@@ -41,8 +45,10 @@ print([str(finding) for finding in run.record.findings])
 
 
 @pytest.fixture(scope="module")
-def camera() -> SimpleNamespace:
-    return SimpleNamespace(**runpy.run_path(str(EXAMPLE)))
+def camera() -> Iterator[SimpleNamespace]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(EXAMPLE.parent)  # as Python does for a file that it runs
+        yield SimpleNamespace(**runpy.run_path(str(EXAMPLE)))
 
 
 def taken(camera: Any, count: int, exposure: float = 1.0, gamma: float = 1.0, shift: float = 0.0):

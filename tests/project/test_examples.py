@@ -13,6 +13,7 @@ ELSEWHERE = {
     "basilisk_attitude.py": "tests/foreign/test_basilisk.py",
     "do_mpc_masses.py": "tests/foreign/test_do_mpc.py",
     "latent_camera.py": "tests/learning/test_latent_camera.py",
+    "latent_camera_pictures.py": "tests/learning/test_latent_camera.py",
     "learned_pendulum.py": "tests/learning/test_learned_pendulum.py",
     "motulator_drive.py": "tests/foreign/test_motulator.py",
     "rotorpy_wind.py": "tests/foreign/test_rotorpy.py",

@@ -26,7 +26,8 @@ def test_only_what_is_decided_makes_a_word(alone, shared, turn, word) -> None:
 
 def test_the_table_has_every_audit_and_the_module_that_says_least() -> None:
     head, _, *rows = found_blocks.table().splitlines()
-    assert len(rows) == len(found_blocks.PAGES) + len(found_blocks.audits_of("sensors"))
+    studies = (*found_blocks.audits_of("sensors"), *found_blocks.audits_of_rooms("marked"))
+    assert len(rows) == len(found_blocks.PAGES) + len(studies)
     assert all(row.count("|") == head.count("|") for row in rows)
     docking = next(row for row in rows if "`ranges`" in row)
     assert "| speedometer **" in docking

@@ -10,7 +10,7 @@ import pytest
 from faultpath.cli.main import main
 from faultpath.core.errors import UserError
 from faultpath.systems.checks.check import check_system
-from faultpath.systems.checks.room import ENOUGH, without_room
+from faultpath.systems.checks.room import ENOUGH, diverged, successes, without_room
 from faultpath.trials import Outcome, Status, SystemSpec, load_system
 from faultpath.trials.question import CheckQuestion
 
@@ -86,6 +86,14 @@ def test_a_baseline_that_always_ends_alike_leaves_an_audit_no_room():
     assert without_room({"bare": ends(ENOUGH - 1)}) == ()  # too few to say so
     for odd in (Status.CRASH, Status.FAILED):
         assert without_room({"bare": ends(ENOUGH, odd)}) == ()
+
+
+def test_a_check_counts_successes_and_sees_what_diverged():
+    rows = [Outcome("w0", how, 1.0, "a", "b", "c") for how in (Status.SUCCESS, Status.CRASH)]
+    counted = successes({"bare": rows, "guarded": rows[:1]})
+    assert counted == "3 under correct inputs; successes: bare 1 of 2, guarded 1 of 1"
+    assert diverged({"height": (-2.0, 3.0)}) == ()
+    assert "Source 'height' gives readings of up to 2e+259" in diverged({"height": (-2e259, 1)})[0]
 
 
 def test_a_check_says_that_a_system_is_at_its_ceiling():

@@ -9,6 +9,11 @@ from faultpath.cli.options import FOUND, display
 from faultpath.cli.options import path as as_path
 
 _TOY = "toy.py"
+_STORY = (
+    "A cart: its controller and its observer read one estimate of the motor's gain. The fault: the "
+    "estimate is 0.6 times what it was. In `calibrated` the observer uses it, in `blind` the "
+    "number on the nameplate.\n"
+)
 
 
 def demo(
@@ -27,9 +32,10 @@ def demo(
     toy = Path(faultpath.systems.__file__).with_name(_TOY)
     if not toy.is_file():  # in a checkout, which a wheel takes it from
         toy = Path(__file__).resolve().parents[3] / "examples" / _TOY
+    console = SafeConsole()
+    console.print(_STORY, markup=False)
     arms = {"baseline": "calibrated", "repair": "blind", "fault": "gain:scale=0.6"}
     run = audit(f"{toy}:create", **arms, library="carts", folder=out, progress=display())
-    console = SafeConsole()
     console.print(decision(run.record))
     console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
     console.print(f"The system: {toy}. Next, one of your own: faultpath init mine", markup=False)

@@ -9,7 +9,7 @@ import numpy as np
 
 from faultpath.core.results import Result
 from faultpath.systems.checks.blocks import MISTAKES, TRIALS, RecordedBlock
-from faultpath.systems.checks.room import without_room
+from faultpath.systems.checks.room import diverged, successes, without_room
 from faultpath.trials import System, Variant
 from faultpath.trials.attempt import Done
 from faultpath.trials.execution.again import difference
@@ -100,8 +100,8 @@ def judged(seen: Seen) -> tuple[Check, ...]:
         "shape and unit": _readings,
         "data files": lambda name, _: Check(name=name, says="Python opens declared ones alone"),
     }
-    remarks = without_room({name: run.outcomes for name, run in seen.firsts()})
-    checks = [Check(name=TRIALS, says=f"{count} under correct inputs", remarks=remarks)]
+    ends = {name: run.outcomes for name, run in seen.firsts()}
+    checks = [Check(name=TRIALS, says=successes(ends), remarks=without_room(ends))]
     for name, judge in judges.items():
         none = Check(name=name, says="no variant ran to its end", judged=False)
         checks.append(judge(name, seen) if count else none)
@@ -296,4 +296,5 @@ def _readings(name: str, seen: Seen) -> Check:
                 f"{source.unit}, but its largest reading is {most:.3g}; give it in {source.unit}, "
                 "or mend the declared unit or scale."
             )
-    return Check(name=name, says=", ".join(shown), failures=tuple(failures.values()))
+    wrong, says = tuple(failures.values()), ", ".join(shown)
+    return Check(name=name, says=says, failures=wrong, remarks=diverged(spans))

@@ -1,4 +1,4 @@
-"""Whether the scenes of a check leave an audit room to see an effect."""
+"""Whether trials without a fault leave an audit room to see an effect."""
 
 from collections.abc import Mapping, Sequence
 
@@ -6,6 +6,8 @@ from faultpath.trials.outcome import Outcome
 
 ENOUGH = 20
 """So many scenes that all end alike: with 95 % confidence at most 14 % of scenes end otherwise."""
+PAST_BELIEF = 1e30
+"""No quantity of a plant is as large, whatever its unit."""
 
 _ENDS = {
     True: (
@@ -19,6 +21,27 @@ _ENDS = {
         "library of easier scenes, or a milder rule of success",
     ),
 }
+
+
+def successes(outcomes: Mapping[str, Sequence[Outcome]]) -> str:
+    """Return how many trials there were without a fault, and how many of each variant succeed."""
+    total = sum(map(len, outcomes.values()))
+    counts = (
+        f"{name} {sum(row.status == 'success' for row in rows)} of {len(rows)}"
+        for name, rows in outcomes.items()
+    )
+    successful = f"; successes: {', '.join(counts)}" if outcomes else ""
+    return f"{total} under correct inputs{successful}"
+
+
+def diverged(spans: Mapping[str, tuple[float, float]]) -> tuple[str, ...]:
+    """Return a sentence for each source whose readings, least and greatest, are past belief."""
+    return tuple(
+        f"Source '{name}' gives readings of up to {max(abs(low), abs(high)):.3g}: look for a loop "
+        "that is unstable without any fault."
+        for name, (low, high) in spans.items()
+        if max(abs(low), abs(high)) > PAST_BELIEF
+    )
 
 
 def without_room(outcomes: Mapping[str, Sequence[Outcome]]) -> tuple[str, ...]:
