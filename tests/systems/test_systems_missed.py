@@ -38,7 +38,7 @@ def system() -> ComposedSystem:
 
 
 def audit(system: ComposedSystem, fault: str, folder: Path) -> faultpath.Run:
-    options = {"baseline": "agent", "repair": "other", "scenes": 4, "folder": folder}
+    options = {"baseline": "agent", "repair": "other", "scenes": 8, "folder": folder}
     return faultpath.audit(system, **options, fault=fault, signals=False, progress=False)
 
 
