@@ -200,11 +200,13 @@ $(BENCH_JAX)/ready: benchmarks/requirements-jax.txt
 	  -c constraints.txt -e '.[test,motulator]'
 	@touch $@
 
-# Basilisk wants older versions of what the tools of development pin, so this takes what pip finds.
+# Basilisk wants older versions of what the tools of development pin, so this takes what pip finds,
+# except of torch, whose pin has a build for the CPU.
 .venv-foreign/ready: pyproject.toml
 	@$(CHECK_PYTHON)
 	@echo "Installing the packages that examples audit into .venv-foreign"
 	@rm -rf .venv-foreign && $(PYTHON) -m venv .venv-foreign
 	@.venv-foreign/bin/python -m pip install --disable-pip-version-check --quiet \
-	  -e '.[rotorpy,do-mpc,basilisk,gymnasium,inspect]' hypothesis pytest pytest-xdist
+	  -e '.[rotorpy,do-mpc,basilisk,gymnasium,inspect,policies]' "$$(grep '^torch==' constraints.txt)" \
+	  hypothesis pytest pytest-xdist
 	@touch $@
