@@ -240,9 +240,9 @@ def template(kind: str, name: str, *parts: str) -> str:
     if not parts:
         return fence("python", text)
     head, *functions = text.split("\n\n\n")
-    pieces = {"imports": head} | dict(
-        (re.findall(r"^def (\w+)", function, re.MULTILINE)[0], function) for function in functions
-    )
+    pieces = {"imports": head} | {
+        re.findall(r"^def (\w+)", function, re.MULTILINE)[0]: function for function in functions
+    }
     if unknown := [part for part in parts if part not in pieces]:
         raise Wrong(f"template {kind} has no part '{unknown[0]}'; it has {', '.join(pieces)}")
     return fence("python", "\n\n\n".join(pieces[part] for part in parts))

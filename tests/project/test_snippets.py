@@ -1,12 +1,13 @@
 """Everything that README and docs show as code runs, and prints what they say it prints.
 
 Two kinds of fenced block count. The ``python`` blocks of a document run one after another, as one
-program, beside the systems that its ``faultpath init`` commands write. A ``console`` block is a session: lines that start with ``$ `` are commands, the lines
-below each are its output, in which ``...`` stands for anything; a command without output below
-only has to succeed. Commands of ``faultpath`` and ``python`` are run; the rest (git, make, pip) are
-set-up and are not. All commands share one directory, which holds ``examples/``. The
-word ``not-run`` after the language (```` ```console not-run ````) keeps a block out, for what takes
-minutes. An audit of every scene of a library whose output is not shown flies eight of them. Design
+program, beside the systems that its ``faultpath init`` commands write. A ``console`` block is a
+session: lines that start with ``$ `` are commands, the lines below each are its output, in which
+``...`` stands for anything; a command without output below only has to succeed. Commands of
+``faultpath`` and ``python`` are run; the rest (git, make, pip) are set-up and are not. All commands
+share one directory, which holds ``examples/``. The word ``not-run`` after the language
+(```` ```console not-run ````) keeps a block out, for what takes minutes. An audit of every scene of
+a library whose output is not shown flies eight of them. Design
 notes are about the past and are left alone.
 """
 
