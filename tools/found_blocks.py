@@ -14,7 +14,7 @@ PAGES = {
     "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor-results"),
     "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor-results"),
     "toy": ("Cart", "tutorial"),
-    "dock": ("Docking boat", "audit-your-own-system"),
+    "dock": ("Docking rover", "own-loop"),
     "pendulum": ("Pendulum of Gymnasium", "gymnasium"),
     "learned-pendulum": ("Learned world model", "learned-world-model"),
     "rotorpy": ("RotorPy", "rotorpy"),
