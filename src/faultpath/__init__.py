@@ -12,7 +12,7 @@ from faultpath.core.version import __version__
 
 if TYPE_CHECKING:
     from faultpath.api.audit import audit, audits
-    from faultpath.api.before import check, plan, trace
+    from faultpath.api.checks import check, plan, trace
     from faultpath.api.comparing import compare
     from faultpath.api.judging import judge
     from faultpath.api.mapping import reversal_map
@@ -52,17 +52,17 @@ _HOMES = {
     "UserError": "faultpath.core.errors",
     "audit": "faultpath.api.audit",
     "audits": "faultpath.api.audit",
-    "check": "faultpath.api.before",
+    "check": "faultpath.api.checks",
     "compare": "faultpath.api.comparing",
     "generator": "faultpath.core.streams",
     "judge": "faultpath.api.judging",
     "load_system": "faultpath.api.systems",
     "open_run": "faultpath.api.runs",
-    "plan": "faultpath.api.before",
+    "plan": "faultpath.api.checks",
     "reversal_map": "faultpath.api.mapping",
     "search": "faultpath.api.searching",
     "sensitivity": "faultpath.api.sensitivity",
-    "trace": "faultpath.api.before",
+    "trace": "faultpath.api.checks",
 }
 
 

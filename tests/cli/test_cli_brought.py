@@ -15,7 +15,9 @@ from faultpath.core.errors import Notice
 
 PARTS = ROOT / "tests" / "quadrotor" / "own_parts.py"
 
-pytestmark = pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.lending.PortableNotice")
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::faultpath_quadrotor.native.kernel_args.PortableNotice"
+)
 
 
 @pytest.fixture(autouse=True)

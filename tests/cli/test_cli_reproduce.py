@@ -11,8 +11,8 @@ from faultpath_paper.run import Plan
 from faultpath_paper.verb import show
 
 import faultpath
-from faultpath.api.asking import Job
 from faultpath.api.display import Display
+from faultpath.api.job import Job
 from faultpath.cli.audits import report
 from faultpath.core.errors import UserError
 from faultpath.decisions.tables import MISSING

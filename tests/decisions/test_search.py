@@ -10,7 +10,7 @@ from outcome_tables import SCENES, three
 from outcome_tables import record as audit
 
 from faultpath.core.errors import UserError
-from faultpath.decisions.joined import fault_of
+from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.search.bounds import BoundedFault, Bounds
 from faultpath.decisions.search.decide import conclude
 from faultpath.decisions.search.model import SearchQuestion, SearchRecord, Tried

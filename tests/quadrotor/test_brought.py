@@ -70,7 +70,7 @@ def test_a_part_flies_as_the_shipped_one_that_it_equals():
     assert bits(own) == bits(shipped)
 
 
-@pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.lending.PortableNotice")
+@pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.kernel_args.PortableNotice")
 def test_a_reconstruction_supplies_its_wind_and_a_planner_plans():
     system = quadrotor(bring=f"{WIND},{PLANNER}", wind="L2")
     (_,), taps = fly(system, f"dki-drag/{WIND}")
@@ -83,7 +83,7 @@ def test_a_reconstruction_supplies_its_wind_and_a_planner_plans():
     assert planned.planner_noise_hash == shipped.planner_noise_hash
 
 
-@pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.lending.PortableNotice")
+@pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.kernel_args.PortableNotice")
 def test_an_arm_gets_a_part_of_its_own_with_the_seed_that_it_names():
     system = quadrotor(predictor=PREDICTOR, predictor_seed="1")
     named, chosen = system.setups[PREDICTOR], system.setups["gru"]

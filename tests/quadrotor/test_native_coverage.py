@@ -7,7 +7,7 @@ from types import MethodType
 import pytest
 import torch
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.lending import PortableNotice, tell_portable
+from faultpath_quadrotor.native.kernel_args import PortableNotice, tell_portable
 from faultpath_quadrotor.perception import ClearanceModel, DepthClearance
 from faultpath_quadrotor.planners import NavigationCost, Scored
 from faultpath_quadrotor.predictors import (

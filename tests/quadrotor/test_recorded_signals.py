@@ -6,7 +6,7 @@ from faultpath.faults import parse_fault
 from faultpath.systems.checks.blocks import Block, run_block
 from faultpath.trials import Arm, SystemSpec, load_system
 from faultpath.trials.attempt import Done, attempt
-from faultpath.trials.execution.again import difference
+from faultpath.trials.execution.recheck import difference
 from faultpath.trials.store.signals import TOGETHER
 
 SCENE = ("selection/003",)

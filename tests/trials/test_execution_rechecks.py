@@ -13,7 +13,7 @@ from toy_system import CONSUMERS, STEPS, ToySystem
 
 from faultpath.core.errors import Stopped
 from faultpath.loop import Reading
-from faultpath.trials.execution.again import SAMPLE, Rechecks
+from faultpath.trials.execution.recheck import SAMPLE, Rechecks
 from faultpath.trials.execution.runner import run_study
 
 _CALLS = itertools.count()

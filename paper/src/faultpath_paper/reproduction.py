@@ -6,9 +6,9 @@ from os import PathLike
 from pathlib import Path
 from typing import NoReturn
 
-from faultpath.api.asking import Job
 from faultpath.api.display import Display, display
 from faultpath.api.folders import read_provenance
+from faultpath.api.job import Job
 from faultpath.api.runs import FinishedRun
 from faultpath.api.systems import LOCAL, check_executor, executor_of
 from faultpath.core.errors import Stopped, UserError

@@ -11,7 +11,7 @@ from faultpath_quadrotor.planners.module import Planning
 from faultpath_quadrotor.plant.module import VehiclePlant
 from faultpath_quadrotor.predictors.history import HistoryEncoder
 from faultpath_quadrotor.predictors.module import Prediction
-from faultpath_quadrotor.predictors.places import PLACES, ports
+from faultpath_quadrotor.predictors.predictor_inputs import PLACES, ports
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
 from faultpath_quadrotor.reconstruction.module import WindReconstruction
 from faultpath_quadrotor.reconstruction.network import READS

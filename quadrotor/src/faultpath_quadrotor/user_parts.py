@@ -28,7 +28,7 @@ from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.planners import Planner, SamplerSettings, Scored
 from faultpath_quadrotor.plant import Plant
 from faultpath_quadrotor.predictors import KinematicIntegrator, Predictor
-from faultpath_quadrotor.predictors.places import check_places, history, predictor_inputs
+from faultpath_quadrotor.predictors.predictor_inputs import check_places, history, predictor_inputs
 from faultpath_quadrotor.predictors.rollout import rollout
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.state import LANE_MULTIPLE, State

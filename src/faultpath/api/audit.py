@@ -10,7 +10,6 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from faultpath.api.asking import Job, asks, begin
 from faultpath.api.display import Display
 from faultpath.api.folders import (
     MADE_FROM,
@@ -21,13 +20,14 @@ from faultpath.api.folders import (
     read_provenance,
     read_run,
 )
+from faultpath.api.job import Job, asks, begin
 from faultpath.api.replaying import outcomes_at, run_again, shown_first
 from faultpath.api.runs import Run
 from faultpath.api.systems import Chosen, executor_of
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
 from faultpath.decisions.decide import after_looks
-from faultpath.decisions.joined import JOINED
+from faultpath.decisions.fault_groups import JOINED
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.phrases import counted
 from faultpath.decisions.planning import Audit, plan_audit
@@ -37,11 +37,11 @@ from faultpath.trials import System, system_shown
 from faultpath.trials.code import system_code
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.question import AuditQuestion, Running
+from faultpath.trials.sensitivity_question import SensitivityQuestion
 from faultpath.trials.store.atomic import write_file, write_text
 from faultpath.trials.store.folder import keyed, read_regular, seal
 from faultpath.trials.store.signals import SIGNALS, Signal, decode_signals, encode_signals
 from faultpath.trials.store.tables import TrialAddress
-from faultpath.trials.varied import SensitivityQuestion
 from faultpath.trials.work.executor import Progress
 
 _LONGEST_NAME = 180

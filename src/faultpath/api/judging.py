@@ -10,10 +10,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from faultpath.api.asking import asks
 from faultpath.api.audit import concluded_before
 from faultpath.api.display import Display, display
 from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text, read_run
+from faultpath.api.job import asks
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
 from faultpath.decisions.decide import after_looks, decide

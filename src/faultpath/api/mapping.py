@@ -5,10 +5,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from faultpath.api.asking import Job, asks, begin
 from faultpath.api.audit import run_folder
 from faultpath.api.display import Display
 from faultpath.api.folders import MAP, MAP_MADE_FROM
+from faultpath.api.job import Job, asks, begin
 from faultpath.api.runs import MapRun
 from faultpath.api.systems import executor_of
 from faultpath.decisions.map.decide import conclude

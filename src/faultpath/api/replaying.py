@@ -17,9 +17,9 @@ from faultpath.report.viewer_choice import choose as picked
 from faultpath.systems.checks.blocks import Block, RecordedBlock, run_blocks
 from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
 from faultpath.trials.attempt import Done
-from faultpath.trials.execution.again import difference
 from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.execution.provenance import amend
+from faultpath.trials.execution.recheck import difference
 from faultpath.trials.question import AuditQuestion, ask
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals

@@ -6,10 +6,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from faultpath.api.asking import Job, asks, begin
 from faultpath.api.audit import carry_out, run_folder
 from faultpath.api.display import Display
 from faultpath.api.folders import SEARCH, SEARCH_MADE_FROM, read_run
+from faultpath.api.job import Job, asks, begin
 from faultpath.api.runs import Run, SearchRun
 from faultpath.api.systems import executor_of
 from faultpath.decisions.search.decide import best, conclude

@@ -4,17 +4,17 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from faultpath.api.asking import Job, asks, begin
 from faultpath.api.audit import run_folder
 from faultpath.api.display import Display
 from faultpath.api.folders import SENSITIVITY, SENSITIVITY_MADE_FROM
+from faultpath.api.job import Job, asks, begin
 from faultpath.api.runs import SensitivityRun
 from faultpath.api.systems import executor_of
 from faultpath.decisions.sensitivity.decide import conclude
 from faultpath.decisions.sensitivity.study import plan_sensitivity
 from faultpath.trials import System
+from faultpath.trials.sensitivity_question import SensitivityQuestion
 from faultpath.trials.store.atomic import write_text
-from faultpath.trials.varied import SensitivityQuestion
 
 
 @asks(SensitivityQuestion)

@@ -55,7 +55,7 @@ def plan(
 ) -> None:
     """Rank the uncertain sources, propose the audits of a repair with their trials, and
     write them as a study file for `faultpath audit --study`."""
-    from faultpath.api.before import plan
+    from faultpath.api.checks import plan
     from faultpath.api.display import SafeConsole
     from faultpath.report.dependent import DEPENDENT_MARK
     from faultpath.trials.store.atomic import check_output, write_text
@@ -138,7 +138,7 @@ def study(
 ) -> int:
     """Carry out the audits of a study file. The file says system, variants, faults, scenes and
     seeds; the same command resumes."""
-    from faultpath.api.before import audit_study
+    from faultpath.api.checks import audit_study
     from faultpath.decisions.plan.study import read_study
 
     gate = Gate.of(fail_if, junit, summary)

@@ -36,9 +36,9 @@ def trace(system: SystemName, as_json: Json = False, **given: Any) -> int:
     """Print the information interface of a system and who read what, when.
 
     Exits with 1 where that differs from what is declared."""
-    from faultpath.api.asking import begin
-    from faultpath.api.before import traced
+    from faultpath.api.checks import traced
     from faultpath.api.display import SafeConsole
+    from faultpath.api.job import begin
     from faultpath.decisions.tables.terminal import STYLES, Parted
     from faultpath.report.terminal import interface_table, trace_table
 
@@ -67,7 +67,7 @@ def check(system: SystemName, as_json: Json = False, **given: Any) -> int:
     from rich.padding import Padding
     from rich.text import Text
 
-    from faultpath.api.before import check
+    from faultpath.api.checks import check
     from faultpath.api.display import SafeConsole
     from faultpath.decisions.tables.terminal import STYLES
     from faultpath.decisions.wording import counted

@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from typing import Any, cast
 
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.core.misfits import misfit_of
 from faultpath.core.text import one_line
+from faultpath.core.validation_messages import misfit_of
 
 _STANDARD = tuple(
     os.path.realpath(sysconfig.get_path(name)) + os.sep for name in ("stdlib", "platstdlib")

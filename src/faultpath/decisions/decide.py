@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from faultpath.core.errors import UserError
 from faultpath.decisions import phrases, wording
-from faultpath.decisions.described import cells_of, percent, secondary, untested_paths
+from faultpath.decisions.descriptive import cells_of, percent, secondary, untested_paths
 from faultpath.decisions.family import Compared, Family, alpha_shares, compared, decide_paths, led
 from faultpath.decisions.model import (
     AS_RUN,

@@ -10,7 +10,7 @@ import shlex
 from collections.abc import Collection, Iterable, Sequence
 
 from faultpath.core.results import Frozen
-from faultpath.decisions.joined import JOINED
+from faultpath.decisions.fault_groups import JOINED
 from faultpath.decisions.model import SHARED, DecisionRecord, Effect
 from faultpath.decisions.plan.sources import Wired, bound, expected
 from faultpath.decisions.plan.study import StudyFile

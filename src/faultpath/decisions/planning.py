@@ -7,7 +7,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import unknown
 from faultpath.decisions.decide import decide, primary_path, stops
-from faultpath.decisions.joined import fault_of
+from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, FaultedTap, Path
 from faultpath.decisions.question import Question, StopRule
 from faultpath.faults import AnyFault, Fault
@@ -25,7 +25,7 @@ from faultpath.trials import (
     SystemSpec,
     Variant,
 )
-from faultpath.trials import question as asking
+from faultpath.trials import question as questions
 from faultpath.trials.question import AuditQuestion
 
 LOOK = 5
@@ -223,7 +223,7 @@ def _check(system: System, asked: AuditQuestion) -> None:
         )
 
 
-def two_variants(system: System, asked: asking.Question) -> tuple[Variant, Variant]:
+def two_variants(system: System, asked: questions.Question) -> tuple[Variant, Variant]:
     """Return baseline and repair; `UserError` for an unknown one, and where both are one."""
     for name in (asked.baseline, asked.repair):
         if name not in system.variants:

@@ -19,8 +19,8 @@ from typing import Any, Self, TypeAlias
 from pydantic import ValidationError
 
 from faultpath.core.errors import UserError
-from faultpath.core.misfits import misfit_of
 from faultpath.core.text import listed, unknown
+from faultpath.core.validation_messages import misfit_of
 from faultpath.faults.fault import INTERVENTIONS, Coupled, Fault
 from faultpath.interface import Interface, groups
 

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml
-from faultpath.core.misfits import misfit_of
+from faultpath.core.validation_messages import misfit_of
 from faultpath.interface.interface import Interface
 
 

@@ -21,7 +21,7 @@ from pydantic import BaseModel, PydanticSchemaGenerationError, TypeAdapter, Vali
 from pydantic.fields import FieldInfo
 
 from faultpath.core.errors import UserError
-from faultpath.core.misfits import misfit_of
+from faultpath.core.validation_messages import misfit_of
 
 Factory = Callable[..., object]
 _Built = TypeVar("_Built")

@@ -3,7 +3,7 @@
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.checks import library_of
 from faultpath.trials.declared import FloorPlan, Library, Pillar, Prism, SceneRef, Variant
-from faultpath.trials.looped import LoopSystem, Wiring
+from faultpath.trials.loop_system import LoopSystem, Wiring
 from faultpath.trials.options import Offered, Option
 from faultpath.trials.outcome import Metric, Outcome, Status
 from faultpath.trials.pairing import PairingRefused, Pairs, Side, pair

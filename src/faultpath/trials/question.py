@@ -13,8 +13,8 @@ from typing import Annotated, Any, ClassVar, Literal, TypeVar
 from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError
 
 from faultpath.core.errors import UserError
-from faultpath.core.misfits import misfit_of
 from faultpath.core.results import Frozen
+from faultpath.core.validation_messages import misfit_of
 from faultpath.trials.texts import LARGEST, read_names, read_seeds, read_sizes, several
 
 Generalise = Literal["scenes", "models"]

@@ -7,8 +7,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, ValidationError, model_validator
 
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.core.misfits import misfit_of
 from faultpath.core.results import Frozen
+from faultpath.core.validation_messages import misfit_of
 from faultpath.interface import Interface
 from faultpath.trials.declared import FloorPlan, shown
 from faultpath.trials.system import System

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import torch
+from faultpath_quadrotor.batching import Chunk
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.interface import quadrotor_interface
-from faultpath_quadrotor.lanes import Chunk
 from faultpath_quadrotor.plant.module import ACTION
 from faultpath_quadrotor.predictors import Predictor
 from faultpath_quadrotor.predictors.rollout import Candidates, Predicted

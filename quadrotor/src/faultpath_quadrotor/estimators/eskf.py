@@ -10,6 +10,7 @@ import torch
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Outputs, Port
+from faultpath_quadrotor.batching import lanes_last, lanes_of, scenes_first
 from faultpath_quadrotor.choices import Fixes
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators.kalman import (
@@ -23,7 +24,6 @@ from faultpath_quadrotor.estimators.kalman import (
 )
 from faultpath_quadrotor.estimators.protocol import STATE_SOURCES, Estimator
 from faultpath_quadrotor.estimators.sensors import SENSORS, sensors
-from faultpath_quadrotor.lanes import lanes_last, lanes_of, scenes_first
 
 AT = "filter"
 _INERTIAL, _AIDING = SENSORS[:2], SENSORS[2:]

@@ -15,7 +15,7 @@ from torch import Tensor
 
 from faultpath.core.errors import UserError
 from faultpath_quadrotor.device import host_readable
-from faultpath_quadrotor.native.lending import Block, Lent
+from faultpath_quadrotor.native.kernel_args import Block, Lent
 
 VARIABLE = "FAULTPATH_KERNELS"
 PORTABLE = "portable"
@@ -55,7 +55,7 @@ def _argument(value: object) -> object:
     if isinstance(value, Block):
         return ctypes.byref(value)
     if isinstance(value, Tensor):
-        raise TypeError("a kernel takes no tensor that was not lent: see `native/lending.py`")
+        raise TypeError("a kernel takes no tensor that was not lent: see `native/kernel_args.py`")
     return ctypes.c_int64(value) if isinstance(value, int) else value
 
 

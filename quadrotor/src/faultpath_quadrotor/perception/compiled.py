@@ -7,7 +7,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.lending import BLOCK, Block, Lent, fields, lend, pack
+from faultpath_quadrotor.native.kernel_args import BLOCK, Block, Lent, fields, lend, pack
 from faultpath_quadrotor.native.library import WIDEST, Kernels
 
 HEIGHT, WIDTH, CODE = 36, 64, 64

@@ -9,7 +9,7 @@ from functools import lru_cache
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port, Query
-from faultpath_quadrotor.lanes import Chunk
+from faultpath_quadrotor.batching import Chunk
 from faultpath_quadrotor.perception import DepthClearance, mounted
 from faultpath_quadrotor.predictors.rollout import Predicted
 from faultpath_quadrotor.scenes.field import DistanceField

@@ -19,7 +19,7 @@ from torch import Tensor
 
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU, host_readable
-from faultpath_quadrotor.native.lending import covered
+from faultpath_quadrotor.native.kernel_args import covered
 from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, slopes
 from faultpath_quadrotor.perception.compiled import CompiledRenderer
 from faultpath_quadrotor.scenes.geometry import Geometry

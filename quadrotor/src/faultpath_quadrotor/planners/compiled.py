@@ -7,7 +7,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.lending import lend
+from faultpath_quadrotor.native.kernel_args import lend
 from faultpath_quadrotor.native.library import Kernels
 
 TERMS = (

@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from torch import Tensor
 
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.lending import covered
+from faultpath_quadrotor.native.kernel_args import covered
 from faultpath_quadrotor.planners import compiled
 from faultpath_quadrotor.predictors.rollout import Rollout
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M

@@ -9,8 +9,8 @@ import torch
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
+from faultpath_quadrotor.batching import Chunk, chunks, lanes_last, lanes_of
 from faultpath_quadrotor.device import host_readable, send
-from faultpath_quadrotor.lanes import Chunk, chunks, lanes_last, lanes_of
 from faultpath_quadrotor.planners import Planner, Scored, shift
 from faultpath_quadrotor.predictors.rollout import Candidates, Predicted
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.lending import Block, Lent, fields, lend
+from faultpath_quadrotor.native.kernel_args import Block, Lent, fields, lend
 from faultpath_quadrotor.native.library import Kernels
 from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,

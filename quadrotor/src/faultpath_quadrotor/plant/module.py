@@ -10,9 +10,9 @@ from typing_extensions import override
 
 from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress, Query
 from faultpath.trials.outcome import VEHICLE
+from faultpath_quadrotor.batching import lanes_last, scenes_first
 from faultpath_quadrotor.device import host_readable
 from faultpath_quadrotor.estimators.sensors import Errors, Sensor, raw, readings
-from faultpath_quadrotor.lanes import lanes_last, scenes_first
 from faultpath_quadrotor.perception import DepthRenderer, mounted
 from faultpath_quadrotor.perception.module import geometric_clearance
 from faultpath_quadrotor.plant.world import CONTROL_STEPS, World

@@ -8,7 +8,7 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.lending import covered
+from faultpath_quadrotor.native.kernel_args import covered
 from faultpath_quadrotor.plant import motors
 from faultpath_quadrotor.plant.compiled import CompiledPlant, watch
 from faultpath_quadrotor.plant.motors import RateLoop

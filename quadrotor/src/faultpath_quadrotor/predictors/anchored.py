@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath_quadrotor.lanes import Delivered
+from faultpath_quadrotor.batching import Delivered
 from faultpath_quadrotor.predictors.base import Memory, Predictor, PredictorInputs
 from faultpath_quadrotor.predictors.kinematic import Constants, KinematicIntegrator, Residual
 from faultpath_quadrotor.predictors.network import FoldedNetwork, LatentNetwork

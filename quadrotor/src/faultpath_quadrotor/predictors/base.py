@@ -10,7 +10,7 @@ import torch
 from torch import Tensor
 
 from faultpath.core.errors import SystemMistake
-from faultpath_quadrotor.lanes import Delivered, Read
+from faultpath_quadrotor.batching import Delivered, Read
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
 

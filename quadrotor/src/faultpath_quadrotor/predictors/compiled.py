@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 import torch
 from torch import Tensor
 
+from faultpath_quadrotor.batching import Delivered, Read
 from faultpath_quadrotor.device import host_readable
-from faultpath_quadrotor.lanes import Delivered, Read
-from faultpath_quadrotor.native.lending import (
+from faultpath_quadrotor.native.kernel_args import (
     BLOCK,
     Block,
     Lent,

@@ -6,9 +6,9 @@ import torch
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs
-from faultpath_quadrotor.lanes import lanes_of, scenes_first
+from faultpath_quadrotor.batching import lanes_of, scenes_first
 from faultpath_quadrotor.predictors import Predictor
-from faultpath_quadrotor.predictors.places import Take, history, ports, taking
+from faultpath_quadrotor.predictors.predictor_inputs import Take, history, ports, taking
 
 STEPS = 12  # paper, Section IV-A
 

@@ -3,10 +3,10 @@
 import torch
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Query
-from faultpath_quadrotor.lanes import lanes_of, scenes_first
+from faultpath_quadrotor.batching import lanes_of, scenes_first
 from faultpath_quadrotor.predictors import Predictor
 from faultpath_quadrotor.predictors.base import hover_thrust
-from faultpath_quadrotor.predictors.places import ports, predictor_inputs, taking
+from faultpath_quadrotor.predictors.predictor_inputs import ports, predictor_inputs, taking
 from faultpath_quadrotor.predictors.rollout import Candidates, Predicted, rolling
 
 

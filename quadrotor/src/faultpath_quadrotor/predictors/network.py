@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from faultpath_quadrotor.lanes import Delivered
-from faultpath_quadrotor.native.lending import covered, tell_portable
+from faultpath_quadrotor.batching import Delivered
+from faultpath_quadrotor.native.kernel_args import covered, tell_portable
 from faultpath_quadrotor.native.library import kernels_on
 from faultpath_quadrotor.predictors.recurrent import fits, recur
 from faultpath_quadrotor.state import State

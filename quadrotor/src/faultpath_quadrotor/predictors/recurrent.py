@@ -3,7 +3,7 @@
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.lending import lend
+from faultpath_quadrotor.native.kernel_args import lend
 from faultpath_quadrotor.native.library import Kernels
 
 LATENT = 32

@@ -8,9 +8,9 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor import native
+from faultpath_quadrotor.batching import Chunk
 from faultpath_quadrotor.device import CPU
-from faultpath_quadrotor.lanes import Chunk
-from faultpath_quadrotor.native.lending import is_exactly, tell_portable
+from faultpath_quadrotor.native.kernel_args import is_exactly, tell_portable
 from faultpath_quadrotor.predictors import Predictor, PredictorInputs, TrueParameter
 from faultpath_quadrotor.predictors.compiled import HorizonLoop, uncovered
 from faultpath_quadrotor.state import State

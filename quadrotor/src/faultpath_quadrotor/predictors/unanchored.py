@@ -7,7 +7,7 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.lanes import Delivered
+from faultpath_quadrotor.batching import Delivered
 from faultpath_quadrotor.predictors.base import Memory, Predictor, PredictorInputs
 from faultpath_quadrotor.predictors.network import (
     FoldedNetwork,

@@ -1,6 +1,6 @@
 """Modules that recover the wind from what the vehicle can measure."""
 
-from faultpath_quadrotor.lanes import Delivered, Read
+from faultpath_quadrotor.batching import Delivered, Read
 from faultpath_quadrotor.reconstruction.base import Memory, Reconstruction
 from faultpath_quadrotor.reconstruction.network import (
     RecurrentMemory,

@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 from torch import Tensor
 
-from faultpath_quadrotor.lanes import Delivered, Read
+from faultpath_quadrotor.batching import Delivered, Read
 
 Memory: TypeAlias = Any
 """State that a reconstruction carries from step to step; opaque to everybody else."""

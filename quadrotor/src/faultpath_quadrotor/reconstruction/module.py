@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
-from faultpath_quadrotor.lanes import lanes_last, lanes_of, scenes_first
+from faultpath_quadrotor.batching import lanes_last, lanes_of, scenes_first
 from faultpath_quadrotor.reconstruction import Reconstruction
 
 

@@ -11,7 +11,7 @@ from torch import Tensor, nn
 from torch.nn import functional
 from typing_extensions import override
 
-from faultpath_quadrotor.lanes import Delivered, Read
+from faultpath_quadrotor.batching import Delivered, Read
 from faultpath_quadrotor.predictors.network import Affine, GatedCell, draw_weights
 from faultpath_quadrotor.reconstruction.base import Memory, Reconstruction
 

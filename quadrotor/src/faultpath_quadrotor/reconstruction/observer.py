@@ -8,7 +8,7 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.lanes import Delivered, Read
+from faultpath_quadrotor.batching import Delivered, Read
 from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.reconstruction.base import Memory, Reconstruction
 from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2

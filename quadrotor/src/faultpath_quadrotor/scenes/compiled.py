@@ -5,7 +5,7 @@ import ctypes
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.lending import Block, fields, lend
+from faultpath_quadrotor.native.kernel_args import Block, fields, lend
 from faultpath_quadrotor.native.library import Kernels
 
 

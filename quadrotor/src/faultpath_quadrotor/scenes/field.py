@@ -20,7 +20,7 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.lending import covered
+from faultpath_quadrotor.native.kernel_args import covered
 from faultpath_quadrotor.scenes.compiled import CompiledField
 from faultpath_quadrotor.scenes.geometry import rectangle_distance
 from faultpath_quadrotor.scenes.prisms import Prism, arena, solids

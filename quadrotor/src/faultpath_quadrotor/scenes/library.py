@@ -16,7 +16,7 @@ from pydantic import ValidationError
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import read_json
-from faultpath.core.misfits import misfit_of
+from faultpath.core.validation_messages import misfit_of
 from faultpath_quadrotor.scenes.scene import Scene, digest
 from faultpath_quadrotor.scenes.soundness import misnamed, unsound
 

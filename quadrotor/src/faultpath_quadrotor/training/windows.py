@@ -12,7 +12,7 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor.predictors import Physics, Predictor
-from faultpath_quadrotor.predictors.places import Take, history, predictor_inputs
+from faultpath_quadrotor.predictors.predictor_inputs import Take, history, predictor_inputs
 from faultpath_quadrotor.predictors.rollout import unroll
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.training.pool import FlightData, read_pool

@@ -16,7 +16,7 @@ from pydantic import BaseModel, ValidationError
 from yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, NodeEvent
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
-from faultpath.core.misfits import misfit_of
+from faultpath.core.validation_messages import misfit_of
 
 LONGEST = 1_000_000
 """Bytes of a YAML file."""

@@ -16,7 +16,7 @@ from faultpath.decisions.planning import scenes_of, two_variants
 from faultpath.faults import AnyFault, FaultText
 from faultpath.interface import module_of
 from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, SystemSpec, Variant
-from faultpath.trials import question as asking
+from faultpath.trials import question as questions
 from faultpath.trials.pairing import mismatch_words
 
 _LEAST, _LARGEST = 1e-6, 1e12
@@ -89,7 +89,7 @@ class MapPlan:
 
 
 def plan_map(
-    system: System, spec: SystemSpec, asked: asking.MapQuestion, library: Library
+    system: System, spec: SystemSpec, asked: questions.MapQuestion, library: Library
 ) -> MapPlan:
     """Lay out a map. `UserError` for anything that cannot be run or means nothing."""
     variants = two_variants(system, asked)

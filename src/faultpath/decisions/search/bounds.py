@@ -12,7 +12,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml
 from faultpath.core.results import Frozen
-from faultpath.decisions.joined import JOINED
+from faultpath.decisions.fault_groups import JOINED
 from faultpath.faults import FaultText
 from faultpath.faults.parse import KINDS
 from faultpath.trials import System

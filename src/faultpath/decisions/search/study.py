@@ -8,7 +8,7 @@ import numpy as np
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import listed
-from faultpath.decisions.joined import fault_of
+from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.planning import Audit, faults_by_path, plan_audit, scenes_of, two_variants
 from faultpath.decisions.search.bounds import read_bounds
@@ -17,7 +17,7 @@ from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.inputs import Floats
 from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, SystemSpec
-from faultpath.trials import question as asking
+from faultpath.trials import question as questions
 from faultpath.trials.pairing import Side, pair
 
 
@@ -26,7 +26,7 @@ class SearchPlan:
     """A question, and the trials of any fault within its bounds."""
 
     question: SearchQuestion
-    asked: asking.SearchQuestion
+    asked: questions.SearchQuestion
     system: System
     spec: SystemSpec
     library: Library = field(repr=False)
@@ -112,7 +112,7 @@ def halves(library: Library, count: int | None) -> tuple[tuple[str, ...], tuple[
 
 
 def plan_search(
-    system: System, spec: SystemSpec, asked: asking.SearchQuestion, library: Library
+    system: System, spec: SystemSpec, asked: questions.SearchQuestion, library: Library
 ) -> SearchPlan:
     """Lay out a search. `UserError` for anything that cannot be run or means nothing."""
     variants = two_variants(system, asked)

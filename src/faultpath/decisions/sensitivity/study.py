@@ -28,7 +28,7 @@ from faultpath.trials import (
     SystemSpec,
     Variant,
 )
-from faultpath.trials.varied import SensitivityQuestion as Asked
+from faultpath.trials.sensitivity_question import SensitivityQuestion as Asked
 
 _MOST_COMPONENTS = 16
 """Of a vector whose components err each by itself."""

@@ -13,7 +13,7 @@ from faultpath.systems.checks.names import other_names
 from faultpath.systems.checks.room import diverged, successes, without_room
 from faultpath.trials import System, Variant
 from faultpath.trials.attempt import Done
-from faultpath.trials.execution.again import difference
+from faultpath.trials.execution.recheck import difference
 from faultpath.trials.pairing import Mismatch, Side, mismatch_words, unlike
 from faultpath.trials.table import unproven, unread
 

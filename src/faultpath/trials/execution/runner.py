@@ -11,8 +11,8 @@ from faultpath.core.version import __version__
 from faultpath.trials.arm import Arm, Study
 from faultpath.trials.attempt import Reply, Wrong, attempt
 from faultpath.trials.code import Code
-from faultpath.trials.execution.again import Rechecks
 from faultpath.trials.execution.dispatch import Built, dispatch
+from faultpath.trials.execution.recheck import Rechecks
 from faultpath.trials.execution.schedule import Schedule, Task, plan
 from faultpath.trials.execution.state import RunState, Stop
 from faultpath.trials.provenance import Recheck

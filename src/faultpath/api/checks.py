@@ -5,9 +5,9 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from faultpath.api.asking import asks, begin
 from faultpath.api.audit import audit
 from faultpath.api.display import Display, display
+from faultpath.api.job import asks, begin
 from faultpath.api.runs import Run
 from faultpath.api.systems import Chosen, choose
 from faultpath.core.errors import UserError

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from plane_toys import Seen, alike, differences, grown, question, record, reversal
+from map_toys import Seen, alike, differences, grown, question, record, reversal
 from pydantic import ValidationError
 
 from faultpath.decisions.map.decide import decided

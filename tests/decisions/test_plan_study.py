@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 import faultpath
-from faultpath.api.before import Planned, audit_study
+from faultpath.api.checks import Planned, audit_study
 from faultpath.core.errors import UserError
 from faultpath.decisions.plan.study import StudyFile, read_study
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from plane_toys import MODULES, differences, grown, reversal
+from map_toys import MODULES, differences, grown, reversal
 
 from faultpath.decisions.map.lattice import (
     COARSE,

@@ -12,8 +12,8 @@ from torch import Tensor
 from faultpath.core.errors import SystemMistake
 from faultpath.loop import Inputs, Port
 from faultpath_quadrotor import so3
+from faultpath_quadrotor.batching import Delivered, lanes_last
 from faultpath_quadrotor.device import host_readable
-from faultpath_quadrotor.lanes import Delivered, lanes_last
 from faultpath_quadrotor.predictors.base import PredictorInputs
 from faultpath_quadrotor.state import State
 

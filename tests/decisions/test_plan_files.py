@@ -6,7 +6,7 @@ import pytest
 from declared_toy import Declared
 
 import faultpath
-from faultpath.api.before import Planned
+from faultpath.api.checks import Planned
 from faultpath.core.errors import UserError
 from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_modules
 from faultpath.decisions.plan.plan import sentences

@@ -6,7 +6,7 @@ from functools import partial
 import pytest
 import torch
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.lending import lend
+from faultpath_quadrotor.native.kernel_args import lend
 from faultpath_quadrotor.predictors import PredictorInputs
 from faultpath_quadrotor.predictors.rollout import Rollout, rolling
 from test_native_rollout import commands_of, inputs_of, predictor

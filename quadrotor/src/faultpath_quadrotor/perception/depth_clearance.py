@@ -9,7 +9,7 @@ from torch import Tensor, nn
 
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU, host_readable
-from faultpath_quadrotor.native.lending import covered, is_exactly, tell_portable, unlike
+from faultpath_quadrotor.native.kernel_args import covered, is_exactly, tell_portable, unlike
 from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, CaptureFrame
 from faultpath_quadrotor.perception.clearance import INVERSE_SCALE, NEAREST_M, ClearanceModel
 from faultpath_quadrotor.perception.compiled import Bounds, CompiledClearance, CompiledEncoder

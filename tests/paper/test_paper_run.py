@@ -12,8 +12,8 @@ from faultpath_paper.page import Page, Row, TableSpec
 from faultpath_paper.pages import PAGES, table_1, table_2
 from faultpath_paper.run import Plan, conclude, measure_all, plan, read_results, save
 
-from faultpath.api.asking import Job
 from faultpath.api.display import Display
+from faultpath.api.job import Job
 from faultpath.core.errors import UserError
 from faultpath.trials.work.executor import Here
 

@@ -8,7 +8,7 @@ from faultpath_quadrotor.flightlog.reading import ColumnMap
 from pydantic import TypeAdapter, ValidationError
 
 from faultpath.core.error_source import described
-from faultpath.core.misfits import Misfit, misfit_of
+from faultpath.core.validation_messages import Misfit, misfit_of
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.plan.plan import Plan
 from faultpath.decisions.search.model import SearchRecord
@@ -104,4 +104,4 @@ def test_nothing_of_ours_reads_the_sentences_of_pydantic() -> None:
     found = [
         str(file.relative_to(SRC)) for file in SRC.rglob("*.py") if looks.search(file.read_text())
     ]
-    assert found == ["core/misfits.py"]
+    assert found == ["core/validation_messages.py"]
