@@ -12,7 +12,7 @@ from faultpath.api.runs import Run
 from faultpath.api.systems import Chosen, choose
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
-from faultpath.decisions.joined import fault_of
+from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.plan.plan import Plan, make_plan, sentences
 from faultpath.decisions.plan.study import StudyFile, check_arms
 from faultpath.decisions.planning import plan_audit
