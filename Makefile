@@ -200,11 +200,13 @@ $(BENCH_JAX)/ready: benchmarks/requirements-jax.txt
 	  -c constraints.txt -e '.[test,motulator]'
 	@touch $@
 
-# Basilisk wants older versions of what the tools of development pin, so this takes what pip finds.
-.venv-foreign/ready: pyproject.toml
+# Basilisk wants older versions of what the tools of development pin, so this takes what pip finds,
+# but for torch: the pinned one has a build for CPUs here.
+.venv-foreign/ready: pyproject.toml constraints.txt
 	@$(CHECK_PYTHON)
 	@echo "Installing the packages that examples audit into .venv-foreign"
 	@rm -rf .venv-foreign && $(PYTHON) -m venv .venv-foreign
 	@.venv-foreign/bin/python -m pip install --disable-pip-version-check --quiet \
-	  -e '.[rotorpy,do-mpc,basilisk,gymnasium,inspect]' hypothesis pytest pytest-xdist
+	  $$(grep '^torch==' constraints.txt) -e \
+	  '.[rotorpy,do-mpc,basilisk,gymnasium,inspect,stable-worldmodel]' hypothesis pytest pytest-xdist
 	@touch $@

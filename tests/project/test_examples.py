@@ -17,6 +17,9 @@ ELSEWHERE = {
     "learned_pendulum.py": "tests/learning/test_learned_pendulum.py",
     "motulator_drive.py": "tests/foreign/test_motulator.py",
     "rotorpy_wind.py": "tests/foreign/test_rotorpy.py",
+    "stable_worldmodel_camera.py": "tests/foreign/test_stable_worldmodel.py",
+    "stable_worldmodel_model.py": "tests/foreign/test_stable_worldmodel.py",
+    "stable_worldmodel_fit.py": "tests/foreign/test_stable_worldmodel.py",
 }
 """Examples that a test of their own runs."""
 EXAMPLES = sorted({*(ROOT / "examples").glob("*.py")} - {ROOT / "examples" / e for e in ELSEWHERE})
