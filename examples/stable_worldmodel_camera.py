@@ -5,30 +5,24 @@ of its own, and their `PLDM` encodes both; `CEMSolver` looks for actions that br
 state to the other. An error of the camera may strike the observation, the goal, or both.
 
     faultpath audit examples/stable_worldmodel_camera.py:create --baseline plain \
-        --repair augmented --fault exposure:scale=0.85 --library selection --scenes 20
+        --repair augmented --fault exposure:scale=0.7 --library selection --scenes 20
 """
 
 from contextlib import redirect_stdout
 from io import StringIO
 from types import SimpleNamespace
-from warnings import catch_warnings
 
 import gymnasium
 import numpy as np
-from stable_worldmodel_model import SIDE, WEIGHTS, Camera, fitted, scaled
+from stable_worldmodel_model import SCALER, SIDE, WEIGHTS, Camera, fitted, scaled, swm, two_room
 
 from faultpath.systems import ComposedSystem, Measure, Parts, tapped, writes
 from faultpath.systems.gymnasium import GymnasiumPlant
 from faultpath.trials import Metric
 
-with catch_warnings(action="ignore"):  # about optional parts of stable-worldmodel
-    import stable_worldmodel as swm
-    from stable_worldmodel.envs.two_room import ExpertPolicy
-
 STEPS, AHEAD = 50, 25  # of a trial, and to the goal; all of these as they evaluate
 CEM = {"num_samples": 300, "n_steps": 30, "topk": 30}
 PLAN = swm.PlanConfig(horizon=5, receding_horizon=5, action_block=5)
-SCALER = swm.data.ZScoreScaler(mean=np.zeros((1, 2)), std=np.full((1, 2), 0.8))
 
 
 # --- modules ---
@@ -74,7 +68,7 @@ class Rooms(gymnasium.Wrapper):
         super().__init__(swm.wrapper.MegaWrapper(rooms, image_shape=(SIDE, SIDE)))
 
     def reset(self, *, seed=None, options=None):
-        rooms, expert = self.unwrapped, ExpertPolicy(2.0, 0.05, seed=seed)
+        rooms, expert = self.unwrapped, two_room.ExpertPolicy(2.0, 0.05, seed=seed)
         expert.set_env(rooms)
         _, first = self.env.reset(seed=seed, options=options)
         last = first
@@ -103,7 +97,11 @@ VARIANTS = {
 }
 
 
-def create() -> ComposedSystem:
+class TwoRooms(ComposedSystem):
+    trained = True
+
+
+def create() -> TwoRooms:
     closest = Measure(Metric(unit="px", better="less"), lambda seen: seen["distance"].min())
     plant = GymnasiumPlant(
         Rooms,
@@ -117,6 +115,4 @@ def create() -> ComposedSystem:
     )
     units = dict.fromkeys(("picture", "goal_picture", "exposure", "command"), "1")
     units |= dict.fromkeys(("shift", "distance"), "px")
-    system = ComposedSystem("two_rooms", plant, VARIANTS, units, data_files=[WEIGHTS.name])
-    system.trained = True
-    return system
+    return TwoRooms("two_rooms", plant, VARIANTS, units, data_files=[WEIGHTS.name])

@@ -9,13 +9,19 @@ their `PLDMLoss` with the weights that they train with, and an inverse-dynamics 
 import argparse
 from pathlib import Path
 
-import gymnasium
 import numpy as np
 import torch
 from PIL import Image
 from safetensors.torch import save_file
-from stable_worldmodel_camera import SCALER, ExpertPolicy
-from stable_worldmodel_model import LATENT, SIDE, WEIGHTS, photographed, world_model
+from stable_worldmodel_model import (
+    LATENT,
+    SCALER,
+    SIDE,
+    WEIGHTS,
+    photographed,
+    two_room,
+    world_model,
+)
 from torch import nn
 from torch.nn import functional
 
@@ -26,11 +32,11 @@ FRAMES, BLOCK, EXPOSURE, SHIFT = 5, 5, 0.15, 1.0  # the last two: deviations of 
 
 def windows(count):
     """Return pictures `[n, 5, 64, 64, 3]` and scaled actions `[n, 4, 10]`."""
-    rooms = gymnasium.make("swm/TwoRoom-v1", disable_env_checker=True).unwrapped
+    rooms = two_room.TwoRoomEnv()
     pictures = np.empty((count, FRAMES, SIDE, SIDE, 3), np.uint8)
     actions = np.empty((count, FRAMES - 1, BLOCK, 2), np.float32)
     for i in range(count):
-        expert = ExpertPolicy(2.0, 0.05, seed=20_000 + i)
+        expert = two_room.ExpertPolicy(2.0, 0.05, seed=20_000 + i)
         _, info = rooms.reset(seed=20_000 + i)
         expert.set_env(rooms)
         for frame in range(FRAMES):

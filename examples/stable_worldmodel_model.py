@@ -9,7 +9,6 @@ from pathlib import Path
 from types import SimpleNamespace
 from warnings import catch_warnings
 
-import gymnasium
 import numpy as np
 import torch
 from PIL import Image
@@ -21,8 +20,11 @@ if "+cpu" in torch.__version__ and "+cpu" not in version("torchvision"):
     for name in ("nms", "qnms"):  # a torchvision for GPUs misses these; nothing here calls them
         torch.library.define(f"torchvision::{name}", "(Tensor a, Tensor b, float c) -> Tensor")
 with catch_warnings(action="ignore"):  # about optional parts of stable-worldmodel
+    import stable_worldmodel as swm
+    from stable_worldmodel.envs import two_room
     from stable_worldmodel.wm.pldm import PLDM
 
+SCALER = swm.data.ZScoreScaler(mean=np.zeros((1, 2)), std=np.full((1, 2), 0.8))  # of actions
 WEIGHTS = Path(__file__).with_name("stable_worldmodel_camera")
 SIDE, LATENT = 64, 32  # px, numbers
 
@@ -77,7 +79,7 @@ def photographed(pictures, exposure, shift):
 @cache
 def empty_rooms():
     """Return shifts `[n, 2]` and the red channel so shifted, which no dot is seen in."""
-    rooms = gymnasium.make("swm/TwoRoom-v1", disable_env_checker=True).unwrapped
+    rooms = two_room.TwoRoomEnv()
     rooms.reset(seed=0)
     seen = Image.fromarray(rooms.render()).resize((SIDE, SIDE), Image.Resampling.BILINEAR)
     red = torch.tensor(np.array(seen)).movedim(2, 0)[None, :1] / 255

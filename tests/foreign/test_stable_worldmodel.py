@@ -2,13 +2,15 @@
 
 from contextlib import redirect_stdout
 from importlib import import_module
+from importlib.util import find_spec
 from io import StringIO
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-pytest.importorskip("stable_worldmodel")
+if find_spec("stable_worldmodel") is None:  # importing it is the example's, which knows how
+    pytest.skip("stable-worldmodel is not installed", allow_module_level=True)
 
 from faultpath import audit
 from faultpath.faults import parse_fault
@@ -70,7 +72,7 @@ def test_without_a_fault_the_loop_is_theirs(example):
 
 
 def test_a_calibrated_camera_changes_no_pixel(example):
-    picture = np.random.default_rng(0).integers(0, 256, (2, 64, 64, 3)).astype(np.uint8)
+    picture = np.random.default_rng(0).integers(0, 256, (1, 64, 64, 3)).astype(np.uint8)
     assert np.array_equal(example.Camera().transform(picture), picture)
 
 
@@ -91,7 +93,8 @@ def test_a_rectified_picture_is_that_of_a_calibrated_camera(example):
     picture = example.Rooms().reset(seed=20)[0]["picture"][None]
     assert np.array_equal(camera.transform(picture), picture)
     camera.exposure, camera.shift = 0.7, np.array([2.0, -1.0])
-    assert np.abs(camera.transform(picture).astype(int) - picture).max() <= 1
+    apart = np.abs(camera.transform(picture).astype(int) - picture)
+    assert apart[:, 4:-4, 4:-4].max() <= 1  # what left the picture is lost
 
 
 def test_it_is_audited(example):
@@ -110,8 +113,8 @@ def test_it_is_audited(example):
 
 def test_the_models_are_fitted(example, tmp_path):
     fit = import_module(Path("stable_worldmodel_fit.py").stem)
-    pictures, actions = fit.windows(4)
-    assert pictures.shape == (4, 5, 64, 64, 3)
-    assert actions.shape == (4, 4, 10)
+    pictures, actions = fit.windows(64)
+    assert pictures.shape == (64, 5, 64, 64, 3)
+    assert actions.shape == (64, 4, 10)
     for augmented in (False, True):
         fit.fitted(pictures, actions, 0, augmented, epochs=1)
