@@ -41,7 +41,7 @@ def windows(count):
         expert.set_env(rooms)
         for frame in range(FRAMES):
             seen = Image.fromarray(rooms.render()).resize((SIDE, SIDE), Image.Resampling.BILINEAR)
-            pictures[i, frame] = seen
+            pictures[i, frame] = np.asarray(seen)
             for k in range(BLOCK if frame < FRAMES - 1 else 0):
                 actions[i, frame, k] = expert.get_action(info)
                 info = rooms.step(actions[i, frame, k])[4]
@@ -58,7 +58,8 @@ def loss_of(model, inverse, pictures, actions):
     guess = inverse(torch.cat([latents[:, 1:], latents[:, :-1]], dim=-1))
     parts = PLDMLoss()(latents, guess, actions)
     weights = {"std": 18, "std_t": 0.7, "cov": 12, "temp_align": 0.2, "idm": 1}
-    return sum(ahead), sum(w * parts[f"{name}_loss"] for name, w in weights.items())
+    rest = [weight * parts[f"{name}_loss"] for name, weight in weights.items()]
+    return torch.stack(ahead).sum(), torch.stack(rest).sum()
 
 
 def fitted(pictures, actions, seed, augmented, epochs):
