@@ -15,6 +15,8 @@ ELSEWHERE = {
     "latent_camera.py": "tests/learning/test_latent_camera.py",
     "latent_camera_pictures.py": "tests/learning/test_latent_camera.py",
     "learned_pendulum.py": "tests/learning/test_learned_pendulum.py",
+    "lerobot_relative_actions.py": "tests/foreign/test_lerobot.py",
+    "lerobot_steps.py": "tests/foreign/test_lerobot.py",
     "motulator_drive.py": "tests/foreign/test_motulator.py",
     "rotorpy_wind.py": "tests/foreign/test_rotorpy.py",
     "stable_worldmodel_camera.py": "tests/foreign/test_stable_worldmodel.py",
