@@ -10,6 +10,7 @@ from state_blocks import PLACES, audits_of
 
 from faultpath.decisions import model
 
+WORLD_MODEL = "stable-worldmodel"
 PAGES = {
     "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor-results"),
     "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor-results"),
@@ -21,6 +22,11 @@ PAGES = {
     "do-mpc": ("do-mpc", "do-mpc"),
     "motulator": ("motulator", "motulator"),
     "basilisk": ("Basilisk", "basilisk"),
+    "stable-worldmodel-rectified-moved": ("stable-worldmodel, shifted by 2 px", WORLD_MODEL),
+    "stable-worldmodel-rectified-darker": ("stable-worldmodel, 30 % darker", WORLD_MODEL),
+    "stable-worldmodel-augmented-moved": ("stable-worldmodel, shifted by 2 px", WORLD_MODEL),
+    "stable-worldmodel-augmented-darker": ("stable-worldmodel, 30 % darker", WORLD_MODEL),
+    "lerobot": ("LeRobot's relative actions", "lerobot"),
 }
 """Title and page of the audits that reference runs hold, in the order of the table."""
 REVERSAL, MISSED, ALONE = "reversal", "missed by the isolated test", "only in the isolated test"
