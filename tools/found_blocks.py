@@ -3,12 +3,12 @@
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from blocks import Wrong, difference, load
+from blocks import Wrong, difference, flown, load
 from latent_blocks import FAULTS
 from latent_blocks import audits_of as audits_of_rooms
 from state_blocks import PLACES, audits_of
 
-from faultpath.decisions import model
+from faultpath.decisions import model, wording
 
 WORLD_MODEL = "stable-worldmodel"
 PAGES = {
@@ -74,6 +74,26 @@ def table() -> str:
             *map(_row, (*_references(), *_cameras(), *_sensors())),
         ]
     )
+
+
+def audits(page: str) -> str:
+    """Return success of baseline and repair, their difference and the headline, audit by audit."""
+    names = [name for name, (_, place) in PAGES.items() if place == page]
+    titles = [effect.title for effect in load(names[0]).record.paths]
+    head = f"| repair, fault | {' | '.join(titles)} |", f"| :-- |{' --: |' * len(titles)}"
+    records = [load(name).record for name in names]
+    named = [f"`{record.question.repair}`, `{record.question.fault}`" for record in records]
+    rows = [
+        f"| {name} | {' | '.join(map(_success, record.effects))} |"
+        for name, record in zip(named, records, strict=True)
+    ]
+    lines = [f"- {name}: {r.headline}" for name, r in zip(named, records, strict=True)]
+    return "\n".join([*head, *rows, "", *lines, "", flown(load(names[0]))])
+
+
+def _success(effect: model.Effect) -> str:
+    rates = (wording.plain(rate, 1) for rate in (effect.baseline_percent, effect.repair_percent))
+    return f"{' → '.join(rates)}, {_shown(_effect(effect))}"
 
 
 def _references() -> Iterator[Audit]:

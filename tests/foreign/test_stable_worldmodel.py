@@ -31,6 +31,11 @@ def example():
         yield module
 
 
+@pytest.fixture
+def model(example):
+    return import_module(Path("stable_worldmodel_model.py").stem)
+
+
 def attempted(system, variant, fault=None):
     faults = ()
     if fault:
@@ -71,9 +76,9 @@ def test_without_a_fault_the_loop_is_theirs(example):
     assert distances == [closest_px(example, scene) for scene in SCENES]
 
 
-def test_a_calibrated_camera_changes_no_pixel(example):
+def test_a_calibrated_camera_changes_no_pixel(model):
     picture = np.random.default_rng(0).integers(0, 256, (1, 64, 64, 3)).astype(np.uint8)
-    assert np.array_equal(example.Camera().transform(picture), picture)
+    assert np.array_equal(model.Camera().transform(picture), picture)
 
 
 @pytest.mark.parametrize("fault", ["exposure:scale=0.85", "shift:offset=2/0"])
@@ -88,8 +93,8 @@ def test_an_error_at_one_picture_reaches_that_picture_alone(example, fault):
         assert result.outcomes != clean
 
 
-def test_a_rectified_picture_is_that_of_a_calibrated_camera(example):
-    camera = example.Camera(rectifies=True)
+def test_a_rectified_picture_is_that_of_a_calibrated_camera(example, model):
+    camera = model.Camera(rectifies=True)
     picture = example.Rooms().reset(seed=20)[0]["picture"][None]
     assert np.array_equal(camera.transform(picture), picture)
     camera.exposure, camera.shift = 0.7, np.array([2.0, -1.0])
