@@ -26,7 +26,7 @@ PAGES = {
     "stable-worldmodel-rectified-darker": ("stable-worldmodel, 30 % darker", WORLD_MODEL),
     "stable-worldmodel-augmented-moved": ("stable-worldmodel, shifted by 2 px", WORLD_MODEL),
     "stable-worldmodel-augmented-darker": ("stable-worldmodel, 30 % darker", WORLD_MODEL),
-    "lerobot": ("LeRobot's relative actions", "lerobot"),
+    "lerobot": ("Relative actions as in LeRobot", "lerobot"),
 }
 """Title and page of the audits that reference runs hold, in the order of the table."""
 REVERSAL, MISSED, ALONE = "reversal", "missed by the isolated test", "only in the isolated test"
