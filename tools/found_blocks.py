@@ -77,7 +77,7 @@ def table() -> str:
 
 
 def audits(page: str) -> str:
-    """Return success of baseline and repair, their difference and the headline, audit by audit."""
+    """Return success of baseline and repair, and their difference, for each audit of a page."""
     names = [name for name, (_, place) in PAGES.items() if place == page]
     titles = [effect.title for effect in load(names[0]).record.paths]
     head = f"| repair, fault | {' | '.join(titles)} |", f"| :-- |{' --: |' * len(titles)}"
@@ -87,8 +87,7 @@ def audits(page: str) -> str:
         f"| {name} | {' | '.join(map(_success, record.effects))} |"
         for name, record in zip(named, records, strict=True)
     ]
-    lines = [f"- {name}: {r.headline}" for name, r in zip(named, records, strict=True)]
-    return "\n".join([*head, *rows, "", *lines, "", flown(load(names[0]))])
+    return "\n".join([*head, *rows, "", flown(load(names[0]))])
 
 
 def _success(effect: model.Effect) -> str:
