@@ -1,6 +1,7 @@
 """Time flights on this machine's processor and on its GPU; `device.json` keeps the figures.
 
 python -m benchmarks.device                          time control steps, on a machine with a GPU
+python -m benchmarks.device --paper                  time a table of the paper there too, 10 minutes
 python -m benchmarks.device --audits CPU_RUN GPU_RUN add one audit, flown on both
 
 One process on one core flies blocks of 50 scenes with the fastest kernels, as a worker of an audit
@@ -11,13 +12,18 @@ is decided. The first steps, in which libraries load, are not counted.
 
 import argparse
 import json
+import os
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from datetime import UTC, datetime
 from itertools import islice
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
+import pyarrow.parquet as pq
 import torch
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import arithmetic
@@ -34,21 +40,26 @@ FLOWN = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
 LIBRARIES = "training", "selection"
 BLOCKS = (("cpu", 50), ("cuda", 100), ("cuda", 200))
 VARIANT, WARM_UP, ROUNDS, STEPS = "gru", 5, 7, 4
+PAGE = "table-4"
 
 
 def main() -> None:
     """Measure, or compare two audits, and keep the figures."""
     parser = argparse.ArgumentParser(prog="benchmarks.device")
     parser.add_argument("--audits", nargs=2, type=Path, metavar=("CPU_RUN", "GPU_RUN"))
+    parser.add_argument("--paper", action="store_true", help=f"fly {PAGE} on both devices")
     parser.add_argument("--out", type=Path, default=DEVICE, help="the JSON file of the figures")
     options = parser.parse_args()
     figures = json.loads(options.out.read_text()) if options.out.is_file() else {}
-    if options.audits:
-        figures["audits"] = compared(*options.audits)
-    elif torch.cuda.is_available():
-        figures |= measured()
-    else:
+    if not torch.cuda.is_available():
         parser.error("there is no GPU here: run it on a machine that has one")
+    mine = figures.setdefault(torch.cuda.get_device_name(), {})
+    if options.audits:
+        mine["audits"] = compared(*options.audits)
+    elif options.paper:
+        mine["paper"] = paper()
+    else:
+        mine |= measured()
     options.out.write_text(json.dumps(figures, indent=1) + "\n")
     print(options.out.read_text())
 
@@ -70,7 +81,6 @@ def measured() -> dict[str, Any]:
             for steps, (device, _) in zip(sides, BLOCKS, strict=True)
         ]
     return {
-        "gpu": torch.cuda.get_device_name(),
         "torch": torch.__version__,
         "kernels": native.PORTABLE if kernels is None else kernels.isa,
         "date": datetime.now(UTC).date().isoformat(),
@@ -79,6 +89,20 @@ def measured() -> dict[str, Any]:
             for (device, size), taken, more in zip(BLOCKS, times, rest, strict=True)
         ],
     }
+
+
+def paper() -> dict[str, Any]:
+    """Return what a table of the paper takes in its size, with every core and on the GPU, s."""
+    cores = len(os.sched_getaffinity(0))
+    figures: dict[str, Any] = {"page": PAGE, "cores": cores}
+    command = (sys.executable, "-m", "faultpath", "reproduce", PAGE, "--profile", "paper")
+    for name, options in (("cpu_s", ("--workers", str(cores))), ("gpu_s", ("--device", "cuda"))):
+        with TemporaryDirectory() as folder:
+            begun = time.perf_counter()
+            subprocess.run((*command, *options, "--out", folder), check=True)
+            figures[name] = time.perf_counter() - begun
+            figures["trials"] = pq.read_metadata(Path(folder, PAGE, "outcomes.parquet")).num_rows
+    return figures
 
 
 def _flying(device: str, size: int) -> Iterator[Any]:

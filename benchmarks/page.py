@@ -6,6 +6,7 @@ As in every document, `tools/documents.py` fills the blocks that are marked in i
 import json
 from collections.abc import Callable, Mapping, Sequence
 from statistics import median
+from typing import Any
 
 from benchmarks.results import DEVICE, Record, load, record
 from faultpath.decisions.tables import MISSING, Line, Table, line
@@ -70,28 +71,41 @@ def _ratio(record: Record) -> str:
 
 
 def gpu() -> str:
-    """Return what `device.json` holds: the steps of a flight on both devices, and two audits."""
-    figures = json.loads(DEVICE.read_text())
+    """Return what `device.json` holds of each GPU: steps of a flight, an audit, the paper."""
+    machines = json.loads(DEVICE.read_text())
+    return "\n\n".join(_gpu(name, figures) for name, figures in machines.items())
+
+
+def _gpu(name: str, figures: dict[str, Any]) -> str:
     core, *blocks = figures["steps"]
     alone = [taken / core["scenes"] for taken in core["step_ms"]]
     records = []
     for block in blocks:
         busy = 100 * block["busy_ms"] / median(block["step_ms"])
         scenes = [taken / block["scenes"] for taken in block["step_ms"]]
-        name = f"Control step of a scene, blocks of {block['scenes']}"
+        row = f"Control step of a scene, blocks of {block['scenes']}"
         note = f"{block['kernels']} kernels a step, computed in {number(busy)} % of the time"
-        measured = record(name, "ms", scenes, alone, "one core")
+        measured = record(row, "ms", scenes, alone, "one core")
         records.append(measured.model_copy(update={"note": note}))
-    audits = figures["audits"]
-    here, there = audits["successes"]
-    return (
-        f"Measured on {figures['date']}: {figures['gpu']}, torch {figures['torch']}; one core with "
-        f"kernels `{figures['kernels']}`.\n\n{rows(records)}\n\n"
-        f"Of {audits['trials']} trials of `make audit` on that machine, {audits['alike']} end "
-        f"alike on both; {here} succeed on the processor and {there} on the GPU. The audit finds "
-        f"the same on both, significant or not, on {audits['decided_alike']} of "
-        f"{audits['paths']} paths."
+    text = (
+        f"Measured on {figures['date']}: {name}, torch {figures['torch']}; one core with kernels "
+        f"`{figures['kernels']}`.\n\n{rows(records)}"
     )
+    if audits := figures.get("audits"):
+        here, there = audits["successes"]
+        text += (
+            f"\n\nOf {audits['trials']} trials of `make audit` on that machine, {audits['alike']} "
+            f"end alike on both; {here} succeed on the processor and {there} on the GPU. The audit "
+            f"finds the same on both, significant or not, on {audits['decided_alike']} of "
+            f"{audits['paths']} paths."
+        )
+    if paper := figures.get("paper"):
+        text += (
+            f"\n\n`faultpath reproduce {paper['page']} --profile paper`, {paper['trials']} trials, "
+            f"took {paper['cpu_s']:.0f} s on the {paper['cores']} cores of that machine and "
+            f"{paper['gpu_s']:.0f} s on its GPU."
+        )
+    return text
 
 
 KIND: Mapping[str, Callable[[], str]] = {

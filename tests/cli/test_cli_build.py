@@ -47,7 +47,7 @@ def test_the_xml_has_a_case_for_each_question(folder: Path) -> None:
 
 def test_the_summary_is_added_to_what_is_there(folder: Path) -> None:
     text = (folder / "summary.md").read_text()
-    assert text.startswith("Before.\n### Do not choose by the isolated fault")
+    assert text.startswith("Before.\n### Do not choose by the fault at the observer alone")
     assert "- **passes** `void`" in text
     assert "| Difference, pp |" in text
 

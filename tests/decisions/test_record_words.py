@@ -26,8 +26,10 @@ def test_a_reversal_is_the_headline_and_names_who_is_ahead_where(isolated, share
     assert said in made.sentences
     assert f"with only the observer faulted, {one} succeeds" in said
     assert f"under the shared fault, {other} does" in said
-    assert made.headline.startswith("Do not choose by the isolated fault")
-    assert f"{one} is ahead with only the observer faulted, {other}" in made.headline
+    assert made.headline == (
+        f"Do not choose by the fault at the observer alone: {one} is ahead there, {other} with the "
+        "fault shared."
+    )
 
 
 def test_a_change_without_two_effects_is_an_interaction_and_no_advice():

@@ -82,9 +82,9 @@ def test_the_code_that_is_here_gives_the_outcomes_of_the_reference(
 def same_arithmetic(made: RunProvenance) -> bool:
     from faultpath_quadrotor import native
 
-    fused = any(name in made.backend for name in ("avx512", "avx2"))
+    kernels = native.kernels()  # torch takes the same instructions, and adds in their order
     return (
-        fused == (native.numerics() == "fused")
+        (native.PORTABLE if kernels is None else kernels.isa) in made.backend
         and made.processor.partition(" ")[0] == processor().partition(" ")[0]
         and made.packages["torch"].partition("+")[0] == packages()["torch"].partition("+")[0]
     )

@@ -111,7 +111,7 @@ def test_the_engine_is_installed_and_audits_without_compiler_or_extra(
     assert "Correct inputs" in called(command, "audit", toy, *ASKED, *flown, **outside)
     assert (run / "report.html").is_file()
     shown = called(command, "demo", "--out", tmp_path / "demo", **outside)
-    assert "Do not choose by the isolated fault" in shown
+    assert "Do not choose by the fault at the observer alone" in shown
     assert (tmp_path / "demo" / "report.html").is_file()
 
     page = (ROOT / "docs" / "faq.md").read_text("utf-8")

@@ -9,7 +9,9 @@ import pytest
 
 from faultpath.cli.main import main
 from faultpath.core.errors import UserError
+from faultpath.systems import ComposedSystem, FunctionPlant, writes
 from faultpath.systems.checks.check import check_system
+from faultpath.systems.checks.names import other_names
 from faultpath.systems.checks.room import ENOUGH, diverged, successes, without_room
 from faultpath.trials import Outcome, Status, SystemSpec, load_system
 from faultpath.trials.question import CheckQuestion
@@ -103,6 +105,39 @@ def test_a_check_says_that_a_system_is_at_its_ceiling():
     trials = check_system(load_system(spec), spec, asked, lambda done, known: None).checks[0]
     assert trials.status == "passed"
     assert trials.remarks[0].startswith("Variant 'calibrated' succeeds in all of 20 checked scenes")
+
+
+def test_modules_that_stand_for_each_other_under_two_names_are_a_remark():
+    def cart(second: str):
+        @writes("slope", name=second)
+        def nominal(speed):
+            return speed
+
+        @writes("slope")
+        def observer(speed):
+            return 2 * speed
+
+        @writes("push")
+        def controller(slope):
+            return -slope
+
+        plant = FunctionPlant(
+            lambda rng: {"speed": rng.uniform()},
+            lambda state, push, rng: {"speed": state["speed"] + push},
+            observes={"speed": "speed"},
+            action="push",
+            steps=2,
+            dt_s=0.1,
+            succeeded=lambda episode: True,
+        )
+        variants = {"old": [observer, controller], "new": [nominal, controller]}
+        units = dict.fromkeys(("speed", "slope", "push"), "1")
+        return ComposedSystem("cart", plant, variants, units)
+
+    (said,) = other_names(cart("nominal"), ["old", "new"])
+    assert said.startswith("Modules 'observer' of old and 'nominal' of new read speed and write")
+    assert other_names(cart("observer"), ["old", "new"]) == ()
+    assert {p.split(".")[0] for p in cart("observer").variants["new"].consumers} >= {"observer"}
 
 
 def test_rounding_is_told_from_dependence_by_its_size():

@@ -57,6 +57,23 @@ def test_what_is_declared_wrongly_is_named(toy: type, attribute: str, value: obj
     assert said.isprintable()
 
 
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("missed m", "metric 'missed m' has ' ' in its name: use small letters"),
+        ("Missed", "has 'M' in its name"),
+        ("2nd", "has '2' in its name"),
+        ("", "has no name"),
+        ("time_s", "metric 'time_s' is a column of the table: rename it"),
+    ],
+)
+def test_the_odd_character_of_a_metric_is_shown(toy: type, name: str, said: str) -> None:
+    metrics = {name: next(iter(toy.metrics.values()))}  # pyright: ignore[reportAttributeAccessIssue]
+    with pytest.raises(SystemMistake) as refused:
+        check_system(type("Mine", (toy,), {"metrics": metrics})(), "mine.py:create")
+    assert said in str(refused.value)
+
+
 @pytest.mark.parametrize("attribute", ["data_files", "parts"])
 @pytest.mark.parametrize("value", [None, 3, "one", (3,), Mute(), property(failing)])
 def test_paths_that_are_none_are_named(toy: type, attribute: str, value: object) -> None:

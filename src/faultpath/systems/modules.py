@@ -24,6 +24,7 @@ def writes(
     past: str | Sequence[str] = (),
     before: Any = None,
     of: Callable[[], Any] | None = None,
+    name: str = "",
 ) -> Callable[[Callable[..., Any]], "FunctionModule"]:
     """Make a function a module that writes `source`: `@writes("push")` above its `def`.
 
@@ -41,12 +42,16 @@ def writes(
         past: Arguments that get the value of the step before.
         before: Value of `source` before the first step, of one scene, for readers of its past.
         of: Makes the objects of one scene.
+        name: Name of the module; default the function's. An audit faults modules of one name
+            together: give it to a function that takes another's place in a variant.
 
     Raises:
         SystemMistake: The function takes no names, or has no such argument.
     """
     late = (past,) if isinstance(past, str) else tuple(past)
-    return lambda function: FunctionModule(function, source, late, before, {}, of)
+    return lambda function: FunctionModule(
+        function, source, late, before, {}, of, name or function.__name__
+    )
 
 
 class FunctionModule(Module):
@@ -60,8 +65,9 @@ class FunctionModule(Module):
         before: Any,
         values: dict[str, Any],
         of: Callable[[], Any] | None,
+        name: str,
     ) -> None:
-        self.name, self.writes = function.__name__, (source,)
+        self.name, self.writes = name, (source,)
         self._function, self._past, self._before, self._given = function, past, before, values
         self._of = of
         parameters = dict(signature(function).parameters)
@@ -101,7 +107,9 @@ class FunctionModule(Module):
         """
         values = self._given | values
         source = self.writes[0]
-        return FunctionModule(self._function, source, self._past, self._before, values, self._of)
+        return FunctionModule(
+            self._function, source, self._past, self._before, values, self._of, self.name
+        )
 
     def __str__(self) -> str:
         """Return its name and the numbers that it was given."""

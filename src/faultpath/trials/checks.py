@@ -81,15 +81,8 @@ _PROMISED: Mapping[str, tuple[Callable[[Any], bool], str]] = {
         "give what `read_interface` returns",
     ),
     "metrics": (
-        _mapping(
-            lambda name, metric: (
-                isinstance(metric, Metric)
-                and re.fullmatch(r"[a-z][a-z0-9_]*", str(name)) is not None
-                and name not in _COLUMNS
-            )
-        ),
-        "map names to Metrics; a name has small letters, digits and '_', and is none that the "
-        "table of outcomes has already",
+        _mapping(lambda name, metric: isinstance(name, str) and isinstance(metric, Metric)),
+        "map names to Metrics",
     ),
     "ends": (
         _mapping(lambda key, words: isinstance(key, Status) and isinstance(words, str)),
@@ -119,6 +112,16 @@ def check_system(system: System, name: str) -> None:
         values[attribute] = _declared(system, attribute, label)
         if not holds(values[attribute]):
             raise SystemMistake(f"{label}: `{attribute}` is {shown(values[attribute])}: {advice}")
+    for metric in values["metrics"]:
+        if metric in _COLUMNS:
+            raise SystemMistake(f"{label}: metric '{metric}' is a column of the table: rename it")
+        wrong = re.sub(r"^[a-z][a-z0-9_]*", "", metric)
+        if wrong or not metric:
+            where = f"has {wrong[0]!r} in its name" if wrong else "has no name"
+            raise SystemMistake(
+                f"{label}: metric '{metric}' {where}: use small letters, digits and '_', a letter "
+                "first"
+            )
     for key, variant in values["variants"].items():
         try:
             wire(values["interface"], variant.bindings, variant.consumers, variant.privileged, 0)

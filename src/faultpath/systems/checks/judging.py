@@ -9,6 +9,7 @@ import numpy as np
 
 from faultpath.core.results import Result
 from faultpath.systems.checks.blocks import MISTAKES, TRIALS, RecordedBlock
+from faultpath.systems.checks.names import other_names
 from faultpath.systems.checks.room import diverged, successes, without_room
 from faultpath.trials import System, Variant
 from faultpath.trials.attempt import Done
@@ -225,7 +226,9 @@ def _reads(name: str, seen: Seen) -> Check:
     """Check that what is declared to be read is read."""
     failures = tuple(unread((v, count) for v, run in seen.firsts() for count in run.counts))
     taps = sum(len({read.tap for read in run.reads}) for _, run in seen.firsts())
-    return Check(name=name, says=f"{taps} taps declared and read", failures=failures)
+    remarks = other_names(seen.system, [variant for variant, _ in seen.firsts()])
+    says = f"{taps} taps declared and read"
+    return Check(name=name, says=says, failures=failures, remarks=remarks)
 
 
 def _delivery(name: str, seen: Seen) -> Check:
