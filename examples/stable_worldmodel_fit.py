@@ -72,7 +72,7 @@ def fitted(pictures, actions, seed, augmented, epochs):
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 1e-3, total_steps=steps)
     order, errors = torch.Generator().manual_seed(seed), torch.Generator().manual_seed(seed + 100)
     for epoch in range(epochs):
-        told = []
+        losses = []
         for rows in torch.randperm(len(pictures), generator=order).split(64)[: steps // epochs]:
             seen = torch.from_numpy(pictures[rows]).flatten(0, 1).movedim(3, 1) / 255
             if augmented:
@@ -86,8 +86,8 @@ def fitted(pictures, actions, seed, augmented, epochs):
             (ahead + rest).backward()
             optimiser.step()
             schedule.step()
-            told.append([float(ahead.detach()), float(rest.detach())])
-        print(epoch, *np.mean(told, axis=0).round(4), flush=True)
+            losses.append([float(ahead.detach()), float(rest.detach())])
+        print(epoch, *np.mean(losses, axis=0).round(4), flush=True)
     return model
 
 

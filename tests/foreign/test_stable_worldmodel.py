@@ -103,7 +103,7 @@ def test_a_rectified_picture_is_that_of_a_calibrated_camera(example, model):
 
 
 def test_it_is_audited(example):
-    found = audit(
+    run = audit(
         example.create(),
         baseline="plain",
         repair="rectified",
@@ -112,7 +112,7 @@ def test_it_is_audited(example):
         scenes=2,
         workers=0,
     )
-    names = [path.name for path in found.record.paths]
+    names = [path.name for path in run.record.paths]
     assert names == ["correct", "goal", "observation", "shared"]
 
 
