@@ -1,4 +1,4 @@
-"""A rover docks by a rangefinder: `docs/audit-your-own-system.md` goes through this file.
+"""A rover docks by a rangefinder: `docs/own-loop.md` goes through this file.
 
 Two modules. The approach brakes along a speed profile over the range that is left. The
 speedometer reconstructs the speed from successive ranges. Baseline `wheels`: the approach reads

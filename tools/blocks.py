@@ -230,11 +230,22 @@ def code(place: str, part: str, *words: str) -> str:
     return fence(" ".join(["python", *words]), parts[part].rstrip().strip("\n"))
 
 
-def template(kind: str, name: str) -> str:
-    """Return the file that `faultpath init NAME --with KIND` writes."""
+def template(kind: str, name: str, *parts: str) -> str:
+    """Return the file that `faultpath init NAME --with KIND` writes, or parts of it.
+
+    A part is a function, by its name; `imports` is what stands above the first one.
+    """
     folder = ROOT / "src" / "faultpath" / "systems" / "templates"
-    text = (folder / f"{kind}.py.txt").read_text("utf-8")
-    return fence("python", text.replace("NAME", name).rstrip())
+    text = (folder / f"{kind}.py.txt").read_text("utf-8").replace("NAME", name).rstrip()
+    if not parts:
+        return fence("python", text)
+    head, *functions = text.split("\n\n\n")
+    pieces = {"imports": head} | {
+        re.findall(r"^def (\w+)", function, re.MULTILINE)[0]: function for function in functions
+    }
+    if unknown := [part for part in parts if part not in pieces]:
+        raise Wrong(f"template {kind} has no part '{unknown[0]}'; it has {', '.join(pieces)}")
+    return fence("python", "\n\n\n".join(pieces[part] for part in parts))
 
 
 def fence(info: str, body: str) -> str:

@@ -1,6 +1,6 @@
 """The table of what every audit of the documents came to."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from blocks import Wrong, difference, flown, load
@@ -15,7 +15,7 @@ PAGES = {
     "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor-results"),
     "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor-results"),
     "toy": ("Cart", "tutorial"),
-    "dock": ("Docking boat", "audit-your-own-system"),
+    "dock": ("Docking rover", "own-loop"),
     "pendulum": ("Pendulum of Gymnasium", "gymnasium"),
     "learned-pendulum": ("Learned world model", "learned-world-model"),
     "rotorpy": ("RotorPy", "rotorpy"),
@@ -47,10 +47,31 @@ class Effect(NamedTuple):
 class Audit(NamedTuple):
     """An audit of the table; `turns` says by module what is decided of shared against alone."""
 
-    title: str
+    system: str
+    fault: str
+    """Empty for the one fault of its page."""
     repair: str
     effects: Mapping[str, Effect]
     turns: Mapping[str, str]
+
+    @property
+    def words(self) -> dict[str, str]:
+        """What the test at each module says of deployment."""
+        shared = self.effects["shared"]
+        return {
+            name: verdict(self.effects[name], shared, turn) for name, turn in self.turns.items()
+        }
+
+    @property
+    def module(self) -> str:
+        """The module that tells most."""
+        words, effects = self.words, self.effects
+        return min(words, key=lambda name: (WORDS.index(words[name]), -abs(effects[name].value)))
+
+    @property
+    def word(self) -> str:
+        """What the test at that module says of deployment."""
+        return self.words[self.module]
 
 
 def verdict(alone: Effect, shared: Effect, turn: str) -> str:
@@ -66,12 +87,12 @@ def verdict(alone: Effect, shared: Effect, turn: str) -> str:
 
 
 def table() -> str:
-    """Return every audit in a row: without a fault, at the module that tells most, and shared."""
+    """Return every audit: without a fault, at the module that tells most, and shared."""
     return "\n".join(
         [
             "| system, repair | no fault | fault at one module | fault shared | isolated test |",
             "| :-- | --: | --: | --: | :-- |",
-            *map(_row, (*_references(), *_cameras(), *_sensors())),
+            *map(_row, grouped()),
         ]
     )
 
@@ -92,7 +113,16 @@ def audits(page: str) -> str:
 
 def _success(effect: model.Effect) -> str:
     rates = (wording.plain(rate, 1) for rate in (effect.baseline_percent, effect.repair_percent))
-    return f"{' → '.join(rates)}, {_shown(_effect(effect))}"
+    return f"{' → '.join(rates)}, {_shown([_effect(effect)])}"
+
+
+def grouped() -> list[list[Audit]]:
+    """Return the audits; those of a repair whose faults come to the same are a group."""
+    groups: dict[object, list[Audit]] = {}
+    for audit in (*_references(), *_cameras(), *_sensors()):
+        signs = audit.effects[audit.module].sign, audit.effects["shared"].sign
+        groups.setdefault((audit.system, audit.repair, audit.word, signs), []).append(audit)
+    return list(groups.values())
 
 
 def _references() -> Iterator[Audit]:
@@ -100,7 +130,8 @@ def _references() -> Iterator[Audit]:
         record = load(name).record
         effects = {effect.path: _effect(effect) for effect in record.effects}
         turns = {change.isolated: change.turn for change in record.changes}
-        yield Audit(f"[{title}]({{docs}}/{page}.md)", f"`{record.question.repair}`", effects, turns)
+        system, repair = f"[{title}]({{docs}}/{page}.md)", f"`{record.question.repair}`"
+        yield Audit(system, "", repair, effects, turns)
 
 
 def _effect(effect: model.Effect) -> Effect:
@@ -111,32 +142,40 @@ def _effect(effect: model.Effect) -> Effect:
 
 
 def _cameras() -> Iterator[Audit]:
-    for audit in audits_of_rooms("marked"):
-        title = f"[One camera]({{docs}}/latent-camera.md), {FAULTS[audit['fault']]}"
-        effects = {name: Effect(*effect) for name, effect in audit["effects"].items()}
-        yield Audit(title, f"`{audit['repair']}`", effects, audit["turns"])
+    for rooms, name in {"marked": "One camera", "blank": "One camera, blank rooms"}.items():
+        system = f"[{name}]({{docs}}/latent-camera.md)"
+        for audit in audits_of_rooms(rooms):
+            effects = {name: Effect(*effect) for name, effect in audit["effects"].items()}
+            repair, fault = f"`{audit['repair']}`", FAULTS[audit["fault"]]
+            yield Audit(system, fault, repair, effects, audit["turns"])
 
 
 def _sensors() -> Iterator[Audit]:
     for audit in audits_of("sensors"):
-        title = f"[Quadrotor's filter]({{docs}}/state-errors.md), {audit['fault']}"
+        system = "[Quadrotor's filter]({docs}/state-errors.md)"
         effects = {name: Effect(*effect) for name, effect in audit["effects"].items()}
-        yield Audit(title, audit["repair"], effects, audit["turns"])
+        yield Audit(system, audit["fault"], audit["repair"], effects, audit["turns"])
 
 
-def _row(audit: Audit) -> str:
-    effects, shared = audit.effects, audit.effects["shared"]
-    words = {name: verdict(effects[name], shared, turn) for name, turn in audit.turns.items()}
-    module = min(words, key=lambda name: (WORDS.index(words[name]), -abs(effects[name].value)))
+def _row(audits: Sequence[Audit]) -> str:
+    first, word = audits[0], audits[0].word
+    modules = dict.fromkeys(PLACES.get(audit.module, audit.module) for audit in audits)
+    alone = [audit.effects[audit.module] for audit in audits]
     cells = (
-        f"{audit.title}, {audit.repair}",
-        _shown(effects["correct"]).partition(" [")[0],
-        f"{PLACES.get(module, module)} {_shown(effects[module])}",
-        _shown(shared),
-        f"**{words[module]}**" if words[module] == REVERSAL else words[module],
+        ", ".join(filter(None, (first.system, *(audit.fault for audit in audits), first.repair))),
+        _shown([audit.effects["correct"] for audit in audits]).partition(" [")[0],
+        f"{' or '.join(modules)} {_shown(alone)}",
+        _shown([audit.effects["shared"] for audit in audits]),
+        f"**{word}**" if word == REVERSAL else word,
     )
     return f"| {' | '.join(cells)} |"
 
 
-def _shown(effect: Effect) -> str:
-    return difference(*effect[:3], bold=bool(effect.sign))
+def _shown(effects: Sequence[Effect]) -> str:
+    """Return an effect with its interval, or the least and the greatest of several."""
+    least, greatest = min(effects), max(effects)
+    if len({effect.value for effect in effects}) == 1:
+        return difference(*least[:3], bold=bool(least.sign))
+    bold = all(effect.sign for effect in effects)
+    ends = " to ".join(wording.signed(effect.value, 1) for effect in (least, greatest))
+    return f"**{ends}**" if bold else ends

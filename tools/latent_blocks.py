@@ -8,7 +8,7 @@ from blocks import ROOT, Wrong
 
 from faultpath.decisions import wording
 from faultpath.decisions.phrases import counted
-from faultpath.decisions.tables import Entry, Line, Table, line
+from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
 
 PLACE = ROOT / "experiments" / "latent-camera"
@@ -118,13 +118,18 @@ def said(rooms: str) -> str:
             "Of `plain`, no difference is detected between the error in both pictures and in the "
             "live one alone."
         )
-    sentences += [_sentence(audit) for audit in audits]
+    alike: dict[str, list[str]] = {}
+    for audit in audits:
+        alike.setdefault(_sentence(audit), []).append(FAULTS[audit["fault"]])
+    for sentence, faults in alike.items():
+        sentences.append(sentence.format(wording.series(faults)))
     return "\n".join(f"- {sentence}" for sentence in sentences)
 
 
 def _sentence(audit: Mapping[str, Any]) -> str:
+    """Return what an audit shows, with braces where its fault is to stand."""
     sides = {path: SIDES[effect[3]] for path, effect in audit["effects"].items()}
-    text = f"`{audit['repair']}`, {FAULTS[audit['fault']]}: {sides[SHARED]} with the error in both"
+    text = f"`{audit['repair']}`, {{}}: {sides[SHARED]} with the error in both"
     text += f" pictures, {sides[ALONE]} with it in the live one alone."
     turn = audit["turns"].get(ALONE, "none")
     words = {
@@ -132,6 +137,26 @@ def _sentence(audit: Mapping[str, Any]) -> str:
         "interaction": "The two effects differ significantly.",
     }
     return f"{text} {words[turn]}" if turn in words else text
+
+
+def stops(library: str) -> str:
+    """Return after how many scenes sequential audits stopped, and where each repair is ahead."""
+    rows: dict[str, dict[str, Any]] = {}
+    for row in _read(f"{library}-stops"):
+        rows.setdefault(row["repair"], {})[row["until"]] = row
+    lines: list[Line] = []
+    for repair, until in rows.items():
+        every, first = until["all-decided"], until["decided"]
+        counts = (str(row["scenes"]) if row["reached"] else MISSING for row in (first, every))
+        shares = (every["break_even"][path] or MISSING for path in (ALONE, SHARED))
+        lines.append(line(repair, *counts, *shares))
+    columns = (
+        "scenes until both pictures are decided",
+        "scenes until all four cases are",
+        f"by the share of trials with the error, {PATHS[ALONE]}",
+        PATHS[SHARED],
+    )
+    return _grid("repair", columns, lines)
 
 
 def flown(rooms: str) -> str:
@@ -170,6 +195,7 @@ KIND = {
     "effects": effects,
     "said": said,
     "flown": flown,
+    "stops": stops,
     "moves": moves,
 }
-"""Functions that fill `latent` blocks; the last word names the rooms."""
+"""Functions that fill `latent` blocks; the last word names the rooms, or the library."""

@@ -27,8 +27,8 @@ def test_a_reversal_is_the_headline_and_names_who_is_ahead_where(isolated, share
     assert f"with only the observer faulted, {one} succeeds" in said
     assert f"under the shared fault, {other} does" in said
     assert made.headline == (
-        f"Do not choose by the fault at the observer alone: {one} is ahead there, {other} with the "
-        "fault shared."
+        f"Do not choose by the fault at the observer alone: {one} is ahead there, {other} with it "
+        "shared."
     )
 
 

@@ -68,9 +68,9 @@ def test_trainings_are_counted_where_there_are_several() -> None:
     one = case(1, -1, reversal=True)
     assert by_training(one) == ""
     assert by_training(one.model_copy(update={"reversing": 1})) == ""
-    for count, verb in ((0, "rank"), (1, "ranks"), (3, "rank")):
+    for count, verb in ((0, "show"), (1, "shows"), (3, "show")):
         several = one.model_copy(update={"reversing": count, "trainings": 3})
-        assert f"{count} of 3 trained models {verb} the two" in by_training(several)
+        assert f"{count} of 3 trained models {verb} the reversal" in by_training(several)
         assert by_training(several) in detail([several])
 
 

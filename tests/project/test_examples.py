@@ -12,6 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 ELSEWHERE = {
     "basilisk_attitude.py": "tests/foreign/test_basilisk.py",
     "do_mpc_masses.py": "tests/foreign/test_do_mpc.py",
+    "guarded_policy.py": "tests/foreign/test_policies.py",
     "latent_camera.py": "tests/learning/test_latent_camera.py",
     "latent_camera_pictures.py": "tests/learning/test_latent_camera.py",
     "learned_pendulum.py": "tests/learning/test_learned_pendulum.py",

@@ -26,9 +26,17 @@ def test_only_what_is_decided_makes_a_word(alone, shared, turn, word) -> None:
 
 def test_the_table_has_every_audit_and_the_module_that_says_least() -> None:
     head, _, *rows = found_blocks.table().splitlines()
-    studies = (*found_blocks.audits_of("sensors"), *found_blocks.audits_of_rooms("marked"))
-    assert len(rows) == len(found_blocks.PAGES) + len(studies)
+    rooms = (found_blocks.audits_of_rooms(name) for name in ("marked", "blank"))
+    studies = [*found_blocks.audits_of("sensors"), *(audit for each in rooms for audit in each)]
+    groups = found_blocks.grouped()
+    assert sum(map(len, groups)) == len(found_blocks.PAGES) + len(studies)
+    assert len(rows) == len(groups)
     assert all(row.count("|") == head.count("|") for row in rows)
     docking = next(row for row in rows if "`ranges`" in row)
     assert "| speedometer **" in docking
     assert docking.endswith("| **reversal** |")
+
+
+def test_audits_of_opposite_signs_never_share_a_row() -> None:
+    for group in found_blocks.grouped():
+        assert len({(audit.word, audit.effects["shared"].sign) for audit in group}) == 1

@@ -171,6 +171,7 @@ def test_a_block_is_filled_from_a_run() -> None:
         ("<!-- begin:table:none -->\n<!-- end:table:none -->", "none/record.json is missing"),
         ("<!-- begin:tabel:toy -->\n<!-- end:tabel:toy -->", "no block 'tabel'"),
         ("<!-- begin:code:examples/dock.py:x -->\n<!-- end:code:examples/dock.py:x -->", "no part"),
+        ("<!-- begin:template:numpy:a:x -->\n<!-- end:template:numpy:a:x -->", "no part 'x'"),
     ],
 )
 def test_a_wrong_block_is_refused(text: str, said: str) -> None:

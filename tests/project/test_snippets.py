@@ -1,12 +1,13 @@
 """Everything that README and docs show as code runs, and prints what they say it prints.
 
 Two kinds of fenced block count. The ``python`` blocks of a document run one after another, as one
-program. A ``console`` block is a session: lines that start with ``$ `` are commands, the lines
-below each are its output, in which ``...`` stands for anything; a command without output below
-only has to succeed. Commands of ``faultpath`` and ``python`` are run; the rest (git, make, pip) are
-set-up and are not. All commands share one directory, which holds ``examples/``. The
-word ``not-run`` after the language (```` ```console not-run ````) keeps a block out, for what takes
-minutes. An audit of every scene of a library whose output is not shown flies eight of them. Design
+program, beside the systems that its ``faultpath init`` commands write. A ``console`` block is a
+session: lines that start with ``$ `` are commands, the lines below each are its output, in which
+``...`` stands for anything; a command without output below only has to succeed. Commands of
+``faultpath`` and ``python`` are run; the rest (git, make, pip) are set-up and are not. All commands
+share one directory, which holds ``examples/``. The word ``not-run`` after the language
+(```` ```console not-run ````) keeps a block out, for what takes minutes. An audit of every scene of
+a library whose output is not shown flies eight of them. Design
 notes are about the past and are left alone.
 """
 
@@ -28,6 +29,7 @@ DOCUMENTS = [
 ]
 FENCE = re.compile(r"^```(?P<info>[^\n`]+)\n(?P<body>.*?)^```\s*$", flags=re.MULTILINE | re.DOTALL)
 RUNNABLE = re.compile(r"(?:\w+=\S* )*(?:faultpath|python)\b")
+INIT = re.compile(r"faultpath init (\w+)")
 OF_ALL_SCENES = re.compile(r"faultpath audit (?!.*--(scenes|study)\b)")
 LOOSELY = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
@@ -57,6 +59,14 @@ def session(text: str) -> Iterator[tuple[str, str]]:
             yield line.strip(), output
 
 
+def initialise(line: str, workspace: Path, run: Run) -> CompletedProcess[str]:
+    """Carry out a `faultpath init` command, whether or not another test has done so."""
+    (name,) = INIT.findall(line)
+    for file in (f"{name}.py", f"test_{name}.py"):
+        (workspace / file).unlink(missing_ok=True)
+    return run(line, shell=True)
+
+
 @pytest.fixture(scope="session")
 def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """One folder for all documents, so that an audit that several show is run once."""
@@ -67,7 +77,11 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
 def test_python_of_a_document_runs(document: Path, workspace: Path, run: Run) -> None:
-    source = program(document.read_text(encoding="utf-8"))
+    text = document.read_text(encoding="utf-8")
+    for line, _ in session(text):
+        if INIT.match(line):
+            initialise(line, workspace, run)
+    source = program(text)
     script = workspace / f"{document.stem}_snippets.py"
     script.write_text(source, encoding="utf-8")
     done = run(str(script))
@@ -75,13 +89,14 @@ def test_python_of_a_document_runs(document: Path, workspace: Path, run: Run) ->
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
-def test_console_of_a_document_runs(document: Path, run: Run) -> None:
+def test_console_of_a_document_runs(document: Path, workspace: Path, run: Run) -> None:
     checker = doctest.OutputChecker()
     for line, output in session(document.read_text(encoding="utf-8")):
         if not RUNNABLE.match(line):
             continue
         brief = OF_ALL_SCENES.match(line) and not output.strip()
-        done = run(line + " --scenes 8" * bool(brief), shell=True)
+        line += " --scenes 8" * bool(brief)
+        done = initialise(line, workspace, run) if INIT.match(line) else run(line, shell=True)
         assert done.returncode == 0, f"$ {line}\n{done.stdout}{done.stderr}"
         if output.strip():
             shown = checker.check_output(output, done.stdout, LOOSELY)

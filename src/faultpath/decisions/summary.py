@@ -55,11 +55,11 @@ def reversed_at(record: DecisionRecord) -> list[Effect]:
 
 
 def _turned(record: DecisionRecord, main: Effect, turned: Sequence[Effect]) -> Iterator[str]:
-    modules = " or the ".join(effect.path for effect in turned)
+    modules = " or ".join(effect.path for effect in turned)
     advice = f"Do not choose by the fault at the {modules} alone"
     if main.path == SHARED or main in turned:
         one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
-        yield f"{advice}: {one} is ahead there, {other} with the fault shared."
+        yield f"{advice}: {one} is ahead there, {other} with it shared."
     else:
         yield f"{_said(record, [[main]])} {advice}: sharing reverses the ranking."
     yield f"{advice}: sharing reverses the ranking."
