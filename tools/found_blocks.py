@@ -56,7 +56,7 @@ class Audit(NamedTuple):
 
     @property
     def words(self) -> dict[str, str]:
-        """What the test at each module says of deployment."""
+        """Words for what the test at each module says of deployment."""
         shared = self.effects["shared"]
         return {
             name: verdict(self.effects[name], shared, turn) for name, turn in self.turns.items()
@@ -70,7 +70,7 @@ class Audit(NamedTuple):
 
     @property
     def word(self) -> str:
-        """What the test at that module says of deployment."""
+        """The word for the test at that module."""
         return self.words[self.module]
 
 

@@ -1,7 +1,7 @@
 """Say how many scenes sequential audits took, and from which share of trials with the fault on
 their repair is ahead.
 
-    python experiments/latent-camera/stops.py RUN [RUN ...] > experiments/latent-camera/selection-stops.json
+    python experiments/latent-camera/stops.py RUN [RUN ...] > selection-stops.json
 """
 
 import json

@@ -30,7 +30,7 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     if record.stopping:
         parts += [Text(f"A sequential audit: {record.stopping}.")]
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
-    if any(found.result.kind in ("interval", "two pieces") for found in record.break_even):
+    if any(share.result.kind in ("interval", "two pieces") for share in record.break_even):
         explained = "Break-even: the share of trials with the fault at which neither is ahead."
         parts += [Text(explained, style="dim")]
     for said in not_standing(record):
