@@ -202,11 +202,11 @@ $(BENCH_JAX)/ready: benchmarks/requirements-jax.txt
 
 # Basilisk wants older versions of what the tools of development pin, so this takes what pip finds,
 # except of torch, whose pin has a build for the CPU.
-.venv-foreign/ready: pyproject.toml
+.venv-foreign/ready: pyproject.toml constraints.txt
 	@$(CHECK_PYTHON)
 	@echo "Installing the packages that examples audit into .venv-foreign"
 	@rm -rf .venv-foreign && $(PYTHON) -m venv .venv-foreign
 	@.venv-foreign/bin/python -m pip install --disable-pip-version-check --quiet \
-	  -e '.[rotorpy,do-mpc,basilisk,gymnasium,inspect,policies]' "$$(grep '^torch==' constraints.txt)" \
+	  -e '.[rotorpy,do-mpc,basilisk,gymnasium,inspect,policies,stable-worldmodel]' "$$(grep '^torch==' constraints.txt)" \
 	  hypothesis pytest pytest-xdist
 	@touch $@

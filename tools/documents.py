@@ -43,6 +43,7 @@ TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md")
 KINDS: Mapping[str, Any] = {
     **blocks.KINDS,
     "carry": carry_blocks.KIND,
+    "audits": found_blocks.audits,
     "found": found_blocks.table,
     "latent": latent_blocks.KIND,
     "map": map_blocks.KIND,

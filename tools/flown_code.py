@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from contextlib import chdir
 from functools import cache
+from hashlib import sha256
+from importlib.util import find_spec
 from pathlib import Path
 
 from faultpath.core.errors import UserError
@@ -24,14 +26,18 @@ def flown_by(origin: RunProvenance, system: str, options: Mapping[str, str]) -> 
     text = f"{done} by {commit}{' with uncommitted changes' if origin.dirty else ''}"
     if not origin.sources:
         return f"{text}, before runs kept digests of what flies: by older code than today's."
-    here = _state(system, tuple(sorted(options.items())))
-    if (here.files, here.data) == (origin.sources, origin.data):
+    here = _state(system, tuple(sorted(options.items())), tuple(origin.data))
+    flown = {name: sha for name, sha in origin.sources.items() if name in here.files or _here(name)}
+    if (here.files, here.data) == (flown, origin.data):
         return f"{text}; nothing that flew has changed since."
     return f"{text}; code{' or weights' if origin.data else ''} that flew changed since."
 
 
 @cache
-def _state(system: str, options: tuple[tuple[str, str], ...]) -> CodeState:
+def _state(
+    system: str, options: tuple[tuple[str, str], ...], data: tuple[str, ...] = ()
+) -> CodeState:
+    """Return the state of code and data here; `data` names the files that a run kept."""
     spec = SystemSpec(name=system, options=dict(options))
     with chdir(ROOT):
         try:
@@ -39,4 +45,15 @@ def _state(system: str, options: tuple[tuple[str, str], ...]) -> CodeState:
         except UserError as error:
             if not isinstance(error.__cause__, ModuleNotFoundError):
                 raise
-            return source_state(spec)  # it runs on a package that documents do without
+            # It runs on a package that documents do without.
+            places = {name: Path(system).parent / name for name in data}
+            digests = {
+                n: sha256(p.read_bytes()).hexdigest() for n, p in places.items() if p.is_file()
+            }
+            return source_state(spec).model_copy(update={"data": digests})
+
+
+def _here(source: str) -> bool:
+    """Return whether a source file is one of the project's, or of a package that is installed."""
+    package, _, rest = source.partition("/")
+    return not rest or find_spec(package) is not None

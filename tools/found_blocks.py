@@ -3,13 +3,14 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from blocks import Wrong, difference, load
+from blocks import Wrong, difference, flown, load
 from latent_blocks import FAULTS
 from latent_blocks import audits_of as audits_of_rooms
 from state_blocks import PLACES, audits_of
 
 from faultpath.decisions import model, wording
 
+WORLD_MODEL = "stable-worldmodel"
 PAGES = {
     "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor-results"),
     "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor-results"),
@@ -21,6 +22,11 @@ PAGES = {
     "do-mpc": ("do-mpc", "do-mpc"),
     "motulator": ("motulator", "motulator"),
     "basilisk": ("Basilisk", "basilisk"),
+    "stable-worldmodel-rectified-moved": ("stable-worldmodel, shifted by 2 px", WORLD_MODEL),
+    "stable-worldmodel-rectified-darker": ("stable-worldmodel, 30 % darker", WORLD_MODEL),
+    "stable-worldmodel-augmented-moved": ("stable-worldmodel, shifted by 2 px", WORLD_MODEL),
+    "stable-worldmodel-augmented-darker": ("stable-worldmodel, 30 % darker", WORLD_MODEL),
+    "lerobot": ("Relative actions as in LeRobot", "lerobot"),
 }
 """Title and page of the audits that reference runs hold, in the order of the table."""
 REVERSAL, MISSED, ALONE = "reversal", "missed by the isolated test", "only in the isolated test"
@@ -89,6 +95,25 @@ def table() -> str:
             *map(_row, grouped()),
         ]
     )
+
+
+def audits(page: str) -> str:
+    """Return success of baseline and repair, and their difference, for each audit of a page."""
+    names = [name for name, (_, place) in PAGES.items() if place == page]
+    titles = [effect.title for effect in load(names[0]).record.paths]
+    head = f"| repair, fault | {' | '.join(titles)} |", f"| :-- |{' --: |' * len(titles)}"
+    records = [load(name).record for name in names]
+    named = [f"`{record.question.repair}`, `{record.question.fault}`" for record in records]
+    rows = [
+        f"| {name} | {' | '.join(map(_success, record.effects))} |"
+        for name, record in zip(named, records, strict=True)
+    ]
+    return "\n".join([*head, *rows, "", flown(load(names[0]))])
+
+
+def _success(effect: model.Effect) -> str:
+    rates = (wording.plain(rate, 1) for rate in (effect.baseline_percent, effect.repair_percent))
+    return f"{' → '.join(rates)}, {_shown([_effect(effect)])}"
 
 
 def grouped() -> list[list[Audit]]:

@@ -16,8 +16,13 @@ ELSEWHERE = {
     "latent_camera.py": "tests/learning/test_latent_camera.py",
     "latent_camera_pictures.py": "tests/learning/test_latent_camera.py",
     "learned_pendulum.py": "tests/learning/test_learned_pendulum.py",
+    "lerobot_relative_actions.py": "tests/foreign/test_lerobot.py",
+    "lerobot_steps.py": "tests/foreign/test_lerobot.py",
     "motulator_drive.py": "tests/foreign/test_motulator.py",
     "rotorpy_wind.py": "tests/foreign/test_rotorpy.py",
+    "stable_worldmodel_camera.py": "tests/foreign/test_stable_worldmodel.py",
+    "stable_worldmodel_model.py": "tests/foreign/test_stable_worldmodel.py",
+    "stable_worldmodel_fit.py": "tests/foreign/test_stable_worldmodel.py",
 }
 """Examples that a test of their own runs."""
 EXAMPLES = sorted({*(ROOT / "examples").glob("*.py")} - {ROOT / "examples" / e for e in ELSEWHERE})

@@ -45,6 +45,7 @@ def other(digests: dict[str, str]) -> dict[str, str]:
     ("change", "says"),
     [
         (lambda made: {"sources": other(made.sources)}, "; code that flew changed since."),
+        (lambda made: {"sources": made.sources | {"absent/code.py": "0"}}, "nothing that flew has"),
         (lambda made: {"data": {"a": "0"}}, "; code or weights that flew changed since."),
         (lambda made: {"sources": {}}, "before runs kept digests of what flies: by older code"),
     ],

@@ -1,0 +1,125 @@
+"""stable-worldmodel's planner behind taps: the loop is theirs, and an error reaches who reads."""
+
+from contextlib import redirect_stdout
+from importlib import import_module
+from importlib.util import find_spec
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+if find_spec("stable_worldmodel") is None:  # importing it is the example's, which knows how
+    pytest.skip("stable-worldmodel is not installed", allow_module_level=True)
+
+from faultpath import audit
+from faultpath.faults import parse_fault
+from faultpath.trials import Arm
+from faultpath.trials.attempt import attempt
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENES = ("seed/20", "seed/21")
+
+
+@pytest.fixture(scope="module")
+def example():
+    """The example, with a planner of few samples."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(ROOT / "examples"))
+        module = import_module(Path("stable_worldmodel_camera.py").stem)
+        patch.setattr(module, "CEM", {"num_samples": 32, "n_steps": 3, "topk": 4})
+        yield module
+
+
+@pytest.fixture
+def model(example):
+    return import_module(Path("stable_worldmodel_model.py").stem)
+
+
+def attempted(system, variant, fault=None):
+    faults = ()
+    if fault:
+        faults = parse_fault(fault, system.interface, {}, 1.0).resolved(system.interface)
+    return attempt(system, Arm(variant=variant, faults=faults, seed=0), SCENES)
+
+
+def closest_px(example, scene):
+    """Return how near the goal their policy comes in their own `World`, with nothing of ours."""
+    swm, rooms = example.swm, example.Rooms()
+    start, _ = rooms.reset(seed=int(scene.removeprefix("seed/")))
+    world = swm.World("swm/TwoRoom-v1", 1, (example.SIDE, example.SIDE), disable_env_checker=True)
+    solver = swm.solver.CEMSolver(example.fitted("plain", 0), seed=0, **example.CEM)
+    prepare = dict.fromkeys(("pixels", "goal"), example.scaled)
+    world.set_policy(
+        swm.policy.WorldModelPolicy(
+            solver, example.PLAN, process={"action": example.SCALER}, transform=prepare
+        )
+    )
+    world.reset(seed=int(scene.removeprefix("seed/")))
+    world.envs.envs[0].unwrapped._set_goal_state(rooms.unwrapped.target_position.tolist())
+    distances = [float(start["distance"])]
+    for _ in range(example.STEPS):
+        world.infos["goal"] = start["goal_picture"][None, None]
+        with redirect_stdout(StringIO()):
+            action = world.policy.get_action(world.infos)
+        _, _, reached, _, world.infos = world.envs.step(action)
+        distances.append(world.infos["distance_to_target"].item())
+        if reached.all():
+            break
+    return min(distances)
+
+
+@pytest.mark.filterwarnings("ignore")  # theirs, of Gymnasium and NumPy
+def test_without_a_fault_the_loop_is_theirs(example):
+    outcomes = attempted(example.create(), "plain").outcomes
+    distances = [outcome.metrics["closest_px"] for outcome in outcomes]
+    assert distances == [closest_px(example, scene) for scene in SCENES]
+
+
+def test_a_calibrated_camera_changes_no_pixel(model):
+    picture = np.random.default_rng(0).integers(0, 256, (1, 64, 64, 3)).astype(np.uint8)
+    assert np.array_equal(model.Camera().transform(picture), picture)
+
+
+@pytest.mark.parametrize("fault", ["exposure:scale=0.85", "shift:offset=2/0"])
+def test_an_error_at_one_picture_reaches_that_picture_alone(example, fault):
+    system, channel = example.create(), fault.partition(":")[0]
+    clean = attempted(system, "plain").outcomes
+    for struck, spared in (("observation", "goal"), ("goal", "observation")):
+        result = attempted(system, "plain", f"{fault}@{struck}")
+        taps = {tap.consumer: tap for tap in result.taps}
+        assert taps[f"{struck}.{channel}"].faulted_steps > 0
+        assert taps[f"{spared}.{channel}"].faulted_steps == 0
+        assert result.outcomes != clean
+
+
+def test_a_rectified_picture_is_that_of_a_calibrated_camera(example, model):
+    camera = model.Camera(rectifies=True)
+    picture = example.Rooms().reset(seed=20)[0]["picture"][None]
+    assert np.array_equal(camera.transform(picture), picture)
+    camera.exposure, camera.shift = 0.7, np.array([2.0, -1.0])
+    apart = np.abs(camera.transform(picture).astype(int) - picture)
+    assert apart[:, 4:-4, 4:-4].max() <= 1  # what left the picture is lost
+
+
+def test_it_is_audited(example):
+    run = audit(
+        example.create(),
+        baseline="plain",
+        repair="rectified",
+        fault="exposure:scale=0.85",
+        library="training",
+        scenes=2,
+        workers=0,
+    )
+    names = [path.name for path in run.record.paths]
+    assert names == ["correct", "goal", "observation", "shared"]
+
+
+def test_the_models_are_fitted(example, tmp_path):
+    fit = import_module(Path("stable_worldmodel_fit.py").stem)
+    pictures, actions = fit.windows(64)
+    assert pictures.shape == (64, 5, 64, 64, 3)
+    assert actions.shape == (64, 4, 10)
+    for augmented in (False, True):
+        fit.fitted(pictures, actions, 0, augmented, epochs=1)
