@@ -25,7 +25,7 @@ unless_given = $(if $(filter $(1) $(1)=%,$(ARGS)),,$(1) $(2))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup setup-runtime prerequisites audit confirm reproduce train test test-pythons test-foreign fuzz statistics bench docs lint format clean distclean
+.PHONY: help setup setup-runtime prerequisites audit confirm reproduce train test test-pythons test-foreign fuzz statistics bench references docs lint format clean distclean
 
 help: ## Show this list
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -89,6 +89,9 @@ statistics: $(STAMPS)/dev ## Simulate what the statistics promise, and write its
 bench: $(BENCH)/ready $(BENCH_JAX)/ready $(STAMPS)/dev ## Measure side by side with other software; ARGS="ROW" for one
 	$(BENCH)/bin/python -m benchmarks $(ARGS)
 	$(BIN)/python tools/documents.py
+
+references: $(STAMPS)/dev ## Fly stored runs again whose code has changed; resumes; ARGS="--list" only looks
+	$(BIN)/python tools/references.py $(ARGS)
 
 docs: $(STAMPS)/dev ## Write what follows from numbers, and build/site; ARGS="--check" only looks
 	$(BIN)/python tools/documents.py $(ARGS)

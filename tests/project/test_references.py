@@ -1,0 +1,25 @@
+"""What flies stored runs again: which of them, in which order, and in which environment."""
+
+import sys
+
+import references
+
+
+def test_every_stored_audit_and_map_is_flown_again_and_the_quickest_first() -> None:
+    runs = references.by_time()
+    stored = {path.parent.name for path in references.REFERENCE.glob("*/record.json")}
+    assert stored - {*references.APART} <= {*runs}
+    times = [run.wall_s for run in runs.values()]
+    assert times == sorted(times)
+    for run in runs.values():
+        assert run.command[:2] in (("faultpath", "audit"), ("faultpath", "map"))
+        assert "--out" in run.command
+
+
+def test_an_example_of_another_package_runs_where_that_is_installed() -> None:
+    runs = references.by_time()
+    here = f"{sys.version_info.major}.{sys.version_info.minor}"
+    if here == "3.11":
+        assert references.environment(runs["motulator"]) == ".venv-3.12"
+        assert references.environment(runs["toy"]) == ".venv"
+    assert references.environment(runs["do-mpc"]).startswith(".venv")

@@ -1,0 +1,118 @@
+"""Fly reference runs again whose code has changed since, the quickest first.
+
+    python tools/references.py            fly all that are stale
+    python tools/references.py NAME ...   fly these, stale or not
+    python tools/references.py --list     say which are stale, and how long each took
+
+Runs fly from a checkout of the last commit, in `build/references`. Each becomes the reference as
+soon as it ends; one that was cut short is resumed. `carry-over` and `paper` have commands of their
+own, which their pages show.
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import documents
+from blocks import REFERENCE, ROOT
+from flown_code import flown_by
+
+from faultpath.trials.provenance import RunProvenance
+
+TREE = ROOT / "build" / "references"
+APART = ("carry-over", "paper")
+STALE = "changed since"
+SYSTEMS = {
+    "basilisk": "Basilisk",
+    "do_mpc": "do_mpc",
+    "rotorpy": "rotorpy",
+    "stable_worldmodel": "stable_worldmodel",
+}
+"""Packages that examples need, by how the names of these begin; `make test-foreign` has them."""
+
+
+def main() -> None:
+    """Carry out the command line."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--list", action="store_true", help="fly nothing")
+    options = parser.parse_args()
+    runs = by_time()
+    if unknown := sorted({*options.names} - {*runs}):
+        parser.error(f"no reference run is called {unknown[0]}: there are {', '.join(runs)}")
+    chosen = options.names or [name for name, run in runs.items() if stale(run)]
+    if options.list:
+        for name, run in runs.items():
+            state = "stale" if stale(run) else "as it was flown"
+            print(f"{name:36s}{run.wall_s:6.0f} s  {state}")
+        return
+    checkout()
+    for name in chosen:
+        print(f"{name}: {' '.join(runs[name].command)}", flush=True)
+        fly(name, runs[name])
+    if chosen:
+        sys.exit(documents.main(["--images"]))
+
+
+def by_time() -> dict[str, RunProvenance]:
+    """Return the origin of each reference run, the quickest first."""
+    runs = {
+        path.parent.name: RunProvenance.model_validate_json(path.read_bytes())
+        for path in REFERENCE.glob("*/provenance.json")
+        if path.parent.name not in APART
+    }
+    return dict(sorted(runs.items(), key=lambda item: item[1].wall_s))
+
+
+def stale(run: RunProvenance) -> bool:
+    """Return whether code or weights that flew have changed."""
+    command = run.command
+    system = command[2]
+    options = {"wind": command[command.index("--wind") + 1]} if "--wind" in command else {}
+    return STALE in flown_by(run, system, options)
+
+
+def checkout() -> None:
+    """Bring the checkout to the last commit; runs in it stay."""
+    if not TREE.is_dir():
+        TREE.parent.mkdir(exist_ok=True)
+        subprocess.run(("git", "worktree", "prune"), cwd=ROOT, check=True)
+        add = ("git", "worktree", "add", "--detach", str(TREE), "HEAD")
+        subprocess.run(add, cwd=ROOT, check=True)
+    head = subprocess.run(("git", "rev-parse", "HEAD"), cwd=ROOT, check=True, capture_output=True)
+    subprocess.run(("git", "checkout", "-q", head.stdout.decode().strip()), cwd=TREE, check=True)
+    for kernels in (ROOT / "quadrotor/src/faultpath_quadrotor/native").glob("kernels-*.so"):
+        shutil.copy(kernels, TREE / kernels.relative_to(ROOT).parent)
+
+
+def fly(name: str, run: RunProvenance) -> None:
+    """Fly a run and make it the reference."""
+    folder = Path("runs", name)
+    command = list(run.command[1:])
+    command[command.index("--out") + 1] = str(folder)
+    sources = (TREE / part / "src" for part in (".", "quadrotor", "paper"))
+    variables = os.environ | {
+        "PYTHONPATH": os.pathsep.join(map(str, sources)),
+        "OMP_NUM_THREADS": "1",
+    }
+    python = ROOT / environment(run) / "bin" / "python"
+    subprocess.run((python, "-m", "faultpath", *command), cwd=TREE, env=variables, check=True)
+    documents.take(f"{name}={TREE / folder}")
+
+
+def environment(run: RunProvenance) -> str:
+    """Return the virtual environment, as make has it, in which a run's system can be built."""
+    version = ".".join(run.python.split(".")[:2])
+    if version != f"{sys.version_info.major}.{sys.version_info.minor}":
+        return f".venv-{version}"
+    example = Path(run.command[2]).name
+    needed = (package for start, package in SYSTEMS.items() if example.startswith(start))
+    return ".venv" if all(map(find_spec, needed)) else ".venv-foreign"
+
+
+if __name__ == "__main__":
+    main()
