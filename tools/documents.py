@@ -147,7 +147,8 @@ def leftover(files: Mapping[Path, str]) -> list[Path]:
     """Return the drawn pictures that no measurement gives."""
     pages = {IMAGES / name_of(*picture) for picture in pictures()}
     pages |= {IMAGES / name for name in made_from()}
-    kept = {*IMAGES.glob("fault-*.svg"), IMAGES / "paper-figure-2.svg"}
+    drawn = ("paper-figure-2.svg", "latent-camera-strip.svg")
+    kept = {*IMAGES.glob("fault-*.svg"), *(IMAGES / name for name in drawn)}
     return sorted(set(IMAGES.glob("*.svg")) - set(files) - pages - kept)
 
 
