@@ -1,11 +1,14 @@
 """The page of `make statistics`: every promise of the statistics, measured."""
 
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from functools import partial
+from hashlib import sha256
 from itertools import product, repeat
 from pathlib import Path
+from typing import TypeAlias
 
 from simulation import (
     LEANS,
@@ -24,7 +27,12 @@ from simulation import (
 )
 from simulation_blanks import BLANKS, blanks
 
+import faultpath
 from faultpath.decisions.family import ALPHA
+from faultpath.trials.store.atomic import write_file
+
+Section: TypeAlias = tuple[str, str, Callable[[], str]]
+"""Title, note and what measures the table."""
 
 
 def share(rates: Iterable[float]) -> str:
@@ -40,8 +48,8 @@ def markdown(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def sections() -> Iterator[tuple[str, str, str]]:
-    """Yield title, note and table of everything that is measured."""
+def sections() -> Iterator[Section]:
+    """Yield everything that is measured."""
     by_rate = [f"{100 * rate:g} %" for rate in RATES]
     kinds = [(seeds, alike, own) for seeds in (3, 5) for alike in (0.0, 0.5) for own in (0, 1)]
 
@@ -55,7 +63,7 @@ def sections() -> Iterator[tuple[str, str, str]]:
         "scenes that differ, and over seeds that are independent or half alike, without and with "
         "seed effects; exact for one seed. Columns: share of scenes that differ. Promised: at "
         "least .93. Where few scenes differ no interval of counts can keep .95: it covers more.",
-        markdown(
+        lambda: markdown(
             ("scenes, seeds", *by_rate),
             (
                 (
@@ -78,7 +86,7 @@ def sections() -> Iterator[tuple[str, str, str]]:
         "Least and greatest coverage of the set of frequencies at which it is not decided who is "
         "ahead, over costs that are one-sided or in between and gains of 5 and 30 pp under the "
         "fault. Columns: share of scenes that differ under correct inputs. Promised: at least .93.",
-        markdown(
+        lambda: markdown(
             ("scenes, seeds", *by_rate),
             (
                 (
@@ -101,7 +109,7 @@ def sections() -> Iterator[tuple[str, str, str]]:
         "Least detectable difference",
         "Audits of equal arms report what they could have detected; then the true difference is "
         "made that. Share of audits that detect it. Promised: about .80, at least .70.",
-        markdown(
+        lambda: markdown(
             ("scenes, share that differs", "1 seed", "3 seeds"),
             (
                 (
@@ -115,7 +123,6 @@ def sections() -> Iterator[tuple[str, str, str]]:
             ),
         ),
     )
-    sizes = ((25, 1), (100, 1), (100, 3))
     for title, what, found in (
         ("Audits of equal arms", "four paths", equal_arms),
         ("Sequential audits of equal arms", "four paths and ten looks", any_look),
@@ -124,21 +131,8 @@ def sections() -> Iterator[tuple[str, str, str]]:
             title,
             f"Share of audits with {what} that announce anything at all. Paths alike: chance that "
             "a scene ends the same on all paths. Promised: at most .05.",
-            markdown(
-                ("scenes, seeds, share that differs", "paths independent", "paths alike 70 %"),
-                (
-                    (
-                        f"{n}, {seeds}, {100 * rate:g} %",
-                        *(
-                            share([found(n, Population(rate, 0.0, seeds, 0.5), t)])
-                            for t in (0, 0.7)
-                        ),
-                    )
-                    for (n, seeds), rate in product(sizes, (0.05, 0.3))
-                ),
-            ),
+            partial(announced, found),
         )
-    largest, above = skewed(1000)
     yield (
         "Skewed populations",
         "A thousand populations of 25 to 300 scenes, two to five seeds and no difference, that "
@@ -146,9 +140,9 @@ def sections() -> Iterator[tuple[str, str, str]]:
         "of audits of one path that announce a difference. Promised: at most .05, but for a "
         "standard error of .001. The power is that at 100 scenes and three seeds, of which half of "
         "the scenes agree, where 5.4 % of trials favour one arm and .6 % the other.",
-        markdown(
+        lambda: markdown(
             ("largest level", "populations above .05", "power, 3 seeds", "power, 1 seed"),
-            ((*map(share, ([largest], [above])), *(share([powered(s)]) for s in (3, 1))),),
+            ((share([rate]) for rate in (*skewed(1000), powered(3), powered(1))),),
         ),
     )
     yield (
@@ -159,7 +153,7 @@ def sections() -> Iterator[tuple[str, str, str]]:
         "of the tasks with one less). Share of results that announce anything, promised: at most "
         ".05. Where arms differ, share in which any of five break-even sets puts an arm ahead "
         "where the other one is. 2,000 results each, with a standard error of at most .005.",
-        markdown(
+        lambda: markdown(
             ("what is missing, seeds", "announce anything", "any set is wrong"),
             (
                 (f"{kind}, {seeds}", *(share([rate]) for rate in rates))
@@ -172,7 +166,7 @@ def sections() -> Iterator[tuple[str, str, str]]:
         "Share of audits that announce a reversal where the shared effect is -20 pp. Where both "
         "isolated effects are 0 there is none; promised: at most .025, half of the 5 %, "
         "since the other half lies on the same side. The others show the power.",
-        markdown(
+        lambda: markdown(
             ("scenes, seeds", "isolated effects 0", "isolated effects 20 pp"),
             (
                 (f"{n}, {s}", *(share([reversals(n, s, pp)]) for pp in (0.0, 0.2)))
@@ -186,12 +180,27 @@ def sections() -> Iterator[tuple[str, str, str]]:
         "Two equal methods, of which every training is off by 8 pp (standard deviation). Share of "
         "audits that detect a difference. For newly trained models that is an error, promised in "
         "at most .05; for these trained models it is not one: they do differ.",
-        markdown(
+        lambda: markdown(
             ("scenes, trainings", "new trainings", "these trainings"),
             (
                 (f"100, {s}", *(share([trainings(100, s, m)]) for m in (True, False)))
                 for s in (2, 3, 5)
             ),
+        ),
+    )
+
+
+def announced(found: Callable[[int, Population, float], float]) -> str:
+    """Return the table of audits of equal arms, of which `found` measures one entry."""
+    sizes = ((25, 1), (100, 1), (100, 3))
+    return markdown(
+        ("scenes, seeds, share that differs", "paths independent", "paths alike 70 %"),
+        (
+            (
+                f"{n}, {seeds}, {100 * rate:g} %",
+                *(share([found(n, Population(rate, 0.0, seeds, 0.5), t)]) for t in (0, 0.7)),
+            )
+            for (n, seeds), rate in product(sizes, (0.05, 0.3))
         ),
     )
 
@@ -202,15 +211,15 @@ def missing(runs: int = 2000) -> Iterator[tuple[float, float]]:
         yield from pool.map(blanks, *zip(*BLANKS, strict=True), repeat(runs))
 
 
-def searched() -> tuple[str, str, str]:
-    """Return title, note and table of searches for a fault."""
+def searched() -> Section:
+    """Return what is measured of searches for a fault."""
     return (
         "Searches for a fault",
         "Share of searches that announce a reversal where none of 48 faults tried has one: the "
         "shared effect is 0. Promised: at most .05. The last column is what splitting the scenes "
         "prevents: the chosen fault judged by the scenes that chose it; its standard error is at "
         "most .025.",
-        markdown(
+        lambda: markdown(
             ("scenes of each half", "isolated effects 0", "isolated effects 20 pp", "not split"),
             (
                 (
@@ -224,6 +233,20 @@ def searched() -> tuple[str, str, str]:
     )
 
 
+def kept(title: str, measured: Callable[[], str]) -> str:
+    """Return a table, from `build/statistics` where the same code has measured it before."""
+    package = Path(faultpath.__file__).parent
+    rooms = (package / "statistics", package / "decisions")
+    files = [file for room in rooms for file in room.rglob("*.py")]
+    files += Path(__file__).parent.glob("simulation*.py")
+    code = sha256(b"".join(file.read_bytes() for file in sorted(files))).hexdigest()[:16]
+    path = Path("build/statistics") / code / f"{title}.md"
+    if not path.is_file():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_file(path, measured().encode())
+    return path.read_text("utf-8")
+
+
 def main() -> None:
     """Write the page; its path is the argument."""
     lines = [
@@ -235,9 +258,9 @@ def main() -> None:
         "how it is decided: [design/statistics.md](design/statistics.md).",
         "",
     ]
-    for title, note, table in sections():
+    for title, note, measured in sections():
         print(title, file=sys.stderr, flush=True)
-        lines += [f"## {title}", "", note, "", table, ""]
+        lines += [f"## {title}", "", note, "", kept(title, measured), ""]
     Path(sys.argv[1]).write_text("\n".join(lines).rstrip() + "\n", "utf-8")
 
 
