@@ -29,6 +29,12 @@ PAGES = {
     "lerobot": ("Relative actions as in LeRobot", "lerobot"),
 }
 """Title and page of the audits that reference runs hold, in the order of the table."""
+CAMERAS = {
+    "marked": "One camera",
+    "drift": "One camera",
+    "blank": "One camera, blank rooms",
+}
+"""Names of the studies of one camera, by their file."""
 REVERSAL, MISSED, ALONE = "reversal", "missed by the isolated test", "only in the isolated test"
 SIZE, SAME, OPEN = "another size", "same", "inconclusive"
 WORDS = (REVERSAL, MISSED, ALONE, SIZE, SAME, OPEN)
@@ -117,11 +123,14 @@ def _success(effect: model.Effect) -> str:
 
 
 def grouped() -> list[list[Audit]]:
-    """Return the audits; those of a repair whose faults come to the same are a group."""
-    groups: dict[object, list[Audit]] = {}
+    """Return the audits; those whose faults come to the same are a group, over repairs too."""
+    faults: dict[tuple[object, ...], list[Audit]] = {}
     for audit in (*_references(), *_cameras(), *_sensors()):
         signs = audit.effects[audit.module].sign, audit.effects["shared"].sign
-        groups.setdefault((audit.system, audit.repair, audit.word, signs), []).append(audit)
+        faults.setdefault((audit.system, audit.word, signs, audit.repair), []).append(audit)
+    groups: dict[object, list[Audit]] = {}
+    for (*same, _), audits in faults.items():
+        groups.setdefault((*same, *(audit.fault for audit in audits)), []).extend(audits)
     return list(groups.values())
 
 
@@ -142,12 +151,16 @@ def _effect(effect: model.Effect) -> Effect:
 
 
 def _cameras() -> Iterator[Audit]:
-    for rooms, name in {"marked": "One camera", "blank": "One camera, blank rooms"}.items():
+    for rooms, name in CAMERAS.items():
         system = f"[{name}]({{docs}}/latent-camera.md)"
         for audit in audits_of_rooms(rooms):
             effects = {name: Effect(*effect) for name, effect in audit["effects"].items()}
             repair, fault = f"`{audit['repair']}`", FAULTS[audit["fault"]]
-            yield Audit(system, fault, repair, effects, audit["turns"])
+            # At a module where the fault did not act nothing was tested.
+            acted = {
+                n: turn for n, turn in audit["turns"].items() if effects[n] != effects["correct"]
+            }
+            yield Audit(system, fault, repair, effects, acted)
 
 
 def _sensors() -> Iterator[Audit]:
@@ -159,10 +172,11 @@ def _sensors() -> Iterator[Audit]:
 
 def _row(audits: Sequence[Audit]) -> str:
     first, word = audits[0], audits[0].word
+    faults, repairs = (audit.fault for audit in audits), (audit.repair for audit in audits)
     modules = dict.fromkeys(PLACES.get(audit.module, audit.module) for audit in audits)
     alone = [audit.effects[audit.module] for audit in audits]
     cells = (
-        ", ".join(filter(None, (first.system, *(audit.fault for audit in audits), first.repair))),
+        ", ".join(filter(None, dict.fromkeys((first.system, *faults, *repairs)))),
         _shown([audit.effects["correct"] for audit in audits]).partition(" [")[0],
         f"{' or '.join(modules)} {_shown(alone)}",
         _shown([audit.effects["shared"] for audit in audits]),

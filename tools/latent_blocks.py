@@ -23,6 +23,7 @@ FAULTS = {
     "darker": "15 % darker",
     "contrast": "gamma 1.3 times as large",
     "moved": "shifted by 2 px",
+    "drifting": "drifting to 30 % darker",
 }
 MISSED = {
     "missed_correct_px": "nearest place misses, no error, px",
@@ -151,10 +152,10 @@ def stops(library: str) -> str:
         shares = (every["break_even"][path] or MISSING for path in (ALONE, SHARED))
         lines.append(line(repair, *counts, *shares))
     columns = (
-        "scenes until both pictures are decided",
-        "scenes until all four cases are",
-        f"by the share of trials with the error, {PATHS[ALONE]}",
-        PATHS[SHARED],
+        "scenes until it is significant with both pictures wrong",
+        "scenes until it is in all four cases",
+        "by how often the live picture alone is wrong",
+        "by how often both are",
     )
     return _grid("repair", columns, lines)
 
@@ -174,7 +175,7 @@ def moves(rooms: str) -> str:
             FAULTS[move["fault"]],
             wording.plain(move["moved"], 2),
             _percent(move["common"]),
-            *(wording.plain(move[name], 1) for name in MISSED),
+            *(wording.plain(move[name], 2) for name in MISSED),
             *(wording.plain(move[name], 2) for name in IMAGINED),
         )
         for move in _read(f"{rooms}-latents")

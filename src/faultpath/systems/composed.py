@@ -165,6 +165,12 @@ class ComposedSystem(LoopSystem):
         written = [name for module in modules for name in module.writes]
         known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.told, "estimated")
         known |= dict.fromkeys(several.get(plant.action, (plant.action,)), "commanded")
+        for module in modules:
+            for port in sorted(module.ports):
+                if not {*feeds[port.channel]} & {*plant.senses, *plant.told, *written}:
+                    there = list(dict.fromkeys((*plant.senses, *plant.told, *written)))
+                    wrong = unknown("source", port.channel, there)
+                    raise SystemMistake(f"system '{self.name}': module '{module.name}': {wrong}")
         sources: dict[str, dict[str, Any]] = {}
         for name in (*plant.senses, *written, *(n for fed in feeds.values() for n in fed)):
             if name not in units:

@@ -136,7 +136,9 @@ if (document.getElementById("viewer-data")) {
         level(v, "v-line");
         draw(svg, "text", { x: left - 5, y: Math.min(under - 1, Math.max(16, y(v) + 4)), "text-anchor": "end", class: "v-text" }, v.toFixed(digits).replace("-", "−"));
       }
-      const every = [0.5, 1, 2, 5, 10, 20, 50].find((s) => x(s / dt) - x(0) > 44) ?? 100;
+      const sizes = [0.5, ...[...Array(9).keys()].flatMap((power) => [1, 2, 5].map((n) => n * 10 ** power))];
+      const wide = 32 + 6 * String(Math.floor(state.last * dt)).length;
+      const every = sizes.find((s) => x(s / dt) - x(0) > wide) ?? state.last * dt;
       for (let t = 0; t <= state.last * dt + 1e-9; t += every) {
         draw(svg, "text", { x: x(t / dt), y: h - 5, "text-anchor": "middle", class: "v-text" }, `${t} s`);
       }

@@ -112,11 +112,18 @@ def judged(seen: Seen) -> tuple[Check, ...]:
             for (variant, why, _), run in reversed(seen.runs.items())
             if run.fails == check.name and why != "tap"
         }
-        remedy = "; let every trial end in an outcome, see it with `faultpath audit --workers 0`"
-        more = "" if check.name in MISTAKES else remedy
-        errors = tuple(f"Variant '{name}': {error}{more}." for error, name in stopped.items())
+        errors = tuple(
+            f"Variant '{name}': {error}{'' if check.name in MISTAKES else _remedy(error)}."
+            for error, name in stopped.items()
+        )
         checks[at] = check.model_copy(update={"failures": (*errors, *check.failures)})
     return tuple(checks)
+
+
+def _remedy(error: str) -> str:
+    if "truth value of an array" in error:
+        return "; a reading has one value for each scene: take `np.where` in place of `if`"
+    return "; let every trial end in an outcome, see it with `faultpath audit --workers 0`"
 
 
 def _determinism(name: str, seen: Seen) -> Check:
