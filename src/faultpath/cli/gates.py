@@ -1,4 +1,4 @@
-"""What a verb leaves for a build: its exit status, JUnit's XML and a summary."""
+"""Results of a command for a build: its exit status, JUnit's XML and a summary."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -47,7 +47,7 @@ Summary = Annotated[
 
 @dataclass(frozen=True)
 class Gate:
-    """What a line says of a build, checked before any trial runs."""
+    """Options for a build, checked before any trial runs."""
 
     asked: tuple[str, ...]
     junit: Path | None
@@ -58,15 +58,15 @@ class Gate:
         """Read the options; `UserError` for what cannot be asked, or written."""
         from faultpath.trials.store.atomic import check_output
 
-        asked = tuple(dict.fromkeys(fail_if or ()))
-        for each in asked:
-            if each not in _ASKS:
-                raise UserError(f"--fail-if {each}: {unknown('name', each, _ASKS)}.")
+        conditions = tuple(dict.fromkeys(fail_if or ()))
+        for condition in conditions:
+            if condition not in _ASKS:
+                raise UserError(f"--fail-if {condition}: {unknown('name', condition, _ASKS)}.")
         if junit is not None:
             check_output(junit, b'<testsuites name="faultpath"')
         if summary is not None:
             check_output(summary, b"")  # added to, whatever it holds
-        return cls(asked, junit, summary)
+        return cls(conditions, junit, summary)
 
     def end(self, runs: "Sequence[Run]", say: Callable[..., Any]) -> int:
         """Write what was asked for, say what a build fails for, and return the exit status."""
