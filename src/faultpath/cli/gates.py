@@ -49,7 +49,7 @@ Summary = Annotated[
 class Gate:
     """Options for a build, checked before any trial runs."""
 
-    asked: tuple[str, ...]
+    conditions: tuple[str, ...]
     junit: Path | None
     summary: Path | None
 
@@ -77,14 +77,14 @@ class Gate:
 
         records = [run.record for run in runs]
         if self.junit is not None:
-            write_text(self.junit, junit(records, self.asked))
+            write_text(self.junit, junit(records, self.conditions))
         if self.summary is not None:
             # A build's summary holds that of its other steps too.
             before = contents(self.summary) if self.summary.exists() else b""
-            write_file(self.summary, before + summary(records, self.asked).encode())
+            write_file(self.summary, before + summary(records, self.conditions).encode())
         status = FOUND if any(run.failed for run in runs) else 0
         for record in records:
-            for name, answer in broken(record, self.asked).items():
+            for name, answer in broken(record, self.conditions).items():
                 say(f"--fail-if {name}: {answer.said}", markup=False, style="bold red")
                 status = FOUND
         return status

@@ -31,7 +31,7 @@ class Compared:
     folder: str
     record: DecisionRecord
     provenance: RunProvenance
-    held: ReportInput | None = None
+    source: ReportInput | None = None
     """All that its pages are made from."""
     family: Mapping[str, tuple[Sign, float]] | None = None
     """For a sweep over sizes: by path, the side that is decided over all of them together, and

@@ -196,9 +196,9 @@ def dependent_failures(runs: Sequence[Compared]) -> Table | None:
     Every effect is as its own audit decided it, or all sizes of a sweep together.
     """
     sources = [
-        replace(run.held, record=run.record.model_copy(update={"effects": effects}))
+        replace(run.source, record=run.record.model_copy(update={"effects": effects}))
         for run in runs
-        if run.held is not None
+        if run.source is not None
         for effects in [tuple(filter(None, (run.effect(p.name) for p in run.record.paths)))]
     ]
     numbers = [str(run.number) for run in runs] if len(runs) > 1 else []

@@ -26,7 +26,7 @@ class SearchPlan:
     """A question, and the trials of any fault within its bounds."""
 
     question: SearchQuestion
-    asked: questions.SearchQuestion
+    request: questions.SearchQuestion
     system: System
     spec: SystemSpec
     library: Library = field(repr=False)
@@ -37,7 +37,7 @@ class SearchPlan:
         """Return the study of faults in the scenes that find: both variants, with each at the
         isolated module alone and with it shared. An arm that it cannot reach runs once for all."""
         question, rows = self.question, list[Row]()
-        variants = two_variants(self.system, self.asked)
+        variants = two_variants(self.system, self.request)
         for text in faults:
             paths = faults_by_path(self.system, fault_of(self.system, text), variants)
             for path in (question.bounds.isolated, SHARED):
@@ -73,7 +73,7 @@ class SearchPlan:
     def audit(self, fault: str) -> Audit:
         """Return the audit of a fault in the scenes that confirm."""
         scenes = tuple(scene for scene in self.library.scenes if scene.id in self.confirming)
-        question = self.asked.audit_of(fault).model_copy(update={"scenes": None})
+        question = self.request.audit_of(fault).model_copy(update={"scenes": None})
         return plan_audit(self.system, self.spec, question, replace(self.library, scenes=scenes))
 
 
