@@ -45,7 +45,7 @@ from faultpath.trials.store.tables import TrialAddress
 from faultpath.trials.work.executor import Progress
 
 _LONGEST_NAME = 180
-"""Of a run folder; file systems take 255 bytes."""
+"""Longest name of a run folder; file systems take 255 bytes."""
 _SCENES_FOR_ONE = 20
 """So many scenes of an audit, and one more is recorded: at most about a twentieth more trials."""
 
@@ -54,7 +54,7 @@ _Signals = Mapping[TrialAddress, tuple[Signal, ...]]
 
 @asks(AuditQuestion)
 def audit(
-    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> Run:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault.
@@ -66,22 +66,22 @@ def audit(
             process, and its trials are never taken for those of another call.
         progress: Whether to show progress and notices, in a notebook's cell or on the standard
             error; otherwise notices go to the log `faultpath`.
-        **given: ...
+        **arguments: ...
 
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    asked, chosen, library, display = begin("audit", AuditQuestion, system, given, progress)
-    laid = plan_audit(chosen.system, chosen.spec, asked, library)
-    named = [laid.study.name, asked.fault, Path(asked.library).stem]
-    if asked.stop_when is not None:
-        small = "" if asked.margin_pp is None else f"-within-{asked.margin_pp:g}"
-        named.append(f"until-{asked.stop_when}{small}")
-    place = run_folder(asked, chosen, named)
+    question, chosen, library, display = begin("audit", AuditQuestion, system, arguments, progress)
+    laid = plan_audit(chosen.system, chosen.spec, question, library)
+    named = [laid.study.name, question.fault, Path(question.library).stem]
+    if question.stop_when is not None:
+        small = "" if question.margin_pp is None else f"-within-{question.margin_pp:g}"
+        named.append(f"until-{question.stop_when}{small}")
+    place = run_folder(question, chosen, named)
     with executor_of(chosen.system, chosen.workers, chosen.executor) as executor:
-        job = Job(place, executor, display, {"time_limit_s": asked.time_limit_s})
-        carry_out(chosen.system, laid, job, asked.signals)
+        job = Job(place, executor, display, {"time_limit_s": question.time_limit_s})
+        carry_out(chosen.system, laid, job, question.signals)
     run = Run(place, *read_run(place))
     run.report()
     return run
@@ -89,7 +89,7 @@ def audit(
 
 @asks(AuditQuestion)
 def audits(
-    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> tuple[Run, ...]:
     """Audit a repair under each size of a fault.
 
@@ -99,7 +99,7 @@ def audits(
     Args:
         system: As for `audit`.
         progress: As for `audit`.
-        **given: ...
+        **arguments: ...
 
     The fault has its sizes one after the other, `gain:scale=0.8,0.9,1.1`, or in a range,
     `calibration=-0.2..0.2/9`: nine sizes at equal distances, both ends among them. In `folder` each
@@ -108,20 +108,24 @@ def audits(
     Raises:
         UserError: As `audit`, and for a size given twice.
     """
-    fault = given.get("fault")
+    fault = arguments.get("fault")
     several = isinstance(fault, str) and JOINED.strip() not in fault
-    texts = each_size(given["fault"]) if several else ()
+    texts = each_size(arguments["fault"]) if several else ()
     if len(texts) < 2:
-        return (audit(system, progress=progress, **given),)
-    folder = given.pop("folder", None)
+        return (audit(system, progress=progress, **arguments),)
+    folder = arguments.pop("folder", None)
     runs: list[Run] = []
     for number, text in enumerate(texts, 1):
         place = None if folder is None else Path(folder) / f"size-{number}"
-        runs.append(audit(system, progress=progress, **{**given, "fault": text, "folder": place}))
+        runs.append(
+            audit(system, progress=progress, **{**arguments, "fault": text, "folder": place})
+        )
     return tuple(runs)
 
 
-def run_folder(asked: Running | SensitivityQuestion, chosen: Chosen, named: Sequence[str]) -> Path:
+def run_folder(
+    question: Running | SensitivityQuestion, chosen: Chosen, named: Sequence[str]
+) -> Path:
     """Return the folder of a run.
 
     Without a folder of the caller's it is named after everything that makes it another study,
@@ -130,10 +134,10 @@ def run_folder(asked: Running | SensitivityQuestion, chosen: Chosen, named: Sequ
     run of an object, which may have been another.
     """
     parts = [*named, *(f"{key}-{value}" for key, value in sorted(chosen.spec.options.items()))]
-    if asked.scenes is not None:
-        parts.append(f"{asked.scenes}-scenes")
-    if asked.seeds != (0,):
-        parts.append(f"seeds-{','.join(map(str, asked.seeds))}")
+    if question.scenes is not None:
+        parts.append(f"{question.scenes}-scenes")
+    if question.seeds != (0,):
+        parts.append(f"seeds-{','.join(map(str, question.seeds))}")
     joined = "-".join(parts)
     short = re.sub(r"(?:^|(?<=[:,=-]))/(?:[^/:,]*/)*", "", joined)
     if short != joined:
@@ -141,10 +145,10 @@ def run_folder(asked: Running | SensitivityQuestion, chosen: Chosen, named: Sequ
     name = re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", short).strip("._")
     if len(name) > _LONGEST_NAME:
         name = f"{name[:_LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
-    if asked.folder is None and not chosen.own:
+    if question.folder is None and not chosen.own:
         return keyed(Path("runs"), name, system_code(chosen.system, chosen.spec).state)
-    now = datetime.now().strftime("%Y%m%d-%H%M%S-%f")
-    place = asked.folder or Path("runs") / f"{name}-{now}"
+    stamp = datetime.now().strftime("%Y%m%d-%H%M%S-%f")
+    place = question.folder or Path("runs") / f"{name}-{stamp}"
     if chosen.own and (place / "manifest.json").exists():
         raise UserError(
             f"{place} holds a run, and whether it was of this same object cannot be told: give "
@@ -173,24 +177,24 @@ def carry_out(system: System, audit: Audit, job: Job, signals: bool) -> None:
         result = job.run(audit.study, system, show, stop=audit.stops)
     record = audit.conclude(result.outcomes, result.deliveries)
     record = after_looks(record, () if before is None else (before,))
-    held: _Signals = {}
+    recorded: _Signals = {}
     if earlier is not None and SIGNALS in earlier.files:
         same = (earlier.system_fingerprint, earlier.outcomes_sha256)
         with suppress(OSError, UserError, Unreadable):
             if same == (result.system_fingerprint, result.outcomes_sha256) and (
                 seal(folder, [SIGNALS])[SIGNALS] == earlier.files[SIGNALS]
             ):  # of these very trials
-                held = decode_signals(read_regular(folder / SIGNALS))
+                recorded = decode_signals(read_regular(folder / SIGNALS))
     if signals:
-        held, finding = _recorded(system, audit, job, record, result, held)
+        recorded, finding = _recorded(system, audit, job, record, result, recorded)
         if finding:
             job.display.say(finding)
             record = record.model_copy(update={"findings": (*record.findings, finding)})
     write_text(folder / RECORD, as_text(record), folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
-    if held:
-        write_file(folder / SIGNALS, encode_signals(dict(sorted(held.items()))), folder)
-    job.finish(result, system, (*MADE_FROM, *([SIGNALS] if held else ())))
+    if recorded:
+        write_file(folder / SIGNALS, encode_signals(dict(sorted(recorded.items()))), folder)
+    job.finish(result, system, (*MADE_FROM, *([SIGNALS] if recorded else ())))
 
 
 def concluded_before(folder: Path) -> DecisionRecord | None:
@@ -207,7 +211,7 @@ def _recorded(
     job: Job,
     record: DecisionRecord,
     result: RunResult,
-    held: _Signals,
+    recorded: _Signals,
 ) -> tuple[_Signals, str]:
     """Run the scenes that the report begins with once more; return signals and a finding.
 
@@ -217,11 +221,13 @@ def _recorded(
     few = shown_first(record, result.outcomes)[: 1 + record.scenes // _SCENES_FOR_ONE]
     named = {path.name for path in record.paths}
     before = outcomes_at(result.outcomes, traces)
-    wanted = [
-        at for at in before if (at.scene, at.seed) in few and at.path in named and at not in held
+    missing = [
+        at
+        for at in before
+        if (at.scene, at.seed) in few and at.path in named and at not in recorded
     ]
-    if not wanted:
-        return held, ""
+    if not missing:
+        return recorded, ""
     try:
         with job.display.progress("Recording signals") as show:
 
@@ -229,19 +235,22 @@ def _recorded(
                 count = f"{done} of {total} arms, {counted(len(few), 'scene')}"
                 show(Progress(done, total, count))
 
-            found = run_again(before, audit.study, system, job.executor, wanted, note)
+            replays = run_again(before, audit.study, system, job.executor, missing, note)
     except UserError as error:
-        return held, f"No signals were recorded: {error}"
+        return recorded, f"No signals were recorded: {error}"
     except KeyboardInterrupt:
         called = job.display.called
         job.display.say(f"No signals were recorded; run the same {called} again to have them.")
-        return held, ""
-    held = {**held, **{each.address: each.signals for each in found if each.signals}}
-    unlike = [each for each in found if each.differs]
+        return recorded, ""
+    recorded = {
+        **recorded,
+        **{replay.address: replay.signals for replay in replays if replay.signals},
+    }
+    unlike = [replay for replay in replays if replay.differs]
     if not unlike:
-        return held, ""
+        return recorded, ""
     at, differs = unlike[0].address, unlike[0].differs
-    return held, (
-        f"Signals of {len(unlike)} of {counted(len(found), 'trial')} were not recorded: run again, "
-        f"it came out otherwise: {at.variant}, {at.path}, {at.scene}: {differs}."
+    return recorded, (
+        f"Signals of {len(unlike)} of {counted(len(replays), 'trial')} were not recorded: run "
+        f"again, it came out otherwise: {at.variant}, {at.path}, {at.scene}: {differs}."
     )

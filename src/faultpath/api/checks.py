@@ -59,13 +59,13 @@ class Planned:
 
     def __repr__(self) -> str:
         """Return the audits and the first sentence."""
-        names = ", ".join(each.name for each in self.plan.study.audits)
+        names = ", ".join(audit.name for audit in self.plan.study.audits)
         return f"<Plan of {names}: {self.sentences[0]}>"
 
 
 @asks(PlanQuestion)
 def plan(
-    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> Planned:
     """Rank the uncertain sources of a system, and propose the audits of a repair.
 
@@ -75,12 +75,12 @@ def plan(
     Args:
         system: As for `audit`, but by name: a study file has to build it again.
         progress: As for `audit`.
-        **given: ...
+        **arguments: ...
 
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
     """
-    asked, chosen, library, display = begin("plan", PlanQuestion, system, given, progress)
+    question, chosen, library, display = begin("plan", PlanQuestion, system, arguments, progress)
     if chosen.own:
         raise UserError(
             "a study file cannot hold an object: put what builds the system into a file and name "
@@ -91,7 +91,7 @@ def plan(
         def note(done: int, total: int) -> None:
             show(Progress(done, total, f"{done} of {total} runs"))
 
-        return Planned(make_plan(chosen.system, chosen.spec, asked, library, note))
+        return Planned(make_plan(chosen.system, chosen.spec, question, library, note))
 
 
 def audit_study(
@@ -112,26 +112,26 @@ def audit_study(
     received, arms = Received("the study file", trust, say), (study.baseline, study.repair)
     chosen = choose(study.system, study.options, None, arms, received=received)
     library = library_of(chosen.system, study.library)
-    for each in study.audits:
-        laid = plan_audit(chosen.system, chosen.spec, study.audit_of(each.fault), library)
-        check_arms(study, each, laid)
+    for planned in study.audits:
+        laid = plan_audit(chosen.system, chosen.spec, study.audit_of(planned.fault), library)
+        check_arms(study, planned, laid)
     same = {name: getattr(study, name) for name in Question.model_fields}
     return tuple(
         audit(
             study.system,
-            fault=each.fault,
-            folder=None if folder is None else Path(folder) / each.name,
+            fault=planned.fault,
+            folder=None if folder is None else Path(folder) / planned.name,
             progress=progress,
             **same,
             **running,
         )
-        for each in study.audits
+        for planned in study.audits
     )
 
 
 @asks(CheckQuestion)
 def check(
-    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> "Report":
     """Check that a system keeps what an audit takes for granted.
 
@@ -141,27 +141,27 @@ def check(
     Args:
         system: As for `faultpath.audit`; an object of your own is checked in this process.
         progress: As for `faultpath.audit`.
-        **given: ...
+        **arguments: ...
 
     Raises:
         UserError: There is no such system, variant or library, or it cannot be built.
     """
     from faultpath.systems.checks.check import check_system
 
-    asked, chosen, _, display = begin("check", CheckQuestion, system, given, progress)
+    question, chosen, _, display = begin("check", CheckQuestion, system, arguments, progress)
     if chosen.own:
-        asked = asked.model_copy(update={"workers": 0})
+        question = question.model_copy(update={"workers": 0})
     with display.progress("Checking") as show:
 
         def note(done: int, known: int | None) -> None:
             show(Progress(done, known, f"{done} of {known} runs" if known else f"{done} runs"))
 
-        return check_system(chosen.system, chosen.spec, asked, note)
+        return check_system(chosen.system, chosen.spec, question, note)
 
 
 @asks(TraceQuestion)
 def trace(
-    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> "TraceReport":
     """Run a variant for a few steps, and tell who read what, when, and from whom.
 
@@ -170,23 +170,30 @@ def trace(
     Args:
         system: As for `faultpath.audit`.
         progress: As for `faultpath.audit`.
-        **given: ...
+        **arguments: ...
 
     Raises:
         UserError: There is no such system, variant, library or scene, the fault reaches no
             consumer, or the run fails.
     """
-    asked, chosen, _, _ = begin("trace", TraceQuestion, system, given, progress)
-    return traced(asked, chosen)
+    question, chosen, _, _ = begin("trace", TraceQuestion, system, arguments, progress)
+    return traced(question, chosen)
 
 
-def traced(asked: TraceQuestion, chosen: Chosen) -> "TraceReport":
+def traced(question: TraceQuestion, chosen: Chosen) -> "TraceReport":
     """Return the trace of a system that is built; raises as `trace`."""
     from faultpath.systems.checks.tracing import trace_system
 
     system = chosen.system
-    fault = None if asked.fault is None else fault_of(system, asked.fault)
-    name = asked.variant or next(iter(system.variants))
+    fault = None if question.fault is None else fault_of(system, question.fault)
+    name = question.variant or next(iter(system.variants))
     return trace_system(
-        system, chosen.spec, name, asked.library, asked.scene, asked.steps, asked.seed, fault
+        system,
+        chosen.spec,
+        name,
+        question.library,
+        question.scene,
+        question.steps,
+        question.seed,
+        fault,
     )

@@ -46,31 +46,31 @@ class Comparison:
         systems or variants, and where no two places depend on each other.
         """
         check_output(Path(path), DEPENDENT_MARK)
-        found = dependent_failures(self.runs)
-        if found is None:
+        table = dependent_failures(self.runs)
+        if table is None:
             raise UserError(
                 "there is no table of dependent failures: give audits of one system and the same "
                 "variants, of which several places have a source in common."
             )
-        write_text(Path(path), csv_text(found))
+        write_text(Path(path), csv_text(table))
         return Path(path)
 
     def as_json(self) -> dict[str, object]:
         """Return headline, sentences, what differs, and each record, for `json.dumps`."""
-        found: list[dict[str, object]] = []
+        entries: list[dict[str, object]] = []
         for run in self.runs:
-            said = folder_and_record(Path(run.folder))
+            entry = folder_and_record(Path(run.folder))
             if run.family is not None:
-                said["over_all_sizes"] = {
+                entry["over_all_sizes"] = {
                     path: {"sign": sign, "adjusted_p_value": p}
                     for path, (sign, p) in run.family.items()
                 }
-            found.append(said)
+            entries.append(entry)
         return {
             "headline": self.headline,
             "sentences": sentences(self.runs),
             "differs": differing(self.runs),
-            "runs": found,
+            "runs": entries,
         }
 
     def __repr__(self) -> str:
@@ -103,14 +103,14 @@ def compare(runs: Sequence[str | PathLike[str] | Run]) -> Comparison:
 
 def beside(runs: Sequence[str | PathLike[str] | Run]) -> Comparison:
     """Return finished audits, one or more, each once; `UserError` as `compare`."""
-    found: list[Compared] = []
+    compared: list[Compared] = []
     places: set[Path] = set()
-    for number, each in enumerate(runs, 1):
-        run = each if isinstance(each, Run) else open_run(each)
+    for number, source in enumerate(runs, 1):
+        run = source if isinstance(source, Run) else open_run(source)
         if not isinstance(run, Run):
             raise UserError(f"{run.folder} holds no audit: only finished audits can be compared.")
         if run.folder.resolve() in places:
             raise UserError(f"{run.folder} is given twice: give each run once.")
         places.add(run.folder.resolve())
-        found.append(Compared(number, str(run.folder), run.record, run.provenance, run.held))
-    return Comparison(together(found))
+        compared.append(Compared(number, str(run.folder), run.record, run.provenance, run.held))
+    return Comparison(together(compared))

@@ -53,7 +53,7 @@ class Display:
 
     @property
     def called(self) -> str:
-        """What the user has to make again to go on: a command or a call."""
+        """Command or call that the user has to make again to go on."""
         return "command" if self.is_command else "call"
 
     def say(self, text: str, style: str | None = None) -> None:
@@ -68,7 +68,7 @@ class Display:
         """Show how far something has come: as a bar that moves, or in a line now and then."""
         console = self.console
         if console is None:
-            yield lambda now: None
+            yield lambda state: None
         elif console.is_terminal or (console.is_jupyter and find_spec("ipywidgets")):
             texts = (TextColumn(f"{{task.fields[{name}]}}") for name in ("count", "left", "remark"))
             count, left, remark = texts
@@ -76,15 +76,15 @@ class Display:
             bar = Bar(*columns, left, remark, console=console)
             task = bar.add_task(what, total=None, count="", left="", remark="")
 
-            def move(now: Progress) -> None:
+            def move(state: Progress) -> None:
                 bar.start()  # with the first news: what is refused shows no bar
                 bar.update(
                     task,
-                    completed=now.done,
-                    total=now.total,
-                    count=now.count,
-                    left=_left(now),
-                    remark=now.remark,
+                    completed=state.done,
+                    total=state.total,
+                    count=state.count,
+                    left=_left(state),
+                    remark=state.remark,
                 )
 
             try:
@@ -96,40 +96,40 @@ class Display:
             began = last = time.monotonic()
             ended = False
 
-            def line(now: Progress) -> None:
+            def line(state: Progress) -> None:
                 nonlocal last, ended
                 moment = time.monotonic()
-                ends = now.total is not None and now.done >= now.total
+                ends = state.total is not None and state.done >= state.total
                 if ended or not (ends or moment - last >= _LINE_S):
                     return
                 last, ended = moment, ends
-                left = "" if ends else _left(now)
-                parts = (now.count, f"{_clock(moment - began)} so far", left, now.remark)
-                said = f"{what}: {', '.join(filter(None, parts))}"
-                console.print(said, markup=False, soft_wrap=True)
+                left = "" if ends else _left(state)
+                parts = (state.count, f"{_clock(moment - began)} so far", left, state.remark)
+                text = f"{what}: {', '.join(filter(None, parts))}"
+                console.print(text, markup=False, soft_wrap=True)
 
             yield line
 
 
-def display(progress: bool | Display, name: str, given: Mapping[str, object]) -> Display:
+def display(progress: bool | Display, name: str, arguments: Mapping[str, object]) -> Display:
     """Return where a call from Python shows what it does: a notebook's cell, or stderr.
 
-    `name` and `given` are what was called, and with what; left out is what is `None` or empty,
+    `name` and `arguments` are what was called, and with what; left out is what is `None` or empty,
     and `progress` itself.
     """
     if isinstance(progress, Display):
         return progress
-    said = (
+    parts = (
         f"{key}={(str(value) if key == 'folder' else value)!r}"
-        for key, value in given.items()
+        for key, value in arguments.items()
         if key != "progress" and value not in (None, (), {})
     )
-    call = f"faultpath.{name}({', '.join(said)})"
+    call = f"faultpath.{name}({', '.join(parts)})"
     return Display(SafeConsole(stderr=True) if progress else None, (call,))
 
 
-def _left(now: Progress) -> str:
-    return "" if now.seconds is None else f"{_clock(now.seconds)} left"
+def _left(state: Progress) -> str:
+    return "" if state.seconds is None else f"{_clock(state.seconds)} left"
 
 
 def _clock(seconds: float) -> str:

@@ -42,16 +42,16 @@ def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
     is missing, damaged or changed, and for files that do not belong together.
     """
     provenance = read_provenance(folder)
-    held = unseal(folder, provenance.files, MADE_FROM)
-    record = parsed(held[RECORD], folder / RECORD, DecisionRecord)
-    shown = parsed(held[SYSTEM], folder / SYSTEM, SystemShown)
-    deliveries = parsed(held[DELIVERIES], folder / DELIVERIES, Deliveries)
+    contents = unseal(folder, provenance.files, MADE_FROM)
+    record = parsed(contents[RECORD], folder / RECORD, DecisionRecord)
+    shown = parsed(contents[SYSTEM], folder / SYSTEM, SystemShown)
+    deliveries = parsed(contents[DELIVERIES], folder / DELIVERIES, Deliveries)
     decoders = {OUTCOMES: decode_outcomes, TRACES: decode_traces, SIGNALS: decode_signals}
     tables: dict[str, Any] = {SIGNALS: {}}
     for name, decode in decoders.items():
-        if name in held:
+        if name in contents:
             try:
-                tables[name] = decode(held[name])
+                tables[name] = decode(contents[name])
             except Unreadable as error:
                 raise UserError(f"{folder / name} is damaged ({error}): {AGAIN}.") from None
     outcomes = tables[OUTCOMES]
@@ -68,7 +68,7 @@ def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
         plans=shown.plans,
         signals=tables[SIGNALS],
     )
-    return read, read_table(held[OUTCOMES])
+    return read, read_table(contents[OUTCOMES])
 
 
 def read_provenance(folder: Path) -> RunProvenance:
@@ -103,43 +103,43 @@ def _doubt(
     deliveries: Deliveries,
 ) -> str:
     """Say what shows that the files are of different runs, or were put together by hand."""
-    asked = record.question
-    arms = (asked.baseline, asked.repair)
+    question = record.question
+    arms = (question.baseline, question.repair)
     paths = {path.name for path in record.paths}
     cells = {(cell.variant, cell.path): cell for cell in record.cells}
-    wanted = {(variant, path) for variant in arms for path in paths}
+    expected = {(variant, path) for variant in arms for path in paths}
     trials = Counter((row.variant, row.path) for row in outcomes.rows)
     solved = Counter(
         (row.variant, row.path) for row in outcomes.rows if row.outcome.status == "success"
     )
     if provenance.files[OUTCOMES] != provenance.outcomes_sha256:
         return "provenance gives the outcomes two digests"
-    if provenance.library_hash != asked.library_hash:
+    if provenance.library_hash != question.library_hash:
         return "record and provenance name different libraries"
     if tuple(variant.name for variant in shown.variants) != arms:
         return "the system's variants are not those of the question"
-    if not paths or set(cells) != wanted or set(trials) != wanted:
+    if not paths or set(cells) != expected or set(trials) != expected:
         return "the record and the outcomes have different arms"
     ended = (row.outcome for row in outcomes.rows if not row.outcome.failed)
-    untimed = any(math.isnan(each.time_s) for each in ended)
-    if untimed and asked.judged is None:
+    untimed = any(math.isnan(outcome.time_s) for outcome in ended)
+    if untimed and question.judged is None:
         return "trials of an audit have no time"
-    if any(cells[at].trials != trials[at] or cells[at].success != solved[at] for at in wanted):
+    if any(cells[at].trials != trials[at] or cells[at].success != solved[at] for at in expected):
         return "the record and the outcomes count different successes"
     measured = {name for row in outcomes.rows for name in row.outcome.metrics}
     for effect in record.effects:
         if lost := sorted(set(effect.metrics) - measured):
             return f"the record tells of '{lost[0]}', and the outcomes have no such column"
-    told = (*record.effects, *record.break_even, *record.break_even_beta)
-    if not paths.issuperset(each.path for each in told):
+    results = (*record.effects, *record.break_even, *record.break_even_beta)
+    if not paths.issuperset(result.path for result in results):
         return "the record has effects on paths that it does not name"
-    ends = {path for each in record.changes for path in (each.isolated, each.shared)}
-    seeds = all(len(each.wins) == len(each.losses) for each in record.effects)
-    if not seeds or not ends.issubset(each.path for each in record.effects):
+    ends = {path for change in record.changes for path in (change.isolated, change.shared)}
+    seeds = all(len(effect.wins) == len(effect.losses) for effect in record.effects)
+    if not seeds or not ends.issubset(effect.path for effect in record.effects):
         return "the record has effects that do not fit each other"
     taps = {(c.name, consumer) for c in shown.interface.channels for consumer in c.consumers}
     for path in record.paths:
-        faulted = {asked.repair: path.faulted, asked.baseline: path.baseline_faulted}
+        faulted = {question.repair: path.faulted, question.baseline: path.baseline_faulted}
         for variant, named in faulted.items():
             if not taps.issuperset((tap.channel, tap.consumer) for tap in named):
                 return "the record names taps that the interface has not got"

@@ -27,23 +27,29 @@ _ERRORS_SHOWN = 5
 
 
 def asks(model: type[Asked]) -> Callable[[_Call], _Call]:
-    """Give a function whose last parameter is `**given` the signature and the help of a model."""
+    """Give a function whose last parameter is `**arguments` signature and help of a model."""
 
     def described(function: _Call) -> _Call:
         signature = inspect.signature(function)
-        found = [each for each in signature.parameters.values() if each.kind != each.VAR_KEYWORD]
+        parameters = [
+            parameter
+            for parameter in signature.parameters.values()
+            if parameter.kind != parameter.VAR_KEYWORD
+        ]
         lines: list[str] = []
-        for name, each in model.model_fields.items():
+        for name, info in model.model_fields.items():
             default = inspect.Parameter.empty
-            if not each.is_required():
-                default = each.get_default(call_default_factory=True)
+            if not info.is_required():
+                default = info.get_default(call_default_factory=True)
             kind = inspect.Parameter.KEYWORD_ONLY
-            found.append(inspect.Parameter(name, kind, default=default, annotation=each.annotation))
-            said, more = f"{name}: {each.description}", " " * 8
-            lines.append(textwrap.fill(said, 96, initial_indent=" " * 4, subsequent_indent=more))
-        vars(function)["__signature__"] = signature.replace(parameters=found)
+            parameters.append(
+                inspect.Parameter(name, kind, default=default, annotation=info.annotation)
+            )
+            text, more = f"{name}: {info.description}", " " * 8
+            lines.append(textwrap.fill(text, 96, initial_indent=" " * 4, subsequent_indent=more))
+        vars(function)["__signature__"] = signature.replace(parameters=parameters)
         help = inspect.cleandoc(function.__doc__ or "")  # Python 3.13 takes the indent away itself
-        function.__doc__ = help.replace("    **given: ...", "\n".join(lines))
+        function.__doc__ = help.replace("    **arguments: ...", "\n".join(lines))
         return function
 
     return described
@@ -53,7 +59,7 @@ def begin(
     call: str,
     model: type[_Asked],
     system: str | PathLike[str] | System,
-    given: Mapping[str, object],
+    arguments: Mapping[str, object],
     progress: bool | Display,
 ) -> tuple[_Asked, Chosen, Library, Display]:
     """Read a question, build its system and find its scenes; `call` is the name of the function.
@@ -61,16 +67,16 @@ def begin(
     `UserError` for what does not fit, named as its caller names it, for a library that does not
     exist, and as `choose`.
     """
-    asked = ask(model, given, isinstance(progress, Display) and progress.is_command)
-    how = vars(asked)
+    question = ask(model, arguments, isinstance(progress, Display) and progress.is_command)
+    how = vars(question)
     executor = how.get("executor", "local")
-    chosen = choose(system, asked.options, how.get("workers"), asked.arms, executor)
-    library = library_of(chosen.system, asked.library)
-    said = {"system": chosen.spec.name, **asked.model_dump(exclude_unset=True)}
-    shown = display(progress, call, said | {"options": chosen.spec.options})
+    chosen = choose(system, question.options, how.get("workers"), question.arms, executor)
+    library = library_of(chosen.system, question.library)
+    fields = {"system": chosen.spec.name, **question.model_dump(exclude_unset=True)}
+    shown = display(progress, call, fields | {"options": chosen.spec.options})
     if chosen.notice:
         shown.say(chosen.notice)
-    return asked, chosen, library, shown
+    return question, chosen, library, shown
 
 
 @dataclass(frozen=True)
@@ -81,7 +87,7 @@ class Job:
     executor: Executor
     display: Display
     how: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    """What `run_study` takes besides, such as a time limit."""
+    """Further arguments of `run_study`, such as a time limit."""
     started: datetime = field(default_factory=lambda: datetime.now(UTC))
 
     def run(
@@ -109,24 +115,24 @@ class Job:
 
         About `most` items are expected, each a `noun`. Raises as `run`.
         """
-        every, computed, said = [*items], 0, set[str]()
+        every, computed, noticed = [*items], 0, set[str]()
 
         def notice(text: str) -> None:
             key = "Kept " if text.startswith("Kept ") else text
-            if key not in said:
-                said.add(key)
+            if key not in noticed:
+                noticed.add(key)
                 self.display.say(text)
 
         with self.display.progress("Running") as show:
 
-            def note(now: Progress) -> None:
-                whole = (now.total or 0.0) * max(1.0, most / len(every))
-                show(now.within(max(now.done, whole), remark=f"{len(every)} {noun}"))
+            def note(state: Progress) -> None:
+                whole = (state.total or 0.0) * max(1.0, most / len(every))
+                show(state.within(max(state.done, whole), remark=f"{len(every)} {noun}"))
 
             run = partial(self.run, system=system, show=note, notice=notice, shared=True)
             while True:
                 result = run(study(every), recheck=False)
-                said.add("Kept ")  # what later rounds keep, this call has run itself
+                noticed.add("Kept ")  # what later rounds keep, this call has run itself
                 computed += result.blocks_computed
                 new = list(more(every, result.outcomes))
                 if not new:

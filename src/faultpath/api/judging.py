@@ -37,7 +37,7 @@ def judge(
     results: str | PathLike[str] | Sequence[str | PathLike[str]],
     *,
     progress: bool | Display = True,
-    **given: Any,
+    **arguments: Any,
 ) -> Run:
     """Decide from trials that other tools ran, as an audit does from its own.
 
@@ -46,21 +46,21 @@ def judge(
             `eval_info.json`, logs of Inspect, samples of lm-eval. `mine=FILE` says of which arm all
             trials of a file are, `mine@shared=FILE` under which condition too.
         progress: Whether notices are shown, on the standard error.
-        **given: ...
+        **arguments: ...
 
     Raises:
         UserError: A file cannot be read, the trials cannot be paired, or nothing can be compared.
     """
-    asked = ask(JudgeQuestion, given, isinstance(progress, Display) and progress.is_command)
+    question = ask(JudgeQuestion, arguments, isinstance(progress, Display) and progress.is_command)
     named = [results] if isinstance(results, str | PathLike) else list(results)
     if not named:
         raise UserError("there are no results to judge: name a file.")
-    said = {"results": [str(each) for each in named], **asked.model_dump(exclude_unset=True)}
-    shown = display(progress, "judge", said)
+    fields = {"results": [str(path) for path in named], **question.model_dump(exclude_unset=True)}
+    shown = display(progress, "judge", fields)
     started = datetime.now(UTC)
-    rows, sources = read_results(named, asked)
-    laid = lay_out(rows, asked)
-    folder = asked.folder or _folder(laid, sources)
+    rows, sources = read_results(named, question)
+    laid = lay_out(rows, question)
+    folder = question.folder or _folder(laid, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
     before = concluded_before(folder)
@@ -75,8 +75,8 @@ def judge(
     with locked(folder, shown.say):
         result = _stored(folder, laid)
         write_text(folder / RECORD, as_text(record), folder)
-        made = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
-        amend(folder, made.model_copy(update={"data": sources}), MADE_FROM)
+        provenance = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
+        amend(folder, provenance.model_copy(update={"data": sources}), MADE_FROM)
     run = Run(folder, *read_run(folder))
     run.report()
     if not shown.is_command:
@@ -86,16 +86,18 @@ def judge(
 
 
 def _folder(laid: LaidOut, sources: dict[str, str]) -> Path:
-    asked = laid.question
-    content = json.dumps([sorted(sources.values()), asked.model_dump(mode="json")], sort_keys=True)
+    question = laid.question
+    content = json.dumps(
+        [sorted(sources.values()), question.model_dump(mode="json")], sort_keys=True
+    )
     digest = hashlib.sha256(content.encode()).hexdigest()[:8]
-    arms = re.sub(r"[^A-Za-z0-9.+,_-]+", "_", f"{asked.repair}-vs-{asked.baseline}")[:150]
+    arms = re.sub(r"[^A-Za-z0-9.+,_-]+", "_", f"{question.repair}-vs-{question.baseline}")[:150]
     return Path("runs") / f"judged-{arms}-{digest}"
 
 
 def _stored(folder: Path, laid: LaidOut) -> RunResult:
     """Write the trials and what else pages are made from, of a system of which nothing is known."""
-    asked, table = laid.question, laid.table
+    question, table = laid.question, laid.table
     rows = dict.fromkeys((row.variant, row.path, row.seed) for row in table.rows)
     taps = tuple(RowDeliveries(variant=v, path=p, seed=s, taps=()) for v, p, s in rows)
     deliveries = Deliveries(rows=taps, findings=laid.findings)
@@ -104,7 +106,7 @@ def _stored(folder: Path, laid: LaidOut) -> RunResult:
         interface=Interface(name="results", sources=(), channels=()),
         variants=tuple(
             VariantShown(name=name, consumers=(), bindings={})
-            for name in (asked.baseline, asked.repair)
+            for name in (question.baseline, question.repair)
         ),
         plans={},
     )
@@ -124,5 +126,5 @@ def _stored(folder: Path, laid: LaidOut) -> RunResult:
         outcomes_sha256=digest,
         system_fingerprint=digest[:16],
         code=(),
-        library_hash=asked.library_hash,
+        library_hash=question.library_hash,
     )

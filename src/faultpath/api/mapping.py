@@ -25,14 +25,14 @@ _BISECTING = 18
 
 @asks(MapQuestion)
 def reversal_map(
-    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> MapRun:
     """Map who is ahead over the error at one module and that at another, of the same source.
 
     Args:
         system: As for `audit`.
         progress: As for `audit`.
-        **given: ...
+        **arguments: ...
 
     The same folder serves another spread or number of points, and keeps what was run.
 
@@ -40,19 +40,23 @@ def reversal_map(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    asked, chosen, library, display = begin("reversal_map", MapQuestion, system, given, progress)
-    plan = plan_map(chosen.system, chosen.spec, asked, library)
-    found = plan.question
+    request, chosen, library, display = begin(
+        "reversal_map", MapQuestion, system, arguments, progress
+    )
+    plan = plan_map(chosen.system, chosen.spec, request, library)
+    question = plan.question
     named = [
         plan.study(()).name,
-        asked.fault,
-        *found.against,
-        f"{found.up_to:g}",
-        Path(asked.library).stem,
+        request.fault,
+        *question.against,
+        f"{question.up_to:g}",
+        Path(request.library).stem,
     ]
-    place = run_folder(asked, chosen, named)
+    place = run_folder(request, chosen, named)
     with executor_of(chosen.system, chosen.workers, chosen.executor) as executor:
-        run = _carry_out(plan, Job(place, executor, display, {"time_limit_s": asked.time_limit_s}))
+        run = _carry_out(
+            plan, Job(place, executor, display, {"time_limit_s": request.time_limit_s})
+        )
     run.report()
     return run
 
@@ -63,23 +67,23 @@ def _carry_out(plan: MapPlan, job: Job) -> MapRun:
 
     Raises `Stopped` on Ctrl-C, and `UserError` where nothing is left to compare.
     """
-    asked, points, display = plan.question, lattice(COARSE), job.display
+    question, points, display = plan.question, lattice(COARSE), job.display
     if plan.system.backend:
         display.say(f"Computing with {plan.system.backend}.")
     study = plan.study(points)
     first = len(study.rows) * len(plan.scenes)
-    most = max(len(points), asked.points + _BISECTING) / len(points)
+    most = max(len(points), question.points + _BISECTING) / len(points)
     display.say(
         f"{len(points)} pairs of errors first, {first} trials; then more where the sign is not "
         f"decided, about {round(first * most)} trials at most."
     )
 
     def more(points: Sequence[Point], table: OutcomeTable) -> Sequence[Point]:
-        found, _ = plan.differences(points, table)
-        return next_points(found, asked.against, asked.points, asked.library_hash)
+        differences, _ = plan.differences(points, table)
+        return next_points(differences, question.against, question.points, question.library_hash)
 
     points, result = job.rounds(
-        plan.system, points, plan.study, more, asked.points + _BISECTING, "pairs of errors"
+        plan.system, points, plan.study, more, question.points + _BISECTING, "pairs of errors"
     )
     record = conclude(plan, points, result.outcomes, result.findings)
     write_text(job.folder / MAP, record.model_dump_json(indent=1) + "\n", job.folder)

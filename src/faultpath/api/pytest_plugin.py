@@ -18,22 +18,22 @@ class Audits:
         self._folder = folder
         self._count = 0
 
-    def audit(self, system: Any, **given: Any) -> "Run":
+    def audit(self, system: Any, **arguments: Any) -> "Run":
         """Return `faultpath.audit(system, ...)`."""
         import faultpath
 
-        return self._run(partial(faultpath.audit, system), given)
+        return self._run(partial(faultpath.audit, system), arguments)
 
-    def judge(self, results: Any, **given: Any) -> "Run":
+    def judge(self, results: Any, **arguments: Any) -> "Run":
         """Return `faultpath.judge(results, ...)`."""
         import faultpath
 
-        return self._run(partial(faultpath.judge, results), given)
+        return self._run(partial(faultpath.judge, results), arguments)
 
-    def _run(self, call: "Callable[..., Run]", given: dict[str, Any]) -> "Run":
+    def _run(self, call: "Callable[..., Run]", arguments: dict[str, Any]) -> "Run":
         self._count += 1
         place = self._folder / f"faultpath-{self._count}"
-        return call(**{"folder": place, "progress": False, **given})
+        return call(**{"folder": place, "progress": False, **arguments})
 
 
 @pytest.fixture

@@ -40,21 +40,21 @@ class Replayed:
 
 
 def chosen_scenes(
-    held: ReportInput, scenes: Sequence[str], paths: Sequence[str]
+    source: ReportInput, scenes: Sequence[str], paths: Sequence[str]
 ) -> tuple[str, ...]:
     """Return the scenes to run again, by default those that the report begins with.
 
     `UserError` for a scene or path that the run has not got.
     """
-    every = list(dict.fromkeys(row.outcome.scene for row in held.outcomes.rows))
-    named = [path.name for path in held.record.paths]
-    for what, asked, known in (("scene", scenes, every), ("path", paths, named)):
-        for name in asked:
+    every = list(dict.fromkeys(row.outcome.scene for row in source.outcomes.rows))
+    named = [path.name for path in source.record.paths]
+    for what, names, known in (("scene", scenes, every), ("path", paths, named)):
+        for name in names:
             if name not in known:
                 raise UserError(f"the run: {unknown(what, name, known)}")
     if scenes:
         return tuple(dict.fromkeys(scenes))
-    return tuple(scene for scene, _ in shown_first(held.record, held.outcomes))
+    return tuple(scene for scene, _ in shown_first(source.record, source.outcomes))
 
 
 def shown_first(record: DecisionRecord, outcomes: OutcomeTable) -> tuple[tuple[str, int], ...]:
@@ -64,10 +64,10 @@ def shown_first(record: DecisionRecord, outcomes: OutcomeTable) -> tuple[tuple[s
 
 
 def replay(
-    held: ReportInput,
+    source: ReportInput,
     scenes: Sequence[str],
     paths: Sequence[str] = (),
-    say: Callable[[str], None] = lambda said: None,
+    say: Callable[[str], None] = lambda text: None,
     trust: bool = False,
 ) -> list[Replayed]:
     """Run the trials of some scenes again, on all paths or on some, in both arms.
@@ -76,38 +76,38 @@ def replay(
     Raises `UserError` where the system cannot be built, or no longer has the scenes and variants
     of the run.
     """
-    asked = held.record.question
-    if asked.judged:
+    question = source.record.question
+    if question.judged:
         raise UserError(
             "other tools ran these trials, and nothing of theirs can be run again here."
         )
-    if SystemSpec(name=asked.system).is_object:
+    if SystemSpec(name=question.system).is_object:
         raise UserError(
-            f"the run is of a {asked.system}, which only its own process had: put what builds the "
-            "system into a file, and audit that."
+            f"the run is of a {question.system}, which only its own process had: put what builds "
+            "the system into a file, and audit that."
         )
-    received = Received(RECORD, trust, say, held.provenance.sources)
-    arms = asked.baseline, asked.repair
-    chosen = choose(asked.system, asked.options, None, arms, received=received)
+    received = Received(RECORD, trust, say, source.provenance.sources)
+    arms = question.baseline, question.repair
+    chosen = choose(question.system, question.options, None, arms, received=received)
     system = chosen.system
-    library = library_of(system, asked.library)
-    if library.content_hash != asked.library_hash:
+    library = library_of(system, question.library)
+    if library.content_hash != question.library_hash:
         raise UserError(
-            f"library '{asked.library}' has other scenes than the run: bring its file back."
+            f"library '{question.library}' has other scenes than the run: bring its file back."
         )
     kept = ("baseline", "repair", "fault", "seeds")
-    request = ask(AuditQuestion, {name: getattr(asked, name) for name in kept})
+    request = ask(AuditQuestion, {name: getattr(question, name) for name in kept})
     study = plan_audit(system, chosen.spec, request, library).study
-    before = outcomes_at(held.outcomes, held.traces)
+    before = outcomes_at(source.outcomes, source.traces)
     named = paths or {row.path for row in study.rows}
-    wanted = [at for at in before if at.scene in scenes and at.path in named]
+    addresses = [at for at in before if at.scene in scenes and at.path in named]
 
     def note(arm: Arm, done: int, total: int) -> None:
         faults = " and ".join(fault.describe() for fault in arm.faults) or "correct inputs"
         say(f"Ran {arm.variant}, seed {arm.seed}, again: {faults} ({done} of {total}).")
 
     with local(0) as executor:
-        return run_again(before, study, system, executor, wanted, note)
+        return run_again(before, study, system, executor, addresses, note)
 
 
 def outcomes_at(outcomes: OutcomeTable, traces: Traces) -> dict[TrialAddress, Outcome]:
@@ -126,24 +126,24 @@ def run_again(
     study: Study,
     system: System,
     executor: Executor,
-    asked: Iterable[TrialAddress],
+    trials: Iterable[TrialAddress],
     note: Callable[[Arm, int, int], None],
 ) -> list[Replayed]:
     """Run some trials of a study again and listen; an arm that several paths share runs once.
 
     Raises what makes an audit itself wrong: code that changed under way, workers that do not start.
     """
-    wanted = before.keys() & set(asked)
+    chosen = before.keys() & set(trials)
     arms: dict[str, Arm] = {}
     addresses: dict[str, dict[str, list[TrialAddress]]] = {}
     for row in study.rows:
         for scene in study.scenes:
             at = TrialAddress(row.variant, row.path, row.seed, scene)
-            if at in wanted:
+            if at in chosen:
                 arms[key := row.arm.key()] = row.arm
                 addresses.setdefault(key, {}).setdefault(scene, []).append(at)
     tasks = [Block(arms[key], tuple(scenes), signals=True) for key, scenes in addresses.items()]
-    found: dict[TrialAddress, Replayed] = {}
+    replays: dict[TrialAddress, Replayed] = {}
     done = 0
 
     def settle(task: Block, run: RecordedBlock) -> None:
@@ -156,20 +156,23 @@ def run_again(
                     again = Done((run.outcomes[place],), ())
                     differs = difference([before[at]], again)
                     signals = () if differs else run.signals[place]
-                found[at] = Replayed(at, differs, signals)
+                replays[at] = Replayed(at, differs, signals)
         note(task.arm, done, len(tasks))
 
     built = Built.of(system, study.system, study.library)
     run_blocks(executor, built, tasks, settle)
-    return [found[at] for at in before if at in found]
+    return [replays[at] for at in before if at in replays]
 
 
-def keep_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) -> list[Path]:
+def keep_signals(folder: Path, source: ReportInput, replays: Sequence[Replayed]) -> list[Path]:
     """Write the signals beside the run's outcomes, with those of before, and its report again.
 
     Returns what was written. `UserError` where the folder cannot be written.
     """
-    signals = {**held.signals, **{each.address: each.signals for each in found if each.signals}}
+    signals = {
+        **source.signals,
+        **{replay.address: replay.signals for replay in replays if replay.signals},
+    }
     write_file(folder / SIGNALS, encode_signals(dict(sorted(signals.items()))), folder)
-    amend(folder, held.provenance, [SIGNALS])
+    amend(folder, source.provenance, [SIGNALS])
     return [folder / SIGNALS, *write_report(read_run(folder)[0], folder)]

@@ -42,11 +42,11 @@ class FinishedRun:
         self.folder = folder
         self.record = record
         self.provenance = provenance
-        """What ran, on what, with which code, packages and options."""
+        """Record of what ran, on what, with which code, packages and options."""
 
     @property
     def headline(self) -> str:
-        """What was decided, in one sentence."""
+        """The result in one sentence."""
         return self.record.headline
 
     def __repr__(self) -> str:
@@ -61,11 +61,11 @@ class Run(FinishedRun):
     """
 
     record: DecisionRecord
-    """What was decided: `headline` in a sentence, `effects` in numbers."""
+    """Decisions of the audit: `headline` in a sentence, `effects` in numbers."""
 
-    def __init__(self, folder: Path, held: ReportInput, trials: pa.Table) -> None:
-        super().__init__(folder, held.record, held.provenance)
-        self.held = held
+    def __init__(self, folder: Path, source: ReportInput, trials: pa.Table) -> None:
+        super().__init__(folder, source.record, source.provenance)
+        self.held = source
         """All that its pages are made from."""
         self._trials = trials
 
@@ -173,9 +173,9 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | SearchRun | Sensiti
         from faultpath.decisions.search.model import SearchRecord
         from faultpath.decisions.sensitivity.model import SensitivityRecord
 
-        held = unseal(place, provenance.files, made_from)
+        contents = unseal(place, provenance.files, made_from)
         models = {MapRun: MapRecord, SearchRun: SearchRecord, SensitivityRun: SensitivityRecord}
-        record = parsed(held[name], place / name, models[kind])
+        record = parsed(contents[name], place / name, models[kind])
         if (provenance.files[OUTCOMES], provenance.library_hash) != (
             provenance.outcomes_sha256,
             record.question.library_hash,

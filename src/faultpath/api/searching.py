@@ -23,7 +23,7 @@ from faultpath.trials.store.atomic import write_text
 
 @asks(SearchQuestion)
 def search(
-    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> SearchRun:
     """Look for the fault that hurts those most who choose the repair by an isolated audit.
 
@@ -33,7 +33,7 @@ def search(
     Args:
         system: As for `audit`.
         progress: As for `audit`.
-        **given: ...
+        **arguments: ...
 
     The same call resumes, and ends with the same bytes.
 
@@ -41,18 +41,22 @@ def search(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    asked, chosen, library, display = begin("search", SearchQuestion, system, given, progress)
-    plan = plan_search(chosen.system, chosen.spec, asked, library)
+    question, chosen, library, display = begin(
+        "search", SearchQuestion, system, arguments, progress
+    )
+    plan = plan_search(chosen.system, chosen.spec, question, library)
     bounds = _digest(plan.question.bounds.model_dump_json())
     named = [
-        f"{plan.spec.name}-search-{asked.repair}-vs-{asked.baseline}",
-        f"{asked.within.stem}-{bounds}",
-        f"{asked.candidates}-faults-seed-{asked.search_seed}",
-        Path(asked.library).stem,
+        f"{plan.spec.name}-search-{question.repair}-vs-{question.baseline}",
+        f"{question.within.stem}-{bounds}",
+        f"{question.candidates}-faults-seed-{question.search_seed}",
+        Path(question.library).stem,
     ]
-    place = run_folder(asked, chosen, named)
+    place = run_folder(question, chosen, named)
     with executor_of(chosen.system, chosen.workers, chosen.executor) as executor:
-        run = _carry_out(plan, Job(place, executor, display, {"time_limit_s": asked.time_limit_s}))
+        run = _carry_out(
+            plan, Job(place, executor, display, {"time_limit_s": question.time_limit_s})
+        )
     run.report()
     return run
 
@@ -63,16 +67,16 @@ def _carry_out(plan: SearchPlan, job: Job) -> SearchRun:
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the trials cannot be run.
     """
-    asked, display, tried = plan.question, job.display, dict[str, Tried]()
-    bounds = asked.bounds
-    source = proposals(len(bounds.ranges()), asked.search_seed, asked.candidates)
+    question, display, tried = plan.question, job.display, dict[str, Tried]()
+    bounds = question.bounds
+    source = proposals(len(bounds.ranges()), question.search_seed, question.candidates)
     batch = [bounds.fault(point) for point in next(source)]
     if plan.system.backend:
         display.say(f"Computing with {plan.system.backend}.")
-    each = len(plan.study(batch[:1]).rows) * asked.finding
+    per_fault = len(plan.study(batch[:1]).rows) * question.finding
     display.say(
-        f"{asked.candidates} faults are tried in {asked.finding} scenes, {each} trials each at "
-        f"most; then one is put to the test in {asked.confirming} other scenes."
+        f"{question.candidates} faults are tried in {question.finding} scenes, {per_fault} trials "
+        f"each at most; then one is put to the test in {question.confirming} other scenes."
     )
 
     def more(faults: Sequence[str], table: OutcomeTable) -> Sequence[str]:
@@ -88,7 +92,7 @@ def _carry_out(plan: SearchPlan, job: Job) -> SearchRun:
                 return new
 
     first = list(dict.fromkeys(batch))
-    _, result = job.rounds(plan.system, first, plan.study, more, asked.candidates, "faults")
+    _, result = job.rounds(plan.system, first, plan.study, more, question.candidates, "faults")
     confirmed, folder, failed = None, "", len(result.outcomes.failed())
     if chosen := best(list(tried.values())):
         folder = f"confirmation-{_digest(chosen)}"
@@ -98,7 +102,7 @@ def _carry_out(plan: SearchPlan, job: Job) -> SearchRun:
         run = Run(audit.folder, *read_run(audit.folder))
         run.report()
         confirmed, failed = run.record, failed + run.failed
-    record = conclude(asked, list(tried.values()), confirmed, folder, failed, result.findings)
+    record = conclude(question, list(tried.values()), confirmed, folder, failed, result.findings)
     write_text(job.folder / SEARCH, record.model_dump_json(indent=1) + "\n", job.folder)
     return SearchRun(job.folder, record, job.finish(result, plan.system, SEARCH_MADE_FROM))
 

@@ -19,7 +19,7 @@ from faultpath.trials.store.atomic import write_text
 
 @asks(SensitivityQuestion)
 def sensitivity(
-    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> SensitivityRun:
     """Tell which declared uncertainty moves what a variant achieves: Sobol indices of groups.
 
@@ -28,7 +28,7 @@ def sensitivity(
     Args:
         system: As for `audit`.
         progress: As for `audit`.
-        **given: ...
+        **arguments: ...
 
     The same call resumes, and ends with the same bytes.
 
@@ -36,25 +36,25 @@ def sensitivity(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    asked, chosen, library, display = begin(
-        "sensitivity", SensitivityQuestion, system, given, progress
+    question, chosen, library, display = begin(
+        "sensitivity", SensitivityQuestion, system, arguments, progress
     )
-    plan = plan_sensitivity(chosen.system, chosen.spec, asked, library)
+    plan = plan_sensitivity(chosen.system, chosen.spec, question, library)
     named = [
         plan.study.name,
-        asked.metric or "success",
-        *asked.fault,
-        f"{asked.points}-points-seed-{asked.design_seed}",
-        Path(asked.library).stem,
+        question.metric or "success",
+        *question.fault,
+        f"{question.points}-points-seed-{question.design_seed}",
+        Path(question.library).stem,
     ]
-    place = run_folder(asked, chosen, named)
+    place = run_folder(question, chosen, named)
     trials = len(plan.study.arms()) * len(plan.study.scenes)
     display.say(
-        f"{asked.points} points of {len(plan.question.groups)} groups of sources: "
+        f"{question.points} points of {len(plan.question.groups)} groups of sources: "
         f"{trials} trials at most."
     )
     with executor_of(chosen.system, chosen.workers, chosen.executor) as executor:
-        job = Job(place, executor, display, {"time_limit_s": asked.time_limit_s})
+        job = Job(place, executor, display, {"time_limit_s": question.time_limit_s})
         with display.progress("Running") as show:
             result = job.run(plan.study, chosen.system, show)
         values, scenes = plan.values(result.outcomes)

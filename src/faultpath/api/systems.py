@@ -82,10 +82,10 @@ def choose(
         )
     else:
         spec, before = vars(system).get(_LOADED, (None, {}))
-        now = {name: value for name, value in vars(system).items() if name != _LOADED}
-        same = all(name in now and now[name] is value for name, value in before.items())
-        more = [getattr(type(system), name, None) for name in now if name not in before]
-        if not same or not all(isinstance(each, cached_property) for each in more):
+        current = {name: value for name, value in vars(system).items() if name != _LOADED}
+        same = all(name in current and current[name] is value for name, value in before.items())
+        more = [getattr(type(system), name, None) for name in current if name not in before]
+        if not same or not all(isinstance(attribute, cached_property) for attribute in more):
             spec = None
     if spec is not None:
         if received is not None:
@@ -146,7 +146,7 @@ def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
     named = [name for name in variants if ":" in name or name.endswith(".py")]
     if not named or _BRING not in {option.name for option in trials.system_options(spec.name)}:
         return spec
-    found = [part for part in spec.options.get(_BRING, "").split(",") if part]
+    parts = [part for part in spec.options.get(_BRING, "").split(",") if part]
     for name in named:
         if ":" not in name:
             raise UserError(
@@ -155,8 +155,8 @@ def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
             )
         if "," in name:
             raise UserError(f"'{name}' has a comma in it: rename the file, commas part names.")
-        found += PART.findall(name)
-    options = {**spec.options, _BRING: ",".join(dict.fromkeys(found))}
+        parts += PART.findall(name)
+    options = {**spec.options, _BRING: ",".join(dict.fromkeys(parts))}
     return SystemSpec(name=spec.name, options=options)
 
 

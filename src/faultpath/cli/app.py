@@ -32,7 +32,7 @@ class Entry:
     name: str
     command: Callable[..., Any]
     example: str
-    """What follows the name in a call."""
+    """Arguments that follow the name in a call."""
     line: str = ""
     """Its line in the list of all verbs; by default its help."""
     of_a_system: bool = False
@@ -120,7 +120,7 @@ def panels() -> dict[str, tuple[Entry, ...]]:
     """
     added = tuple(
         Entry(point.name, point.load(), import_module(point.module).EXAMPLE)
-        for point in sorted(entry_points(group="faultpath.verbs"), key=lambda each: each.name)
+        for point in sorted(entry_points(group="faultpath.verbs"), key=lambda entry: entry.name)
     )
     return _PANELS | ({"Installed with a system": added} if added else {})
 
@@ -167,8 +167,8 @@ def _audit_of_a_study(arguments: Sequence[str]) -> Callable[..., Any]:
     return audits.study
 
 
-def _print_version(asked: bool) -> None:
-    if asked:
+def _print_version(requested: bool) -> None:
+    if requested:
         typer.echo(f"faultpath {__version__}")
         raise typer.Exit
 

@@ -51,7 +51,7 @@ def plan(
     ),
     dependent_failures: DependentFailures = None,
     as_json: Json = False,
-    **given: Any,
+    **arguments: Any,
 ) -> None:
     """Rank the uncertain sources, propose the audits of a repair with their trials, and
     write them as a study file for `faultpath audit --study`."""
@@ -63,8 +63,8 @@ def plan(
     check_output(out)
     if dependent_failures is not None:
         check_output(dependent_failures, DEPENDENT_MARK)
-    found = plan(system, **given, progress=display())
-    written = found.write(out)
+    planned = plan(system, **arguments, progress=display())
+    written = planned.write(out)
 
     from faultpath.decisions.tables.csv import csv_text
     from faultpath.decisions.tables.terminal import drawn
@@ -72,18 +72,18 @@ def plan(
     from faultpath.report.plan import tables
 
     if dependent_failures is not None:
-        dependent = of_plan(found.plan)
+        dependent = of_plan(planned.plan)
         write_text(dependent_failures, csv_text(dependent) if dependent else "")
     if as_json:
-        typer.echo(found.plan.model_dump_json(indent=2))
+        typer.echo(planned.plan.model_dump_json(indent=2))
         return
     console = SafeConsole()
-    for table in filter(None, (*tables(found.plan), in_short(found.plan))):
+    for table in filter(None, (*tables(planned.plan), in_short(planned.plan))):
         console.print(drawn(table))
         for note in table.notes:
             console.print(note, markup=False)
         console.print()
-    for sentence in found.sentences:
+    for sentence in planned.sentences:
         console.print(sentence, markup=False)
     console.print(f"Written: {written}", markup=False, soft_wrap=True)
 
@@ -97,14 +97,14 @@ def audit(
     fail_if: FailIf = None,
     junit: Junit = None,
     summary: Summary = None,
-    **given: Any,
+    **arguments: Any,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault."""
     del study  # `build` hands a line with it to the function below
     gate = Gate.of(fail_if, junit, summary)
     # What builds a system may load for seconds; until then this is all that there is to see.
-    arms = f"{one_line(given['repair'])} with {one_line(given['baseline'])}"
+    arms = f"{one_line(arguments['repair'])} with {one_line(arguments['baseline'])}"
     typer.echo(f"Building {one_line(system)}, to compare {arms}.", err=as_json)
 
     from faultpath.api.audit import audits
@@ -112,10 +112,10 @@ def audit(
     from faultpath.api.display import SafeConsole
     from faultpath.report.comparison import shown
 
-    runs = audits(system, **given, progress=display(as_json))
+    runs = audits(system, **arguments, progress=display(as_json))
     status = _print(runs, as_json, gate, len(runs) == 1 or details, details)
     if len(runs) > 1:
-        compared, first, folder = compare(runs), runs[0].folder, given.get("folder")
+        compared, first, folder = compare(runs), runs[0].folder, arguments.get("folder")
         names = "/".join(run.folder.name for run in runs)
         digest = hashlib.sha256(names.encode()).hexdigest()[:8]
         beside = first.with_name(f"{first.name}+{len(runs) - 1}-sizes-{digest}.html")
@@ -160,7 +160,7 @@ def judge(
     fail_if: FailIf = None,
     junit: Junit = None,
     summary: Summary = None,
-    **given: Any,
+    **arguments: Any,
 ) -> int:
     """Decide from trials that other tools ran: record, report and words are those of an audit.
 
@@ -169,7 +169,7 @@ def judge(
     from faultpath.api.judging import judge
 
     gate = Gate.of(fail_if, junit, summary)
-    run = judge(results, **given, progress=display(as_json))
+    run = judge(results, **arguments, progress=display(as_json))
     return _print((run,), as_json, gate, True, details)
 
 
@@ -238,8 +238,10 @@ def _print(
 
     if as_json:
         several = len(runs) > 1  # of several sizes with what stands over all of them
-        found = compare(runs).as_json()["runs"] if several else [folder_and_record(runs[0].folder)]
-        typer.echo(json.dumps(found, indent=1))
+        entries = (
+            compare(runs).as_json()["runs"] if several else [folder_and_record(runs[0].folder)]
+        )
+        typer.echo(json.dumps(entries, indent=1))
     console = SafeConsole(stderr=as_json)
     for run in runs if sentences else ():
         if len(runs) > 1:

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 @takes(MapQuestion)
-def reversal_map(system: SystemName, as_json: Json = False, **given: Any) -> int:
+def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Map the success difference over the error at one module and that at another: where repair
     or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
     from faultpath.api.mapping import reversal_map
 
-    run = reversal_map(system, **given, progress=display(as_json))
+    run = reversal_map(system, **arguments, progress=display(as_json))
 
     from faultpath.report.map import shown
 
@@ -30,12 +30,12 @@ def reversal_map(system: SystemName, as_json: Json = False, **given: Any) -> int
 
 
 @takes(SearchQuestion)
-def search(system: SystemName, as_json: Json = False, **given: Any) -> int:
+def search(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Look within bounds for the fault that hurts those most who choose the repair by an isolated
     audit: half of the scenes find it, and an audit of it in the other half decides."""
     from faultpath.api.searching import search
 
-    run = search(system, **given, progress=display(as_json))
+    run = search(system, **arguments, progress=display(as_json))
 
     from faultpath.report.search import shown
 
@@ -43,12 +43,12 @@ def search(system: SystemName, as_json: Json = False, **given: Any) -> int:
 
 
 @takes(SensitivityQuestion)
-def sensitivity(system: SystemName, as_json: Json = False, **given: Any) -> int:
+def sensitivity(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Tell which source is worth improving: Sobol indices of a metric over errors that are drawn
     as the interface declares them, with sources of one correlation group moved together."""
     from faultpath.api.sensitivity import sensitivity
 
-    run = sensitivity(system, **given, progress=display(as_json))
+    run = sensitivity(system, **arguments, progress=display(as_json))
 
     from faultpath.report.sensitivity import shown
 

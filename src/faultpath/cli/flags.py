@@ -27,37 +27,37 @@ _DEST = "system_"
 def takes(model: type[Asked], *without: str) -> Callable[[_Verb], _Verb]:
     """Give a verb the flags of a model.
 
-    The verb has a last parameter `**given`, which gets what the line says, by the model's names.
-    Fields named in `without` have no flag.
+    The verb has a last parameter `**arguments`, which gets what the line says, by the names of the
+    model. Fields named in `without` have no flag.
     """
-    fields = {name: each for name, each in model.model_fields.items() if name not in without}
+    fields = {name: field for name, field in model.model_fields.items() if name not in without}
 
     def decorate(verb: _Verb) -> _Verb:
         @wraps(verb)
         def command(**line: Any) -> Any:
-            given = {name: line.pop(name) for name in fields}
+            arguments = {name: line.pop(name) for name in fields}
             for name, field in fields.items():
                 if field.default is True:
-                    given[name] = not given[name]
-            if "options" in given:
-                pairs, given["options"] = given["options"] or (), {}
+                    arguments[name] = not arguments[name]
+            if "options" in arguments:
+                pairs, arguments["options"] = arguments["options"] or (), {}
                 for pair in pairs:
                     key, separator, value = pair.partition("=")
                     if not separator or not key:
                         raise UserError(
                             f"--set {pair!r} is not of the form key=value, for example wind=L3."
                         )
-                    if key in given["options"]:
+                    if key in arguments["options"]:
                         raise UserError(f"the options name '{key}' twice: give it once.")
-                    given["options"][key] = value
-            return verb(**line, **{k: v for k, v in given.items() if v is not None})
+                    arguments["options"][key] = value
+            return verb(**line, **{k: v for k, v in arguments.items() if v is not None})
 
         own = inspect.signature(verb).parameters.values()
-        every = [each for each in own if each.kind != each.VAR_KEYWORD]
+        every = [parameter for parameter in own if parameter.kind != parameter.VAR_KEYWORD]
         every += [_parameter(model, name) for name in fields]
         every.sort(key=_advanced)
         # Arguments go before, then what is required; typer keeps the order within a panel.
-        parameters = [each.replace(kind=_KEYWORD) for each in every]
+        parameters = [parameter.replace(kind=_KEYWORD) for parameter in every]
         vars(command)["__signature__"] = inspect.Signature(parameters)
         # Its signature is the model's from here on, which no type can say.
         return command  # pyright: ignore[reportReturnType]
@@ -78,7 +78,7 @@ def _parameter(model: type[Asked], name: str) -> inspect.Parameter:
     several = any(note.several for note in notes)
     kind: Any = field.annotation
     if NoneType in get_args(kind):
-        kind = next(each for each in get_args(kind) if each is not NoneType)
+        kind = next(part for part in get_args(kind) if part is not NoneType)
     if not (kind in _PLAIN or kind is Path or get_origin(kind) is Literal):
         kind = str  # lists stay text
     default: Any = field.default
@@ -87,16 +87,16 @@ def _parameter(model: type[Asked], name: str) -> inspect.Parameter:
     elif several or default in ("", (), None):
         default = None
     elif isinstance(default, tuple):
-        default = ",".join(f"{each:g}" for each in field.default)
+        default = ",".join(f"{value:g}" for value in field.default)
     elif default is True:
         default = False
-    owners = (each for each in model.__mro__ if name in vars(each).get("__annotations__", {}))
+    owners = (owner for owner in model.__mro__ if name in vars(owner).get("__annotations__", {}))
     panels = [note.panel for note in notes if note.panel]
-    panels += [each.panel for each in owners if issubclass(each, Asked)]
-    said = field.description or ""
+    panels += [owner.panel for owner in owners if issubclass(owner, Asked)]
+    text = field.description or ""
     option = typer.Option(
         flag(model, name),
-        help=f"Do not {said[0].lower()}{said[1:]}" if field.default is True else said,
+        help=f"Do not {text[0].lower()}{text[1:]}" if field.default is True else text,
         rich_help_panel=panels[0] or None,
         parser=path if kind is Path else None,
     )
@@ -129,8 +129,8 @@ def with_system_flags(
     if "--" in arguments:
         arguments = arguments[: arguments.index("--")]
     helps = "--help" in arguments
-    asked = {part.partition("=")[0] for part in arguments if part.startswith("--")} - own
-    if not arguments or arguments[0].startswith("-") or not (asked or helps):
+    flags = {part.partition("=")[0] for part in arguments if part.startswith("--")} - own
+    if not arguments or arguments[0].startswith("-") or not (flags or helps):
         return verb
     from faultpath.trials import system_options
 
@@ -140,37 +140,37 @@ def with_system_flags(
     except (Exception, SystemExit):
         if not helps:
             raise
-    named = {f"--{each.name.replace('_', '-')}": each for each in options}
-    found = {name: option for name, option in named.items() if name not in own}
-    for unknown in sorted(asked - {*found}) if not helps else ():
-        close = get_close_matches(unknown, [*own, *found], n=1)
+    named = {f"--{option.name.replace('_', '-')}": option for option in options}
+    added = {name: option for name, option in named.items() if name not in own}
+    for unknown in sorted(flags - {*added}) if not helps else ():
+        close = get_close_matches(unknown, [*own, *added], n=1)
         hint = f"did you mean {close[0]}? " if close else ""
         raise UserError(
             f"there is no option {unknown}: {hint}`faultpath {name} --help` shows those of the "
-            f"command, and system {system!r} takes {', '.join(found) or 'none of its own'}."
+            f"command, and system {system!r} takes {', '.join(added) or 'none of its own'}."
         )
 
     @wraps(verb)
-    def extended(**given: Any) -> Any:
-        pairs = list(given.pop("options") or ())
-        for option in found.values():
-            value = given.pop(_DEST + option.name)
+    def extended(**arguments: Any) -> Any:
+        pairs = list(arguments.pop("options") or ())
+        for option in added.values():
+            value = arguments.pop(_DEST + option.name)
             pairs += [] if value is None else [f"{option.name}={value}"]
-        return verb(**given, options=pairs)
+        return verb(**arguments, options=pairs)
 
     every = [*signature.parameters.values()]
-    for each, option in found.items():
-        choices, said = "|".join(option.choices), option.help.rstrip(".")
+    for spelling, option in added.items():
+        choices, text = "|".join(option.choices), option.help.rstrip(".")
         short = 0 < len(choices) <= _SHORT
         if choices and not short:
             listed = ", ".join(option.choices)
-            said += f": {listed}" if said else f"One of {listed}"
+            text += f": {listed}" if text else f"One of {listed}"
         if option.default:
-            said += f"{'; d' if said else 'D'}efault {option.default}"
+            text += f"{'; d' if text else 'D'}efault {option.default}"
         shown = typer.Option(
-            each,
+            spelling,
             metavar=f"<{choices}>" if short else "<str>",
-            help=f"{said}." if said else None,
+            help=f"{text}." if text else None,
             rich_help_panel=literal(f"Options of {system}"),
         )
         hint = Annotated[str | None, shown]

@@ -1,4 +1,4 @@
-"""What a verb leaves for a build: its exit status, JUnit's XML and a summary."""
+"""Results of a command for a build: its exit status, JUnit's XML and a summary."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -47,9 +47,9 @@ Summary = Annotated[
 
 @dataclass(frozen=True)
 class Gate:
-    """What a line says of a build, checked before any trial runs."""
+    """Options for a build, checked before any trial runs."""
 
-    asked: tuple[str, ...]
+    conditions: tuple[str, ...]
     junit: Path | None
     summary: Path | None
 
@@ -58,15 +58,15 @@ class Gate:
         """Read the options; `UserError` for what cannot be asked, or written."""
         from faultpath.trials.store.atomic import check_output
 
-        asked = tuple(dict.fromkeys(fail_if or ()))
-        for each in asked:
-            if each not in _ASKS:
-                raise UserError(f"--fail-if {each}: {unknown('name', each, _ASKS)}.")
+        conditions = tuple(dict.fromkeys(fail_if or ()))
+        for condition in conditions:
+            if condition not in _ASKS:
+                raise UserError(f"--fail-if {condition}: {unknown('name', condition, _ASKS)}.")
         if junit is not None:
             check_output(junit, b'<testsuites name="faultpath"')
         if summary is not None:
             check_output(summary, b"")  # added to, whatever it holds
-        return cls(asked, junit, summary)
+        return cls(conditions, junit, summary)
 
     def end(self, runs: "Sequence[Run]", say: Callable[..., Any]) -> int:
         """Write what was asked for, say what a build fails for, and return the exit status."""
@@ -77,14 +77,14 @@ class Gate:
 
         records = [run.record for run in runs]
         if self.junit is not None:
-            write_text(self.junit, junit(records, self.asked))
+            write_text(self.junit, junit(records, self.conditions))
         if self.summary is not None:
             # A build's summary holds that of its other steps too.
             before = contents(self.summary) if self.summary.exists() else b""
-            write_file(self.summary, before + summary(records, self.asked).encode())
+            write_file(self.summary, before + summary(records, self.conditions).encode())
         status = FOUND if any(run.failed for run in runs) else 0
         for record in records:
-            for name, answer in broken(record, self.asked).items():
+            for name, answer in broken(record, self.conditions).items():
                 say(f"--fail-if {name}: {answer.said}", markup=False, style="bold red")
                 status = FOUND
         return status

@@ -18,10 +18,10 @@ from faultpath.core.text import one_line, show_warning
 
 USER_ERROR = 2
 INTERRUPTED = 130
-"""What shells report for a program that Ctrl-C ended."""
+"""Exit status that shells report for a program that Ctrl-C ended."""
 
 UNREAD = 141
-"""What shells report for a program that nobody reads any more."""
+"""Exit status that shells report for a program that nobody reads any more."""
 
 _TRACEBACK = "--traceback"
 _AGAIN = "interrupted; the same command goes on from what is stored."
@@ -33,10 +33,10 @@ def main() -> NoReturn:
     So does an error in the code of a user's system. An error of faultpath's own code keeps
     its traceback; `faultpath.core.error_source` tells the two apart.
     """
-    given = sys.argv[1:]
-    end = given.index("--") if "--" in given else len(given)
-    traced = _TRACEBACK in given[:end]
-    arguments = [part for part in given[:end] if part != _TRACEBACK] + given[end:]
+    argv = sys.argv[1:]
+    end = argv.index("--") if "--" in argv else len(argv)
+    traced = _TRACEBACK in argv[:end]
+    arguments = [part for part in argv[:end] if part != _TRACEBACK] + argv[end:]
     ctrl_c = _CtrlC()
     if traced and sys.stderr is sys.__stderr__:
         faulthandler.enable()
@@ -126,12 +126,12 @@ def _sentence(error: BaseException) -> str | None:
     from faultpath.core.error_source import described, explained
 
     if isinstance(error, TyperException):  # from the parser of the arguments
-        said = error.format_message().strip().rstrip(".").replace(". ", ": ")
-        if not said:
+        text = error.format_message().strip().rstrip(".").replace(". ", ": ")
+        if not text:
             return ""
-        said = re.sub(r" \(Possible options: (.*)\)$", r", did you mean \1?", said)
+        text = re.sub(r" \(Possible options: (.*)\)$", r", did you mean \1?", text)
         command = getattr(getattr(error, "ctx", None), "command_path", "faultpath")
-        return f"{said[0].lower()}{said[1:]}; `{command} --help` shows what there is."
+        return f"{text[0].lower()}{text[1:]}; `{command} --help` shows what there is."
     mistake = explained(error)
     if mistake is not None:
         return str(mistake)
@@ -141,6 +141,6 @@ def _sentence(error: BaseException) -> str | None:
         return "there is not enough memory: ask for less, or for fewer --workers."
     if isinstance(error, OSError) and error.strerror:
         about = f"{error.filename}: " if error.filename is not None else ""
-        said = f"{error.strerror[0].lower()}{error.strerror[1:]}"
-        return f"{about}{said}; check the path and the disk."
+        text = f"{error.strerror[0].lower()}{error.strerror[1:]}"
+        return f"{about}{text}; check the path and the disk."
     return None

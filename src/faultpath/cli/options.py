@@ -1,4 +1,4 @@
-"""What all verbs have in common: how they are registered, what they take, how they end."""
+"""Common parts of all commands: how they are registered, what they take, how they end."""
 
 import re
 import sys
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from faultpath.api.display import Display
 
 _LONGEST = 4096
-"""What Linux takes for a path; nothing else that is asked for needs as much."""
+"""Longest path that Linux takes; nothing else that is asked for needs as much."""
 FOUND = 1
 """Exit status of a verb that finished, and found what must not be: failed trials, a failed check,
 trials that do not repeat."""
@@ -49,8 +49,8 @@ def check_arguments(arguments: Sequence[str]) -> None:
         flag = f"{before} " if before.startswith("--") and "=" not in before else ""
         # A word without a flag is named by what reads it.
         if (flag and not argument) or re.fullmatch(r"--[\w-]+=", argument):
-            said = argument or f"{flag}''"
-            raise UserError(f"the argument {said} is empty: give a value, or leave it out.")
+            label = argument or f"{flag}''"
+            raise UserError(f"the argument {label} is empty: give a value, or leave it out.")
         if steers(argument):
             raise UserError(
                 f"the argument '{one_line(argument)}' holds control characters or is not UTF-8 "
@@ -62,9 +62,9 @@ def check_arguments(arguments: Sequence[str]) -> None:
             )
 
 
-def refuse_with(other: str, **given: object) -> None:
+def refuse_with(other: str, **arguments: object) -> None:
     """Raise `UserError` for options that were given and do nothing beside another one."""
-    idle = [f"--{name.replace('_', '-')}" for name, value in given.items() if value is not None]
+    idle = [f"--{name.replace('_', '-')}" for name, value in arguments.items() if value is not None]
     if idle:
         raise UserError(f"{' and '.join(idle)} would do nothing with {other}: leave it out.")
 
@@ -95,12 +95,12 @@ def literal(text: str) -> str:
 
 def as_written(command: Any) -> None:
     """Let all texts of a command and of those below it stand in its help as they are written."""
-    for each in (command, *command.params):
+    for item in (command, *command.params):
         for name in ("help", "short_help", "epilog"):
-            if text := getattr(each, name, None):
-                setattr(each, name, literal(text))
-    for each in getattr(command, "commands", {}).values():
-        as_written(each)
+            if text := getattr(item, name, None):
+                setattr(item, name, literal(text))
+    for item in getattr(command, "commands", {}).values():
+        as_written(item)
 
 
 class Verb(TyperCommand):
@@ -109,10 +109,10 @@ class Verb(TyperCommand):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse as any command does; `UserError` for an option given twice."""
         if args:
-            _, _, given = self.make_parser(ctx).parse_args(list(args))
-            for option in given:
+            _, _, options = self.make_parser(ctx).parse_args(list(args))
+            for option in options:
                 single = isinstance(option, TyperOption) and not option.multiple
-                if single and sum(each is option for each in given) > 1:
+                if single and sum(other is option for other in options) > 1:
                     raise UserError(f"{option.opts[0]} is given twice: give it once.")
         return super().parse_args(ctx, args)
 

@@ -37,27 +37,27 @@ def replay(
 
     if RECORD not in read_provenance(folder).files:
         raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")
-    held, _ = read_run(folder)
-    scenes = chosen_scenes(held, scene or (), path or ())
+    source, _ = read_run(folder)
+    scenes = chosen_scenes(source, scene or (), path or ())
     console = SafeConsole()
     say = partial(console.print, markup=False)
-    found = replay(held, scenes, path or (), say, trust)
-    unlike = [each for each in found if each.differs]
-    for each in unlike:
-        at = each.address
+    replays = replay(source, scenes, path or (), say, trust)
+    unlike = [trial for trial in replays if trial.differs]
+    for trial in unlike:
+        at = trial.address
         where = f"{at.variant}, {at.path}, seed {at.seed}, {at.scene}"
-        console.print(f"{where}: {each.differs}.", markup=False, style=STYLES["bad"])
-    said = (
-        f"{counted(len(found), 'trial')} in {counted(len(scenes), 'scene')} came out as in the "
+        console.print(f"{where}: {trial.differs}.", markup=False, style=STYLES["bad"])
+    message = (
+        f"{counted(len(replays), 'trial')} in {counted(len(scenes), 'scene')} came out as in the "
         "run, to the bit."
     )
     if unlike:
-        said = (
-            f"{len(unlike)} of {len(found)} trials came out otherwise than in the run: the code, "
+        message = (
+            f"{len(unlike)} of {len(replays)} trials came out otherwise than in the run: the code, "
             "the packages or the processor are not those that provenance.json names."
         )
-    console.print(said, markup=False, style="" if unlike else STYLES["good"])
-    if signals and len(unlike) < len(found):
-        for written in keep_signals(folder, held, found):
+    console.print(message, markup=False, style="" if unlike else STYLES["good"])
+    if signals and len(unlike) < len(replays):
+        for written in keep_signals(folder, source, replays):
             console.print(f"Written: {written}", markup=False, soft_wrap=True)
     return FOUND if unlike else 0

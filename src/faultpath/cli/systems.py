@@ -32,7 +32,7 @@ def init(
 
 
 @takes(TraceQuestion)
-def trace(system: SystemName, as_json: Json = False, **given: Any) -> int:
+def trace(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Print the information interface of a system and who read what, when.
 
     Exits with 1 where that differs from what is declared."""
@@ -42,8 +42,8 @@ def trace(system: SystemName, as_json: Json = False, **given: Any) -> int:
     from faultpath.decisions.tables.terminal import STYLES, Parted
     from faultpath.report.terminal import interface_table, trace_table
 
-    asked, chosen, _, _ = begin("trace", TraceQuestion, system, given, display())
-    trace = traced(asked, chosen)
+    question, chosen, _, _ = begin("trace", TraceQuestion, system, arguments, display())
+    trace = traced(question, chosen)
     if as_json:
         typer.echo(trace.model_dump_json(indent=2))
         return FOUND if trace.findings else 0
@@ -51,8 +51,8 @@ def trace(system: SystemName, as_json: Json = False, **given: Any) -> int:
     table = trace_table(trace)
     console.print(interface_table(chosen.system.interface), "")
     console.print(Parted(table))
-    for said in (*table.notes, *trace.privileged):
-        console.print(said, markup=False)
+    for text in (*table.notes, *trace.privileged):
+        console.print(text, markup=False)
     for finding in trace.findings:
         console.print(f"Found: {finding}", markup=False, style=STYLES["bad"])
     if not trace.findings:
@@ -61,7 +61,7 @@ def trace(system: SystemName, as_json: Json = False, **given: Any) -> int:
 
 
 @takes(CheckQuestion)
-def check(system: SystemName, as_json: Json = False, **given: Any) -> int:
+def check(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Check what a careful reviewer would: that trials repeat and can be paired, that modules read
     what is declared, and that a fault reaches every tap. Exits with 1 where a check fails."""
     from rich.padding import Padding
@@ -72,7 +72,7 @@ def check(system: SystemName, as_json: Json = False, **given: Any) -> int:
     from faultpath.decisions.tables.terminal import STYLES
     from faultpath.decisions.wording import counted
 
-    report = check(system, **given, progress=display())
+    report = check(system, **arguments, progress=display())
     if as_json:
         typer.echo(report.model_dump_json(indent=2))
         return FOUND if report.failures else 0
@@ -80,12 +80,12 @@ def check(system: SystemName, as_json: Json = False, **given: Any) -> int:
     styles = {"passed": STYLES["good"], "failed": STYLES["bad"], "not judged": STYLES["faint"]}
     scenes = f"{counted(len(report.scenes), 'scene')} of {report.library}, seed {report.seed}"
     console.print(Text(f"{report.system}: {', '.join(report.variants)} in {scenes}", "bold"))
-    for each in report.checks:
-        status = Text(each.status, styles[each.status])
-        console.print(Text.assemble(status, f"  {each.name}: {each.says}"))
-        for said in (*each.failures, *(f"Remark: {remark}" for remark in each.remarks)):
-            console.print(Padding(Text(f"- {said}"), (0, 0, 0, 2)))
-    failed = sum(each.status == "failed" for each in report.checks)
-    said = f"{counted(failed, 'check')} failed." if failed else "No check failed."
-    console.print(Text(said, STYLES["bad" if failed else "good"]))
+    for result in report.checks:
+        status = Text(result.status, styles[result.status])
+        console.print(Text.assemble(status, f"  {result.name}: {result.says}"))
+        for text in (*result.failures, *(f"Remark: {remark}" for remark in result.remarks)):
+            console.print(Padding(Text(f"- {text}"), (0, 0, 0, 2)))
+    failed = sum(result.status == "failed" for result in report.checks)
+    text = f"{counted(failed, 'check')} failed." if failed else "No check failed."
+    console.print(Text(text, STYLES["bad" if failed else "good"]))
     return FOUND if report.failures else 0

@@ -44,44 +44,46 @@ def decide(
     path that the audit does not have, and where newly trained models are asked for and all seeds
     gave the same.
     """
-    asked = question.model_copy(update={"primary": primary_path(question.primary, paths)})
-    cells = cells_of(asked, paths, table)
+    question = question.model_copy(update={"primary": primary_path(question.primary, paths)})
+    cells = cells_of(question, paths, table)
     # Whether a fault acted is told by receipts, and other tools' results have none.
-    untested = () if asked.judged else untested_paths(paths, cells)
+    untested = () if question.judged else untested_paths(paths, cells)
     # Only times and metrics rest on resamples, and of very many scenes these take gigabytes.
     timed = any(cell.median_time_s is not None for cell in cells)
-    none = asked.judged is not None and not (timed or asked.metrics)
-    found, resamples, family = _family(asked, paths, table, untested, 1 if none else 10_000)
+    none = question.judged is not None and not (timed or question.metrics)
+    trials, resamples, family = _family(question, paths, table, untested, 1 if none else 10_000)
     effects = {
-        path: _effect(asked, path, found, family, resamples, path not in untested)
-        for path in found.arms
+        path: _effect(question, path, trials, family, resamples, path not in untested)
+        for path in trials.arms
     }
     record = DecisionRecord(
-        question=asked,
+        question=question,
         paths=tuple(paths),
         cells=cells,
         effects=tuple(effects.values()),
-        changes=tuple(_change(asked, path, family) for path in family.changes),
+        changes=tuple(_change(question, path, family) for path in family.changes),
         break_even=tuple(
-            _break_even(asked, path, family, (effects[CORRECT], effects[path]), phrases.FREQUENCY)
+            _break_even(
+                question, path, family, (effects[CORRECT], effects[path]), phrases.FREQUENCY
+            )
             for path in effects
             if path not in (CORRECT, AS_RUN, *untested)
         ),
         break_even_beta=tuple(
-            _break_even(asked, path, family, (effects[path], effects[SHARED]), phrases.BETA)
+            _break_even(question, path, family, (effects[path], effects[SHARED]), phrases.BETA)
             for path in family.changes
         ),
-        scenes=found.scenes,
+        scenes=trials.scenes,
         scenes_needed=family.scenes_needed,
         hypotheses=family.hypotheses,
-        estimand=phrases.estimand(asked),
-        stopped=_stopped(asked, family, table),
+        estimand=phrases.estimand(question),
+        stopped=_stopped(question, family, table),
     )
     noted = (
-        *(f"{phrases.no_pair(path)}: the table shows what failed." for path in found.void),
+        *(f"{phrases.no_pair(path)}: the table shows what failed." for path in trials.void),
         *phrases.failed_trials(record),
         *phrases.partly_measured(record),
-        *mismatch_words(found.mismatches),
+        *mismatch_words(trials.mismatches),
         *findings,  # of a record that is decided anew, with some of the above among them
     )
     return record.model_copy(update={**in_words(record), "findings": tuple(dict.fromkeys(noted))})
@@ -95,8 +97,8 @@ def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> boo
         _, _, family = _family(question, paths, table, untested, n_resamples=1)
     except UserError:  # no pair is sound so far
         return False
-    held = _stopped(question, family, table)
-    return held is not None and held.reached
+    stopped = _stopped(question, family, table)
+    return stopped is not None and stopped.reached
 
 
 def primary_path(named: str, paths: Sequence[Path]) -> str:
@@ -121,18 +123,18 @@ def after_looks(record: DecisionRecord, earlier: Iterable[DecisionRecord]) -> De
     A sequential audit allows for all looks with the same primary contrast.
     """
 
-    def look(asked: Question) -> EarlierLook:
+    def look(question: Question) -> EarlierLook:
         return EarlierLook(
-            scenes=None if asked.stop else asked.n_scenes,
-            primary=asked.primary,
-            generalise="scenes" if asked.stop else asked.generalise,
-            rule="exact" if asked.stop else asked.rule,
+            scenes=None if question.stop else question.n_scenes,
+            primary=question.primary,
+            generalise="scenes" if question.stop else question.generalise,
+            rule="exact" if question.stop else question.rule,
         )
 
     known: list[EarlierLook] = []
-    for each in earlier:
-        known += each.earlier if each.few else (*each.earlier, look(each.question))
-    looks = tuple(each for each in dict.fromkeys(known) if each != look(record.question))
+    for other in earlier:
+        known += other.earlier if other.few else (*other.earlier, look(other.question))
+    looks = tuple(one for one in dict.fromkeys(known) if one != look(record.question))
     if not looks:
         return record
     record = record.model_copy(update={"earlier": looks})
@@ -150,7 +152,7 @@ def _family(
     sequential = question.stop is not None
     # The trials of a task are no seeds: those that came out alike are no repetition.
     tasks = question.judged is not None and question.judged.unit == "task"
-    found = compared(
+    trials = compared(
         question.repair,
         question.baseline,
         names,
@@ -158,23 +160,23 @@ def _family(
         distinct=not (sequential or tasks),
         judged=question.judged is not None,
     )
-    if question.generalise == "models" and next(iter(found.arms.values()))[0].shape[1] < 2:
+    if question.generalise == "models" and next(iter(trials.arms.values()))[0].shape[1] < 2:
         raise UserError(
             "all seeds gave the same outcome in every trial, so they say nothing of newly trained "
             "models: leave --generalise models out."
         )
-    resamples = Resamples.draw(question.library_hash, found.scenes, n_resamples=n_resamples)
+    resamples = Resamples.draw(question.library_hash, trials.scenes, n_resamples=n_resamples)
     family = decide_paths(
-        found.arms,
+        trials.arms,
         rule=question.rule,
         primary=question.primary,
         resamples=resamples,
         models=question.generalise == "models",
         untested=untested,
         shares=alpha_shares(names, question.primary) if sequential else None,
-        voids=found.voids,
+        voids=trials.voids,
     )
-    return found, resamples, family
+    return trials, resamples, family
 
 
 def _stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped | None:
@@ -193,20 +195,25 @@ def _stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped
         level, margin = 1.0 - effect.decision.critical_p, rule.margin_pp or 0.0
         # Whatever failed trials would have been.
         filled = (effect, *family.fills.get(path, ()))
-        ends = [each.ends(level) or (-100.0, 100.0) for each in filled]
+        ends = [contrast.ends(level) or (-100.0, 100.0) for contrast in filled]
         if all(-margin < low and high < margin for low, high in ends):
             small.append(path)
     settled = {path for path, effect in family.effects.items() if effect.sign or path in small}
-    wanted = set(family.effects) if rule.when == "all-decided" else {question.primary}
+    required = set(family.effects) if rule.when == "all-decided" else {question.primary}
     scenes = len({row.outcome.scene for row in table.rows})
-    return Stopped(scenes=scenes, reached=wanted <= settled, small=tuple(small))
+    return Stopped(scenes=scenes, reached=required <= settled, small=tuple(small))
 
 
 def _effect(
-    asked: Question, path: str, found: Compared, family: Family, resamples: Resamples, acted: bool
+    question: Question,
+    path: str,
+    trials: Compared,
+    family: Family,
+    resamples: Resamples,
+    acted: bool,
 ) -> Effect:
-    repair, baseline = found.arms[path]
-    effect, pairs = family.effects[path], found.pairs[path]
+    repair, baseline = trials.arms[path]
+    effect, pairs = family.effects[path], trials.pairs[path]
     assert effect.counts is not None
     assert effect.test is not None
     counts = effect.counts.per_seed
@@ -217,7 +224,7 @@ def _effect(
         extreme = "ceiling"
     failed, least = None, None
     if path in family.fills:
-        (against, favour), voids = family.fills[path], found.voids[path]
+        (against, favour), voids = family.fills[path], trials.voids[path]
         failed = FailedTrials(
             repair=voids.failed[0],
             baseline=voids.failed[1],
@@ -228,12 +235,12 @@ def _effect(
         )
     # None is known for newly trained models, whose spread a few seeds do not give, and of an audit
     # that stops where it has decided.
-    if effect.decision and asked.generalise == "scenes" and asked.stop is None:
+    if effect.decision and question.generalise == "scenes" and question.stop is None:
         level = effect.decision.critical_p
-        least = detectable(repair, baseline, rule=asked.rule, alpha=level, on_top=True)
+        least = detectable(repair, baseline, rule=question.rule, alpha=level, on_top=True)
     return Effect(
         path=path,
-        success=effect.estimate().model_copy(update={"estimand": phrases.estimand(asked)}),
+        success=effect.estimate().model_copy(update={"estimand": phrases.estimand(question)}),
         sign=effect.sign,
         test=effect.test.name,
         p_value=effect.test.p_value,
@@ -249,29 +256,33 @@ def _effect(
         extreme=extreme,
         acted=acted,
         minimum_detectable_pp=least,
-        **secondary(pairs, resamples, asked),
+        **secondary(pairs, resamples, question),
     )
 
 
-def _change(asked: Question, path: str, family: Family) -> Change:
-    found = family.changes[path]
-    assert found.test is not None
-    assert found.decision is not None
+def _change(question: Question, path: str, family: Family) -> Change:
+    contrast = family.changes[path]
+    assert contrast.test is not None
+    assert contrast.decision is not None
     return Change(
         isolated=path,
         shared=SHARED,
-        change=found.estimate().model_copy(update={"estimand": phrases.estimand(asked)}),
-        sign=found.sign,
-        test=found.test.name,
-        p_value=found.test.p_value,
-        adjusted_p_value=found.decision.adjusted_p,
+        change=contrast.estimate().model_copy(update={"estimand": phrases.estimand(question)}),
+        sign=contrast.sign,
+        test=contrast.test.name,
+        p_value=contrast.test.p_value,
+        adjusted_p_value=contrast.decision.adjusted_p,
         unsettled=f"change/{path}" in family.unsettled,
         turn=family.turns[path],
     )
 
 
 def _break_even(
-    asked: Question, path: str, family: Family, ends: tuple[Effect, Effect], said: phrases.Shares
+    question: Question,
+    path: str,
+    family: Family,
+    ends: tuple[Effect, Effect],
+    shares: phrases.Shares,
 ) -> PathBreakEven:
     """Return where baseline and repair are even between the effects at two ends of a share."""
     none, all_ = ends
@@ -280,19 +291,19 @@ def _break_even(
     filled = [family.fills[end.path] for end in ends if end.path in family.fills]
     # Both ends with what failed trials leave open against the repair, and for it.
     fills = tuple(zip(*filled, strict=True)) if any(a.value != b.value for a, b in filled) else ()
-    found = break_even(*tested, level=level, fills=fills)
+    result = break_even(*tested, level=level, fills=fills)
     # What a table and a picture show is borne out by the effect at an end, and reaches it.
     kept: list[Region] = []
-    for each in found.regions:
-        low = each.low > 0.0 or (none.leads and each.sign == none.sign)
-        high = each.high < 1.0 or (all_.leads and each.sign == all_.sign)
-        inner = each.low > 0.0 and each.high < 1.0
-        shown = wording.last(each.high) > 0 and wording.first(each.low) < 100
+    for region in result.regions:
+        low = region.low > 0.0 or (none.leads and region.sign == none.sign)
+        high = region.high < 1.0 or (all_.leads and region.sign == all_.sign)
+        inner = region.low > 0.0 and region.high < 1.0
+        shown = wording.last(region.high) > 0 and wording.first(region.low) < 100
         if low and high and shown and not inner:
-            kept.append(each)
+            kept.append(region)
     return PathBreakEven(
         path=path,
-        result=only(found, kept),
+        result=only(result, kept),
         curve=mixture_curve(*tested, level=level, fills=fills),
-        words=phrases.shares(asked, found.regions, none, all_, said),
+        words=phrases.shares(question, result.regions, none, all_, shares),
     )

@@ -27,13 +27,13 @@ Taps = tuple[tuple[str, str], ...]
 
 
 class Evidence(Frozen):
-    """What one audit has shown on one path."""
+    """Result of one audit on one path."""
 
     run: str
     """Its folder; empty for the only one."""
     fault: str
     said: str
-    """What its family decided."""
+    """Decision of its family, in words."""
     difference: str
     """The effect with its interval, percentage points."""
     detected: bool
@@ -55,7 +55,7 @@ class Group(Frozen):
     """Consumers whose failures one source, or several that err by one cause, may bring about."""
 
     name: str
-    """Of the source, or of the correlation group."""
+    """Name of the source, or of the correlation group."""
     sources: tuple[str, ...]
     coupling: str
     ways: tuple[Way, ...]
@@ -78,9 +78,9 @@ def dependent_groups(interface: Interface, variants: Sequence[Wired]) -> tuple[G
     for source in interface.sources:
         if source.provenance not in _NOT_DEPLOYED:
             members.setdefault(source.correlation_group or source.name, []).append(source)
-    found: list[Group] = []
+    groups: list[Group] = []
     for name, sources in members.items():
-        taps = _readers(interface, variants, [each.name for each in sources])
+        taps = _readers(interface, variants, [source.name for source in sources])
         alone: dict[str, list[tuple[str, str]]] = {}
         for channel, consumer in taps:
             alone.setdefault(module_of(consumer), []).append((channel, consumer))
@@ -95,16 +95,16 @@ def dependent_groups(interface: Interface, variants: Sequence[Wired]) -> tuple[G
         channels = tuple(dict.fromkeys(channel for channel, _ in taps))
         fault, _ = expected((), name, sources, channels)
         named = channels if sources[0].correlation_group is None else (name,)
-        found.append(
+        groups.append(
             Group(
                 name=name,
-                sources=tuple(each.name for each in sources),
+                sources=tuple(source.name for source in sources),
                 coupling=_coupling(sources, len(places), bool(every)),
                 ways=tuple(ways),
-                fault=fault or JOINED.join(f"{each}:scale={_SIZE}" for each in named),
+                fault=fault or JOINED.join(f"{name}:scale={_SIZE}" for name in named),
             )
         )
-    return tuple(found)
+    return tuple(groups)
 
 
 def _readers(interface: Interface, variants: Sequence[Wired], sources: Collection[str]) -> Taps:
@@ -123,8 +123,8 @@ def _passed_on(interface: Interface, variants: Sequence[Wired], module: str) -> 
     """Return the places that read what a module makes, and what is made of that, recursively."""
     reached, waiting = dict[str, None](), [module]
     for maker in waiting:  # grows while it is gone through
-        made = interface.reconstructs.get(maker, ())
-        for _, consumer in _readers(interface, variants, made):
+        outputs = interface.reconstructs.get(maker, ())
+        for _, consumer in _readers(interface, variants, outputs):
             reached[consumer] = None
             if module_of(consumer) not in waiting:
                 waiting.append(module_of(consumer))
@@ -145,16 +145,20 @@ def with_evidence(
     An audit counts for a group where its fault acts on channels of that group and on no other. A
     tap counts as reached where receipts show a fault in force.
     """
-    told = [(name, record, {f.channel for f in record.question.faults}) for name, record in audits]
+    records = [
+        (name, record, {f.channel for f in record.question.faults}) for name, record in audits
+    ]
 
     def shown(group: Group) -> Group:
         channels = {channel for way in group.ways for channel, _ in way.taps}
-        about = [(name, record) for name, record, acts in told if acts and acts <= channels]
+        about = [(name, record) for name, record, acts in records if acts and acts <= channels]
         ways = [
             way.model_copy(
                 update={
                     "evidence": tuple(
-                        found for each in about if (found := _evidence(way, *each)) is not None
+                        evidence
+                        for audit in about
+                        if (evidence := _evidence(way, *audit)) is not None
                     )
                 }
             )
@@ -166,22 +170,22 @@ def with_evidence(
 
 
 def _evidence(way: Way, run: str, record: DecisionRecord) -> Evidence | None:
-    path = next((each for each in record.paths if each.name == way.path), None)
+    path = next((path for path in record.paths if path.name == way.path), None)
     if path is None:
         return None
     faulted = {(tap.channel, tap.consumer) for tap in (*path.faulted, *path.baseline_faulted)}
-    effect = next((each for each in record.effects if each.path == way.path), None)
+    effect = next((effect for effect in record.effects if effect.path == way.path), None)
     return Evidence(
         run=run,
         fault=record.question.fault,
-        said=_said(record, effect),
+        said=_decision(record, effect),
         difference="" if effect is None else with_interval(effect.success),
         detected=effect is not None and effect.detected,
         missed=tuple(tap for tap in way.taps if tap not in faulted),
     )
 
 
-def _said(record: DecisionRecord, effect: Effect | None) -> str:
+def _decision(record: DecisionRecord, effect: Effect | None) -> str:
     if effect is None:
         return "flown, no pair of trials left"
     aside = reservation(effect)
@@ -190,9 +194,11 @@ def _said(record: DecisionRecord, effect: Effect | None) -> str:
     return f"{record.winner(effect.sign)} succeeds more often{f' ({aside})' if aside else ''}"
 
 
-def command(asked: Question | StudyFile, fault: str) -> str:
+def command(question: Question | StudyFile, fault: str) -> str:
     """Return the command that flies the arms of a fault: each module alone, and shared."""
-    parts = ["faultpath", "audit", asked.system, "--baseline", asked.baseline]
-    parts += ["--repair", asked.repair, "--fault", fault, "--library", asked.library]
-    parts += [part for key, value in asked.options.items() for part in ("--set", f"{key}={value}")]
+    parts = ["faultpath", "audit", question.system, "--baseline", question.baseline]
+    parts += ["--repair", question.repair, "--fault", fault, "--library", question.library]
+    parts += [
+        part for key, value in question.options.items() for part in ("--set", f"{key}={value}")
+    ]
     return shlex.join(parts)

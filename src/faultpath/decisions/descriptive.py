@@ -1,4 +1,4 @@
-"""What is told of a path and decides nothing: how trials ended, times, metrics."""
+"""Descriptive numbers of a path, which decide nothing: how trials ended, times, metrics."""
 
 from collections.abc import Sequence
 from math import isfinite
@@ -25,7 +25,7 @@ def percent(success: Bools) -> float:
 
 def cells_of(question: Question, paths: Sequence[Path], table: OutcomeTable) -> tuple[Cell, ...]:
     """Return how the trials of both arms ended on every path."""
-    found: list[Cell] = []
+    cells: list[Cell] = []
     for path in paths:
         for variant in (question.baseline, question.repair):
             seeds = table.seeds(variant, path.name)
@@ -33,7 +33,7 @@ def cells_of(question: Question, paths: Sequence[Path], table: OutcomeTable) -> 
             count = {status: sum(end.status is status for end in ends) for status in Status}
             ran = len(ends) - count[Status.FAILED]
             times = [e.time_s for e in ends if e.status is Status.SUCCESS and isfinite(e.time_s)]
-            found.append(
+            cells.append(
                 Cell(
                     variant=variant,
                     path=path.name,
@@ -48,7 +48,7 @@ def cells_of(question: Question, paths: Sequence[Path], table: OutcomeTable) -> 
                     altered_trials=sum(end.altered_steps > 0 for end in ends),
                 )
             )
-    return tuple(found)
+    return tuple(cells)
 
 
 def untested_paths(paths: Sequence[Path], cells: Sequence[Cell]) -> tuple[str, ...]:
@@ -57,14 +57,14 @@ def untested_paths(paths: Sequence[Path], cells: Sequence[Cell]) -> tuple[str, .
     return tuple(path.name for path in paths if path.name != CORRECT and path.name not in acted)
 
 
-def secondary(pairs: Pairs, resamples: Resamples, asked: Question) -> dict[str, Any]:
+def secondary(pairs: Pairs, resamples: Resamples, question: Question) -> dict[str, Any]:
     """Return the fields of an `Effect` on time and metrics, for new scenes and the seeds run.
 
     Of a sequential audit time and metrics have no interval: theirs need a fixed number of scenes.
     """
 
     def honest(estimate: Estimate, what: str) -> Estimate:
-        if asked.stop is not None:
+        if question.stop is not None:
             why = f"{what} of the scenes until the audit stopped: no interval"
         elif estimate.n_scenes < MIN_SCENES:
             why = f"{what} of {estimate.n_scenes} scenes, too few for an interval"
@@ -82,7 +82,7 @@ def secondary(pairs: Pairs, resamples: Resamples, asked: Question) -> dict[str, 
         time_s = median_effect(first.time_s, second.time_s, joint, resamples).estimate()
     metrics: dict[str, Estimate] = {}
     means, thresholds = None, list[AtThreshold]()
-    for name in asked.metrics:
+    for name in question.metrics:
         if name not in first.metrics or name not in second.metrics:
             continue
         full = np.asarray(np.isfinite(first.metrics[name] + second.metrics[name]).all(axis=1))
@@ -92,19 +92,19 @@ def secondary(pairs: Pairs, resamples: Resamples, asked: Question) -> dict[str, 
         if n_scenes < len(full):  # of a scene in which a trial has no value nothing is told
             drawn = Resamples.draw(drawn.label, n_scenes, n_resamples=drawn.n_resamples)
         values = arms[0].metrics[name], arms[1].metrics[name]
-        difference = mean_effect(values[1], values[0], drawn, asked.metrics[name].unit)
+        difference = mean_effect(values[1], values[0], drawn, question.metrics[name].unit)
         metrics[name] = honest(difference.estimate(), "mean")
-        if name != asked.metric:
+        if name != question.metric:
             continue
         means = float(values[0].mean()), float(values[1].mean())
-        for threshold in asked.thresholds:
-            less = asked.metrics[asked.metric].better == "less"
+        for threshold in question.thresholds:
+            less = question.metrics[question.metric].better == "less"
             baseline, repair = (
                 ~side.crash & (value <= threshold if less else value >= threshold)
                 for side, value in zip(arms, values, strict=True)
             )
             difference = success_effect(
-                repair, baseline, drawn, sequential=asked.stop is not None, rule=asked.rule
+                repair, baseline, drawn, sequential=question.stop is not None, rule=question.rule
             )
             thresholds.append(
                 AtThreshold(

@@ -1,4 +1,4 @@
-"""What an audit compares, and what it may announce: from pairs of trials to decisions."""
+"""Comparisons of an audit and their joint decision: from pairs of trials to decisions."""
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -25,7 +25,7 @@ Arms: TypeAlias = tuple[Bools, Bools]
 
 @dataclass(frozen=True)
 class Voids:
-    """What failed trials leave open on one path, over all scenes whose conditions agree.
+    """Outcomes that failed trials leave open on a path, over all scenes whose conditions agree.
 
     Where the trials of both arms failed neither is favoured, and both count as no success; where
     that of one did, it could have gone either way.
@@ -50,7 +50,7 @@ class Voids:
 
 @dataclass(frozen=True)
 class Compared:
-    """What is compared, path by path, and what is not."""
+    """Trials that are compared, path by path, and paths that are not."""
 
     pairs: Mapping[str, Pairs]
     """All trials that are compared."""
@@ -84,12 +84,12 @@ def compared(
     pair that is missing in both arms could have gone either way too.
     """
     pairs = {path: pair(table, Side(repair, path), Side(baseline, path)) for path in paths}
-    mismatches = tuple(each for path in pairs.values() for each in path.mismatches)
+    mismatches = tuple(mismatch for path in pairs.values() for mismatch in path.mismatches)
     left = dict(pairs)
     # A fault under which every trial fails must not cost what the other paths show: those with the
     # fewest pairs go first.
     scenes = {row.outcome.scene for row in table.rows}
-    while not (kept := scenes.intersection(*(each.scenes for each in left.values()))):
+    while not (kept := scenes.intersection(*(paired.scenes for paired in left.values()))):
         faulty = [name for name in left if name != CORRECT]
         if len(left) == 1 or not left[CORRECT].scenes:
             raise UserError(
@@ -98,12 +98,12 @@ def compared(
                 + "".join(f" {words}" for words in mismatch_words(mismatches))
             )
         del left[min(faulty, key=lambda name: len(left[name].scenes))]
-    cut = {name: each.only(tuple(kept)) for name, each in left.items()}
-    success = {name: (each.first.success, each.second.success) for name, each in cut.items()}
-    unlike = {mismatch.scene for each in left.values() for mismatch in each.mismatches}
+    cut = {name: paired.only(tuple(kept)) for name, paired in left.items()}
+    success = {name: (paired.first.success, paired.second.success) for name, paired in cut.items()}
+    unlike = {mismatch.scene for paired in left.values() for mismatch in paired.mismatches}
     keep = np.array([scene not in unlike for scene in next(iter(left.values())).all_scenes])
     # Seeds repeat each other where their trials failed alike, too: what is missing of one is open.
-    ended = [side for each in left.values() for side in each.ended]
+    ended = [side for paired in left.values() for side in paired.ended]
     every = np.concatenate([part[keep] for side in ended for part in (side.success, side.failed)])
     seeds = list(range(every.shape[1]))
     if distinct:
@@ -111,9 +111,9 @@ def compared(
         seeds = sorted(first.values())
     voids: dict[str, Voids] = {}
     if any(side.failed.any() for side in ended):
-        for name, each in left.items():
-            ours, theirs = (side.failed for side in each.ended)
-            won, lost = (side.success[keep][:, seeds] for side in each.ended)
+        for name, paired in left.items():
+            ours, theirs = (side.failed for side in paired.ended)
+            won, lost = (side.success[keep][:, seeds] for side in paired.ended)
             alone = ours & ~theirs, theirs & ~ours
             could = (ours, theirs) if judged else alone
             voids[name] = Voids(
@@ -190,11 +190,11 @@ def decide_paths(
     family |= {_change(p): with_test(change(effects[p], effects[SHARED]), rule) for p in isolated}
     parts = alpha_shares(tested, led(primary, success))
     weights = {name: parts[name] for name in family} if RULES[rule].weighted else None
-    made = decide_family(family, alpha, shares, weights)
+    decided = decide_family(family, alpha, shares, weights)
     fills, unsettled = dict[str, tuple[Contrast, Contrast]](), list[str]()
     if voids:
-        low = shown({path: each.against for path, each in voids.items()})
-        high = shown({path: each.favour for path, each in voids.items()})
+        low = shown({path: void.against for path, void in voids.items()})
+        high = shown({path: void.favour for path, void in voids.items()})
         fills = {path: (low[path], high[path]) for path in voids}
         # What is open is taken each time as it is nearest to showing nothing, or the contrary.
         ends = {_effect(path): (low[path], high[path]) for path in tested}
@@ -202,18 +202,20 @@ def decide_paths(
             _change(path): (change(high[path], low[SHARED]), change(low[path], high[SHARED]))
             for path in isolated
         }
-        if any(each.open for each in voids.values()):
+        if any(void.open for void in voids.values()):
             least = {name: _nearest(*pair, rule) for name, pair in ends.items()}
             stands = decide_family(least, alpha, shares, weights)
-            unsettled = [name for name in made if made[name].sign not in (0, stands[name].sign)]
+            unsettled = [
+                name for name in decided if decided[name].sign not in (0, stands[name].sign)
+            ]
     for name in unsettled:
-        decision = made[name].decision
-        made[name] = replace(made[name], decision=decision and decision._replace(sign=0))
-    effects = {path: made.get(_effect(path), with_test(e, rule)) for path, e in effects.items()}
-    changes = {path: made[_change(path)] for path in isolated}
-    uneven = {path for path, each in (voids or {}).items() if each.uneven}
+        decision = decided[name].decision
+        decided[name] = replace(decided[name], decision=decision and decision._replace(sign=0))
+    effects = {path: decided.get(_effect(path), with_test(e, rule)) for path, e in effects.items()}
+    changes = {path: decided[_change(path)] for path in isolated}
+    uneven = {path for path, void in (voids or {}).items() if void.uneven}
 
-    def told(path: str, moved: Contrast) -> Turn:
+    def turn_of(path: str, moved: Contrast) -> Turn:
         if uneven & {path, SHARED}:  # no reversal rests on it
             return "interaction" if moved.sign else "none"
         return turn(effects[path], effects[SHARED], moved)
@@ -225,7 +227,7 @@ def decide_paths(
     return Family(
         effects=effects,
         changes=changes,
-        turns={path: told(path, each) for path, each in changes.items()},
+        turns={path: turn_of(path, moved) for path, moved in changes.items()},
         hypotheses=len(family if shares is None else shares),
         scenes_needed=needed,
         fills=fills,

@@ -19,20 +19,20 @@ def fault_of(system: System, text: str) -> AnyFault:
         return system.fault(text)
     if "@" in text:
         raise UserError(f"fault '{text}': joined faults reach every consumer; leave '@' out")
-    parts = [_part(system, each) for each in texts]
+    parts = [_part(system, text) for text in texts]
     # Without sizes: draws of the cause are the same at every size.
     names = (part.name if part.kind == "coupled" else part.drawn_from for part in parts)
     return Coupled(name=JOINED.join(names), faults=tuple(f for part in parts for f in _each(part)))
 
 
 def _part(system: System, text: str) -> AnyFault:
-    asked = FaultText.read(text)
-    if "loading" not in asked.options:
+    parsed = FaultText.read(text)
+    if "loading" not in parsed.options:
         return system.fault(text)
-    rest = {key: given for key, given in asked.options.items() if key != "loading"}
-    fault, given = system.fault(str(replace(asked, options=rest))), asked.options["loading"]
+    rest = {key: value for key, value in parsed.options.items() if key != "loading"}
+    fault, number = system.fault(str(replace(parsed, options=rest))), parsed.options["loading"]
     try:
-        loading = float(given)
+        loading = float(number)
     except ValueError:
         loading = 2.0
     if not (-1.0 <= loading <= 1.0 and all(e.intervention.is_random() for e in _each(fault))):
@@ -42,7 +42,7 @@ def _part(system: System, text: str) -> AnyFault:
     update = {"loading": loading}
     if fault.kind == "fault":
         return fault.model_copy(update=update)
-    loaded = tuple(each.model_copy(update=update) for each in fault.faults)
+    loaded = tuple(part.model_copy(update=update) for part in fault.faults)
     return fault.model_copy(update={"faults": loaded})
 
 

@@ -1,4 +1,4 @@
-"""What a build or a test asks of a record, answered from what was decided and nothing else."""
+"""Questions of a build or a test, answered from the decisions of a record and nothing else."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -39,27 +39,27 @@ def found(record: DecisionRecord, what: str) -> Answer:
     """
     match what:
         case "reversal":
-            turned = [each for each in record.changes if each.turn == "reversal"]
-            said = " ".join(phrases.change(record, each) for each in turned)
-            return Answer(bool(turned), said or "no reversal is decided.")
+            turned = [change for change in record.changes if change.turn == "reversal"]
+            text = " ".join(phrases.change(record, change) for change in turned)
+            return Answer(bool(turned), text or "no reversal is decided.")
         case "repair-behind":
-            behind = [each for each in record.effects if each.sign < 0]
+            behind = [effect for effect in record.effects if effect.sign < 0]
             if not behind:
                 return Answer(False, "on no path is the baseline decided to be ahead.")
             ahead = f"{record.question.baseline} succeeds more often."
             return Answer(True, f"{capital(places(behind))}, {ahead}")
         case "undecided":
             primary = record.question.primary
-            main = next((each for each in record.effects if each.path == primary), None)
+            main = next((effect for effect in record.effects if effect.path == primary), None)
             settled = main is not None and (main.sign != 0 or record.is_small(main))
             return Answer(not settled, f"{capital(where(primary))}: {in_short(record, main)}.")
         case "void":
-            void = sum(each.void_pairs for each in record.effects)
-            lost = [each.name for each in record.paths]
-            lost = [name for name in lost if name not in {each.path for each in record.effects}]
-            said = [f"{counted(void, 'pair')} of trials {'is' if void == 1 else 'are'} void."]
-            said += [f"{phrases.no_pair(name)}." for name in lost]
-            return Answer(bool(void or lost), " ".join(said))
+            void = sum(effect.void_pairs for effect in record.effects)
+            lost = [path.name for path in record.paths]
+            lost = [name for name in lost if name not in {effect.path for effect in record.effects}]
+            sentences = [f"{counted(void, 'pair')} of trials {'is' if void == 1 else 'are'} void."]
+            sentences += [f"{phrases.no_pair(name)}." for name in lost]
+            return Answer(bool(void or lost), " ".join(sentences))
         case _:
             raise UserError(f"a record cannot be asked for that: {unknown('name', what, ASKS)}.")
 
@@ -70,14 +70,14 @@ def holds_when_shared(record: DecisionRecord) -> Answer:
     Away from floor and ceiling, and not because the baseline's trials failed. `UserError` for a
     record without a shared fault.
     """
-    if SHARED not in {each.name for each in record.paths}:
+    if SHARED not in {path.name for path in record.paths}:
         raise UserError("the record has no shared fault, so nothing says whether the repair holds.")
-    effect = next((each for each in record.effects if each.path == SHARED), None)
-    said = sentence(f"{where(SHARED)}, {in_short(record, effect)}")
-    return Answer(effect is not None and effect.leads and effect.sign > 0, said)
+    effect = next((effect for effect in record.effects if effect.path == SHARED), None)
+    text = sentence(f"{where(SHARED)}, {in_short(record, effect)}")
+    return Answer(effect is not None and effect.leads and effect.sign > 0, text)
 
 
-def broken(record: DecisionRecord, asked: Sequence[str]) -> dict[str, Answer]:
+def broken(record: DecisionRecord, conditions: Sequence[str]) -> dict[str, Answer]:
     """Return what a build fails for, of what it was told to: by name, each with its answer."""
-    answers = {each: found(record, each) for each in asked}
+    answers = {condition: found(record, condition) for condition in conditions}
     return {name: answer for name, answer in answers.items() if answer}

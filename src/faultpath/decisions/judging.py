@@ -30,12 +30,12 @@ exactly."""
 _FIRST = {CORRECT: 0, SHARED: 2}
 
 _Key = tuple[str, str]
-"""Of a trial within its arm and path: what counts as a scene, and which of its trials it is."""
+"""Key of a trial within its arm and path: its scene or task, and which of its trials it is."""
 
 
 @dataclass(frozen=True)
 class LaidOut:
-    """What `decide` takes."""
+    """Arguments of `decide`."""
 
     question: Question
     paths: tuple[Path, ...]
@@ -43,41 +43,41 @@ class LaidOut:
     findings: tuple[str, ...]
 
 
-def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
+def lay_out(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
     """Pair the trials of two arms by what names them: task, scene, seed and condition.
 
     What one arm has and the other lacks is a failed trial, so that its pair is void, and is named.
     Raises `UserError` for arms and conditions that are not there, a trial that is there twice, arms
     without a trial in common, and hashes that only some trials have.
     """
-    if asked.baseline == asked.repair:
-        raise UserError(f"baseline and repair are both '{asked.repair}': name two arms.")
-    for name in (asked.baseline, asked.repair):
+    if request.baseline == request.repair:
+        raise UserError(f"baseline and repair are both '{request.repair}': name two arms.")
+    for name in (request.baseline, request.repair):
         if name not in (arms := {row.arm for row in rows}):
             raise UserError(f"the results have no such arm: {unknown('arm', name, arms)}.")
-    rows = [row for row in rows if row.arm in (asked.baseline, asked.repair)]
-    names = _path_names({row.condition for row in rows}, asked)
-    if asked.cluster == "task" and not all(row.task for row in rows):
+    rows = [row for row in rows if row.arm in (request.baseline, request.repair)]
+    names = _path_names({row.condition for row in rows}, request)
+    if request.cluster == "task" and not all(row.task for row in rows):
         raise UserError("not every trial names its task: give --column task=NAME.")
-    trials = _by_address(rows, names, asked)
+    trials = _by_address(rows, names, request)
     paths = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
-    _check_paired(trials, paths, asked)
+    _check_paired(trials, paths, request)
 
     labels: dict[str, dict[str, None]] = {}
     for _, _, (unit, label) in trials:
         labels.setdefault(unit, {})[label] = None
-    often = Counter(label for each in labels.values() for label in each)
-    sizes = [len(each) for each in labels.values()]
+    often = Counter(label for members in labels.values() for label in members)
+    sizes = [len(members) for members in labels.values()]
     # As many trials of each as leave the most of all, and first those that most scenes have.
-    most = max(sorted(sizes), key=lambda size: size * sum(each >= size for each in sizes))
+    most = max(sorted(sizes), key=lambda size: size * sum(other >= size for other in sizes))
     units = {
-        unit: sorted(sorted(each, key=lambda x: (-often[x], _in_order(x)))[:most], key=_in_order)
-        for unit, each in labels.items()
+        unit: sorted(sorted(members, key=lambda x: (-often[x], _in_order(x)))[:most], key=_in_order)
+        for unit, members in labels.items()
     }
     seen = set(map(frozenset, units.values()))
     # Seeds that are the same everywhere are seeds; others only number the trials of a scene.
     alike = len(seen) == 1
-    if asked.generalise == "models" and (not alike or len(min(seen)) < 2):
+    if request.generalise == "models" and (not alike or len(min(seen)) < 2):
         raise UserError(
             "newly trained models need several seeds, the same ones in every scene: leave "
             "--generalise models out."
@@ -86,66 +86,68 @@ def lay_out(rows: Sequence[Received], asked: JudgeQuestion) -> LaidOut:
     if alike and all(label.isdecimal() and len(label) < 19 for label in min(seen)):
         seeds = tuple(sorted(map(int, min(seen))))
     hashed = _hashed(rows)
-    found: list[TrialRow] = []
+    trial_rows: list[TrialRow] = []
     missing: dict[tuple[str, str], list[_Key]] = {}
     tasks = {address[2][0]: row.task for address, row in trials.items()}
-    for path, arm in product(paths, (asked.baseline, asked.repair)):
+    for path, arm in product(paths, (request.baseline, request.repair)):
         for place, at in product(range(most), enumerate(sorted(labels, key=_in_order))):
             index, unit = at
             ordered = units[unit][place:]
             row = trials.get((arm, path, (unit, ordered[0]))) if ordered else None
             if row is None:
                 missing.setdefault((arm, path), []).append((unit, "".join(ordered[:1])))
-            topology = tasks[unit] if asked.cluster == "scene" else ""
+            topology = tasks[unit] if request.cluster == "scene" else ""
             outcome = _outcome(unit, row, hashed)
-            found.append(TrialRow(arm, path, seeds[place], index, topology, outcome))
-    found.sort(key=lambda row: (paths.index(row.path), row.variant, row.seed, row.scene_index))
-    table = OutcomeTable(tuple(found))
-    keys = json.dumps({unit: sorted(each) for unit, each in labels.items()}, sort_keys=True)
+            trial_rows.append(TrialRow(arm, path, seeds[place], index, topology, outcome))
+    trial_rows.sort(key=lambda row: (paths.index(row.path), row.variant, row.seed, row.scene_index))
+    table = OutcomeTable(tuple(trial_rows))
+    keys = json.dumps({unit: sorted(members) for unit, members in labels.items()}, sort_keys=True)
     laid = tuple(_path(name) for name in paths)
     dull = not any(row.status is Status.CRASH for row in rows)
     question = Question(
         system="results of other tools",
         options={},
-        baseline=asked.baseline,
-        repair=asked.repair,
-        fault=asked.fault,
+        baseline=request.baseline,
+        repair=request.repair,
+        fault=request.fault,
         library="results",
         library_hash=hashlib.sha256(keys.encode()).hexdigest()[:16],
         n_scenes=len(labels),
         seeds=seeds,
-        primary=primary_path(asked.primary or "", laid),
-        generalise=asked.generalise,
-        trained=asked.generalise == "models",
+        primary=primary_path(request.primary or "", laid),
+        generalise=request.generalise,
+        trained=request.generalise == "models",
         ends={Status.TIMEOUT.value: "no success"} if dull else {},
-        metrics=_metrics(asked),
+        metrics=_metrics(request),
         rule=RULE if len(labels) <= _MOST else "exact",
-        judged=Judged(pairing="hashes" if hashed else "keys", unit=asked.cluster),
+        judged=Judged(pairing="hashes" if hashed else "keys", unit=request.cluster),
     )
-    longer = [unit for unit, each in labels.items() if len(each) > most]
-    findings = _findings(table, missing, longer, tasks, asked, hashed)
+    longer = [unit for unit, members in labels.items() if len(members) > most]
+    findings = _findings(table, missing, longer, tasks, request, hashed)
     return LaidOut(question, laid, table, tuple(findings))
 
 
-def _path_names(conditions: Collection[str], asked: JudgeQuestion) -> dict[str, str]:
+def _path_names(conditions: Collection[str], question: JudgeQuestion) -> dict[str, str]:
     """Return the path of each condition; `UserError` without one that is nominal."""
-    for given in filter(None, (asked.nominal, asked.shared)):
-        if given not in conditions:
+    for name in filter(None, (question.nominal, question.shared)):
+        if name not in conditions:
             raise UserError(
-                f"the results have no such condition: {unknown('condition', given, conditions)}."
+                f"the results have no such condition: {unknown('condition', name, conditions)}."
             )
     if conditions == {""}:
         return {"": AS_RUN}
-    nominal = {asked.nominal} if asked.nominal else {"", "nominal", "correct"}
-    shared = {asked.shared} if asked.shared else {"shared"}
+    nominal = {question.nominal} if question.nominal else {"", "nominal", "correct"}
+    shared = {question.shared} if question.shared else {"shared"}
     names: dict[str, str] = {}
-    for each in sorted(conditions):
-        if each in nominal:
-            names[each] = CORRECT
-        elif each in shared:
-            names[each] = SHARED
+    for condition in sorted(conditions):
+        if condition in nominal:
+            names[condition] = CORRECT
+        elif condition in shared:
+            names[condition] = SHARED
         else:
-            names[each] = _ONE if each == "isolated" else each.removeprefix("isolated:")
+            names[condition] = (
+                _ONE if condition == "isolated" else condition.removeprefix("isolated:")
+            )
     if CORRECT not in names.values():
         raise UserError(
             f"no condition is nominal ({listed(conditions)}): say with --nominal which one is "
@@ -160,35 +162,35 @@ def _path_names(conditions: Collection[str], asked: JudgeQuestion) -> dict[str, 
 
 
 def _by_address(
-    rows: Iterable[Received], names: Mapping[str, str], asked: JudgeQuestion
+    rows: Iterable[Received], names: Mapping[str, str], question: JudgeQuestion
 ) -> dict[tuple[str, str, _Key], Received]:
-    found: dict[tuple[str, str, _Key], Received] = {}
+    trials: dict[tuple[str, str, _Key], Received] = {}
     for row in rows:
         scene = f"{row.task}/{row.scene}" if row.task else row.scene
         key = (scene, row.seed)
-        if asked.cluster == "task":
+        if question.cluster == "task":
             key = (row.task, f"{row.scene}, seed {row.seed}" if row.seed else row.scene)
         address = (row.arm, names[row.condition], key)
-        if (before := found.setdefault(address, row)) is not row:
+        if (before := trials.setdefault(address, row)) is not row:
             seed = f", seed {row.seed}" if row.seed else ""
             raise UserError(
                 f"{row.where} and {before.where} are the same trial (arm {row.arm}, scene {scene}"
                 f"{seed}): give each once, or name the column that tells them apart, as in "
                 "--column seed=NAME."
             )
-    return found
+    return trials
 
 
 def _check_paired(
-    trials: Collection[tuple[str, str, _Key]], paths: Sequence[str], asked: JudgeQuestion
+    trials: Collection[tuple[str, str, _Key]], paths: Sequence[str], question: JudgeQuestion
 ) -> None:
     """Raise `UserError` for a path on which no trial of one arm has its pair in the other."""
     for path in paths:
         ones, twos = (
             sorted(key for arm, at, key in trials if (arm, at) == (name, path))
-            for name in (asked.baseline, asked.repair)
+            for name in (question.baseline, question.repair)
         )
-        for name, keys in ((asked.baseline, ones), (asked.repair, twos)):
+        for name, keys in ((question.baseline, ones), (question.repair, twos)):
             if not keys:
                 raise UserError(
                     f"'{name}' has no trial {where(path)}: give both arms under each condition."
@@ -196,9 +198,9 @@ def _check_paired(
         if not set(ones) & set(twos):
             first, second = (", seed ".join(filter(None, keys[0])) for keys in (ones, twos))
             raise UserError(
-                f"no trial of '{asked.baseline}' has its pair in '{asked.repair}' {where(path)} "
-                f"(the first are scene {first} and scene {second}): name the columns that say "
-                "what belongs together, as in --column scene=NAME."
+                f"no trial of '{question.baseline}' has its pair in '{question.repair}' "
+                f"{where(path)} (the first are scene {first} and scene {second}): name the columns "
+                "that say what belongs together, as in --column scene=NAME."
             )
 
 
@@ -227,9 +229,9 @@ def _path(name: str) -> Path:
     return Path(name=name, title=title, consumers=(), baseline_consumers=())
 
 
-def _metrics(asked: JudgeQuestion) -> dict[str, Metric]:
-    found: dict[str, Metric] = {}
-    for name, _, better in (each.partition(":") for each in asked.metrics):
+def _metrics(question: JudgeQuestion) -> dict[str, Metric]:
+    metrics: dict[str, Metric] = {}
+    for name, _, better in (text.partition(":") for text in question.metrics):
         if not re.fullmatch("[a-z][a-z0-9_]*", name) or name in FIXED:
             raise UserError(
                 f"--metric {name} cannot be the name of a metric: rename the column to small "
@@ -237,8 +239,8 @@ def _metrics(asked: JudgeQuestion) -> dict[str, Metric]:
             )
         if better not in ("", "more", "less"):
             raise UserError(f"--metric {name}:{better} is neither less nor more: give one of them.")
-        found[name] = Metric(unit="1", better="less" if better == "less" else "more")
-    return found
+        metrics[name] = Metric(unit="1", better="less" if better == "less" else "more")
+    return metrics
 
 
 def _findings(
@@ -246,12 +248,12 @@ def _findings(
     missing: Mapping[tuple[str, str], Sequence[_Key]],
     longer: Sequence[str],
     tasks: Mapping[str, str],
-    asked: JudgeQuestion,
+    question: JudgeQuestion,
     hashed: bool,
 ) -> Iterable[str]:
     for (arm, path), keys in missing.items():
         unit, label = keys[0]
-        which = "" if not label else f" ({'' if asked.cluster == 'task' else 'seed '}{label})"
+        which = "" if not label else f" ({'' if question.cluster == 'task' else 'seed '}{label})"
         yield (
             f"{capital(where(path))}, {counted(len(keys), 'trial')} of {arm} "
             f"{'is' if len(keys) == 1 else 'are'} missing, for example that in {unit}{which}: "
@@ -259,11 +261,11 @@ def _findings(
         )
     if longer:
         yield (
-            f"{counted(len(longer), asked.cluster)} {'has' if len(longer) == 1 else 'have'} more "
-            f"trials than the others, for example {longer[0]}: the extra trials are left out."
+            f"{counted(len(longer), question.cluster)} {'has' if len(longer) == 1 else 'have'} "
+            f"more trials than the others, for example {longer[0]}: the extra trials are left out."
         )
     several = len(set(tasks.values()))
-    if asked.cluster == "scene" and several > 1:
+    if question.cluster == "scene" and several > 1:
         yield (
             f"The scenes come from {several} tasks and are taken for independent: what is decided "
             "is not about new tasks. --cluster task asks about those."
@@ -272,7 +274,7 @@ def _findings(
     if hashed:
         yield from unproven(ended)
     silent = [row for row in table.failed() if row.outcome.error == NO_OUTCOME]
-    if silent and all(each.status is Status.SUCCESS for each in ended):
+    if silent and all(outcome.status is Status.SUCCESS for outcome in ended):
         yield (
             "No trial ended without success, and some say nothing: where `failed` or an empty cell "
             "means no success, write 0."

@@ -38,9 +38,9 @@ class Path(Result):
     """Taps faulted in the baseline. Where the baseline has no such consumer the fault cannot reach
     it, and its trials under correct inputs stand in."""
     faulted: tuple[FaultedTap, ...] = ()
-    """What was faulted in the repaired system: from receipts, where `consumers` is the plan."""
+    """Taps faulted in the repaired system: from receipts, where `consumers` is the plan."""
     baseline_faulted: tuple[FaultedTap, ...] = ()
-    """What was faulted in the baseline."""
+    """Taps faulted in the baseline."""
 
 
 class Cell(Result):
@@ -61,7 +61,7 @@ class Cell(Result):
 
 
 class FailedTrials(Result):
-    """What failed trials leave open of an effect, as a record tells it."""
+    """Range of an effect that failed trials leave open, as the record has it."""
 
     repair: int
     """Failed trials of the repair on this path."""
@@ -93,7 +93,7 @@ class Effect(Result):
     success: Estimate
     """Percentage points."""
     sign: Sign
-    """What the family of all paths decides: 1 for the repair, -1 for the baseline, 0 nothing."""
+    """Decision of the family of all paths: 1 for the repair, -1 for the baseline, 0 for neither."""
     test: str
     p_value: float
     adjusted_p_value: float | None
@@ -106,7 +106,7 @@ class Effect(Result):
     void_pairs: int
     """Pairs of trials, seed by seed, that count for nothing."""
     failed: FailedTrials | None = None
-    """What failed trials leave open, where some did on any path."""
+    """Range that failed trials leave open, where some failed on any path."""
     wins: tuple[int, ...]
     """Scenes where only the repair succeeded, one count for each seed that differs."""
     losses: tuple[int, ...]
@@ -124,9 +124,9 @@ class Effect(Result):
     """Secondary, as all that follow: nothing is decided from it. On jointly successful scenes."""
     joint_successes: int
     metrics: dict[str, Estimate]
-    """Of each metric that all trials have."""
+    """Difference in each metric that all trials have."""
     metric_means: tuple[float, float] | None = None
-    """Of the question's metric: baseline and repair."""
+    """Means of the question's metric: baseline and repair."""
     thresholds: tuple[AtThreshold, ...] = ()
     """For each of the question's thresholds."""
 
@@ -167,7 +167,7 @@ class PathBreakEven(Result):
     """`(share, expected difference, low, high)` in fractions and percentage points. The band
     touches 0 exactly where the share is in the set of `result`."""
     words: str
-    """What may be said of it, without the path; empty where no end has an effect that leads."""
+    """Sentence part on it, without the path; empty where no end has an effect that leads."""
 
 
 class Change(Result):
@@ -229,11 +229,11 @@ class DecisionRecord(Result):
     sentences: tuple[str, ...] = ()
     """The answer in words."""
     would_change: tuple[str, ...] = ()
-    """What would change it."""
+    """Changes of the audit that could change the result."""
     findings: tuple[str, ...] = ()
-    """What a reader has to know of the run, a sentence each."""
+    """Remarks on the run that a reader has to know, a sentence each."""
     stopped: Stopped | None = None
-    """Of a sequential audit."""
+    """State at which a sequential audit ended."""
     earlier: tuple[EarlierLook, ...] = ()
     """Concluded before, from the same trials and otherwise."""
 

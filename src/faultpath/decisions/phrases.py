@@ -1,4 +1,4 @@
-"""What is said of a record, sentence by sentence, from what was decided and nothing else."""
+"""Sentences on a record, from what was decided and nothing else."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -40,18 +40,19 @@ def estimand(question: Question) -> str:
 
 def reach(record: DecisionRecord) -> Iterator[str]:
     """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
-    asked = record.question
+    question = record.question
     holds = "The intervals hold" if record.few else "What is significant holds"
-    given = asked.trained and asked.generalise == "scenes"
-    yield f"{holds} for {record.estimand}{'; models trained anew may differ' if given else ''}."
-    if asked.judged:
-        yield _PAIRED[asked.judged.pairing]
+    conditional = question.trained and question.generalise == "scenes"
+    anew = "; models trained anew may differ" if conditional else ""
+    yield f"{holds} for {record.estimand}{anew}."
+    if question.judged:
+        yield _PAIRED[question.judged.pairing]
         yield (
             "Of two equal arms at most 5 % of such judgements would find a difference, if the "
             "number of scenes was fixed before anybody looked: other tools do not tell."
         )
-    run = len(asked.seeds)
-    if asked.generalise == "models" and run < FEW_TRAININGS:
+    run = len(question.seeds)
+    if question.generalise == "models" and run < FEW_TRAININGS:
         yield (
             f"Caution: {run} trainings say little about new ones. With fewer than "
             f"{FEW_TRAININGS}, intervals hold only as far as trainings spread evenly around their "
@@ -62,28 +63,28 @@ def reach(record: DecisionRecord) -> Iterator[str]:
         same = "All" if differ == 1 else "Some of the"
         once = "together they count as one" if differ == 1 else f"they count as {differ}"
         yield f"{same} {run} seeds gave the same outcome in every trial: {once}."
-    held, rule, most = record.stopped, asked.stop, asked.n_scenes
-    if held is None or rule is None:
+    stopped, rule, most = record.stopped, question.stop, question.n_scenes
+    if stopped is None or rule is None:
         return
-    whole = held.scenes == most
-    because = "but" if not held.reached else "and" if whole else "because"
-    why = f"the primary contrast was {'' if held.reached else 'not '}decided"
+    whole = stopped.scenes == most
+    because = "but" if not stopped.reached else "and" if whole else "because"
+    why = f"the primary contrast was {'' if stopped.reached else 'not '}decided"
     if rule.when == "all-decided":
         also = f" or smaller than {margin(record)}" if rule.margin_pp else ""
-        why = f"{'every' if held.reached else 'not every'} effect was decided{also}"
-    elif asked.primary in held.small:
+        why = f"{'every' if stopped.reached else 'not every'} effect was decided{also}"
+    elif question.primary in stopped.small:
         why = f"the primary contrast was shown to be smaller than {margin(record)}"
-    took = f"it {'stopped after' if held.reached else 'took'} {counted(held.scenes, 'scene')}"
+    took = f"it {'stopped after' if stopped.reached else 'took'} {counted(stopped.scenes, 'scene')}"
     took += f" of at most {most}"
     if whole:
-        took = f"it took all that it was allowed, {counted(held.scenes, 'scene')}"
-    trials = counted(held.scenes * rule.trials, "trial")
+        took = f"it took all that it was allowed, {counted(stopped.scenes, 'scene')}"
+    trials = counted(stopped.scenes * rule.trials, "trial")
     yield f"This audit was sequential: {took} ({trials}), {because} {why}."
     yield (
         "Its scenes came in a random order fixed beforehand. Intervals and p-values hold wherever "
         "an audit stops, and are wider for that."
     )
-    if held.reached:
+    if stopped.reached:
         yield "A difference with which an audit stops is on average further from 0 than the truth."
 
 
@@ -91,7 +92,7 @@ def looks(record: DecisionRecord) -> str:
     """Say what was concluded before, and what that does to what is announced now."""
     counts = sorted({look.scenes for look in record.earlier if look.scenes is not None})
     with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
-    led = series([f"'{name}'" for name in dict.fromkeys(each.primary for each in record.earlier)])
+    led = series([f"'{name}'" for name in dict.fromkeys(look.primary for look in record.earlier)])
     return (
         f"This audit was concluded before{with_scenes}, led by {led}: after such a look, what it "
         "announces now is wrong more often than in 5 % of audits. Ask again of scenes that no "
@@ -121,7 +122,7 @@ def only_alone(of: Effect | Change) -> bool:
 
 def change(record: DecisionRecord, of: Change) -> str:
     """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
-    effects = {each.path: each for each in record.effects}
+    effects = {effect.path: effect for effect in record.effects}
     ends = effects[of.isolated], effects[of.shared]
     values = " to ".join(f"{signed(end.success.value)} pp" for end in ends)
     shown = f"{values}; change {signed(of.estimate.value)} pp {interval(of.estimate)}".rstrip()
@@ -171,7 +172,7 @@ BETA = Shares(
 
 
 def shares(
-    question: Question, regions: tuple[Region, ...], none: Effect, all_: Effect, said: Shares
+    question: Question, regions: tuple[Region, ...], none: Effect, all_: Effect, words: Shares
 ) -> str:
     """Return who is decided to be ahead at which shares; empty for nobody anywhere.
 
@@ -179,27 +180,27 @@ def shares(
     detects an effect on the same side, away from floor and ceiling: so no sentence contradicts
     that on the path.
     """
-    told: list[str] = []
+    clauses: list[str] = []
     for region in regions:
         low = region.low <= 0.0 and none.leads and region.sign == none.sign
         high = region.high >= 1.0 and all_.leads and region.sign == all_.sign
         ahead = f"{question.repair if region.sign > 0 else question.baseline} is ahead"
         if low and high:
-            return f"{ahead} {said.every}"
+            return f"{ahead} {words.every}"
         if high and region.low <= 0.0:
-            told.append(f"{ahead} {said.many}")
+            clauses.append(f"{ahead} {words.many}")
         elif low and region.high >= 1.0:
-            told.append(f"{ahead} {said.few}")
+            clauses.append(f"{ahead} {words.few}")
         elif high and first(region.low) < 100:
-            told.append(f"{ahead} from {first(region.low)} % on")
+            clauses.append(f"{ahead} from {first(region.low)} % on")
         elif low and last(region.high) > 0:
-            told.append(f"{ahead} up to {last(region.high)} %")
-    return ", ".join(told)
+            clauses.append(f"{ahead} up to {last(region.high)} %")
+    return ", ".join(clauses)
 
 
 def hardly_acted(record: DecisionRecord) -> Iterator[str]:
     """Name the arms in which the fault changed nothing in most of the trials."""
-    acted = {each.path for each in record.effects if each.acted}
+    acted = {effect.path for effect in record.effects if effect.acted}
     faulted = {path.name: (path.baseline_consumers, path.consumers) for path in record.paths}
     for cell in record.cells:
         consumers = faulted[cell.path][cell.variant == record.question.repair]
@@ -212,12 +213,12 @@ def hardly_acted(record: DecisionRecord) -> Iterator[str]:
 
 def would_change(record: DecisionRecord) -> Iterator[str]:
     """Say what would change the verdict."""
-    held, tested = record.stopped, [each for each in record.effects if each.acted]
+    stopped, tested = record.stopped, [effect for effect in record.effects if effect.acted]
     judged = record.question.judged is not None
-    if held and not all(each.sign for each in record.effects):
+    if stopped and not all(effect.sign for effect in record.effects):
         yield (
             "More scenes: --stop-when all-decided goes on until every effect is decided."
-            if held.reached
+            if stopped.reached
             else "More scenes: a larger --scenes goes on with those of the same order, and what is "
             "said then holds as well."
         )
@@ -225,9 +226,9 @@ def would_change(record: DecisionRecord) -> Iterator[str]:
         yield f"More scenes: {record.scenes_needed} at least, and more for all but a clear winner."
     if len(tested) < len(record.effects):
         yield "A fault that acts: an onset before the trial ends, a size that changes what is read."
-    if any(each.extreme == "floor" for each in tested):
+    if any(effect.extreme == "floor" for effect in tested):
         yield "Easier scenes or a smaller fault: where both fail, a difference can hardly show."
-    if any(each.extreme == "ceiling" for each in tested):
+    if any(effect.extreme == "ceiling" for effect in tested):
         yield "Harder scenes or a larger fault: where both succeed, a difference can hardly show."
     if not record.few and any(e.minimum_detectable_pp and not e.sign for e in tested):
         instead = "" if judged else ", or --stop-when, which allows for looks"
@@ -261,15 +262,15 @@ def partly_measured(record: DecisionRecord) -> Iterator[str]:
 
 def failed_trials(record: DecisionRecord) -> Iterator[str]:
     """Say by arm and path how many trials failed, and what their outcomes could make of it."""
-    asked = record.question
-    for each in record.effects:
-        found = each.failed
-        if found is None or not (found.repair or found.baseline or found.unsettled):
+    question = record.question
+    for effect in record.effects:
+        failed = effect.failed
+        if failed is None or not (failed.repair or failed.baseline or failed.unsettled):
             continue
         yield (
-            f"{capital(where(each.path))}, {found.repair} trials of {asked.repair} failed"
-            f"{' or are missing' if asked.judged else ''} and {found.baseline} of "
-            f"{asked.baseline}: depending on how they would have ended, the "
-            f"difference over all scenes lies anywhere from {signed(found.against_pp)} to "
-            f"{signed(found.favour_pp)} pp."
+            f"{capital(where(effect.path))}, {failed.repair} trials of {question.repair} failed"
+            f"{' or are missing' if question.judged else ''} and {failed.baseline} of "
+            f"{question.baseline}: depending on how they would have ended, the "
+            f"difference over all scenes lies anywhere from {signed(failed.against_pp)} to "
+            f"{signed(failed.favour_pp)} pp."
         )

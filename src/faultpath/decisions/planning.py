@@ -45,17 +45,17 @@ class Audit:
 
     def conclude(self, table: OutcomeTable, deliveries: Deliveries) -> DecisionRecord:
         """Return the decision record of a run; raises as `faultpath.decisions.decide`."""
-        asked = self.question
+        question = self.question
         paths = [
             path.model_copy(
                 update={
-                    "faulted": faulted_taps(deliveries.at(asked.repair, path.name)),
-                    "baseline_faulted": faulted_taps(deliveries.at(asked.baseline, path.name)),
+                    "faulted": faulted_taps(deliveries.at(question.repair, path.name)),
+                    "baseline_faulted": faulted_taps(deliveries.at(question.baseline, path.name)),
                 }
             )
             for path in self.paths
         ]
-        return decide(asked, paths, table, findings=deliveries.findings)
+        return decide(question, paths, table, findings=deliveries.findings)
 
     def stops(self, table: OutcomeTable) -> bool:
         """Return whether a sequential audit ends with these trials."""
@@ -76,7 +76,7 @@ def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
     )
 
 
-def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: Library) -> Audit:
+def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library: Library) -> Audit:
     """Lay out the arms: both variants under correct inputs, under the fault at each module that
     reads it alone, and under the fault shared by all of them.
 
@@ -88,18 +88,18 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
     that does not exist, newly trained models of a system that trains none, from one seed or in a
     sequential audit, or a margin that is none.
     """
-    variants = two_variants(system, asked)
-    sequential = asked.stop_when is not None
-    chosen = scenes_of(library, asked.scenes, in_order=not sequential)
-    fault = fault_of(system, asked.fault)
+    variants = two_variants(system, request)
+    sequential = request.stop_when is not None
+    chosen = scenes_of(library, request.scenes, in_order=not sequential)
+    fault = fault_of(system, request.fault)
     faults = faults_by_path(system, fault, variants)
     titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
     paths = [
         Path(
             name=name,
             title=titles.get(name, f"{name.replace('_', ' ').capitalize()} only"),
-            consumers=_consumers(of[asked.repair]),
-            baseline_consumers=_consumers(of[asked.baseline]),
+            consumers=_consumers(of[request.repair]),
+            baseline_consumers=_consumers(of[request.baseline]),
         )
         for name, of in faults.items()
     ]
@@ -110,11 +110,11 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
         )
         for path, of in faults.items()
         for variant, parts in of.items()
-        for seed in asked.seeds
+        for seed in request.seeds
     ]
-    _check(system, asked)
+    _check(system, request)
     study = Study(
-        name=f"{spec.name}-{asked.repair}-vs-{asked.baseline}",
+        name=f"{spec.name}-{request.repair}-vs-{request.baseline}",
         system=spec,
         library=library.name,
         scenes=chosen,
@@ -122,10 +122,10 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
         look=min(LOOK, system.block_size) if sequential else 0,
     )
     stop = None
-    if asked.stop_when is not None:
+    if request.stop_when is not None:
         stop = StopRule(
-            when=asked.stop_when,
-            margin_pp=asked.margin_pp,
+            when=request.stop_when,
+            margin_pp=request.margin_pp,
             order=chosen,
             order_seed=_ORDER_SEED,
             look=study.look,
@@ -134,21 +134,21 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
     question = Question(
         system=spec.name,
         options=spec.options,
-        baseline=asked.baseline,
-        repair=asked.repair,
-        fault=asked.fault,
+        baseline=request.baseline,
+        repair=request.repair,
+        fault=request.fault,
         faults=fault.resolved(system.interface),
         library=library.name,
         library_hash=library.content_hash,
         n_scenes=len(chosen),
-        seeds=asked.seeds,
-        primary=primary_path(asked.primary or "", paths),
-        generalise=asked.generalise,
+        seeds=request.seeds,
+        primary=primary_path(request.primary or "", paths),
+        generalise=request.generalise,
         trained=system.trained,
         ends={status.value: words for status, words in system.ends.items()},
         metrics=dict(system.metrics),
-        metric=asked.metric,
-        thresholds=tuple(sorted(set(asked.thresholds))),
+        metric=request.metric,
+        thresholds=tuple(sorted(set(request.thresholds))),
         stop=stop,
         rule=RULE,
     )
@@ -190,24 +190,24 @@ def faults_by_path(
 
 
 def _consumers(faults: Sequence[Fault]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(consumer for each in faults for consumer in each.consumers))
+    return tuple(dict.fromkeys(consumer for fault in faults for consumer in fault.consumers))
 
 
-def _check(system: System, asked: AuditQuestion) -> None:
+def _check(system: System, question: AuditQuestion) -> None:
     """Raise `UserError` for a metric, a margin or a population that means nothing."""
-    if asked.thresholds and not asked.metric:
+    if question.thresholds and not question.metric:
         raise UserError("thresholds of what? Name a metric of the system beside them.")
-    if asked.metric and asked.metric not in system.metrics:
-        raise UserError(f"{system.name}: {unknown('metric', asked.metric, system.metrics)}")
-    margin = asked.margin_pp
-    if margin is not None and not (asked.stop_when and 0.0 < margin < 100.0):
+    if question.metric and question.metric not in system.metrics:
+        raise UserError(f"{system.name}: {unknown('metric', question.metric, system.metrics)}")
+    margin = question.margin_pp
+    if margin is not None and not (question.stop_when and 0.0 < margin < 100.0):
         raise UserError(
             f"a margin of {margin:g} pp says when a sequential audit counts a difference as "
             "none: give it with --stop-when, between 0 and 100."
         )
-    if asked.generalise != "models":
+    if question.generalise != "models":
         return
-    if asked.stop_when:
+    if question.stop_when:
         raise UserError(
             "no test of newly trained models holds wherever one stops: leave --stop-when or "
             "--generalise models out."
@@ -216,23 +216,23 @@ def _check(system: System, asked: AuditQuestion) -> None:
         raise UserError(
             f"{system.name} has no trained models to generalise to: leave --generalise models out."
         )
-    if len(asked.seeds) < 2:
+    if len(question.seeds) < 2:
         raise UserError(
             "one seed says nothing about newly trained models: give several, such as "
             "--seeds 0,1,2, or leave --generalise models out."
         )
 
 
-def two_variants(system: System, asked: questions.Question) -> tuple[Variant, Variant]:
+def two_variants(system: System, question: questions.Question) -> tuple[Variant, Variant]:
     """Return baseline and repair; `UserError` for an unknown one, and where both are one."""
-    for name in (asked.baseline, asked.repair):
+    for name in (question.baseline, question.repair):
         if name not in system.variants:
             raise UserError(f"{system.name}: {unknown('variant', name, system.variants)}")
-    if asked.baseline == asked.repair:
+    if question.baseline == question.repair:
         raise UserError(
-            f"baseline and repair are both '{asked.repair}': name two different variants."
+            f"baseline and repair are both '{question.repair}': name two different variants."
         )
-    return system.variants[asked.baseline], system.variants[asked.repair]
+    return system.variants[question.baseline], system.variants[question.repair]
 
 
 def scenes_of(library: Library, count: int | None, in_order: bool = True) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""What an audit asks, and by which rule it is answered."""
+"""Question of an audit, and the rule by which it is answered."""
 
 from typing import Literal
 
@@ -21,7 +21,7 @@ class StopRule(Result):
     order: tuple[str, ...]
     """The scenes in the order in which they are run, drawn before the first trial."""
     order_seed: int
-    """Of the draw, with the hash of the library."""
+    """Seed of the draw, with the hash of the library."""
     look: int
     """Scenes from one look at the results to the next."""
     trials: int
@@ -29,16 +29,16 @@ class StopRule(Result):
 
 
 class Judged(Result):
-    """What is known of trials that other tools ran."""
+    """Facts about trials that other tools ran."""
 
     pairing: Literal["keys", "hashes"]
     """`hashes`: the two trials of a pair agree in a hash of what they began with."""
     unit: Literal["scene", "task"] = "scene"
-    """What counts as one scene: a scene, or a task with all of its scenes."""
+    """Unit that counts as one scene: a scene, or a task with all of its scenes."""
 
 
 class Question(Result):
-    """What the audit asked."""
+    """Question of an audit, as its record keeps it."""
 
     system: str
     options: dict[str, str]
@@ -56,24 +56,24 @@ class Question(Result):
     primary: str = ""
     """Path of the primary contrast, which leads the headline; empty for the default."""
     generalise: Generalise = "scenes"
-    """What the intervals and tests speak of: new scenes, or newly trained models too."""
+    """Population that intervals and tests hold for: new scenes, or newly trained models too."""
     trained: bool = False
     """Whether the variants hold trained models."""
     ends: dict[str, str] = Field(default_factory=dict)
-    """What the system calls its ends, where it is not the status itself."""
+    """Names that the system has for its ends, where they are not the status itself."""
     metrics: dict[MetricName, Metric] = VEHICLE
-    """What its trials measure. Records that do not say speak of a vehicle."""
+    """Metrics of its trials. Records that name none are of a vehicle."""
     metric: str = ""
     """The metric to tell beside success; empty for none."""
     thresholds: tuple[float, ...] = ()
-    """Of that metric: at which success is told anew."""
+    """Thresholds of that metric at which success is counted anew."""
     stop: StopRule | None = None
-    """Of a sequential audit, of which `n_scenes` is the most that it takes."""
+    """Rule of a sequential audit, of which `n_scenes` is the most that it takes."""
     rule: RuleName = "exact"
     """By which it is decided, then and ever after; records that do not say were by the first. A
     sequential audit is decided by bets, whatever the rule."""
     judged: Judged | None = None
-    """Of results that other tools wrote."""
+    """Facts about results that other tools wrote."""
 
     @property
     def family(self) -> str:
@@ -93,7 +93,7 @@ class Question(Result):
 
 
 class EarlierLook(Result):
-    """What was asked when an audit was concluded before; a record cannot allow for that."""
+    """Question of an earlier conclusion of the audit; a record cannot allow for that."""
 
     scenes: int | None
     """`None` of a sequential audit, which allows for its number."""

@@ -13,13 +13,15 @@ from faultpath.decisions.tables import MISSING
 from faultpath.decisions.wording import capital, counted, series, where
 
 MOST_WORDS = 20
-"""Of a headline, with the names of modules and variants as one word each."""
+"""Most words of a headline; names of modules and variants are one word each."""
 _OPEN = "no difference is detected"
 
 
 def headline(record: DecisionRecord) -> str:
     """Return at most twenty words that rest on decided things, led by the primary contrast."""
-    main = next((each for each in record.effects if each.path == record.question.primary), None)
+    main = next(
+        (effect for effect in record.effects if effect.path == record.question.primary), None
+    )
     if main is None:
         return f"{phrases.no_pair(record.question.primary)}."
     if record.few:
@@ -27,30 +29,30 @@ def headline(record: DecisionRecord) -> str:
             f"Too few scenes to decide: {record.scenes} compared, and this question needs at least "
             f"{record.scenes_needed}."
         )
-    tested = [each for each in record.effects if each.acted]
+    tested = [effect for effect in record.effects if effect.acted]
     if not main.acted:
-        if all(each.path == CORRECT for each in tested):
+        if all(effect.path == CORRECT for effect in tested):
             return "The fault never acted: nothing was tested."
         return f"{capital(where(main.path))}, the fault never acted: nothing was tested there."
-    ends = {rate for each in tested for rate in (each.baseline_percent, each.repair_percent)}
+    ends = {rate for effect in tested for rate in (effect.baseline_percent, effect.repair_percent)}
     if ends <= {0.0, 100.0} and not any(any((*e.wins, *e.losses)) for e in tested):
         every = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
         return f"No difference could show: in every scene both arms {' or '.join(every)}."
     turned = reversed_at(record)
-    said = ""
-    for said in _turned(record, main, turned) if turned else _compared(record, main, tested):
-        if len(said.split()) <= MOST_WORDS:
+    text = ""
+    for text in _turned(record, main, turned) if turned else _compared(record, main, tested):
+        if len(text.split()) <= MOST_WORDS:
             break
-    return said
+    return text
 
 
 def reversed_at(record: DecisionRecord) -> list[Effect]:
     """Return the isolated effects that sharing reverses, where advice may rest on both."""
-    of = {each.path: each for each in record.effects if each.leads}
+    of = {effect.path: effect for effect in record.effects if effect.leads}
     return [
-        of[each.isolated]
-        for each in record.changes
-        if each.turn == "reversal" and each.isolated in of and each.shared in of
+        of[change.isolated]
+        for change in record.changes
+        if change.turn == "reversal" and change.isolated in of and change.shared in of
     ]
 
 
@@ -61,7 +63,7 @@ def _turned(record: DecisionRecord, main: Effect, turned: Sequence[Effect]) -> I
         one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
         yield f"{advice}: {one} is ahead there, {other} with it shared."
     else:
-        yield f"{_said(record, [[main]])} {advice}: sharing reverses the ranking."
+        yield f"{_sentence(record, [[main]])} {advice}: sharing reverses the ranking."
     yield f"{advice}: sharing reverses the ranking."
 
 
@@ -69,61 +71,61 @@ def _compared(record: DecisionRecord, main: Effect, tested: Sequence[Effect]) ->
     """Yield the primary contrast with what is like it; then the shared one, so that no gain in
     isolation stands without what came of it; then whatever else is decided."""
     groups: dict[str, list[Effect]] = {}
-    ordered = sorted(tested, key=lambda each: (each is not main, each.path != SHARED))
-    for each in ordered:
-        state = _state(record, each)
-        if each.leads or each.path == SHARED or state == _state(record, main):
-            groups.setdefault(state, []).append(each)
-    told, shared = list(groups.values()), [[e] for e in ordered[1:] if e.path == SHARED]
-    if len(told) == 1 and len(told[0]) == len(record.effects) > 1:
-        yield _said(record, told, both=True, everywhere=True)
-    ahead = [[e for e in group if e.path != SHARED] for group in told[1:] if group[0].leads]
-    for clauses in (told, [[main], *shared, *filter(None, ahead)]):
-        yield _said(record, clauses, both=True)
-        yield _said(record, clauses)
-    yield _said(record, [[main], *shared])
-    yield _said(record, [[main]])
+    ordered = sorted(tested, key=lambda effect: (effect is not main, effect.path != SHARED))
+    for effect in ordered:
+        state = _state(record, effect)
+        if effect.leads or effect.path == SHARED or state == _state(record, main):
+            groups.setdefault(state, []).append(effect)
+    grouped, shared = list(groups.values()), [[e] for e in ordered[1:] if e.path == SHARED]
+    if len(grouped) == 1 and len(grouped[0]) == len(record.effects) > 1:
+        yield _sentence(record, grouped, both=True, everywhere=True)
+    ahead = [[e for e in group if e.path != SHARED] for group in grouped[1:] if group[0].leads]
+    for clauses in (grouped, [[main], *shared, *filter(None, ahead)]):
+        yield _sentence(record, clauses, both=True)
+        yield _sentence(record, clauses)
+    yield _sentence(record, [[main], *shared])
+    yield _sentence(record, [[main]])
 
 
-def _said(
+def _sentence(
     record: DecisionRecord,
     groups: Sequence[Sequence[Effect]],
     both: bool = False,
     everywhere: bool = False,
 ) -> str:
     """Return a sentence with a clause for each group of like effects; `both` names both arms."""
-    asked, clauses = record.question, list[str]()
+    question, clauses = record.question, list[str]()
     for group in groups:
-        said, place = _state(record, group[0]), places(group)
+        clause, place = _state(record, group[0]), places(group)
         if everywhere:
             place = "on every path" if group[0].leads else "on any path"
         if both and not clauses and group[0].leads:
-            said += f" of {record.winner(-group[0].sign)}"
-        elif both and not clauses and said == _OPEN:
-            said = f"no difference between {asked.baseline} and {asked.repair} is detected"
-        clauses.append(f"{said} {place}")
+            clause += f" of {record.winner(-group[0].sign)}"
+        elif both and not clauses and clause == _OPEN:
+            clause = f"no difference between {question.baseline} and {question.repair} is detected"
+        clauses.append(f"{clause} {place}")
     sentence = f"{'; '.join(clauses)}."
     return sentence if groups[0][0].leads else capital(sentence)
 
 
-def _state(record: DecisionRecord, each: Effect) -> str:
+def _state(record: DecisionRecord, effect: Effect) -> str:
     """Return what is decided of a path, as a clause without its place."""
-    if each.leads:
-        return f"{record.winner(each.sign)} is ahead"
-    if each.extreme:
-        return f"both nearly always {'fail' if each.extreme == 'floor' else 'succeed'}"
-    if each.uneven or each.unsettled:
+    if effect.leads:
+        return f"{record.winner(effect.sign)} is ahead"
+    if effect.extreme:
+        return f"both nearly always {'fail' if effect.extreme == 'floor' else 'succeed'}"
+    if effect.uneven or effect.unsettled:
         return "trials that failed leave it open"
-    if record.is_small(each):
+    if record.is_small(effect):
         return f"the difference is below {margin(record)}"
     return _OPEN
 
 
 def places(effects: Sequence[Effect]) -> str:
     """Return where effects are, the first one's kind first, modules faulted alone together."""
-    alone = [each.path for each in effects if each.path not in (CORRECT, SHARED)]
+    alone = [effect.path for effect in effects if effect.path not in (CORRECT, SHARED)]
     joined = where(" or the ".join(alone))
-    named = (joined if each.path in alone else where(each.path) for each in effects)
+    named = (joined if effect.path in alone else where(effect.path) for effect in effects)
     return series(list(dict.fromkeys(named)))
 
 
@@ -149,20 +151,21 @@ def in_short(record: DecisionRecord, effect: Effect | None) -> str:
 
 def not_standing(record: DecisionRecord) -> Iterator[str]:
     """Say of each interval that leaves out 0 where nothing is detected why it does not count."""
-    for each in filter(only_alone, record.effects):
+    for effect in filter(only_alone, record.effects):
         yield (
-            f"{capital(where(each.path))}, the interval by itself leaves out 0, but "
-            f"{adjusted(record, each)} ({record.hypotheses} contrasts): no difference is detected."
+            f"{capital(where(effect.path))}, the interval by itself leaves out 0, but "
+            f"{adjusted(record, effect)} ({record.hypotheses} contrasts): no difference is "
+            "detected."
         )
 
 
 def in_words(record: DecisionRecord) -> dict[str, Any]:
     """Return the fields in which a record says what it decides."""
-    changes = (phrases.change(record, each) for each in record.changes)
-    said = [*changes, *(one for several in _answers(record).values() for one in several)]
+    changes = (phrases.change(record, change) for change in record.changes)
+    sentences = [*changes, *(one for several in _answers(record).values() for one in several)]
     return {
         "headline": headline(record),
-        "sentences": tuple(said),
+        "sentences": tuple(sentences),
         "would_change": tuple(phrases.would_change(record)),
     }
 
@@ -172,7 +175,7 @@ def answers(record: DecisionRecord) -> dict[str, str]:
 
     With too few scenes nothing follows, and only the other two are there.
     """
-    return {label: " ".join(said) for label, said in _answers(record).items()}
+    return {label: " ".join(sentences) for label, sentences in _answers(record).items()}
 
 
 def _answers(record: DecisionRecord) -> dict[str, list[str]]:
@@ -187,7 +190,7 @@ def _answers(record: DecisionRecord) -> dict[str, list[str]]:
         sure.append(phrases.looks(record))
     elif record.question.judged:
         pass  # it is said of how trials were paired
-    elif record.question.generalise == "scenes" and any(each.sign for each in record.effects):
+    elif record.question.generalise == "scenes" and any(effect.sign for effect in record.effects):
         sure.append("Of audits of two equal systems, at most 5 % would find any difference.")
     sentences = {"What follows": list(_follows(record)), "How sure": sure}
     left_open = {"Left open": list(_left_open(record))}
@@ -197,12 +200,12 @@ def _answers(record: DecisionRecord) -> dict[str, list[str]]:
 
 
 def _follows(record: DecisionRecord) -> Iterator[str]:
-    tested = [each for each in record.effects if each.acted]
-    leading = [each for each in tested if each.leads]
+    tested = [effect for effect in record.effects if effect.acted]
+    leading = [effect for effect in tested if effect.leads]
     if not leading:
-        if any(each.sign and each.uneven for each in tested):
+        if any(effect.sign and effect.uneven for effect in tested):
             yield "No choice can rest on what is significant: one arm's trials failed more often."
-        elif any(each.sign for each in tested):
+        elif any(effect.sign for effect in tested):
             yield "What is significant lies at the floor or ceiling: no choice can rest on it."
         else:
             yield "Nothing that was tested gives a reason to prefer either."
@@ -213,27 +216,28 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
             f"Ask which fault your system will meet: {places(turned)}, {one} succeeds more often; "
             f"where the modules share it, {other} succeeds more often."
         )
-        leading = [each for each in leading if each.path == CORRECT]
+        leading = [effect for effect in leading if effect.path == CORRECT]
     for sign in (1, -1):
-        if at := [each for each in leading if each.sign == sign]:
+        if at := [effect for effect in leading if effect.sign == sign]:
             yield f"{capital(places(at))}, {record.winner(sign)} succeeds more often."
-    alone = any(each.path not in (CORRECT, SHARED) for each in leading)
-    shared = [each for each in tested if each.path == SHARED]
+    alone = any(effect.path not in (CORRECT, SHARED) for effect in leading)
+    shared = [effect for effect in tested if effect.path == SHARED]
     unseen = [e for e in shared if not (e.sign or e.extreme or e.unsettled)]
     if unseen and alone:
         less = f", and it is smaller than {margin(record)}" if record.is_small(unseen[0]) else ""
         yield f"When the fault is shared, no difference is seen{less}."
-    if modules := [each.isolated for each in record.changes if each.turn == "interaction"]:
+    if modules := [change.isolated for change in record.changes if change.turn == "interaction"]:
         yield (
             f"A fault at the {' or the '.join(modules)} alone does not stand for the shared one: "
             "the difference between the two arms changes."
         )
-    if {each.sign for each in tested if each.leads} == {1, -1}:
+    if {effect.sign for effect in tested if effect.leads} == {1, -1}:
         if not turned:
             yield "Which is better depends on which fault occurs, and how often."
-        for each in record.break_even:
-            if each.path == record.question.primary and each.words:
-                yield f"By the share of trials with the fault, {where(each.path)}: {each.words}."
+        for result in record.break_even:
+            if result.path == record.question.primary and result.words:
+                place = where(result.path)
+                yield f"By the share of trials with the fault, {place}: {result.words}."
 
 
 def _undetected(record: DecisionRecord) -> Iterator[str]:
@@ -266,9 +270,9 @@ def _would_be_found(sizes: Mapping[str, str]) -> str:
 
 
 def _left_open(record: DecisionRecord) -> Iterator[str]:
-    if idle := [where(each.path) for each in record.effects if not each.acted]:
+    if idle := [where(effect.path) for effect in record.effects if not effect.acted]:
         yield f"The fault never acted {series(idle)}: nothing was tested there."
-    if unsettled := [where(each.path) for each in record.effects if each.unsettled]:
+    if unsettled := [where(effect.path) for effect in record.effects if effect.unsettled]:
         yield f"Who is ahead {series(unsettled)} depends on trials that failed."
     yield from _undetected(record)
     yield from not_standing(record)

@@ -110,7 +110,7 @@ def ended(question: Question, status: str) -> str:
 
 def unit(name: str) -> str:
     """Return a unit with its exponents raised: `m/s²` for `m/s^2`."""
-    return re.sub(r"\^(-?\d)", lambda found: found[1].translate(_RAISED), name)
+    return re.sub(r"\^(-?\d)", lambda match: match[1].translate(_RAISED), name)
 
 
 def sentence(words: str) -> str:

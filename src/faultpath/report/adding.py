@@ -40,7 +40,7 @@ class Lines:
     @property
     def sizes(self) -> tuple[float, ...]:
         """Mean size of each, while the trial ran."""
-        return tuple(float(each) for each in np.nanmean(np.abs(self.values), axis=1))
+        return tuple(float(size) for size in np.nanmean(np.abs(self.values), axis=1))
 
 
 @dataclass(frozen=True)
@@ -48,14 +48,14 @@ class Adding:
     """One scene: on every path of the fault the errors of both arms."""
 
     words: str
-    """What they are errors of."""
+    """Quantity that the errors are of."""
     unit: str
     names: tuple[str, ...]
-    """Of the two errors and of their sum."""
+    """Names of the two errors and of their sum."""
     paths: tuple[tuple[str, tuple[Lines, ...]], ...]
     """Title of a path, with the baseline's lines and the repair's."""
     caption: str
-    """What the last path shows, in numbers of this scene alone."""
+    """Summary of the last path, in numbers of this scene alone."""
     span: tuple[float, float]
     """The range of the values; where a few would squeeze the others, that of the others."""
     cut: bool
@@ -75,55 +75,57 @@ def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
     """
     groups = by_scene(pairs)
     for at in choose(source.record, pairs) if source.signals else ():
-        found = _of(source, at[0], groups[at])
-        if found is not None:
-            return found
+        example = _of(source, at[0], groups[at])
+        if example is not None:
+            return example
     return None
 
 
 def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | None:
-    asked = source.record.question
-    found: list[tuple[str, str, tuple[Lines, ...]]] = []
+    question = source.record.question
+    paths: list[tuple[str, str, tuple[Lines, ...]]] = []
     terms: list[Signal] = []
     for path in source.record.paths:
         if path.name == CORRECT or path.name not in pairs:
             continue
         pair, lines = pairs[path.name], list[Lines]()
         for role, name, trial in (
-            ("baseline", asked.baseline, pair.baseline),
-            ("repair", asked.repair, pair.repair),
+            ("baseline", question.baseline, pair.baseline),
+            ("repair", question.repair, pair.repair),
         ):
             named = source.signals.get(TrialAddress(name, path.name, pair.seed, scene), ())
-            topics = [each.topic for each in named if each.name == TOGETHER]
-            known = [each for each in named if each.topic in topics]
-            numbers = all(np.isfinite(each.values).any() for each in known)
+            topics = [signal.topic for signal in named if signal.name == TOGETHER]
+            known = [signal for signal in named if signal.topic in topics]
+            numbers = all(np.isfinite(signal.values).any() for signal in known)
             if trial and numbers and len(known) == 3 and known[-1].name == TOGETHER:
                 terms = known
-                values = np.array([each.values[:, 0] for each in known], np.float64)
-                ended = f"{wording.ended(asked, trial.status)}, {trial.time_s:.1f} s"
+                values = np.array([signal.values[:, 0] for signal in known], np.float64)
+                ended = f"{wording.ended(question, trial.status)}, {trial.time_s:.1f} s"
                 lines.append(Lines(role, name, values, trial, ended))
         if len(lines) == 2:
-            found.append((path.name, path.title, tuple(lines)))
-    if not found:
+            paths.append((path.name, path.title, tuple(lines)))
+    if not paths:
         return None
-    every = np.concatenate([arm.values.ravel() for *_, arms in found for arm in arms])
+    every = np.concatenate([arm.values.ravel() for *_, arms in paths for arm in arms])
     every = every[np.isfinite(every)]
     low, high = (float(end) for end in np.quantile(every, (0.03, 0.97)))
     whole = float(every.min()), float(every.max())
     cut = whole[1] - whole[0] > _SQUEEZED * max(high - low, 1e-9)
     unit = wording.unit(terms[0].unit)
-    last, _, arms = found[-1]
+    last, _, arms = paths[-1]
     digits = 2 if min(max(arm.sizes) for arm in arms) < 1 else 1
-    told: list[str] = []
+    descriptions: list[str] = []
     for arm in arms:
         one, other, both = (wording.plain(size, digits) for size in arm.sizes)
-        told.append(f"{arm.name}: {one} and {other} {unit}, together {both} {unit} ({arm.ended})")
+        descriptions.append(
+            f"{arm.name}: {one} and {other} {unit}, together {both} {unit} ({arm.ended})"
+        )
     return Adding(
         words=terms[0].topic,
         unit=unit,
-        names=tuple(each.name for each in terms),
-        paths=tuple((title, arms) for _, title, arms in found[-_MOST_PATHS:]),
-        caption=f"Scene {scene}, {where(last)}, mean sizes: {'; '.join(told)}.",
+        names=tuple(term.name for term in terms),
+        paths=tuple((title, arms) for _, title, arms in paths[-_MOST_PATHS:]),
+        caption=f"Scene {scene}, {where(last)}, mean sizes: {'; '.join(descriptions)}.",
         span=(low, high) if cut else whole,
         cut=cut,
         dt_s=source.traces.dt_s,
@@ -136,8 +138,10 @@ def adding_panels(shown: Adding) -> list[str]:
     x = Axis(0.0, shown.longest_s, _LEFT, _WIDTH - _RIGHT)
     panels: list[str] = []
     for title, arms in shown.paths:
-        told = "; ".join(f"{arm.role} {arm.name}: {arm.ended}" for arm in arms)
-        svg = Svg(_WIDTH, _TOP + _PITCH * len(arms) - 16, f"{title}: {shown.words} over time", told)
+        endings = "; ".join(f"{arm.role} {arm.name}: {arm.ended}" for arm in arms)
+        svg = Svg(
+            _WIDTH, _TOP + _PITCH * len(arms) - 16, f"{title}: {shown.words} over time", endings
+        )
         svg.text(0, 14, title, "head", room=_WIDTH)
         until = svg.clip("until", x.start, x.end - x.start, "until")
         for place, arm in enumerate(arms):

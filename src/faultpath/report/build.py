@@ -1,4 +1,4 @@
-"""What a build server shows of runs: JUnit's XML, and a summary in Markdown."""
+"""Reports for a build server: JUnit's XML, and a summary in Markdown."""
 
 from collections.abc import Sequence
 from xml.etree import ElementTree
@@ -10,17 +10,17 @@ from faultpath.decisions.tables.escapes import markdown, visible
 from faultpath.report.tables import markdown_table
 
 
-def junit(records: Sequence[DecisionRecord], asked: Sequence[str]) -> str:
-    """Return JUnit's XML: a suite for each record, a case for its trials and each of `asked`."""
+def junit(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str:
+    """Return JUnit's XML: a suite for each record, a case for its trials and each condition."""
     root = ElementTree.Element("testsuites", name="faultpath")
     for record in records:
         question = record.question
         name = f"{question.repair} against {question.baseline}"
         name += f" under {question.fault}" if question.fault else ""
         cases = {"trials-ran": _failed(record)}
-        for each in asked:
-            answer = found(record, each)
-            cases[f"no-{each}"] = answer.said if answer else ""
+        for condition in conditions:
+            answer = found(record, condition)
+            cases[f"no-{condition}"] = answer.said if answer else ""
         suite = ElementTree.SubElement(
             root,
             "testsuite",
@@ -28,30 +28,30 @@ def junit(records: Sequence[DecisionRecord], asked: Sequence[str]) -> str:
             tests=str(len(cases)),
             failures=str(sum(map(bool, cases.values()))),
         )
-        for case, said in cases.items():
+        for case, failure in cases.items():
             place = ElementTree.SubElement(suite, "testcase", classname="faultpath", name=case)
-            if said:
-                wrong = ElementTree.SubElement(place, "failure", message=visible(said))
-                wrong.text = visible(said)
-        told = "\n".join((record.headline, *record.sentences, *record.findings))
-        ElementTree.SubElement(suite, "system-out").text = visible(told)
+            if failure:
+                wrong = ElementTree.SubElement(place, "failure", message=visible(failure))
+                wrong.text = visible(failure)
+        text = "\n".join((record.headline, *record.sentences, *record.findings))
+        ElementTree.SubElement(suite, "system-out").text = visible(text)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def summary(records: Sequence[DecisionRecord], asked: Sequence[str]) -> str:
+def summary(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str:
     """Return what was decided as Markdown: a headline, what a build fails for, answers, tables."""
     parts: list[str] = []
     for record in records:
         parts.append(f"### {markdown(record.headline)}")
-        wrong = {each: found(record, each) for each in asked}
+        wrong = {condition: found(record, condition) for condition in conditions}
         marks = [
             f"- **{'fails' if answer else 'passes'}** `{name}`: {markdown(answer.said)}"
             for name, answer in wrong.items()
         ]
         parts += ["\n".join(marks)] if marks else []
-        parts += [f"**{label}.** {markdown(said)}" for label, said in answers(record).items()]
+        parts += [f"**{label}.** {markdown(answer)}" for label, answer in answers(record).items()]
         if record.findings:
-            noted = "\n".join(f"- {markdown(each)}" for each in record.findings)
+            noted = "\n".join(f"- {markdown(finding)}" for finding in record.findings)
             parts.append(f"**Found in the run.**\n\n{noted}")
         parts.append(markdown_table(record))
     return "\n\n".join(parts).rstrip() + "\n"

@@ -31,24 +31,24 @@ class Compared:
     folder: str
     record: DecisionRecord
     provenance: RunProvenance
-    held: ReportInput | None = None
+    source: ReportInput | None = None
     """All that its pages are made from."""
     family: Mapping[str, tuple[Sign, float]] | None = None
-    """Of a sweep over sizes: for each path the side that is decided over all of them together, and
+    """For a sweep over sizes: by path, the side that is decided over all of them together, and
     the adjusted p. `None` where every audit stands by itself."""
 
     @property
     def asked(self) -> Question:
-        """What it asked."""
+        """Question of the audit."""
         return self.record.question
 
     def effect(self, path: str) -> Effect | None:
         """Return its effect on a path, as decided beside the others; `None` where it has none."""
-        found = next((each for each in self.record.effects if each.path == path), None)
-        if found is None or self.family is None or path not in self.family:
-            return found
+        effect = next((effect for effect in self.record.effects if effect.path == path), None)
+        if effect is None or self.family is None or path not in self.family:
+            return effect
         sign, p = self.family[path]
-        return found.model_copy(update={"sign": sign, "adjusted_p_value": p})
+        return effect.model_copy(update={"sign": sign, "adjusted_p_value": p})
 
     @property
     def headline(self) -> str:
@@ -59,7 +59,7 @@ class Compared:
 
     def absent(self, path: str) -> str:
         """Say why it has no effect on a path."""
-        there = any(each.name == path for each in self.record.paths)
+        there = any(recorded.name == path for recorded in self.record.paths)
         return "every pair void" if there else "no such path"
 
 
@@ -68,11 +68,11 @@ def titles(runs: Sequence[Compared]) -> dict[str, str]:
 
     Correct inputs stand first and the shared fault last, as in every audit.
     """
-    found = {path.name: path.title for run in reversed(runs) for path in run.record.paths}
+    by_path = {path.name: path.title for run in reversed(runs) for path in run.record.paths}
     order = {path.name: None for run in runs for path in run.record.paths}
     primaries = {run.asked.primary for run in runs}
     return {
-        path: f"{found[path]} (primary)" if primaries == {path} else found[path]
+        path: f"{by_path[path]} (primary)" if primaries == {path} else by_path[path]
         for path in sorted(order, key=lambda path: {CORRECT: 0, SHARED: 2}.get(path, 1))
     }
 
@@ -81,9 +81,9 @@ Facts = Mapping[str, tuple[str, ...]]
 """By title, the value in each run."""
 
 
-def _side_by_side(each: Sequence[Mapping[str, str]], absent: str) -> dict[str, tuple[str, ...]]:
-    keys = dict.fromkeys(key for values in each for key in values)
-    return {key: tuple(values.get(key, absent) for values in each) for key in keys}
+def _side_by_side(columns: Sequence[Mapping[str, str]], absent: str) -> dict[str, tuple[str, ...]]:
+    keys = dict.fromkeys(key for values in columns for key in values)
+    return {key: tuple(values.get(key, absent) for values in columns) for key in keys}
 
 
 def _asked(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
@@ -110,7 +110,7 @@ def _asked(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
 
 def differing(runs: Sequence[Compared]) -> Facts:
     """Return what differs between runs: what was asked first, then what ran, then on what."""
-    made = [
+    environments = [
         {
             "Code, data and packages": source.system_fingerprint[:_DIGITS],
             "faultpath": source.faultpath_version,
@@ -122,27 +122,27 @@ def differing(runs: Sequence[Compared]) -> Facts:
         }
         for source in (run.provenance for run in runs)
     ]
-    found = _asked(runs) | _side_by_side(made, "not named")
-    return {title: values for title, values in found.items() if len(set(values)) > 1}
+    facts = _asked(runs) | _side_by_side(environments, "not named")
+    return {title: values for title, values in facts.items() if len(set(values)) > 1}
 
 
 def labels(runs: Sequence[Compared]) -> tuple[str, ...]:
     """Return a label for each run: its number, with what of the question tells all of them apart
     if one thing does, and otherwise with its folder."""
     apart = [values for values in _asked(runs).values() if len(set(values)) == len(runs)]
-    told = apart[0] if apart else tuple(Path(run.folder).name for run in runs)
-    return tuple(f"{run.number}  {text}" for run, text in zip(runs, told, strict=True))
+    texts = apart[0] if apart else tuple(Path(run.folder).name for run in runs)
+    return tuple(f"{run.number}  {text}" for run, text in zip(runs, texts, strict=True))
 
 
 def swept(runs: Sequence[Compared]) -> tuple[str, tuple[float, ...]] | None:
     """Return the fault in whose size alone the questions differ, with the size in each run;
     `None` where they differ in something else."""
     parts = [_SIZED.fullmatch(run.asked.fault) for run in runs]
-    found = [part.groups() for part in parts if part]
-    if len(runs) < 2 or len(found) < len(runs) or len({(a, c) for a, _, c in found}) > 1:
+    groups = [part.groups() for part in parts if part]
+    if len(runs) < 2 or len(groups) < len(runs) or len({(a, c) for a, _, c in groups}) > 1:
         return None
     try:
-        sizes = tuple(float(size) for _, size, _ in found)
+        sizes = tuple(float(size) for _, size, _ in groups)
     except ValueError:
         return None
     asked_alike = all(
@@ -150,27 +150,27 @@ def swept(runs: Sequence[Compared]) -> tuple[str, tuple[float, ...]] | None:
     )
     if len(set(sizes)) < len(sizes) or not asked_alike:
         return None
-    name, _, rest = found[0]
+    name, _, rest = groups[0]
     return f"{name}{rest}", sizes
 
 
 def same_correct_trials(runs: Sequence[Compared]) -> bool:
     """Return whether all runs saw the same of the same code under correct inputs."""
-    found = [run.effect(CORRECT) for run in runs]
+    effects = [run.effect(CORRECT) for run in runs]
     code = {run.provenance.system_fingerprint for run in runs}
-    same = {(each.success.value, each.wins, each.losses) for each in found if each}
-    return None not in found and len(same) == len(code) == 1
+    same = {(effect.success.value, effect.wins, effect.losses) for effect in effects if effect}
+    return None not in effects and len(same) == len(code) == 1
 
 
 def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
     """Return p and weight of every contrast that a record tested, by its name."""
     tested = [effect for effect in record.effects if effect.adjusted_p_value is not None]
-    found = {f"effect/{effect.path}": effect.p_value for effect in tested}
-    found |= {f"change/{change.isolated}": change.p_value for change in record.changes}
-    asked = record.question
-    parts = alpha_shares([effect.path for effect in tested], asked.primary)
-    weighted = RULES[asked.rule].weighted or asked.stop is not None
-    return {name: (p, parts[name] if weighted else 1.0) for name, p in found.items()}
+    p_values = {f"effect/{effect.path}": effect.p_value for effect in tested}
+    p_values |= {f"change/{change.isolated}": change.p_value for change in record.changes}
+    question = record.question
+    parts = alpha_shares([effect.path for effect in tested], question.primary)
+    weighted = RULES[question.rule].weighted or question.stop is not None
+    return {name: (p, parts[name] if weighted else 1.0) for name, p in p_values.items()}
 
 
 def together(runs: Sequence[Compared]) -> tuple[Compared, ...]:
@@ -188,7 +188,7 @@ def together(runs: Sequence[Compared]) -> tuple[Compared, ...]:
         return name if name in once else f"{run.number}/{name}"
 
     tested = {
-        key(run, name): found for run in runs for name, found in contrasts(run.record).items()
+        key(run, name): contrast for run in runs for name, contrast in contrasts(run.record).items()
     }
     adjusted = holm(
         {name: p for name, (p, _) in tested.items()},

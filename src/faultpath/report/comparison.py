@@ -60,21 +60,27 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
 
     Audits of other arms ask something else, and are not held against each other.
     """
-    told = [
+    conclusions = [
         f"{title}: decided {sides}."
         for path, title in titles(runs).items()
         for sides in _opposite(runs, path)
     ]
-    if not told and len({_arms(run) for run in runs}) == len(runs):
-        told = ["No two of these audits compare the same arms, so none can contradict another."]
-    told = told or ["No two audits of the same arms are decided in opposite directions."]
+    if not conclusions and len({_arms(run) for run in runs}) == len(runs):
+        conclusions = [
+            "No two of these audits compare the same arms, so none can contradict another."
+        ]
+    conclusions = conclusions or [
+        "No two audits of the same arms are decided in opposite directions."
+    ]
     if len({run.asked.system for run in runs}) > 1:
-        told += ["The runs are of different systems: the same name need not mean the same thing."]
+        conclusions += [
+            "The runs are of different systems: the same name need not mean the same thing."
+        ]
     caveat = (
         "Setting verdicts side by side is no test between the audits: where one detects a "
         "difference and another does not, the two are not shown to differ."
     )
-    return *_over_sizes(runs), *told, caveat
+    return *_over_sizes(runs), *conclusions, caveat
 
 
 def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
@@ -95,7 +101,7 @@ def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
 def _by_size(runs: Sequence[Compared], path: str, sizes: Sequence[float]) -> str:
     """Return who is ahead at which sizes: `gru ahead at 0.1; nothing significant at 0.05`."""
     at: dict[str, list[str]] = {}
-    for run, size in sorted(zip(runs, sizes, strict=True), key=lambda each: each[1]):
+    for run, size in sorted(zip(runs, sizes, strict=True), key=lambda pair: pair[1]):
         sign = effect.sign if (effect := run.effect(path)) else 0
         ahead = {1: f"{run.asked.repair} ahead", -1: f"{run.asked.baseline} ahead"}
         at.setdefault(ahead.get(sign, "nothing significant"), []).append(tick_label(size))
@@ -117,11 +123,11 @@ def _opposite(runs: Sequence[Compared], path: str) -> Iterator[str]:
             role = "repair" if effect.sign > 0 else "baseline"
             winner = run.asked.repair if effect.sign > 0 else run.asked.baseline
             aside = wording.reservation(effect)
-            told = f"{run.number} (at the {aside})" if aside else f"{run.number}"
-            sides.setdefault(winner, {}).setdefault(f"{winner} ({role})", []).append(told)
+            text = f"{run.number} (at the {aside})" if aside else f"{run.number}"
+            sides.setdefault(winner, {}).setdefault(f"{winner} ({role})", []).append(text)
         if len(sides) > 1:
-            found = [each for of in sides.values() for each in of.items()]
-            yield ", ".join(f"for {side} in {series(said)}" for side, said in found)
+            clauses = [clause for of in sides.values() for clause in of.items()]
+            yield ", ".join(f"for {side} in {series(numbers)}" for side, numbers in clauses)
 
 
 def _arms(run: Compared) -> frozenset[str]:
@@ -168,13 +174,13 @@ def effects(runs: Sequence[Compared]) -> Table:
 
 def shown(runs: Sequence[Compared]) -> RenderableType:
     """Return the comparison for a terminal."""
-    found = differing(runs)
+    facts = differing(runs)
     parts: list[RenderableType] = [Text(headline(runs), style="bold"), Text("")]
     for run in runs:
         verdict = Padding.indent(Text(run.headline), 3)
         parts += [Text(f"{run.number}  {run.folder}"), verdict]
     parts += [Text(""), Parted(_short(effects(runs))), Text("")]
-    parts += [drawn(facts_table(runs, found))] if found else [Text(same(runs))]
+    parts += [drawn(facts_table(runs, facts))] if facts else [Text(same(runs))]
     return Group(*parts, Text(""), *map(Text, sentences(runs)))
 
 
@@ -189,19 +195,19 @@ def dependent_failures(runs: Sequence[Compared]) -> Table | None:
 
     Every effect is as its own audit decided it, or all sizes of a sweep together.
     """
-    held = [
-        replace(run.held, record=run.record.model_copy(update={"effects": effects}))
+    sources = [
+        replace(run.source, record=run.record.model_copy(update={"effects": effects}))
         for run in runs
-        if run.held is not None
+        if run.source is not None
         for effects in [tuple(filter(None, (run.effect(p.name) for p in run.record.paths)))]
     ]
     numbers = [str(run.number) for run in runs] if len(runs) > 1 else []
-    return of_runs(held, numbers) if len(held) == len(runs) else None
+    return of_runs(sources, numbers) if len(sources) == len(runs) else None
 
 
 def page(runs: Sequence[Compared]) -> str:
     """Return the comparison as one page."""
-    found = differing(runs)
+    facts = differing(runs)
     panels: dict[str, list[Row]] = {
         title: [
             (label, "", run.effect(path) or run.absent(path))
@@ -219,7 +225,7 @@ def page(runs: Sequence[Compared]) -> str:
         runs=runs,
         panels=[Markup(panel(title, rows, axis)) for title, rows in panels.items()],
         effects=Markup(html(effects(runs))),
-        facts=Markup(html(facts_table(runs, found))) if found else "",
+        facts=Markup(html(facts_table(runs, facts))) if facts else "",
         same=same(runs),
         sizes=swept(runs),
         w=wording,

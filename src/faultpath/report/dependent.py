@@ -60,53 +60,53 @@ def in_short(plan: Plan) -> Table | None:
     """Return a line for each group of a plan, for a terminal."""
     columns = ("modules", "kind", "evidence")
     lines = tuple(
-        line(each.name, "\n".join(each.modules), _kind(each.ways[-1]), NO_EVIDENCE)
-        for each in plan.dependent
+        line(group.name, "\n".join(group.modules), _kind(group.ways[-1]), NO_EVIDENCE)
+        for group in plan.dependent
     )
     title, corner = "Dependent failures by source", "source"
-    found = Table(title=title, corner=corner, columns=columns, words=columns, lines=lines)
-    return found if lines else None
+    table = Table(title=title, corner=corner, columns=columns, words=columns, lines=lines)
+    return table if lines else None
 
 
-def _table(groups: Sequence[Group], asked: Question | StudyFile) -> Table | None:
+def _table(groups: Sequence[Group], question: Question | StudyFile) -> Table | None:
     if not groups:
         return None
     lines: list[Line] = []
     for group in groups:
-        fly = command(asked, group.fault)
+        fly = command(question, group.fault)
         lines.append(line(f"{group.name}: {group.coupling}"))
         for way in group.ways:
-            for each in way.evidence or (None,):
-                lines.append(_line(way, each, fly))
+            for evidence in way.evidence or (None,):
+                lines.append(_line(way, evidence, fly))
                 fly = fly if lines[-1].entries[-1].text != fly else "the same audit"
     return Table(
         name="dependent-failures",
         title="Dependent failures",
         corner="Fault at",
         columns=_COLUMNS,
-        words=tuple(each for each in _COLUMNS if each != "Difference, pp"),
+        words=tuple(column for column in _COLUMNS if column != "Difference, pp"),
         lines=tuple(lines),
         notes=_NOTES,
     )
 
 
-def _line(way: Way, found: Evidence | None, fly: str) -> Line:
+def _line(way: Way, evidence: Evidence | None, fly: str) -> Line:
     label = "all of them (shared)" if way.path == SHARED else f"{way.path} alone"
     kind = _kind(way)
     places = ", ".join(dict.fromkeys(consumer for _, consumer in way.taps))
     further = ", ".join(way.passed_on) or MISSING
-    if found is None:
+    if evidence is None:
         return line(label, places, further, kind, NO_EVIDENCE, MISSING, fly)
-    said = f"{found.run}: {found.said}" if found.run else found.said
-    missed = f"not reached: {_by_channel(found.missed)}" if found.missed else ""
+    text = f"{evidence.run}: {evidence.said}" if evidence.run else evidence.said
+    missed = f"not reached: {_by_channel(evidence.missed)}" if evidence.missed else ""
     return line(
         label,
         places,
         further,
         kind,
-        Entry(text=said, aside="; ".join(filter(None, (found.fault, missed)))),
-        Entry(text=found.difference or MISSING, detected=found.detected),
-        fly if found.missed else MISSING,
+        Entry(text=text, aside="; ".join(filter(None, (evidence.fault, missed)))),
+        Entry(text=evidence.difference or MISSING, detected=evidence.detected),
+        fly if evidence.missed else MISSING,
     )
 
 

@@ -183,7 +183,7 @@ def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[s
     )
     panels: list[tuple[str, str]] = []
     for path in with_curve:
-        title, found = titles.get(path.path, path.path), path.result
+        title, result = titles.get(path.path, path.path), path.result
         words = f"{path.words or f'No {noun} is decided'}."
         svg = Svg(290, 248, f"{title}: expected success difference, share of {over}", words)
         svg.text(0, 14, title, "head", room=285)
@@ -195,18 +195,18 @@ def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[s
         lower = [(x(100 * p), y(low)) for p, _, low, _ in path.curve]
         svg.polygon([*upper, *reversed(lower)], "fan")
         sides = {1: "curve repair", -1: "curve baseline"}
-        pieces = [(low, high, "curve") for low, high in found.pieces if path.words]
-        pieces += [(r.low, r.high, sides[r.sign]) for r in found.regions if path.words]
+        pieces = [(low, high, "curve") for low, high in result.pieces if path.words]
+        pieces += [(r.low, r.high, sides[r.sign]) for r in result.regions if path.words]
         first, last = path.curve[0][1], path.curve[-1][1]
         for low, high, cls in pieces or [(0.0, 1.0, "curve")]:
             line = [(x(100 * p), y((1 - p) * first + p * last)) for p in (low, high)]
             svg.polyline(line, cls)
-        for low, high in found.pieces:
+        for low, high in result.pieces:
             svg.line((x(100 * low), y(0)), (x(100 * high), y(0)), "star-range")
-        if found.p_star is not None and found.regions:
-            at = wording.break_even(found)
+        if result.p_star is not None and result.regions:
+            at = wording.break_even(result)
             tip = f"no {noun} is decided" if at == "any" else f"not decided at {at} %"
-            svg.circle((x(100 * found.p_star), y(0)), 5, "star", tip)
+            svg.circle((x(100 * result.p_star), y(0)), 5, "star", tip)
         if y(0) - y.end > _ROOM:
             svg.text(x.start + 6, y.end + 12, "repair better", "small repair halo")
         if y.start - y(0) > _ROOM:

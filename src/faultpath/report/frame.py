@@ -1,4 +1,4 @@
-"""What every page is put into: one file that asks for nothing and runs nothing but our own scripts.
+"""Frame of every page: one file that loads nothing and runs nothing but our own scripts.
 
 The page states its own content-security policy. Styles and scripts are allowed by their digests,
 so that markup that a name might smuggle past the escapes neither runs nor loads anything: no other

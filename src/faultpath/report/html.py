@@ -23,27 +23,27 @@ _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
 
 def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
-    record, asked = source.record, source.record.question
+    record, question = source.record, source.record.question
     pairs = read_pairs(source.outcomes, record)
     viewer = viewer_data(source, pairs)
     titles = {path.name: path.title for path in record.paths}
     decided = any(effect.sign for effect in record.effects)
     why = adding(source, pairs) if decided else None
-    told = (ended(record), secondary(record), by_threshold(record))
+    tables = (ended(record), secondary(record), by_threshold(record))
     return render(
         "report.html.j2",
         _STYLES,
         ("viewer.js",),
         record=record,
-        asked=asked,
+        asked=question,
         provenance=source.provenance,
-        sources=source.provenance.data if asked.judged else {},
+        sources=source.provenance.data if question.judged else {},
         n_trials=len(source.outcomes.rows),
         paths=titles,
-        names=(asked.baseline, asked.repair),
+        names=(question.baseline, question.repair),
         plain=answers(record),
         finding=_finding(record),
-        changes=[(each.turn, change(record, each)) for each in record.changes],
+        changes=[(moved.turn, change(record, moved)) for moved in record.changes],
         adding=why,
         adding_panels=list(map(Markup, adding_panels(why))) if why else (),
         void=[pair for pair in pairs if pair.kind is Kind.VOID],
@@ -51,7 +51,7 @@ def report_page(source: ReportInput) -> str:
         effects=effect_rows(record),
         axis=effect_axis(record),
         numbers=Markup(html(by_path(record, SHOWN, "Effects; bold is significant"))),
-        fault="; ".join(each.aimed_at("*").describe() for each in asked.faults)
+        fault="; ".join(fault.aimed_at("*").describe() for fault in question.faults)
         or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.variants, strict=True)),
         forks=[Markup(fork_panel(fork)) for fork in forks(source)],
@@ -62,14 +62,14 @@ def report_page(source: ReportInput) -> str:
                 pair_grid(
                     title,
                     [pair for pair in pairs if pair.path == name],
-                    asked.ends,
+                    question.ends,
                     viewer.shown if viewer else (),
                 )
             )
             for name, title in titles.items()
         ],
         pair_key=[(Markup(sign), words) for sign, words in pair_key(pairs)],
-        outcomes=[(table.title, Markup(html(table))) for table in filter(None, told)],
+        outcomes=[(table.title, Markup(html(table))) for table in filter(None, tables)],
         viewer=viewer,
         w=wording,
     )
@@ -80,8 +80,8 @@ def write_report(source: ReportInput, folder: Path) -> list[Path]:
 
     `UserError` as `write_pages`.
     """
-    made = {"report.html": report_page(source), "table.md": markdown_table(source.record)}
-    return write_pages(made, folder)
+    pages = {"report.html": report_page(source), "table.md": markdown_table(source.record)}
+    return write_pages(pages, folder)
 
 
 def _finding(record: DecisionRecord) -> list[tuple[Effect, str]]:
@@ -90,7 +90,7 @@ def _finding(record: DecisionRecord) -> list[tuple[Effect, str]]:
     Of an interaction only the change is decided: an effect by itself may be a point estimate.
     """
     effects = {effect.path: effect for effect in record.effects}
-    for each in record.changes:
-        if each.turn == "reversal" and {each.isolated, each.shared} <= effects.keys():
-            return [(effects[p], wording.where(p)) for p in (each.isolated, each.shared)]
+    for moved in record.changes:
+        if moved.turn == "reversal" and {moved.isolated, moved.shared} <= effects.keys():
+            return [(effects[p], wording.where(p)) for p in (moved.isolated, moved.shared)]
     return []

@@ -1,4 +1,4 @@
-"""What a report is made from."""
+"""Inputs of a report."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -38,4 +38,4 @@ class ReportInput:
     plans: Mapping[str, FloorPlan]
     """By scene id; scenes without one are drawn without obstacles."""
     signals: Signals = field(default_factory=dict[TrialAddress, tuple[Signal, ...]])
-    """Of the trials of which signals were recorded."""
+    """Signals of the trials of which they were recorded."""

@@ -30,7 +30,7 @@ def tables(record: MapRecord) -> tuple[Table, ...]:
 
 
 def _paths(record: MapRecord) -> Table:
-    asked = record.question
+    question = record.question
     of = {point.errors: point for point in record.points}
     lines: list[Line] = []
     for size in sorted({x or y for x, y in of if x == y or not x or not y}):
@@ -42,36 +42,36 @@ def _paths(record: MapRecord) -> Table:
                 text = f"{wording.signed(point.difference)} {ends}"
                 entry = Entry(text=text, detected=point.sign != 0)
             entries.append(entry)
-        lines.append(line(asked.said(size), *entries))
+        lines.append(line(question.said(size), *entries))
     return Table(
         name="paths",
-        title=f"{asked.repair} minus {asked.baseline}, success, pp",
+        title=f"{question.repair} minus {question.baseline}, success, pp",
         corner="Error",
-        columns=(*(f"{name} alone" for name in asked.against), "shared"),
+        columns=(*(f"{name} alone" for name in question.against), "shared"),
         lines=tuple(lines),
         notes=(
-            f"{wording.counted(record.scenes, 'scene')} of {asked.library}, "
-            f"{wording.seeds(asked.seeds)}. Bold: decided. Intervals hold at all "
+            f"{wording.counted(record.scenes, 'scene')} of {question.library}, "
+            f"{wording.seeds(question.seeds)}. Bold: decided. Intervals hold at all "
             f"{len(record.points)} pairs of errors at once.",
         ),
     )
 
 
 def _flips(record: MapRecord) -> Table:
-    asked = record.question
-    ahead = {1: asked.repair, -1: asked.baseline}
+    question = record.question
+    ahead = {1: question.repair, -1: question.baseline}
     lines: list[Line] = []
     for flip in record.flips:
         kept, turned = MISSING, MISSING
         if flip.start and flip.until is not None:
-            kept = f"{ahead[flip.start]}, {asked.said(cut(flip.until, out=False))}"
+            kept = f"{ahead[flip.start]}, {question.said(cut(flip.until, out=False))}"
         if flip.turned and flip.first is not None and flip.last is not None:
-            turned = f"{ahead[flip.turned]}, {asked.said(cut(flip.first, out=True))}"
-            if abs(flip.last) < asked.up_to:
-                turned += f" to {asked.said(cut(flip.last, out=False))}"
+            turned = f"{ahead[flip.turned]}, {question.said(cut(flip.first, out=True))}"
+            if abs(flip.last) < question.up_to:
+                turned += f" to {question.said(cut(flip.last, out=False))}"
         path = SHARED if flip.path == SHARED else f"{flip.path} alone"
         direction = "above 0" if flip.direction > 0 else "below 0"
-        estimate = MISSING if flip.estimate is None else asked.said(flip.estimate)
+        estimate = MISSING if flip.estimate is None else question.said(flip.estimate)
         lines.append(line(path, direction, kept, estimate, turned))
     return Table(
         name="flips",
@@ -92,7 +92,7 @@ def shown(record: MapRecord) -> RenderableType:
     """Return the record for a terminal."""
     parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
     parts += map(Text, record.sentences)
-    parts += [Text(f"Found in the run: {each}", style="bold red") for each in record.findings]
+    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in record.findings]
     for table in tables(record):
         parts += [Text(""), drawn(table, one_line=True), *map(Text, table.notes)]
     return Group(*parts)
@@ -122,13 +122,13 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
 
 def write_map(record: MapRecord, provenance: RunProvenance, folder: Path) -> list[Path]:
     """Write `report.html`, `map.svg`, `correlation.svg` and `table.md`; return their paths."""
-    made = {
+    pages = {
         "report.html": page(record, provenance),
         "map.svg": map_picture(record).render(standalone=True) + "\n",
         "correlation.svg": correlation_picture(record).render(standalone=True) + "\n",
         "table.md": table_markdown(record),
     }
-    return write_pages(made, folder)
+    return write_pages(pages, folder)
 
 
 def table_markdown(record: MapRecord) -> str:

@@ -9,7 +9,7 @@ from faultpath.decisions.map.words import at_point
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, number, tick_label
 
 _SIDE = 340.0
-"""Of the square."""
+"""Side of the square, in pixels."""
 _LEFT, _RIGHT, _TOP = 40.0, 104.0, 168.0
 _SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
 """From which difference on, pp, an area has which opacity."""
@@ -18,11 +18,11 @@ _EQUAL = "0: both succeed equally often"
 
 def map_picture(record: MapRecord) -> Svg:
     """Return the map: who is decided to be ahead where, the estimate's zero, paths and points."""
-    asked, side = record.question, _SIDE
-    title = f"Reversal map of {asked.system}: {asked.repair} against {asked.baseline}"
+    question, side = record.question, _SIDE
+    title = f"Reversal map of {question.system}: {question.repair} against {question.baseline}"
     svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, title, record.headline)
-    x = Axis(-asked.up_to, asked.up_to, _LEFT, _LEFT + side)
-    y = Axis(-asked.up_to, asked.up_to, _TOP + side, _TOP)
+    x = Axis(-question.up_to, question.up_to, _LEFT, _LEFT + side)
+    y = Axis(-question.up_to, question.up_to, _TOP + side, _TOP)
     hatch = svg.hatch("baseline", "range baseline", 6)
     _key(svg, record, hatch)
     _areas(svg, record, x, y, hatch)
@@ -30,7 +30,7 @@ def map_picture(record: MapRecord) -> Svg:
         f"M{number(x.start)} {number(y.start)}H{number(x.end)}V{number(y.end)}H{number(x.start)}Z",
         "inner",
     )
-    first, second = asked.against
+    first, second = question.against
     svg.line((x(0.0), y.start), (x(0.0), y.end), "zero")
     svg.line((x.start, y(0.0)), (x.end, y(0.0)), "zero")
     svg.line((x.start, y.start), (x.end, y.end), "back")
@@ -44,16 +44,18 @@ def map_picture(record: MapRecord) -> Svg:
     svg.path(" ".join(_zero(record, x, y)), "range")
     for point in record.points:
         at = x(point.errors[0]), y(point.errors[1])
-        svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(asked, point))
+        svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(question, point))
     # What a relative error is asked as is a share, and read as percent.
-    reach, unit = (100 * asked.up_to, "%") if asked.relative else (asked.up_to, asked.unit)
+    reach, unit = (
+        (100 * question.up_to, "%") if question.relative else (question.up_to, question.unit)
+    )
     x, y = Axis(-reach, reach, x.start, x.end), Axis(-reach, reach, y.start, y.end)
     for tick in (-reach, -reach / 2, 0.0, reach / 2, reach):
         svg.line((x(tick), y.start), (x(tick), y.start + 4), "axis")
         svg.text(x(tick), y.start + 17, tick_label(tick), "small soft", "middle")
         svg.line((x.start - 4, y(tick)), (x.start, y(tick)), "axis")
         svg.text(x.start - 8, y(tick) + 4, tick_label(tick), "small soft", "end")
-    across, upward = (f"error at the {at}, {unit}".removesuffix(", 1") for at in asked.against)
+    across, upward = (f"error at the {at}, {unit}".removesuffix(", 1") for at in question.against)
     svg.text(x(0.0), y.start + 36, across, "small soft", "middle", room=svg.width)
     svg.text(0, y.end - 38, upward, "small soft", room=svg.width)
     return svg
@@ -98,11 +100,11 @@ def _zero(record: MapRecord, x: Axis, y: Axis) -> Iterator[str]:
 
 def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
     """Draw what is compared, the scale of what is decided, and what is not."""
-    asked, cell = record.question, 46.0
+    question, cell = record.question, 46.0
     end = 6 * cell
-    title = f"Success of {asked.repair} minus that of {asked.baseline}, pp"
+    title = f"Success of {question.repair} minus that of {question.baseline}, pp"
     svg.text(0, 13, title, "head", room=svg.width)
-    for name, left, anchor in ((asked.baseline, 0.0, "start"), (asked.repair, end, "end")):
+    for name, left, anchor in ((question.baseline, 0.0, "start"), (question.repair, end, "end")):
         svg.text(left, 32, f"{name} ahead", anchor=anchor, room=end / 2 - 6)
     shades = [shade for _, shade in _SHADES]
     for column, shade in enumerate((*shades, *reversed(shades))):
@@ -112,7 +114,7 @@ def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
         if column < len(shades):
             svg.path(piece, "", fill=hatch, fill_opacity="0.5")
     bounds = [least for least, _ in _SHADES]
-    for column, value in enumerate((*(-each for each in bounds), *reversed(bounds[:-1])), 1):
+    for column, value in enumerate((*(-bound for bound in bounds), *reversed(bounds[:-1])), 1):
         label = f"{value:+.0f}".replace("-", "−") if value else "0"
         svg.text(column * cell, 63, label, "small soft", "middle")
     svg.path("M0 74h22v11h-22Z", "inner")
@@ -127,14 +129,16 @@ def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
 
 def correlation_picture(record: MapRecord) -> Svg:
     """Return the expected difference over the correlation, in an arm's colour where decided."""
-    joint, asked = record.joint, record.question
-    told = "; ".join(f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.asked)
+    joint, question = record.joint, record.question
+    description = "; ".join(f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.asked)
     width = _LEFT + _SIDE + _RIGHT
-    svg = Svg(width, 286, f"Expected difference over the correlation, {asked.system}", told)
+    svg = Svg(
+        width, 286, f"Expected difference over the correlation, {question.system}", description
+    )
     x = Axis(-1.0, 1.0, 40, width - 10)
     vertical = covering([end for e in joint.curve for end in (e.low, e.high)], least=10.0)
     y = vertical.at(238, 44)
-    title = f"Expected success of {asked.repair} minus that of {asked.baseline}, pp"
+    title = f"Expected success of {question.repair} minus that of {question.baseline}, pp"
     svg.text(0, 13, title, "head", room=width)
     svg.text(0, 28, _EQUAL, "small soft")
     draw_axes(svg, x, y, 5, (-1.0, -0.5, 0.0, 0.5, 1.0))

@@ -12,7 +12,7 @@ from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
 
 
 class Kind(StrEnum):
-    """What a pair says."""
+    """Kind of a pair: how its two trials ended."""
 
     BOTH = "both"
     REPAIR_ONLY = "repair-only"
@@ -65,7 +65,7 @@ class Pair:
 
     @property
     def kind(self) -> Kind:
-        """What the pair says."""
+        """Kind of the pair."""
         if self.void_reason is not None or self.baseline is None or self.repair is None:
             return Kind.VOID
         if self.left_out:
@@ -83,12 +83,12 @@ class Pair:
 
 def read_pairs(outcomes: OutcomeTable, record: DecisionRecord) -> tuple[Pair, ...]:
     """Return every pair of the record's arms, ordered by path, topology, scene index and seed."""
-    asked, compared = record.question, {effect.path for effect in record.effects}
+    question, compared = record.question, {effect.path for effect in record.effects}
     named = [path.name for path in record.paths]
     trials: dict[tuple[str, str, int, str], Outcome] = {}
     places: dict[tuple[str, int, str], TrialRow] = {}
     for row in outcomes.rows:
-        if row.variant in (asked.baseline, asked.repair) and row.path in named:
+        if row.variant in (question.baseline, question.repair) and row.path in named:
             place = (row.path, row.seed, row.outcome.scene)
             trials[row.variant, *place] = row.outcome
             places.setdefault(place, row)
@@ -100,8 +100,8 @@ def read_pairs(outcomes: OutcomeTable, record: DecisionRecord) -> tuple[Pair, ..
             scene=row.outcome.scene,
             index=row.scene_index,
             topology=row.topology,
-            baseline=trials.get((asked.baseline, *place)),
-            repair=trials.get((asked.repair, *place)),
+            baseline=trials.get((question.baseline, *place)),
+            repair=trials.get((question.repair, *place)),
         )
         for place, row in places.items()
     ]
@@ -141,7 +141,7 @@ def pair_grid(
     in the viewer.
     """
     counts = {kind: sum(p.kind is kind for p in pairs) for kind in Kind}
-    told = ", ".join(f"{k.short} {n}" for k, n in counts.items() if n or k in _ALWAYS)
+    summary = ", ".join(f"{k.short} {n}" for k, n in counts.items() if n or k in _ALWAYS)
     ordered = sorted(pairs, key=lambda p: (p.topology, p.index, p.scene, p.seed))
     blocks = [
         (name, [list(stack) for _, stack in groupby(block, key=lambda p: (p.index, p.scene))])
@@ -154,10 +154,10 @@ def pair_grid(
     row_height = n_seeds * (side + 1) + (7 if n_seeds > 1 else 4)
     rows = sum(-(-len(stacks) // columns) for _, stacks in blocks)
     svg = Svg(
-        _WIDTH, 42 + rows * row_height + 4 * (len(blocks) - 1), f"{title}: pairs", told, "group"
+        _WIDTH, 42 + rows * row_height + 4 * (len(blocks) - 1), f"{title}: pairs", summary, "group"
     )
     svg.text(0, 14, title, "head", room=_WIDTH)
-    svg.text(0, 31, told, "small soft")
+    svg.text(0, 31, summary, "small soft")
     y = 42.0
     for name, stacks in blocks:
         svg.text(0, y + side / 2 + 4, name, "soft", room=left - 8)
@@ -173,13 +173,13 @@ def pair_grid(
 
 def pair_key(pairs: Sequence[Pair]) -> list[tuple[str, str]]:
     """Return the key of the grids: a small picture and its word, for each kind that occurs."""
-    found: list[tuple[str, str]] = []
+    entries: list[tuple[str, str]] = []
     for kind in (k for k in Kind if k in _ALWAYS or any(p.kind is k for p in pairs)):
         svg = Svg(_SIDE, _SIDE, WORDS[kind])
         svg.rect(0.5, 0.5, _SIDE - 1, _SIDE - 1, "void-cell" if kind is Kind.VOID else "cell", 2)
         _glyph(svg, kind, _SIDE / 2, _SIDE / 2)
-        found.append((svg.render(), kind.short))
-    return found
+        entries.append((svg.render(), kind.short))
+    return entries
 
 
 def address(pair: Pair) -> str:

@@ -6,7 +6,7 @@ from faultpath.decisions.tables import Table, line
 
 def tables(plan: Plan) -> tuple[Table, Table]:
     """Return the uncertain sources in order, and the proposed audits, which run both variants."""
-    ranks = [each.rank for each in plan.candidates]
+    ranks = [candidate.rank for candidate in plan.candidates]
     return (
         Table(
             title="Uncertain sources by rank",
@@ -15,11 +15,11 @@ def tables(plan: Plan) -> tuple[Table, Table]:
             words=("read by", "expected error"),
             lines=tuple(
                 line(
-                    f"{each.rank}{'=' * (ranks.count(each.rank) > 1)} {each.name}",
-                    "\n".join(each.consumers),
-                    each.fault or "none known",
+                    f"{candidate.rank}{'=' * (ranks.count(candidate.rank) > 1)} {candidate.name}",
+                    "\n".join(candidate.consumers),
+                    candidate.fault or "none known",
                 )
-                for each in plan.candidates
+                for candidate in plan.candidates
             ),
             notes=(
                 "Order: number of consumers, then the larger probe response, one that is not known "
@@ -33,15 +33,15 @@ def tables(plan: Plan) -> tuple[Table, Table]:
             words=("why", "arms"),
             lines=tuple(
                 line(
-                    each.fault,
-                    each.why,
+                    audit.fault,
+                    audit.why,
                     "\n".join(
                         arm.path if arm.role == arm.path else f"{arm.path}, {arm.role}"
-                        for arm in each.arms
+                        for arm in audit.arms
                     ),
                     str(trials),
                 )
-                for each, trials in zip(plan.study.audits, plan.trials, strict=True)
+                for audit, trials in zip(plan.study.audits, plan.trials, strict=True)
             ),
         ),
     )

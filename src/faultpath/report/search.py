@@ -19,30 +19,30 @@ from faultpath.report.tables import DIFFERENCE, by_path
 from faultpath.trials.provenance import RunProvenance
 
 _ROWS = 8
-"""Of the faults tried, those shown in a table."""
+"""Number of the faults tried that a table shows."""
 _EFFECTS = ("baseline", "repair", *DIFFERENCE, "holm", "scenes")
 
 
 def tables(record: SearchRecord) -> tuple[Table, ...]:
     """Return the faults tried that looked worst, and the effects of the one that was audited."""
-    asked, many = record.question, len(record.tried)
-    worst = sorted(record.tried, key=lambda each: -each.regret_pp)[:_ROWS]
+    question, many = record.question, len(record.tried)
+    worst = sorted(record.tried, key=lambda tried: -tried.regret_pp)[:_ROWS]
     tried = Table(
         name="tried",
-        title=f"Tried, {asked.repair} minus {asked.baseline}, success, pp: no evidence",
+        title=f"Tried, {question.repair} minus {question.baseline}, success, pp: no evidence",
         corner="Fault",
-        columns=(f"{asked.bounds.isolated} alone", "shared", "regret"),
+        columns=(f"{question.bounds.isolated} alone", "shared", "regret"),
         lines=tuple(
             line(
-                each.fault,
-                *map(wording.signed, (each.isolated_pp, each.shared_pp)),
-                wording.plain(each.regret_pp),
-                aside="chosen" if each.fault == record.best else "",
+                tried.fault,
+                *map(wording.signed, (tried.isolated_pp, tried.shared_pp)),
+                wording.plain(tried.regret_pp),
+                aside="chosen" if tried.fault == record.best else "",
             )
-            for each in worst
+            for tried in worst
         ),
         notes=(
-            f"{len(worst)} of {many} faults, in the {asked.finding} scenes that find. Regret is "
+            f"{len(worst)} of {many} faults, in the {question.finding} scenes that find. Regret is "
             "what the choice by the isolated fault loses under the shared one, as far as it would "
             "be made. The best of many looks better than it is: only the confirming audit decides.",
         ),
@@ -55,7 +55,7 @@ def tables(record: SearchRecord) -> tuple[Table, ...]:
 def picture(record: SearchRecord) -> Svg:
     """Return the faults tried: the difference with the isolated module alone across, that with the
     fault shared upward. In the shaded corners the two disagree."""
-    asked, side, left, top = record.question, 320.0, 46.0, 46.0
+    question, side, left, top = record.question, 320.0, 46.0, 46.0
     svg = Svg(
         left + side + 20, top + side + 48, "Faults tried in the scenes that find", "No evidence."
     )
@@ -70,12 +70,13 @@ def picture(record: SearchRecord) -> Svg:
         svg.line((x.start, y(tick)), (x.end, y(tick)), cls)
         svg.text(x(tick), y.start + 16, tick_label(tick), "small soft", "middle")
         svg.text(x.start - 8, y(tick) + 4, tick_label(tick), "small soft", "end")
-    below = f"only the {asked.bounds.isolated} faulted, {asked.repair} minus {asked.baseline}, pp"
+    difference = f"{question.repair} minus {question.baseline}, pp"
+    below = f"only the {question.bounds.isolated} faulted, {difference}"
     svg.text(x(0.0), y.start + 36, below, "small soft", "middle", room=svg.width)
-    for each in record.tried:
-        at, chosen = (x(each.isolated_pp), y(each.shared_pp)), each.fault == record.best
-        values = ", ".join(map(wording.signed, (each.isolated_pp, each.shared_pp)))
-        tip = f"{each.fault}: {values} pp{', chosen' if chosen else ''}"
+    for tried in record.tried:
+        at, chosen = (x(tried.isolated_pp), y(tried.shared_pp)), tried.fault == record.best
+        values = ", ".join(map(wording.signed, (tried.isolated_pp, tried.shared_pp)))
+        tip = f"{tried.fault}: {values} pp{', chosen' if chosen else ''}"
         if chosen:
             svg.circle(at, 8.0, "star", tip=tip)
         svg.circle(at, 3.5, "dot open", tip=tip)
@@ -86,7 +87,7 @@ def shown(record: SearchRecord) -> RenderableType:
     """Return the record for a terminal."""
     parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
     parts += map(Text, record.sentences)
-    parts += [Text(f"Found in the run: {each}", style="bold red") for each in record.findings]
+    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in record.findings]
     for table in tables(record):
         parts += [Text(""), Parted(table), *map(Text, table.notes)]
     return Group(*parts)
@@ -110,9 +111,9 @@ def write_search(record: SearchRecord, provenance: RunProvenance, folder: Path) 
         numbers=Markup(html(effects[0])) if effects else "",
         w=wording,
     )
-    made = {
+    pages = {
         "report.html": page,
         "tried.svg": picture(record).render(standalone=True) + "\n",
         "table.md": "\n\n".join(map(block, tables(record))) + "\n",
     }
-    return write_pages(made, folder)
+    return write_pages(pages, folder)

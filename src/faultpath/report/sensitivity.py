@@ -22,11 +22,11 @@ _PITCH, _TOP, _LEFT, _WIDTH = 34.0, 40.0, 150.0, 560.0
 
 def table(record: SensitivityRecord) -> Table:
     """Return both indices of each group, percent of the variance; bold intervals leave out 0."""
-    asked = record.question
-    of = {each.group: each for each in record.indices}
+    question = record.question
+    of = {index.group: index for index in record.indices}
     return Table(
         name="sensitivity",
-        title=f"Share of the variance of {asked.said}, %; bold leaves out 0",
+        title=f"Share of the variance of {question.said}, %; bold leaves out 0",
         corner="Source",
         columns=("Error", "Alone (first-order)", "With others (total)"),
         words=("Error",),
@@ -40,26 +40,26 @@ def table(record: SensitivityRecord) -> Table:
                     else (MISSING, MISSING)
                 ),
             )
-            for group in asked.groups
+            for group in question.groups
         ),
         notes=(
-            f"{wording.counted(record.scenes, 'scene')} of {asked.library}, "
-            f"{wording.seeds(asked.seeds)}, {asked.points} points. Alone: what would go on average "
-            "if the source were known exactly. With others: what would stay if all others were. "
-            "Estimates may lie outside 0 to 100.",
+            f"{wording.counted(record.scenes, 'scene')} of {question.library}, "
+            f"{wording.seeds(question.seeds)}, {question.points} points. Alone: what would go on "
+            "average if the source were known exactly. With others: what would stay if all others "
+            "were. Estimates may lie outside 0 to 100.",
         ),
     )
 
 
 def error(group: Uncertain) -> str:
     """Return how large the errors of a group are, each size once."""
-    said: dict[str, None] = {}
+    errors: dict[str, None] = {}
     for part in group.parts:
         half = part.error.half_range
         size = part.error.expected_std if half is None else half
         shown = f"{100 * size:.4g} %" if part.error.relative else f"{size:.4g}"
-        said[f"±{shown}" if half is not None else f"std {shown}"] = None
-    return ", ".join(said)
+        errors[f"±{shown}" if half is not None else f"std {shown}"] = None
+    return ", ".join(errors)
 
 
 def _entry(index: Index) -> Entry:
@@ -79,10 +79,10 @@ def picture(record: SensitivityRecord) -> Svg:
         svg.line((x(tick), _TOP - 8), (x(tick), bottom), "zero" if tick == 0 else "axis")
         svg.text(x(tick), bottom + 16, tick_label(tick), "small soft", "middle")
     svg.text(x(50.0), bottom + 34, "filled: alone; open: with others, %", "small soft", "middle")
-    for row, each in enumerate(rows):
+    for row, share in enumerate(rows):
         y = _TOP + _PITCH * row
-        svg.text(0, y + 14, each.group, "bold" if each.first.counts else "", room=_LEFT - 10)
-        for index, at, dot in ((each.first, y + 5, "dot"), (each.total, y + 17, "dot open")):
+        svg.text(0, y + 14, share.group, "bold" if share.first.counts else "", room=_LEFT - 10)
+        for index, at, dot in ((share.first, y + 5, "dot"), (share.total, y + 17, "dot open")):
             svg.line((x(100 * index.low), at), (x(100 * index.high), at), "range")
             svg.circle((x(100 * index.value), at), 4.0, dot, _entry(index).text)
     return svg
@@ -90,11 +90,11 @@ def picture(record: SensitivityRecord) -> Svg:
 
 def shown(record: SensitivityRecord) -> RenderableType:
     """Return the record for a terminal."""
-    made = table(record)
+    shares = table(record)
     parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
     parts += map(Text, record.sentences)
-    parts += [Text(f"Found in the run: {each}", style="bold red") for each in record.findings]
-    return Group(*parts, Text(""), Parted(made), *map(Text, made.notes))
+    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in record.findings]
+    return Group(*parts, Text(""), Parted(shares), *map(Text, shares.notes))
 
 
 def write_sensitivity(
@@ -102,7 +102,7 @@ def write_sensitivity(
 ) -> list[Path]:
     """Write `report.html`, `sensitivity.svg`, `sensitivity.csv` and `table.md`; return their
     paths."""
-    made = table(record)
+    shares = table(record)
     page = render(
         "sensitivity.html.j2",
         ("tokens.css", "svg.css", "page.css"),
@@ -111,14 +111,14 @@ def write_sensitivity(
         asked=record.question,
         provenance=provenance,
         picture=Markup(picture(record).render()) if record.indices else "",
-        table=Markup(html(made)),
-        notes=made.notes,
+        table=Markup(html(shares)),
+        notes=shares.notes,
         w=wording,
     )
     files = {
         "report.html": page,
         "sensitivity.svg": picture(record).render(standalone=True) + "\n",
-        "sensitivity.csv": csv_text(made),
-        "table.md": block(made) + "\n",
+        "sensitivity.csv": csv_text(shares),
+        "table.md": block(shares) + "\n",
     }
     return write_pages(files, folder)

@@ -19,7 +19,7 @@ _DIGITS = dict.fromkeys("0123456789", 640)  # they have one width, and a wide on
 _WIDE = dict.fromkeys("mwMW%@→−+=<>", 880) | dict.fromkeys("ABCDEFGHKNOPQRSTUVXYZ&", 720)
 _ADVANCE = _NARROW | _DIGITS | _WIDE
 _SIZES = {"small": 11.0, "head": 13.0}
-"""Of text by its class, in pixels, as `svg.css` has them; 12 otherwise."""
+"""Sizes of text by its class, in pixels, as `svg.css` has them; 12 otherwise."""
 
 
 def text_width(text: str, size: float) -> float:
@@ -216,7 +216,7 @@ class Axis:
 
 def covering(values: Iterable[float], margin: float = 0.06, least: float = 1.0) -> Axis:
     """Return an axis from 0 to 1 pixel that covers 0 and every value, with a margin."""
-    inside = [0.0, *(max(-1e300, min(each, 1e300)) for each in values)]  # sums of them are finite
+    inside = [0.0, *(max(-1e300, min(value, 1e300)) for value in values)]  # sums of them are finite
     low, high = min(inside), max(inside)
     if high - low < least:
         middle = 0.5 * (low + high)

@@ -25,7 +25,7 @@ _BETA = (
 
 def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str]:
     """Return all that a record says of a path, by the name of the quantity."""
-    found = {b.path: wording.break_even(b.result) for b in record.break_even}
+    break_evens = {b.path: wording.break_even(b.result) for b in record.break_even}
     betas = {b.path: wording.break_even(b.result) for b in record.break_even_beta}
     beside = effect.mcnemar_p_value
     return {
@@ -45,18 +45,18 @@ def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str
         "power": wording.detectable(effect),
         "scenes": str(effect.scenes),
         "void": Entry(text=str(effect.void_pairs), tone="bad" if effect.void_pairs else ""),
-        "break-even": found.get(effect.path, MISSING),
+        "break-even": break_evens.get(effect.path, MISSING),
         "beta": betas.get(effect.path, MISSING),
     }
 
 
 def _labels(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
     """Return the quantities of `names` that the record has, each with its label."""
-    effects, asked = record.effects, record.question
+    effects, question = record.effects, record.question
     levels = {f"{100 * effect.success.level:g} % interval" for effect in effects}
     labels = {
-        "baseline": asked.baseline,
-        "repair": asked.repair,
+        "baseline": question.baseline,
+        "repair": question.repair,
         "difference": "Difference, pp",
         "interval": levels.pop() if len(levels) == 1 else "Interval",
         "won": "Won:lost",
@@ -123,15 +123,15 @@ def by_quantity(
 
 def whole_table(record: DecisionRecord) -> Table:
     """Return every quantity of every path, with the question as title: the table of a paper."""
-    asked = record.question
-    arms, seeds = f"{asked.repair} against {asked.baseline}", wording.seeds(asked.seeds)
+    question = record.question
+    arms, seeds = f"{question.repair} against {question.baseline}", wording.seeds(question.seeds)
     title = (
-        f"{arms} on {asked.system}, fault {asked.fault}: {record.scenes_run} scenes of "
-        f"{asked.library}, {seeds}"
+        f"{arms} on {question.system}, fault {question.fault}: {record.scenes_run} scenes of "
+        f"{question.library}, {seeds}"
     )
-    if asked.judged:
-        under = f", {asked.fault}" if asked.fault else ""
-        title = f"{arms}{under}: {record.scenes_run} {asked.judged.unit}s, {seeds}"
+    if question.judged:
+        under = f", {question.fault}" if question.fault else ""
+        title = f"{arms}{under}: {record.scenes_run} {question.judged.unit}s, {seeds}"
     corrected = f"Holm's correction is for {record.hypotheses} contrasts."
     if (sets := len(record.break_even + record.break_even_beta)) > 1:
         corrected += f" Of {sets} break-even sets each is wrong in at most 5 % of audits, one or "
@@ -142,14 +142,14 @@ def whole_table(record: DecisionRecord) -> Table:
             f"The audit was sequential: intervals and p-values hold at whatever scene it stopped. "
             f"{wording.counted(record.hypotheses, 'contrast')} share the error rate{others}."
         )
-    tests = f"Tests: {asked.tests}. " if asked.tests else ""
+    tests = f"Tests: {question.tests}. " if question.tests else ""
     notes = (
-        f"Difference: success of {asked.repair} minus success of {asked.baseline}. Won:lost: "
-        f"scenes in which only {asked.repair} or only {asked.baseline} succeeds. Void pairs count "
-        "for neither side. Break-even: the fault frequencies at which neither is decided to be "
-        "ahead, with the estimate in front; any: none is decided from which on one of them is."
+        f"Difference: success of {question.repair} minus success of {question.baseline}. Won:lost: "
+        f"scenes in which only {question.repair} or only {question.baseline} succeeds. Void pairs "
+        "count for neither side. Break-even: the fault frequencies at which neither is decided to "
+        "be ahead, with the estimate in front; any: none is decided from which on one of them is."
         + (_BETA if record.break_even_beta else ""),
-        f"Primary contrast: {asked.primary}. {tests}{corrected} Intervals and tests speak of "
+        f"Primary contrast: {question.primary}. {tests}{corrected} Intervals and tests speak of "
         f"{record.estimand}.",
         *not_standing(record),
         record.headline,
@@ -168,14 +168,14 @@ def markdown_table(record: DecisionRecord) -> str:
 
 def ended(record: DecisionRecord) -> Table:
     """Return how the trials of both arms ended on each path."""
-    asked = record.question
+    question = record.question
     statuses = ("success", "crash", "timeout", "failed")
     cells = {(cell.path, cell.variant): cell for cell in record.cells}
     shown = [s for s in statuses if any(getattr(cell, s) for cell in record.cells)]
     lines: list[Line] = []
     for path in record.paths:
         lines.append(line(path.title))
-        for role, name in zip(_ARMS, (asked.baseline, asked.repair), strict=True):
+        for role, name in zip(_ARMS, (question.baseline, question.repair), strict=True):
             if (cell := cells.get((path.name, name))) is not None:
                 time = cell.median_time_s
                 counts = (str(getattr(cell, status)) for status in shown)
@@ -184,16 +184,16 @@ def ended(record: DecisionRecord) -> Table:
     return Table(
         title="How trials ended",
         corner="Arm",
-        columns=(*(asked.ends.get(s, s) for s in shown), "median time of successes, s"),
+        columns=(*(question.ends.get(s, s) for s in shown), "median time of successes, s"),
         lines=tuple(lines),
     )
 
 
 def secondary(record: DecisionRecord) -> Table | None:
     """Return time and metrics, repair minus baseline, path by path; `None` without any."""
-    asked = record.question
+    question = record.question
     shown = {"time on joint successes (s)": [effect.time_s for effect in record.effects]}
-    for name, metric in asked.metrics.items():
+    for name, metric in question.metrics.items():
         label = f"{metric.said(name)} ({metric.unit})"
         shown[label] = [effect.metrics.get(name) for effect in record.effects]
 
@@ -204,7 +204,7 @@ def secondary(record: DecisionRecord) -> Table | None:
     if not lines:
         return None
     return Table(
-        title=f"Secondary, nothing is decided: {asked.repair} minus {asked.baseline}",
+        title=f"Secondary, nothing is decided: {question.repair} minus {question.baseline}",
         corner="Metric",
         columns=_titles(record),
         lines=tuple(lines),
@@ -216,22 +216,22 @@ def by_threshold(record: DecisionRecord) -> Table | None:
 
     A trial succeeds at a threshold if it did not crash and its metric is on the better side.
     """
-    asked = record.question
-    if not asked.metric:
+    question = record.question
+    if not question.metric:
         return None
-    metric = asked.metrics[asked.metric]
-    said = metric.said(asked.metric)
+    metric = question.metrics[question.metric]
+    label = metric.said(question.metric)
     sign = "≤" if metric.better == "less" else "≥"
     means: list[str] = []
     for effect in record.effects:
-        found = effect.metrics.get(asked.metric)
-        if found is None or effect.metric_means is None:
+        difference = effect.metrics.get(question.metric)
+        if difference is None or effect.metric_means is None:
             means.append(MISSING)
             continue
         one, two = effect.metric_means
-        means.append(f"{one:.3g} → {two:.3g}, {wording.with_interval(found, 3)}")
-    lines = [line(f"{said} ({metric.unit})", *means)]
-    for number, at in enumerate(asked.thresholds):
+        means.append(f"{one:.3g} → {two:.3g}, {wording.with_interval(difference, 3)}")
+    lines = [line(f"{label} ({metric.unit})", *means)]
+    for number, at in enumerate(question.thresholds):
         rates: list[str] = []
         for effect in record.effects:
             if len(effect.thresholds) <= number:
@@ -240,10 +240,10 @@ def by_threshold(record: DecisionRecord) -> Table | None:
             there = effect.thresholds[number]
             one, two = map(wording.plain, (there.baseline_percent, there.repair_percent))
             rates.append(f"{one} → {two}, {wording.with_interval(there.difference)}")
-        lines.append(line(f"success if {said} {sign} {at:g} {metric.unit}, %", *rates))
+        lines.append(line(f"success if {label} {sign} {at:g} {metric.unit}, %", *rates))
     return Table(
-        title=f"Secondary, nothing is decided: {asked.baseline} → {asked.repair}, difference",
-        corner=f"{said}: {metric.better} is better",
+        title=f"Secondary, nothing is decided: {question.baseline} → {question.repair}, difference",
+        corner=f"{label}: {metric.better} is better",
         columns=_titles(record),
         lines=tuple(lines),
     )

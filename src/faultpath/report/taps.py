@@ -29,7 +29,7 @@ class Reader:
     taps: frozenset[Tap]
     """At which its variant reads it; empty where it does not."""
     faulted: frozenset[Tap]
-    """Of these, where receipts show the fault in force."""
+    """Those of the taps where receipts show the fault in force."""
     changed: bool
     """Whether the fault changed a reading at one of them."""
 
@@ -63,11 +63,11 @@ class Fork:
 
 def forks(source: ReportInput) -> tuple[Fork, ...]:
     """Return every path of the fault, isolated ones first; none where no tap is known."""
-    record, asked = source.record, source.record.question
+    record, question = source.record, source.record.question
     faulted = (
         tap.channel for path in record.paths for tap in (*path.faulted, *path.baseline_faulted)
     )
-    names = tuple(dict.fromkeys([fault.channel for fault in asked.faults] or faulted))
+    names = tuple(dict.fromkeys([fault.channel for fault in question.faults] or faulted))
     reads = [
         frozenset(
             (name, consumer)
@@ -79,15 +79,15 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
     ]
     every = frozenset[Tap]().union(*reads)
     modules = sorted({module_of(consumer) for _, consumer in every})
-    found: list[Fork] = []
+    branches: list[Fork] = []
     for path in record.paths if every else ():
         if path.name == CORRECT:
             continue
         arms: list[tuple[str, str, tuple[Reader, ...]]] = []
         untouched = every
         for role, name, taps, read in (
-            ("baseline", asked.baseline, path.baseline_faulted, reads[0]),
-            ("repair", asked.repair, path.faulted, reads[1]),
+            ("baseline", question.baseline, path.baseline_faulted, reads[0]),
+            ("repair", question.repair, path.faulted, reads[1]),
         ):
             hit = frozenset((tap.channel, tap.consumer) for tap in taps)
             untouched -= hit
@@ -98,20 +98,20 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
                 changed = any(t.altered_steps for t in taps if module_of(t.consumer) == module)
                 readers.append(Reader(module, here, here & hit, changed))
             arms.append((role, name, tuple(readers)))
-        found.append(Fork(path.title, names, not untouched, tuple(arms)))
-    return tuple(found)
+        branches.append(Fork(path.title, names, not untouched, tuple(arms)))
+    return tuple(branches)
 
 
 def fork_panel(fork: Fork) -> str:
     """Return the picture of a path."""
-    told = " ".join(
+    description = " ".join(
         f"{role.capitalize()} {name}: "
         + series([f"{_named(reader.module)} {reader.state}" for reader in readers])
         + "."
         for role, name, readers in fork.arms
     )
     bottom = _MODULES + _PITCH * len(fork.arms[0][2])
-    svg = Svg(_WIDTH, bottom, f"{fork.title}: who gets the fault", told)
+    svg = Svg(_WIDTH, bottom, f"{fork.title}: who gets the fault", description)
     svg.text(0, 14, fork.title, "head", room=_WIDTH)
     names = ", ".join(map(_named, fork.channels))
     wrong = " wrong" if fork.everywhere else ""

@@ -1,4 +1,4 @@
-"""What the command line prints of a decision record, of an interface and of a trace."""
+"""Terminal output for a decision record, an interface and a trace."""
 
 from rich.console import Group, RenderableType
 from rich.padding import Padding
@@ -21,11 +21,11 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
 
     `details` adds every sentence of the record, and what would change it.
     """
-    asked = record.question
+    question = record.question
     void = any(effect.void_pairs for effect in record.effects)
     names = [name for name in _EFFECTS if void or name != "void"]
     success = by_quantity(record, ("baseline", "repair"))
-    effects = by_path(record, names, f"{asked.repair} minus {asked.baseline}")
+    effects = by_path(record, names, f"{question.repair} minus {question.baseline}")
     parts: list[RenderableType] = [Text(record.headline, style="bold")]
     if record.stopping:
         parts += [Text(f"A sequential audit: {record.stopping}.")]
@@ -33,11 +33,11 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     if any(share.result.kind in ("interval", "two pieces") for share in record.break_even):
         explained = "Break-even: the share of trials with the fault at which neither is ahead."
         parts += [Text(explained, style="dim")]
-    for said in not_standing(record):
-        parts += [Text(""), Text(said)]
-    told = by_threshold(record)
-    if told is not None:
-        parts += [Text(""), drawn(told)]
+    for sentence in not_standing(record):
+        parts += [Text(""), Text(sentence)]
+    table = by_threshold(record)
+    if table is not None:
+        parts += [Text(""), drawn(table)]
     parts += _list("Found in the run", record.findings, "bold red")
     if details:
         if any(effect.mcnemar_p_value is not None for effect in record.effects):
@@ -63,8 +63,8 @@ def interface_table(interface: Interface) -> RenderableType:
         reached = set(transitive_consumers(interface, channel.name)) - set(channel.consumers)
         consumers = (*channel.consumers, *(f"reaches {name}" for name in sorted(reached)))
         gap = "no" if channel.gap is Gap.NONE else channel.gap.value
-        said = ("\n".join(sources), "\n".join(consumers))
-        lines.append(line(channel.name, *said, aside=f"{gap} gap"))
+        entries = ("\n".join(sources), "\n".join(consumers))
+        lines.append(line(channel.name, *entries, aside=f"{gap} gap"))
     columns = ("fed by", "read by")
     table = Table(
         title=f"Information interface of {interface.name}",
@@ -73,8 +73,10 @@ def interface_table(interface: Interface) -> RenderableType:
         words=columns,
         lines=tuple(lines),
     )
-    made = [Text(f"{module} reconstructs {name}.") for module, name in interface.reconstructions]
-    return Group(drawn(table), *made)
+    reconstructions = [
+        Text(f"{module} reconstructs {name}.") for module, name in interface.reconstructions
+    ]
+    return Group(drawn(table), *reconstructions)
 
 
 def trace_table(trace: TraceReport) -> Table:

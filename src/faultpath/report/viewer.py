@@ -34,7 +34,7 @@ _LIFTED = 10**9
 
 @dataclass(frozen=True)
 class Viewer:
-    """What a page needs of the viewer beside its script."""
+    """Parts of the viewer that a page needs beside its script."""
 
     space: str
     """`space`: trials are drawn from above; `picture`: as the system renders them; `line`: their
@@ -50,13 +50,13 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
 
     Left out are scenes without any track and, where no trial has one, those without signals.
     """
-    asked, plans, positions = source.record.question, source.plans, source.traces.positions
+    question, plans, positions = source.record.question, source.plans, source.traces.positions
     tracked = {(at.scene, at.seed) for at, track in positions.items() if len(track)}
     flat = not any(plan.prisms or plan.pillars for plan in plans.values()) and all(
         not track[:, 1:].any() for track in positions.values()
     )
     space = "line" if tracked and flat else "space" if tracked else "none"
-    if flat and any(each.name == DRAWN for named in source.signals.values() for each in named):
+    if flat and any(signal.name == DRAWN for named in source.signals.values() for signal in named):
         space = "picture"
     recorded = {(at.scene, at.seed) for at in source.signals}
     playable = tracked or recorded
@@ -75,7 +75,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
         if trial is None:
             return None
         address = TrialAddress(variant, pair.path, pair.seed, pair.scene)
-        named = {each.name: each for each in signals.get(address, ())}
+        named = {signal.name: signal for signal in signals.get(address, ())}
         place, track = None, positions.get(address, np.empty((0, 3), np.float32))
         if len(track):
             place = len(series)
@@ -91,7 +91,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
             faulted = edges.reshape(-1, 2).tolist()
         return {
             "status": trial.status.value,
-            "ended": wording.ended(asked, trial.status),
+            "ended": wording.ended(question, trial.status),
             "time_s": trial.time_s,
             "track": place,
             "drawn": picture,
@@ -103,7 +103,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     first = groups[next(iter(order))]
     signs = {effect.path: effect.sign for effect in source.record.effects if effect.leads}
     apart = [path for path, pair in first.items() if pair.sign and signs.get(path) == pair.sign]
-    primary = asked.primary or SHARED
+    primary = question.primary or SHARED
     drawn = {scene: asdict(plans[scene]) for scene, _ in groups if scene in plans}
     for prism in (prism for plan in drawn.values() for prism in plan["prisms"]):
         prism["corners"] = [[round(v, 3) for v in corner] for corner in prism["corners"]]
@@ -134,8 +134,8 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
                         "path": pair.path,
                         "kind": pair.kind.value,
                         "void": pair.void_reason,
-                        "baseline": packed(asked.baseline, pair, pair.baseline),
-                        "repair": packed(asked.repair, pair, pair.repair),
+                        "baseline": packed(question.baseline, pair, pair.baseline),
+                        "repair": packed(question.repair, pair, pair.repair),
                     }
                     for pair in group.values()
                 ],
@@ -147,8 +147,8 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
 
 
 def _centimetres(metres: NDArray[np.float32]) -> NDArray[np.int32]:
-    held = 100.0 * np.clip(metres.astype(np.float64), -_FARTHEST_M, _FARTHEST_M)
-    return np.where(np.isfinite(held), np.rint(held), _LIFTED).astype(np.int32)
+    centimetres = 100.0 * np.clip(metres.astype(np.float64), -_FARTHEST_M, _FARTHEST_M)
+    return np.where(np.isfinite(centimetres), np.rint(centimetres), _LIFTED).astype(np.int32)
 
 
 def pack(content: Mapping[str, Any], series: Sequence[NDArray[np.int32]]) -> str:
@@ -156,7 +156,7 @@ def pack(content: Mapping[str, Any], series: Sequence[NDArray[np.int32]]) -> str
 
     Series are kept as second differences, which are near zero along a track.
     """
-    steps = [np.diff(each.astype(np.int64), 2, prepend=(0, 0)).tolist() for each in series]
+    steps = [np.diff(values.astype(np.int64), 2, prepend=(0, 0)).tolist() for values in series]
     whole = {**content, "series": steps}
     text = json.dumps(whole, separators=(",", ":"), allow_nan=False)
     return b64encode(zlib.compress(text.encode(), 9)).decode()
@@ -166,16 +166,16 @@ def _with_positions(
     signals: Signals, positions: Mapping[TrialAddress, NDArray[np.float32]]
 ) -> Signals:
     """Return the signals with the position before them, and nothing that only repeats it."""
-    found: dict[TrialAddress, tuple[Signal, ...]] = {}
+    by_trial: dict[TrialAddress, tuple[Signal, ...]] = {}
     for at, track in positions.items():
         axis = track[:, :1]
         others = (
-            each
-            for each in signals.get(at, ())
-            if not np.array_equal(each.values, axis[: len(each.values)])
+            signal
+            for signal in signals.get(at, ())
+            if not np.array_equal(signal.values, axis[: len(signal.values)])
         )
-        found[at] = (Signal("position", "position", "m", axis), *others)
-    return found
+        by_trial[at] = (Signal("position", "position", "m", axis), *others)
+    return by_trial
 
 
 _Line: TypeAlias = tuple[str, int]
@@ -209,17 +209,17 @@ def _plots(signals: Signals) -> list[_Plot]:
     topics: dict[tuple[str, str, int], dict[_Line, _Trials]] = {}
     words: dict[tuple[str, str], tuple[str, ...]] = {}
     for address, named in signals.items():
-        for each in named:
-            many_unnamed = each.values.shape[1] > _MOST_COMPONENTS and not each.parts
-            if each.name in (IN_FORCE, DRAWN) or many_unnamed:
+        for signal in named:
+            many_unnamed = signal.values.shape[1] > _MOST_COMPONENTS and not signal.parts
+            if signal.name in (IN_FORCE, DRAWN) or many_unnamed:
                 continue
-            if each.parts:
-                words[each.topic, each.unit] = each.parts
-            for part, values in enumerate(each.values.T):
-                lines = topics.setdefault((each.topic, each.unit, part), {})
-                lines.setdefault((each.name, part), {})[address] = values
+            if signal.parts:
+                words[signal.topic, signal.unit] = signal.parts
+            for part, values in enumerate(signal.values.T):
+                lines = topics.setdefault((signal.topic, signal.unit, part), {})
+                lines.setdefault((signal.name, part), {})[address] = values
     many = {(topic, unit): part + 1 for topic, unit, part in topics}
-    made: list[_Plot] = []
+    plots: list[_Plot] = []
     for (topic, unit, part), lines in topics.items():
         for at in {at for trials in lines.values() for at in trials}:
             values = np.concatenate([trials[at] for trials in lines.values() if at in trials])
@@ -237,8 +237,8 @@ def _plots(signals: Signals) -> list[_Plot]:
             twin = next((other for other in same if _alike(trials, lines[other])), line)
             same.setdefault(twin, []).append(line[0])
         named = tuple((line, ", ".join(names)) for line, names in same.items())
-        made.append(_Plot(title, unit, named))
-    return sorted(made, key=lambda plot: (not plot.of_errors, len(plot.lines) < 2))
+        plots.append(_Plot(title, unit, named))
+    return sorted(plots, key=lambda plot: (not plot.of_errors, len(plot.lines) < 2))
 
 
 def _alike(one: _Trials, other: _Trials) -> bool:
@@ -253,7 +253,7 @@ def _levels(
     named: Mapping[str, Signal], plots: Sequence[_Plot], series: list[NDArray[np.int32]]
 ) -> list[list[float | int]]:
     """Return a trial's lines as `[plot, line, place in series, lowest value, value of a level]`."""
-    found: list[list[float | int]] = []
+    levels: list[list[float | int]] = []
     for number, plot in enumerate(plots):
         for place, ((name, part), _) in enumerate(plot.lines):
             if name not in named:
@@ -265,6 +265,6 @@ def _levels(
             low = float(finite.min())
             level = float(finite.max() - low) / _LEVELS or 1.0
             whole = np.where(np.isfinite(values), np.rint((values - low) / level), _GAP)
-            found.append([number, place, len(series), float(f"{low:.7g}"), float(f"{level:.7g}")])
+            levels.append([number, place, len(series), float(f"{low:.7g}"), float(f"{level:.7g}")])
             series.append(whole.astype(np.int32))
-    return found
+    return levels

@@ -42,7 +42,7 @@ def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
     chosen: list[At] = []
     for only_new_patterns in (True, False):
         for at in ranked:
-            seen = only_new_patterns and patterns[at] in (patterns[each] for each in chosen)
+            seen = only_new_patterns and patterns[at] in (patterns[other] for other in chosen)
             shown = at[0] in (scene for scene, _ in chosen)
             if len(chosen) < _MOST and not shown and not seen:
                 chosen.append(at)
@@ -52,7 +52,9 @@ def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
 def captions(pairs: Sequence[Pair]) -> dict[At, str]:
     """Say of each scene and seed in how many the same arms succeed on every path."""
     patterns = _patterns(pairs)
-    scenes, seeds = (len(set(each)) for each in zip(*patterns, strict=True)) if patterns else (0, 0)
+    scenes, seeds = (
+        (len(set(values)) for values in zip(*patterns, strict=True)) if patterns else (0, 0)
+    )
     of = f"{scenes} scenes" if seeds < 2 else f"{len(patterns)} ({scenes} scenes, {seeds} seeds)"
     like = Counter(patterns.values())
     return {

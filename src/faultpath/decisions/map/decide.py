@@ -34,39 +34,39 @@ def conclude(
 
     `UserError` where a point has no pair left.
     """
-    found, unlike = plan.differences(sorted(points), table)
-    return decided(plan.question, found, len(table.failed()), (*unlike, *findings))
+    differences, unlike = plan.differences(sorted(points), table)
+    return decided(plan.question, differences, len(table.failed()), (*unlike, *findings))
 
 
 def decided(
-    question: MapQuestion, found: Differences, failed: int = 0, findings: Sequence[str] = ()
+    question: MapQuestion, differences: Differences, failed: int = 0, findings: Sequence[str] = ()
 ) -> MapRecord:
     """Return the record of differences, which may be simulated ones."""
     ways = rays(question.against)
-    looks = {key: _ray_weights(found, way) for key, way in ways.items()}
-    points, between = np.eye(len(found.points)), surface_weights(found.points)
+    looks = {key: _ray_weights(differences, way) for key, way in ways.items()}
+    points, between = np.eye(len(differences.points)), surface_weights(differences.points)
     # One critical value for all that is said of places: points, surface and paths.
     every = np.concatenate([points, between, *looks.values()])
-    z = simultaneous(every, found, question.library_hash)
+    z = simultaneous(every, differences, question.library_hash)
     flips = tuple(
-        _flip(path, sign_of(direction), found, way, signs, question.up_to)
+        _flip(path, sign_of(direction), differences, way, signs, question.up_to)
         for (path, direction), way in ways.items()
-        for signs in [Combined.of(looks[path, direction], found).signs(z).tolist()]
+        for signs in [Combined.of(looks[path, direction], differences).signs(z).tolist()]
     )
-    surface = Combined.of(between, found)
+    surface = Combined.of(between, differences)
     side = 2 * UNITS // SHOWN + 1
-    means, signs = (each.reshape(side, side) for each in (surface.means, surface.signs(z)))
+    means, signs = (values.reshape(side, side) for values in (surface.means, surface.signs(z)))
     record = MapRecord(
         question=question,
-        scenes=found.values.shape[1],
-        points=_points(question, found, Combined.of(points, found), z),
+        scenes=differences.values.shape[1],
+        points=_points(question, differences, Combined.of(points, differences), z),
         surface=MapSurface(
             sizes=tuple(question.size(u) for u in range(-UNITS, UNITS + 1, SHOWN)),
             difference=tuple(tuple(float(v) for v in row) for row in means),
             sign=tuple(tuple(sign_of(v) for v in row) for row in signs),
         ),
         flips=flips,
-        joint=joint(question, found),
+        joint=joint(question, differences),
         critical=z,
         failed=failed,
         estimand=words.estimand(question),
@@ -74,42 +74,42 @@ def decided(
         sentences=(),
         findings=tuple(findings),
     )
-    said = {"headline": words.headline(record), "sentences": words.sentences(record)}
-    return record.model_copy(update=said)
+    texts = {"headline": words.headline(record), "sentences": words.sentences(record)}
+    return record.model_copy(update=texts)
 
 
 def _points(
-    question: MapQuestion, found: Differences, at: Combined, z: float
+    question: MapQuestion, differences: Differences, at: Combined, z: float
 ) -> tuple[MapPoint, ...]:
     low, high = at.ends(z)
     signs, means = at.signs(z), at.means
     return tuple(
         MapPoint(
             errors=(question.size(x), question.size(y)),
-            baseline_percent=100.0 * float(found.baseline[i].mean()),
-            repair_percent=100.0 * float(found.repair[i].mean()),
+            baseline_percent=100.0 * float(differences.baseline[i].mean()),
+            repair_percent=100.0 * float(differences.repair[i].mean()),
             difference=float(means[i]),
             low=float(low[i]),
             high=float(high[i]),
             sign=sign_of(signs[i]),
-            won=int((found.values[i] > 0).sum()),
-            lost=int((found.values[i] < 0).sum()),
+            won=int((differences.values[i] > 0).sum()),
+            lost=int((differences.values[i] < 0).sum()),
         )
-        for i, (x, y) in sorted(enumerate(found.points), key=lambda each: each[1])
+        for i, (x, y) in sorted(enumerate(differences.points), key=lambda item: item[1])
     )
 
 
-def _ray_weights(found: Differences, way: Point) -> Floats:
-    known = sizes(way, found.points)
+def _ray_weights(differences: Differences, way: Point) -> Floats:
+    known = sizes(way, differences.points)
     looks = np.arange(_BETWEEN * UNITS + 1) / _BETWEEN
-    weights = np.zeros((len(looks), len(found.points)))
+    weights = np.zeros((len(looks), len(differences.points)))
     for row, size in zip(np.eye(len(known)), known, strict=True):
-        weights[:, found.points.index(along(way, size))] = np.interp(looks, known, row)
+        weights[:, differences.points.index(along(way, size))] = np.interp(looks, known, row)
     return weights
 
 
 def _flip(
-    path: str, direction: Sign, found: Differences, way: Point, signs: list[int], up_to: float
+    path: str, direction: Sign, differences: Differences, way: Point, signs: list[int], up_to: float
 ) -> Flip:
     """Return what `signs`, decided at each look at a ray, say of the error along it."""
 
@@ -124,15 +124,15 @@ def _flip(
     kept = until_other(0) if start else None
     first = next((i for i, sign in enumerate(signs) if sign and sign != start), None)
     last = None if first is None else until_other(first)
-    known = sizes(way, found.points)
-    means = [found.mean(along(way, size)) for size in known]
+    known = sizes(way, differences.points)
+    means = [differences.mean(along(way, size)) for size in known]
     turn, crossing = first_turn(known, means), None
     if turn is not None:
-        low, high = (means[known.index(each)] for each in turn)
+        low, high = (means[known.index(size)] for size in turn)
         crossing = (turn[0] + (turn[1] - turn[0]) * low / (low - high)) * _BETWEEN
     unit = direction * up_to / (UNITS * _BETWEEN)
     until, estimate, begin, end = (
-        None if each is None else round(each * unit, 12) for each in (kept, crossing, first, last)
+        None if size is None else round(size * unit, 12) for size in (kept, crossing, first, last)
     )
     return Flip(
         path=path,

@@ -71,30 +71,32 @@ def lattice_weights(errors: Errors, correlation: float) -> Floats:
     steps = 2 * UNITS // SHOWN
     drawn = errors.draw(correlation)
     x, y = ((np.clip(e, -1.0, 1.0) + 1.0) * steps / 2.0 for e in drawn)
-    left, low = (np.minimum(np.floor(each), steps - 1).astype(np.int64) for each in (x, y))
-    found = np.zeros((steps + 1) ** 2)
+    left, low = (
+        np.minimum(np.floor(coordinates), steps - 1).astype(np.int64) for coordinates in (x, y)
+    )
+    totals = np.zeros((steps + 1) ** 2)
     for i, j in ((0, 0), (1, 0), (0, 1), (1, 1)):
         share = np.abs(1 - i - (x - left)) * np.abs(1 - j - (y - low))
         place = (low + j) * (steps + 1) + left + i
-        found += np.bincount(place, share, minlength=len(found))
-    found /= len(x)
-    found.setflags(write=False)  # shared by all who ask
-    return found
+        totals += np.bincount(place, share, minlength=len(totals))
+    totals /= len(x)
+    totals.setflags(write=False)  # shared by all who ask
+    return totals
 
 
-def joint(question: MapQuestion, found: Differences) -> JointErrors:
+def joint(question: MapQuestion, differences: Differences) -> JointErrors:
     """Return the expected difference over all correlations, and where it is decided."""
     (m1, m2), (s1, s2), largest = question.means, question.spreads, question.up_to
     errors = Errors((m1 / largest, m2 / largest), (s1 / largest, s2 / largest))
-    surface = surface_weights(found.points)
+    surface = surface_weights(differences.points)
 
     def weights(correlations: Sequence[float]) -> Floats:
         return np.stack([lattice_weights(errors, r) for r in correlations]) @ surface
 
-    z = simultaneous(weights(_GRID.tolist()), found, question.library_hash)
+    z = simultaneous(weights(_GRID.tolist()), differences, question.library_hash)
 
     def at(correlations: Sequence[float]) -> Combined:
-        return Combined.of(weights(correlations), found)
+        return Combined.of(weights(correlations), differences)
 
     def expected(correlations: Sequence[float]) -> tuple[Expectation, ...]:
         every = at(correlations)
@@ -110,10 +112,10 @@ def joint(question: MapQuestion, found: Differences) -> JointErrors:
     edges = [-1.0, *(edge for piece in pieces for edge in piece), 1.0]
     spans = [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
     means: list[float] = at([0.5 * (a + b) for a, b in spans]).means.tolist() if spans else []
-    wanted = {0.0, 1.0} if question.correlation is None else {0.0, 1.0, question.correlation}
+    requested = {0.0, 1.0} if question.correlation is None else {0.0, 1.0, question.correlation}
     return JointErrors(
         curve=expected(_CURVE),
-        asked=expected(sorted(wanted)),
+        asked=expected(sorted(requested)),
         estimates=_crossings(at(_GRID.tolist()).means),
         undecided=pieces,
         regions=tuple(

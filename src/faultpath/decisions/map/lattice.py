@@ -90,7 +90,7 @@ def _surface_weights(points: tuple[Point, ...]) -> Floats:
     rows = {place: own[place] for place in lattice(COARSE)}
 
     def take(place: Point, around: Iterable[Point]) -> None:
-        inside = [rows[each] for each in around if max(map(abs, each)) <= UNITS]
+        inside = [rows[point] for point in around if max(map(abs, point)) <= UNITS]
         rows[place] = own[place] if place in own else np.mean(inside, axis=0)
 
     step = COARSE // 2

@@ -95,9 +95,9 @@ class Flip(Result, allow_inf_nan=False):
     """A module, or `shared`."""
     direction: Sign
     start: Sign
-    """What is decided under correct inputs."""
+    """Side decided under correct inputs."""
     turned: Sign
-    """What is decided between `first` and `last`: the other side, or either where `start` is 0."""
+    """Side decided between `first` and `last`: the other one, or either where `start` is 0."""
     until: float | None
     """Largest error up to which what is decided under correct inputs stays decided."""
     estimate: float | None

@@ -1,4 +1,4 @@
-"""What a map asks, and its trials: at each point two errors at two modules of one source."""
+"""Question and trials of a map: at each point two errors at two modules of one source."""
 
 import math
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ class MapPlan:
 
     def path(self, point: Point) -> str:
         """Return what rows of a point are called in the outcome table."""
-        sizes = (f"{self.question.size(each):+.6g}" for each in point)
+        sizes = (f"{self.question.size(units):+.6g}" for units in point)
         return ",".join(sizes) if any(point) else CORRECT
 
     def study(self, points: Sequence[Point]) -> Study:
@@ -45,28 +45,28 @@ class MapPlan:
         Equal errors are one fault that is shared, as in an audit. Studies have the same name
         whatever spread or number of points is asked for.
         """
-        asked, rows = self.question, list[Row]()
+        question, rows = self.question, list[Row]()
         for point in points:
             by_size: dict[int, list[str]] = {}
-            for module, units in zip(asked.against, point, strict=True):
+            for module, units in zip(question.against, point, strict=True):
                 if units:
                     by_size.setdefault(units, []).append(module)
             faults = [
-                _sized(self.system, asked.fault, asked.size(units)).aimed_at(*modules)
+                _sized(self.system, question.fault, question.size(units)).aimed_at(*modules)
                 for units, modules in by_size.items()
             ]
-            for name in (asked.baseline, asked.repair):
+            for name in (question.baseline, question.repair):
                 consumers = self.system.variants[name].consumers
                 parts = [
-                    p for each in faults for p in each.resolved(self.system.interface, consumers)
+                    p for fault in faults for p in fault.resolved(self.system.interface, consumers)
                 ]
-                for seed in asked.seeds:
+                for seed in question.seeds:
                     arm = Arm(variant=name, faults=tuple(parts), seed=seed)
                     rows.append(Row(variant=name, path=self.path(point), seed=seed, arm=arm))
         return Study(
-            name=f"{self.spec.name}-map-{asked.repair}-vs-{asked.baseline}",
+            name=f"{self.spec.name}-map-{question.repair}-vs-{question.baseline}",
             system=self.spec,
-            library=asked.library,
+            library=question.library,
             scenes=self.scenes,
             rows=tuple(rows),
         )
@@ -77,32 +77,33 @@ class MapPlan:
         """Return success at all points, cut to the scenes that every one has, and what is to be
         said of pairs that met different conditions; `UserError` where a point has no pair."""
         names = [self.path(point) for point in points]
-        found = compared(self.question.repair, self.question.baseline, names, table)
-        if found.void:
+        comparison = compared(self.question.repair, self.question.baseline, names, table)
+        if comparison.void:
             raise UserError(
-                f"at the errors {' and '.join(found.void[:3])} no pair is left to compare, because "
-                "trials failed there: mend what made them fail, or choose a smaller --up-to."
+                f"at the errors {' and '.join(comparison.void[:3])} no pair is left to compare, "
+                "because trials failed there: mend what made them fail, or choose a smaller "
+                "--up-to."
             )
-        arms = zip(*(found.arms[name] for name in names), strict=True)
-        repair, baseline = (np.array(each, dtype=np.float64) for each in arms)
-        return Differences(tuple(points), repair, baseline), mismatch_words(found.mismatches)
+        arms = zip(*(comparison.arms[name] for name in names), strict=True)
+        repair, baseline = (np.array(arm, dtype=np.float64) for arm in arms)
+        return Differences(tuple(points), repair, baseline), mismatch_words(comparison.mismatches)
 
 
 def plan_map(
-    system: System, spec: SystemSpec, asked: questions.MapQuestion, library: Library
+    system: System, spec: SystemSpec, request: questions.MapQuestion, library: Library
 ) -> MapPlan:
     """Lay out a map. `UserError` for anything that cannot be run or means nothing."""
-    variants = two_variants(system, asked)
-    kind = _kind(system, asked.fault)
+    variants = two_variants(system, request)
+    kind = _kind(system, request.fault)
     relative = kind != "offset"
     interface = system.interface
-    parts = _sized(system, asked.fault, 0.1 if relative else 1.0).resolved(interface)
+    parts = _sized(system, request.fault, 0.1 if relative else 1.0).resolved(interface)
     sources = [interface.source(interface.channel(part.channel).sources[0]) for part in parts]
     unsure = [
         s.uncertainty for s in sources if s.uncertainty and s.uncertainty.relative is relative
     ]
-    expected = max((each.expected_std for each in unsure), default=None)
-    largest = asked.up_to
+    expected = max((error.expected_std for error in unsure), default=None)
+    largest = request.up_to
     if largest is None:
         if expected is None:
             raise UserError(
@@ -119,29 +120,29 @@ def plan_map(
             f"--up-to {largest:g} would take all of the reading away: errors are fractions of it, "
             "so give less than 1."
         )
-    faults = [_sized(system, asked.fault, end) for end in (-largest, largest)]
-    modules, others = _places(system, faults[1], asked.against, variants)
+    faults = [_sized(system, request.fault, end) for end in (-largest, largest)]
+    modules, others = _places(system, faults[1], request.against, variants)
     least = len(lattice(COARSE))
-    if not least <= asked.points <= _MOST_POINTS:
+    if not least <= request.points <= _MOST_POINTS:
         raise UserError(
-            f"--points {asked.points}: a map begins with {least} and takes at most "
+            f"--points {request.points}: a map begins with {least} and takes at most "
             f"{_MOST_POINTS}, give a number between them."
         )
-    chosen = scenes_of(library, asked.scenes)
-    spread = _two("--spread", asked.spread or (expected or largest / 2.0,))
+    chosen = scenes_of(library, request.scenes)
+    spread = _two("--spread", request.spread or (expected or largest / 2.0,))
     if not 0.0 < min(spread) <= max(spread) <= 1000 * largest:
         raise UserError(f"--spread: give standard deviations above 0, up to {1000 * largest:g}.")
-    middle = _two("--mean", asked.mean)
+    middle = _two("--mean", request.mean)
     if max(map(abs, middle)) > largest:
         raise UserError(f"--mean lies beyond the map, which ends at {largest:g}: see --up-to.")
-    if asked.correlation is not None and not -1.0 <= asked.correlation <= 1.0:
-        raise UserError(f"--correlation {asked.correlation:g} does not lie between -1 and 1.")
+    if request.correlation is not None and not -1.0 <= request.correlation <= 1.0:
+        raise UserError(f"--correlation {request.correlation:g} does not lie between -1 and 1.")
     question = MapQuestion(
         system=spec.name,
         options=spec.options,
-        baseline=asked.baseline,
-        repair=asked.repair,
-        fault=asked.fault,
+        baseline=request.baseline,
+        repair=request.repair,
+        fault=request.fault,
         against=modules,
         others=others,
         up_to=largest,
@@ -149,12 +150,12 @@ def plan_map(
         unit=sources[0].unit,
         means=middle,
         spreads=spread,
-        correlation=asked.correlation,
-        points=asked.points,
+        correlation=request.correlation,
+        points=request.points,
         library=library.name,
         library_hash=library.content_hash,
         n_scenes=len(chosen),
-        seeds=asked.seeds,
+        seeds=request.seeds,
         trained=system.trained,
     )
     return MapPlan(question, system, spec, chosen)
@@ -162,29 +163,29 @@ def plan_map(
 
 def _kind(system: System, text: str) -> str | None:
     """Return the kind of a fault without its size: `scale`, `offset`, or none as in a preset."""
-    asked = FaultText.read(text)
-    if asked.sizes:
+    parsed = FaultText.read(text)
+    if parsed.sizes:
         raise UserError(
-            f"fault '{text}': the map sets the size itself; leave '={asked.sizes[0]}' out and give "
-            "the largest one with --up-to."
+            f"fault '{text}': the map sets the size itself; leave '={parsed.sizes[0]}' out and "
+            "give the largest one with --up-to."
         )
-    if asked.consumers:
+    if parsed.consumers:
         raise UserError(f"fault '{text}': name the modules with --against, without '@'.")
-    preset = asked.kind is None and asked.name in system.fault_presets
-    if not preset and asked.kind not in (None, "scale", "offset"):
+    preset = parsed.kind is None and parsed.name in system.fault_presets
+    if not preset and parsed.kind not in (None, "scale", "offset"):
         raise UserError(
-            f"fault '{text}': a map needs errors of both signs; use {asked.name}:scale (relative, "
-            f"the default) or {asked.name}:offset, not '{asked.kind}'."
+            f"fault '{text}': a map needs errors of both signs; use {parsed.name}:scale (relative, "
+            f"the default) or {parsed.name}:offset, not '{parsed.kind}'."
         )
-    return asked.kind
+    return parsed.kind
 
 
 def _sized(system: System, text: str, size: float) -> AnyFault:
     """Return a fault of a size at every reader; `UserError` where it takes no such size."""
-    asked = FaultText.read(text)
-    if asked.kind is None and asked.name not in system.fault_presets:
-        asked = replace(asked, kind="scale")
-    return system.fault(str(asked.at(f"{1.0 + size if asked.kind == 'scale' else size:.12g}")))
+    parsed = FaultText.read(text)
+    if parsed.kind is None and parsed.name not in system.fault_presets:
+        parsed = replace(parsed, kind="scale")
+    return system.fault(str(parsed.at(f"{1.0 + size if parsed.kind == 'scale' else size:.12g}")))
 
 
 def _places(
@@ -203,8 +204,8 @@ def _places(
         return {consumer for part in parts for consumer in part.consumers}
 
     reached = [readers(fault.aimed_at(name)) for name in against]
-    for name, found in zip(against, reached, strict=True):
-        if not found:
+    for name, places in zip(against, reached, strict=True):
+        if not places:
             both = " nor ".join(f"'{variant.name}'" for variant in variants)
             raise UserError(
                 f"--against: neither {both} has '{name}' read what the fault ({fault.describe()}) "

@@ -1,4 +1,4 @@
-"""What is decided on the map, with one critical value, and which points come next.
+"""Decisions on the map, with one critical value, and which points come next.
 
 Everything looked at is a weighted sum of the differences that scenes show at the sampled points, so
 scenes stay the sample and all points of the map depend on each other as they do.
@@ -33,7 +33,7 @@ from faultpath.statistics.score import SceneValues, interval, quantile, rejects
 Signs = NDArray[np.int64]
 RESAMPLES = 2000
 _DIGITS = 9
-"""Of a combined value, so that values which cancel leave exactly 0."""
+"""Digits of a combined value, so that values which cancel leave exactly 0."""
 
 
 def sign_of(value: float) -> Sign:
@@ -73,10 +73,10 @@ class Combined:
     far: Floats
 
     @classmethod
-    def of(cls, weights: Floats, found: Differences) -> "Combined":
+    def of(cls, weights: Floats, differences: Differences) -> "Combined":
         """Return the sums with `weights [spots, points]`."""
-        values: Floats = np.sort((weights @ found.values).round(_DIGITS), axis=1)
-        return cls(values, np.abs(weights) @ found.far)
+        values: Floats = np.sort((weights @ differences.values).round(_DIGITS), axis=1)
+        return cls(values, np.abs(weights) @ differences.far)
 
     @property
     def means(self) -> Floats:
@@ -105,13 +105,13 @@ class Combined:
         return signs * (np.sign(first - second) * (p <= normal_p_value(z)) == signs)
 
 
-def simultaneous(weights: Floats, found: Differences, label: str) -> float:
+def simultaneous(weights: Floats, differences: Differences, label: str) -> float:
     """Return the critical value of all spots together, `weights [spots, points]`.
 
     Scenes are resampled over the whole map at once: 95 % of the resamples deviate nowhere by more
     standard errors than this. It is never below that of one spot alone.
     """
-    values = (weights @ found.values).round(_DIGITS)
+    values = (weights @ differences.values).round(_DIGITS)
     spread = values.std(axis=1)
     # Where fewer scenes differ nothing can be decided, and one scene more or less is a great step.
     looked_at = (spread > ROUNDING) & ((values != 0.0).sum(axis=1) >= MIN_SCENES)
@@ -133,7 +133,7 @@ def _resamples(label: str, scenes: int) -> Resamples:
 
 
 def next_points(
-    found: Differences, modules: Sequence[str], limit: int, label: str
+    differences: Differences, modules: Sequence[str], limit: int, label: str
 ) -> tuple[Point, ...]:
     """Return the points to add, none when the map is done: same data, same points.
 
@@ -141,13 +141,13 @@ def next_points(
     `limit` points or cells of the least size. Then, on each path of the fault, the first change of
     the estimate's sign is bisected down to one unit.
     """
-    every = np.eye(len(found.points))
-    decided = Combined.of(every, found).signs(simultaneous(every, found, label))
-    signs = dict(zip(found.points, decided.tolist(), strict=True))
-    means = dict(zip(found.points, found.values.mean(axis=1).tolist(), strict=True))
+    every = np.eye(len(differences.points))
+    decided = Combined.of(every, differences).signs(simultaneous(every, differences, label))
+    signs = dict(zip(differences.points, decided.tolist(), strict=True))
+    means = dict(zip(differences.points, differences.values.mean(axis=1).tolist(), strict=True))
 
     def urgency(cell: Point) -> tuple[bool, float, Point]:
-        values = [means[each] for each in corners(cell, spacing)]
+        values = [means[corner] for corner in corners(cell, spacing)]
         return min(values) * max(values) >= 0.0, abs(sum(values)), cell
 
     spacing, new = COARSE, dict[Point, None]()
@@ -162,8 +162,8 @@ def next_points(
     if new:
         return tuple(sorted(new))
     for direction in rays(modules).values():
-        known = sizes(direction, found.points)
-        turn = first_turn(known, [found.mean(along(direction, size)) for size in known])
+        known = sizes(direction, differences.points)
+        turn = first_turn(known, [differences.mean(along(direction, size)) for size in known])
         if turn is not None and turn[1] - turn[0] > 1:
             new[along(direction, sum(turn) // 2)] = None
     return tuple(new)

@@ -1,1 +1,1 @@
-"""What to audit first: uncertain sources ranked, and arms proposed."""
+"""Plans of what to audit first: uncertain sources ranked, and arms proposed."""

@@ -14,7 +14,7 @@ from faultpath.interface import Interface, module_of, modules
 from faultpath.trials import LoopSystem, System, Variant
 
 
-def ranked(found: Sequence[Candidate]) -> tuple[Candidate, ...]:
+def ranked(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
     """Return candidates, the one with most consumers and then the largest probe response first.
 
     This is the paper's rule, Section III-C. It compares point estimates: sources that are equal in
@@ -22,13 +22,15 @@ def ranked(found: Sequence[Candidate]) -> tuple[Candidate, ...]:
     that is not known counts as the smallest.
     """
 
-    def key(each: Candidate) -> tuple[int, float]:
-        return -len(each.consumers), 1.0 if each.response is None else -each.response
+    def key(candidate: Candidate) -> tuple[int, float]:
+        return -len(candidate.consumers), 1.0 if candidate.response is None else -candidate.response
 
     out: list[Candidate] = []
-    for _, alike in groupby(sorted(found, key=lambda each: (*key(each), not each.fault)), key):
+    for _, alike in groupby(
+        sorted(candidates, key=lambda candidate: (*key(candidate), not candidate.fault)), key
+    ):
         rank = len(out) + 1
-        out += [each.model_copy(update={"rank": rank}) for each in alike]
+        out += [candidate.model_copy(update={"rank": rank}) for candidate in alike]
     return tuple(out)
 
 
@@ -46,18 +48,18 @@ def repaired_modules(
     for name in named:
         if name not in known:
             raise UserError(f"{system.name}: {unknown('module', name, known)}")
-    found = {module_of(consumer) for consumer in baseline.consumers ^ repair.consumers}
+    repaired = {module_of(consumer) for consumer in baseline.consumers ^ repair.consumers}
     for channel in interface.channels:
         fed = {bound(variant, interface, channel.name) for variant in (baseline, repair)}
         if len(fed) > 1:
-            found |= {module for module, made in interface.reconstructions if made in fed}
+            repaired |= {module for module, source in interface.reconstructions if source in fed}
     if isinstance(system, LoopSystem):
         one, two = (
-            {each.name: each for each in system.modules(variant.name, None)}
+            {module.name: module for module in system.modules(variant.name, None)}
             for variant in (baseline, repair)
         )
-        found |= {name for name in one | two if _differ(one.get(name), two.get(name), set())}
-    return tuple(named) or tuple(name for name in known if name in found)
+        repaired |= {name for name in one | two if _differ(one.get(name), two.get(name), set())}
+    return tuple(named) or tuple(name for name in known if name in repaired)
 
 
 def _differ(one: Any, two: Any, seen: set[tuple[int, int]]) -> bool:
@@ -89,20 +91,20 @@ def _differ(one: Any, two: Any, seen: set[tuple[int, int]]) -> bool:
 
 def makers(interface: Interface, variants: Sequence[Variant]) -> dict[str, tuple[str, ...]]:
     """Return each module that makes a source which another one reads, with these sources."""
-    found: dict[str, dict[str, None]] = {}
-    for module, made in interface.reconstructions:
+    by_module: dict[str, dict[str, None]] = {}
+    for module, source in interface.reconstructions:
         for variant in variants:
             for channel in interface.channels:
                 readers = variant.consumers.intersection(channel.consumers)
-                if bound(variant, interface, channel.name) == made and any(
+                if bound(variant, interface, channel.name) == source and any(
                     module_of(reader) != module for reader in readers
                 ):
-                    found.setdefault(module, {})[made] = None
-    return {module: tuple(sources) for module, sources in found.items()}
+                    by_module.setdefault(module, {})[source] = None
+    return {module: tuple(sources) for module, sources in by_module.items()}
 
 
 def recursion(
-    found: Sequence[Candidate], made_by: Mapping[str, Sequence[str]], start: Sequence[str]
+    candidates: Sequence[Candidate], made_by: Mapping[str, Sequence[str]], start: Sequence[str]
 ) -> dict[str, str]:
     """Return the candidates that modules in `start` lead to, by name, each with why.
 
@@ -114,11 +116,13 @@ def recursion(
     waiting = [module for module in start if module in made_by]
     for module in waiting:  # grows while it is gone through
         makes = ", ".join(made_by[module])
-        for each in found:
-            if set(each.sources) & set(made_by[module]):
-                why.setdefault(each.name, f"output of {module}")
-            elif any(module_of(consumer) == module for consumer in each.consumers):
-                why.setdefault(each.name, f"input of {module}, which makes {makes}")
-                behind = (m for m, sources in made_by.items() if set(sources) & set(each.sources))
+        for candidate in candidates:
+            if set(candidate.sources) & set(made_by[module]):
+                why.setdefault(candidate.name, f"output of {module}")
+            elif any(module_of(consumer) == module for consumer in candidate.consumers):
+                why.setdefault(candidate.name, f"input of {module}, which makes {makes}")
+                behind = (
+                    m for m, sources in made_by.items() if set(sources) & set(candidate.sources)
+                )
                 waiting += [m for m in behind if m not in waiting]
     return why

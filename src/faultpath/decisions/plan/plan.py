@@ -22,7 +22,7 @@ Note = Callable[[int, int], None]
 
 
 class Plan(Result):
-    """What `faultpath plan --json` prints."""
+    """Plan, as `faultpath plan --json` prints it."""
 
     format: Literal[1] = 1
     study: StudyFile
@@ -35,7 +35,7 @@ class Plan(Result):
     probed: int
     """Scenes of the probe; 0 where there was none."""
     trials: tuple[int, ...]
-    """Of each audit."""
+    """Number of trials of each audit."""
     dependent: tuple[Group, ...] = ()
     """Consumers that have one cause of failure in common, none of them with evidence yet."""
 
@@ -43,7 +43,7 @@ class Plan(Result):
 def make_plan(
     system: System,
     spec: SystemSpec,
-    asked: PlanQuestion,
+    question: PlanQuestion,
     library: Library,
     note: Note = lambda done, total: None,
 ) -> Plan:
@@ -52,25 +52,25 @@ def make_plan(
     `UserError` for anything that `plan_audit` refuses, where no source has a fault, and for a
     variant that does not run.
     """
-    variants = two_variants(system, asked)
-    found = candidates(system, variants, asked.fault)
+    variants = two_variants(system, question)
+    uncertain = candidates(system, variants, question.fault)
     laid = {
-        each.name: plan_audit(system, spec, asked.audit_of(each.fault), library)
-        for each in found
-        if each.fault
+        candidate.name: plan_audit(system, spec, question.audit_of(candidate.fault), library)
+        for candidate in uncertain
+        if candidate.fault
     }
     if not laid:
-        if not found:
+        if not uncertain:
             raise UserError(
                 f"{system.name}: neither variant reads a source that may err: nothing to plan."
             )
-        why = "; ".join(f"{each.name} {each.unsized}" for each in found)
-        channel = next((c for each in found for c in each.channels), "CHANNEL")
+        why = "; ".join(f"{candidate.name} {candidate.unsized}" for candidate in uncertain)
+        channel = next((c for candidate in uncertain for c in candidate.channels), "CHANNEL")
         raise UserError(
             f"{system.name}: no source says how large its errors are ({why}): declare it in the "
             f"interface, or give the expected error, for example --fault {channel}:scale=1.1"
         )
-    repaired = repaired_modules(system, *variants, asked.module)
+    repaired = repaired_modules(system, *variants, question.module)
     scenes = next(iter(laid.values())).study.scenes
     probed = 0
     if isinstance(system, LoopSystem) and len(laid) > 1:
@@ -84,36 +84,38 @@ def make_plan(
                 for row in audit.study.rows
                 if row.variant == variant.name and row.arm.faults
             }
-            moved = command_responses(system, variant.name, arms, scenes[:probed], asked.seeds[0])
+            moved = command_responses(
+                system, variant.name, arms, scenes[:probed], question.seeds[0]
+            )
             for (name, _), value in moved.items():
                 responses[name] = max(value, responses.get(name, value))
-        found = [c.model_copy(update={"response": responses.get(c.name)}) for c in found]
-    order = ranked(found)
-    first = next(each for each in order if each.fault)
+        uncertain = [c.model_copy(update={"response": responses.get(c.name)}) for c in uncertain]
+    order = ranked(uncertain)
+    first = next(candidate for candidate in order if candidate.fault)
     reached = tuple(dict.fromkeys(c.partition(".")[0] for c in first.consumers))
     why = recursion(order, makers(system.interface, variants), (*repaired, *reached))
     why[first.name] = "first by rank" if first is order[0] else "first with an expected error"
-    named = [each for each in order if each.fault and each.name in why]
-    named.sort(key=lambda each: each is not first)
-    sized = {each.name: each.fault for each in order if each.fault}
+    named = [candidate for candidate in order if candidate.fault and candidate.name in why]
+    named.sort(key=lambda candidate: candidate is not first)
+    sized = {candidate.name: candidate.fault for candidate in order if candidate.fault}
     return Plan(
         study=StudyFile(
             system=spec.name,
             options=spec.options,
-            baseline=asked.baseline,
-            repair=asked.repair,
+            baseline=question.baseline,
+            repair=question.repair,
             library=library.name,
             library_hash=library.content_hash,
             scenes=len(scenes),
-            seeds=asked.seeds,
+            seeds=question.seeds,
             audits=tuple(
                 StudyAudit(
-                    name=each.name,
-                    fault=each.fault,
-                    why=why[each.name],
-                    arms=arms_of(laid[each.name], repaired),
+                    name=candidate.name,
+                    fault=candidate.fault,
+                    why=why[candidate.name],
+                    arms=arms_of(laid[candidate.name], repaired),
                 )
-                for each in named
+                for candidate in named
             ),
         ),
         candidates=order,
@@ -122,8 +124,8 @@ def make_plan(
         probed=probed,
         trials=tuple(len(laid[c.name].study.arms()) * len(scenes) for c in named),
         dependent=tuple(
-            each.model_copy(update={"fault": sized[each.name]}) if each.name in sized else each
-            for each in dependent_groups(system.interface, variants)
+            group.model_copy(update={"fault": sized[group.name]}) if group.name in sized else group
+            for group in dependent_groups(system.interface, variants)
         ),
     )
 
@@ -135,8 +137,10 @@ def sentences(plan: Plan) -> Iterator[str]:
     """
     first, *others = plan.candidates
     count = counted(len(first.consumers), "consumer")
-    tied = [each.name for each in others if each.rank == first.rank]
-    alike = [each.name for each in others if len(each.consumers) == len(first.consumers)]
+    tied = [candidate.name for candidate in others if candidate.rank == first.rank]
+    alike = [
+        candidate.name for candidate in others if len(candidate.consumers) == len(first.consumers)
+    ]
     if not others:
         yield f"{first.name} ({count}) is the only uncertain source: no rank is due."
     elif not alike:
@@ -151,14 +155,18 @@ def sentences(plan: Plan) -> Iterator[str]:
             f"{counted(plan.probed, 'scene')} that no test compares."
         )
     if not first.fault:
-        audited = next(each.name for each in plan.candidates if each.fault)
+        audited = next(candidate.name for candidate in plan.candidates if candidate.fault)
         yield (
             f"{first.name} cannot be audited without an expected error; {audited} is the first in "
             "the ranking that has one."
         )
     elif tied:
         yield f"{first.name} is audited first: it has an expected error and is declared first."
-    if unsized := [f"{each.name} ({each.unsized})" for each in plan.candidates if not each.fault]:
+    if unsized := [
+        f"{candidate.name} ({candidate.unsized})"
+        for candidate in plan.candidates
+        if not candidate.fault
+    ]:
         yield (
             f"Without an expected error, and so without an audit: {series(unsized)}. Declare it in "
             "the interface, or give it with --fault."
@@ -174,7 +182,11 @@ def sentences(plan: Plan) -> Iterator[str]:
             "same; --module names it."
         )
     audits = {audit.name for audit in plan.study.audits}
-    yield from (each.note for each in plan.candidates if each.name in audits and each.note)
+    yield from (
+        candidate.note
+        for candidate in plan.candidates
+        if candidate.name in audits and candidate.note
+    )
     yield "Each fault has one size and sign, and lasts; `faultpath map` covers both signs."
     if len(audits) > 1:
         yield "Each audit decides by itself: no correction is made for their number."

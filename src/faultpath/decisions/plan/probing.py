@@ -26,7 +26,7 @@ from faultpath.trials.attempt import taps_of
 
 Floats: TypeAlias = NDArray[np.float64]
 Key: TypeAlias = tuple[str, str]
-"""What the caller calls an arm."""
+"""Name of an arm, as its caller has it."""
 
 
 def command_responses(
@@ -49,13 +49,13 @@ def command_responses(
     commands, running = np.stack(first.commands), np.stack(first.running)
     size = np.sqrt(np.mean(commands[running] ** 2, axis=0))
     size[size == 0.0] = 1.0
-    found: dict[Key, float] = {}
+    responses: dict[Key, float] = {}
     for key, moved in first.moved.items():
         apart = (np.stack(moved) - commands)[running] / size
         median = float(np.median(np.sqrt(np.mean(apart**2, axis=1))))
         if np.isfinite(median):
-            found[key] = float(f"{median:.6g}")  # what rounding parts is equal
-    return found
+            responses[key] = float(f"{median:.6g}")  # what rounding parts is equal
+    return responses
 
 
 class _First(Plant):
@@ -82,7 +82,7 @@ class _First(Plant):
         }
         """Taps, by channel and consumer, at which a port reads what was held one step before."""
         self.readings: dict[tuple[str, str], Reading] = {}
-        """Of the past, at the present step."""
+        """Readings of the past, at the present step."""
         self.sensed: Mapping[str, Any] = {}
         self.stands: Progress | None = None
         self.moved: dict[Key, list[Floats]] = {key: [] for key in faults}
@@ -117,9 +117,9 @@ class _First(Plant):
                 self.moved[key].append(self._command(next(self._others[key]).inputs))
             except Exception as error:  # what modules raise that were not made for such an input
                 del self._others[key], self.moved[key]
-                said = f"{' '.join(map(str, key))}, {self.variant}: no probe response, since its "
-                said += f"modules stop at such an input ({described(error)})."
-                warnings.warn(Notice(said), stacklevel=1)
+                text = f"{' '.join(map(str, key))}, {self.variant}: no probe response, since its "
+                text += f"modules stop at such an input ({described(error)})."
+                warnings.warn(Notice(text), stacklevel=1)
         return self._plant.advance(state, inputs)
 
     def _command(self, inputs: Inputs) -> Floats:

@@ -30,7 +30,7 @@ class Candidate(Frozen, allow_inf_nan=False):
     """A source that may err, or several that err together by one cause."""
 
     name: str
-    """Of the source, or of the group whose sources err together."""
+    """Name of the source, or of the group whose sources err together."""
     sources: tuple[str, ...]
     channels: tuple[str, ...]
     consumers: tuple[str, ...]
@@ -49,12 +49,12 @@ class Candidate(Frozen, allow_inf_nan=False):
 
 
 def candidates(
-    system: System, variants: Sequence[Variant], given: Sequence[str]
+    system: System, variants: Sequence[Variant], faults: Sequence[str]
 ) -> tuple[Candidate, ...]:
     """Return the uncertain sources that a variant reads, in the order of declaration.
 
     Uncertain is what is measured, estimated or reconstructed, or declares an uncertainty. The
-    faults `given` take the place of declared sizes. `UserError` for one that reaches no consumer,
+    `faults` take the place of declared sizes. `UserError` for one that reaches no consumer,
     and for two of one source.
     """
     members: dict[str, list[Source]] = {}
@@ -62,24 +62,26 @@ def candidates(
         uncertain = source.provenance in _UNCERTAIN or source.uncertainty is not None
         if uncertain and _channels(system.interface, variants, source.name):
             members.setdefault(source.correlation_group or source.name, []).append(source)
-    found: list[Candidate] = []
+    listed: list[Candidate] = []
     for name, sources in members.items():
-        every = [c for each in sources for c in _channels(system.interface, variants, each.name)]
+        every = [
+            c for source in sources for c in _channels(system.interface, variants, source.name)
+        ]
         channels = tuple(dict.fromkeys(every))
         fault, unsized = expected(system.fault_presets, name, sources, channels)
-        names = tuple(each.name for each in sources)
-        found.append(_candidate(system, variants, name, names, channels, fault, unsized))
-    for text in given:
-        made = _given(system, variants, text)
-        replaced = [each for each in found if set(each.channels) <= set(made.channels)]
-        if any(each.fault in given for each in replaced):
+        names = tuple(source.name for source in sources)
+        listed.append(_candidate(system, variants, name, names, channels, fault, unsized))
+    for text in faults:
+        candidate = _given(system, variants, text)
+        replaced = [other for other in listed if set(other.channels) <= set(candidate.channels)]
+        if any(other.fault in faults for other in replaced):
             raise UserError(f"fault '{text}': {replaced[0].name} has been given an error already.")
         if len(replaced) == 1:
-            made = made.model_copy(update={"name": replaced[0].name})
-        at = found.index(replaced[0]) if replaced else len(found)
-        found.insert(at, made)
-        found = [each for each in found if each not in replaced]
-    return tuple(found)
+            candidate = candidate.model_copy(update={"name": replaced[0].name})
+        at = listed.index(replaced[0]) if replaced else len(listed)
+        listed.insert(at, candidate)
+        listed = [other for other in listed if other not in replaced]
+    return tuple(listed)
 
 
 def bound(variant: Wired, interface: Interface, channel: str) -> str:
@@ -98,8 +100,8 @@ def _channels(interface: Interface, variants: Sequence[Variant], source: str) ->
 
 
 def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
-    asked = FaultText.read(text)
-    if len(asked.sizes) > 1 or asked.consumers:
+    parsed = FaultText.read(text)
+    if len(parsed.sizes) > 1 or parsed.consumers:
         raise UserError(
             f"fault '{text}': a plan takes one size, and faults every module by itself: leave "
             "further sizes and '@' out."
@@ -107,11 +109,11 @@ def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
     fault = system.fault(text)
     parts = fault.faults if fault.kind == "coupled" else (fault,)
     channels = tuple(dict.fromkeys(part.channel for part in parts))
-    sources = {bound(each, system.interface, c): None for each in variants for c in channels}
-    made = _candidate(system, variants, asked.name, tuple(sources), channels, text)
-    if not made.consumers:
+    sources = {bound(variant, system.interface, c): None for variant in variants for c in channels}
+    candidate = _candidate(system, variants, parsed.name, tuple(sources), channels, text)
+    if not candidate.consumers:
         raise UserError(f"fault '{text}' reaches no consumer: neither variant reads it there.")
-    return made
+    return candidate
 
 
 def _candidate(
@@ -125,8 +127,8 @@ def _candidate(
 ) -> Candidate:
     interface, note = system.interface, ""
     if fault:
-        asked = system.fault(fault)
-        parts = [p for each in variants for p in asked.resolved(interface, each.consumers)]
+        built = system.fault(fault)
+        parts = [p for variant in variants for p in built.resolved(interface, variant.consumers)]
         reached = [consumer for part in parts for consumer in part.consumers]
     else:
         read = [c for channel in channels for c in interface.channel(channel).consumers]
@@ -158,10 +160,13 @@ def expected(
     That is the half-range, or one standard deviation, upward, and lasting.
     """
     together = sources[0].correlation_group is not None
-    declared = [each.uncertainty for each in sources if each.uncertainty is not None]
+    declared = [source.uncertainty for source in sources if source.uncertainty is not None]
     if len(declared) < len(sources):
         return "", "declares no uncertainty"
-    sizes = {(each.relative, each.half_range or each.std or 0.0) for each in declared}
+    sizes = {
+        (uncertainty.relative, uncertainty.half_range or uncertainty.std or 0.0)
+        for uncertainty in declared
+    }
     if len(sizes) > 1:
         return "", "has sources of different uncertainties, which one fault cannot have"
     if len(channels) > 1 and not together:

@@ -47,7 +47,7 @@ class StudyAudit(Frozen):
 
 
 class StudyFile(Question, strict=False):
-    """What `faultpath plan` writes and `faultpath audit --study` carries out.
+    """Study that `faultpath plan` writes and `faultpath audit --study` carries out.
 
     One that was written by hand may leave out arms and hash: they follow from the system as it is.
     """
@@ -87,7 +87,7 @@ def read_study(path: Path) -> StudyFile:
 
 def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...]:
     """Return the arms of an audit path by path, in the order of their roles: the paper's, III-C."""
-    asked = audit.question
+    question = audit.question
     reached: dict[str, dict[str, tuple[str, ...]]] = {}
     for row in audit.study.rows:
         consumers = {c: None for f in row.arm.faults for c in f.consumers}
@@ -98,8 +98,8 @@ def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...
         StudyArm(
             path=path,
             role=of_path.get(path, "attribution"),
-            baseline=by_variant[asked.baseline],
-            repair=by_variant[asked.repair],
+            baseline=by_variant[question.baseline],
+            repair=by_variant[question.repair],
         )
         for path, by_variant in reached.items()
     ]
@@ -112,10 +112,10 @@ def check_arms(study: StudyFile, planned: StudyAudit, audit: Audit) -> None:
         raise UserError(
             f"library '{study.library}' is not the one of the study file any more: plan anew."
         )
-    now = {(arm.path, arm.baseline, arm.repair) for arm in arms_of(audit)}
+    current = {(arm.path, arm.baseline, arm.repair) for arm in arms_of(audit)}
     then = {(arm.path, arm.baseline, arm.repair) for arm in planned.arms}
-    if planned.arms and now != then:
-        other = sorted({path for path, _, _ in now ^ then})
+    if planned.arms and current != then:
+        other = sorted({path for path, _, _ in current ^ then})
         raise UserError(
             f"audit '{planned.name}' of the study file has other arms than the system now has for "
             f"'{planned.fault}' ({', '.join(other)}): an audit runs all of its arms, so plan anew."

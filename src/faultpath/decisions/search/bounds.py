@@ -18,7 +18,7 @@ from faultpath.faults.parse import KINDS
 from faultpath.trials import System
 
 _DIGITS = 3
-"""Of a size, counted from the width of its range: what is tried can be typed."""
+"""Digits of a size, counted from the width of its range, so that it can be typed."""
 
 
 def _ascending(ends: tuple[float, float]) -> tuple[float, float]:
@@ -44,7 +44,7 @@ class BoundedFault(Frozen, allow_inf_nan=False):
 
 
 class Bounds(Frozen, allow_inf_nan=False):
-    """What is searched: the faults listed act together, each with a size of its own."""
+    """Bounds of a search: the faults listed act together, each with a size of its own."""
 
     isolated: str
     """The module that an isolated audit strikes."""
@@ -53,12 +53,14 @@ class Bounds(Frozen, allow_inf_nan=False):
     duration: Steps | None = None
     """By default until the end."""
     correlation: Range | None = None
-    """Of the errors of the faults that draw theirs, which are independent by default."""
+    """Correlation of the errors of faults that draw theirs; independent by default."""
 
     def ranges(self) -> list[tuple[float, float, bool]]:
         """Return both ends of each number that a fault is made of, and whether it is whole."""
         sizes = [
-            (*each.size, _whole(FaultText.read(each.fault))) for each in self.faults if each.size
+            (*fault.size, _whole(FaultText.read(fault.fault)))
+            for fault in self.faults
+            if fault.size
         ]
         times = [(*ends, True) for ends in (self.onset, self.duration) if ends]
         return [*sizes, *times, *([(*self.correlation, False)] if self.correlation else [])]
@@ -67,20 +69,20 @@ class Bounds(Frozen, allow_inf_nan=False):
         """Return the fault at a point of the unit cube, which has a dimension for each range."""
         spread = zip(self.ranges(), point, strict=True)
         numbers = [_between(*ends, share) for ends, share in spread]
-        texts = [FaultText.read(each.fault) for each in self.faults]
+        texts = [FaultText.read(fault.fault) for fault in self.faults]
         sizes, others = numbers[: len(texts)], iter(numbers[len(texts) :])
         when = {"onset": next(others)} if self.onset else {}
         when |= {"for": next(others)} if self.duration else {}
         # Errors of one cause with the loadings a and b have the correlation a * b.
         correlation, drawn = next(others, 0.0), [text for text in texts if is_drawn(text)]
-        made: list[str] = []
+        parts: list[str] = []
         for text, size in zip(texts, sizes, strict=True):
             options = {**text.options, **{key: f"{steps:g}" for key, steps in when.items()}}
             if len(drawn) > 1 and text in drawn:
                 side = math.copysign(1.0, correlation) if text is drawn[-1] else 1.0
                 options["loading"] = f"{side * math.sqrt(abs(correlation)):.4g}"
-            made.append(str(replace(text, sizes=(f"{size:.10g}",), options=options)))
-        return JOINED.join(made)
+            parts.append(str(replace(text, sizes=(f"{size:.10g}",), options=options)))
+        return JOINED.join(parts)
 
 
 def read_bounds(path: Path, system: System) -> Bounds:
@@ -89,34 +91,34 @@ def read_bounds(path: Path, system: System) -> Bounds:
     `UserError` for one that cannot be read, or holds what cannot be searched.
     """
     try:
-        found = read_yaml(contents(path)).fill(Bounds)
+        bounds = read_yaml(contents(path)).fill(Bounds)
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror}): give a file.") from None
     except Misread as error:
         raise UserError(f"{error.at(path)}.") from None
     try:
-        found = found.model_copy(
-            update={"faults": tuple(_spelt(system, each, found) for each in found.faults)}
+        bounds = bounds.model_copy(
+            update={"faults": tuple(_spelt(system, fault, bounds) for fault in bounds.faults)}
         )
-        _check(found)
+        _check(bounds)
     except UserError as error:
         raise UserError(f"{path}: {error}") from None
-    return found
+    return bounds
 
 
-def _spelt(system: System, given: BoundedFault, bounds: Bounds) -> BoundedFault:
+def _spelt(system: System, fault: BoundedFault, bounds: Bounds) -> BoundedFault:
     """Return a fault with its kind and sizes; `UserError` for one that has none."""
-    text, said = FaultText.read(given.fault), f"fault '{given.fault}'"
+    text, label = FaultText.read(fault.fault), f"fault '{fault.fault}'"
     if text.sizes or text.consumers:
-        raise UserError(f"{said}: the search sets size and place: leave '=' and '@' out.")
+        raise UserError(f"{label}: the search sets size and place: leave '=' and '@' out.")
     for key, ends in (("onset", bounds.onset), ("for", bounds.duration)):
         if ends is not None and {key, f"{key}_s"} & set(text.options):
-            raise UserError(f"{said}: '{key}' has a range already; drop one.")
+            raise UserError(f"{label}: '{key}' has a range already; drop one.")
     if text.kind is None and text.name not in system.fault_presets:
         text = replace(text, kind="scale")
     if text.kind in KINDS and not KINDS[text.kind].value_field:
-        raise UserError(f"{said}: {text.kind} has no size that could be searched.")
-    size = given.size or _declared(system, text)
+        raise UserError(f"{label}: {text.kind} has no size that could be searched.")
+    size = fault.size or _declared(system, text)
     for end in size:
         system.fault(
             str(text.at(f"{_between(end, end, text.kind in KINDS and _whole(text), 0.0):.10g}"))
@@ -149,7 +151,7 @@ def _declared(system: System, text: FaultText) -> tuple[float, float]:
 
 
 def _check(bounds: Bounds) -> None:
-    drawn = sum(is_drawn(FaultText.read(each.fault)) for each in bounds.faults)
+    drawn = sum(is_drawn(FaultText.read(fault.fault)) for fault in bounds.faults)
     if ends := bounds.correlation:
         least = -1.0 if drawn == 2 else 0.0
         if drawn < 2:

@@ -15,7 +15,7 @@ _WORSE = "Another fault within the bounds may be worse: none but this one was pu
 def best(tried: Sequence[Tried]) -> str:
     """Return the fault to be put to the test, the first of equals; empty where none showed that
     the isolated choice loses anything."""
-    chosen = max(tried, key=lambda each: each.regret_pp)
+    chosen = max(tried, key=lambda candidate: candidate.regret_pp)
     return chosen.fault if chosen.regret_pp > 0.0 else ""
 
 
@@ -28,7 +28,7 @@ def conclude(
     findings: Sequence[str] = (),
 ) -> SearchRecord:
     """Return the record of a search; nothing is decided but what its confirming audit decides."""
-    found = (*findings, *(confirmed.findings if confirmed else ()))
+    all_findings = (*findings, *(confirmed.findings if confirmed else ()))
     return SearchRecord(
         question=question,
         tried=tuple(tried),
@@ -38,12 +38,12 @@ def conclude(
         failed=failed,
         headline=_headline(question, confirmed),
         sentences=tuple(_sentences(question, tried, confirmed)),
-        findings=tuple(dict.fromkeys(found)),
+        findings=tuple(dict.fromkeys(all_findings)),
     )
 
 
-def _headline(asked: SearchQuestion, confirmed: DecisionRecord | None) -> str:
-    alone = where(asked.bounds.isolated)
+def _headline(question: SearchQuestion, confirmed: DecisionRecord | None) -> str:
+    alone = where(question.bounds.isolated)
     if confirmed is None:
         return f"No reversal was confirmed: no fault that was tried showed one {alone}."
     if confirmed.few:
@@ -51,48 +51,51 @@ def _headline(asked: SearchQuestion, confirmed: DecisionRecord | None) -> str:
             f"No reversal was confirmed: {counted(confirmed.scenes, 'scene')} cannot decide, and "
             f"{confirmed.scenes_needed} are the least."
         )
-    turned, fault = _turned(asked, confirmed), confirmed.question.fault
+    turned, fault = _turned(question, confirmed), confirmed.question.fault
     if turned is None:
-        said, short = f"No reversal was confirmed {alone}, at {fault}.", "No reversal was confirmed"
-        return said if len(said.split()) <= MOST_WORDS else f"{short} {alone}."
+        text, short = f"No reversal was confirmed {alone}, at {fault}.", "No reversal was confirmed"
+        return text if len(text.split()) <= MOST_WORDS else f"{short} {alone}."
     sides = (
         f"{confirmed.winner(turned.sign)} is ahead {alone}, {confirmed.winner(-turned.sign)} with "
         "the fault shared."
     )
-    said = f"A reversal was confirmed at {fault}: {sides}"
-    return said if len(said.split()) <= MOST_WORDS else f"A reversal was confirmed: {sides}"
+    text = f"A reversal was confirmed at {fault}: {sides}"
+    return text if len(text.split()) <= MOST_WORDS else f"A reversal was confirmed: {sides}"
 
 
 def _sentences(
-    asked: SearchQuestion, tried: Sequence[Tried], confirmed: DecisionRecord | None
+    question: SearchQuestion, tried: Sequence[Tried], confirmed: DecisionRecord | None
 ) -> Iterator[str]:
-    isolated = asked.bounds.isolated
+    isolated = question.bounds.isolated
     yield (
         f"{counted(len(tried), 'fault')} {'was' if len(tried) == 1 else 'were'} tried in "
-        f"{counted(asked.finding, 'scene')} that find; the seed of the search was "
-        f"{asked.search_seed}. What those scenes show is no evidence: it serves to choose a fault."
+        f"{counted(question.finding, 'scene')} that find; the seed of the search was "
+        f"{question.search_seed}. What those scenes show is no evidence: it serves to choose "
+        "a fault."
     )
     if confirmed is None:
         yield (
             "In those scenes no choice by the isolated fault lost anything under the shared one. "
-            f"So nothing was put to the test: the {counted(asked.confirming, 'scene')} that "
+            f"So nothing was put to the test: the {counted(question.confirming, 'scene')} that "
             "confirm were not run."
         )
         yield _OPEN
         return
     yield (
         f"One was chosen, {confirmed.question.fault}, and audited in "
-        f"{counted(asked.confirming, 'scene')} that confirm, which had no part in the choice. "
+        f"{counted(question.confirming, 'scene')} that confirm, which had no part in the choice. "
         "No other was audited, so nothing has to be corrected for the search; within the audit "
         "all contrasts are, as in any."
     )
     yield from (phrases.change(confirmed, e) for e in confirmed.changes if e.isolated == isolated)
     yield f"The audit says: {confirmed.headline}"
     yield from phrases.reach(confirmed)
-    yield _WORSE if _turned(asked, confirmed) else _OPEN
+    yield _WORSE if _turned(question, confirmed) else _OPEN
 
 
-def _turned(asked: SearchQuestion, confirmed: DecisionRecord) -> Effect | None:
+def _turned(question: SearchQuestion, confirmed: DecisionRecord) -> Effect | None:
     """Return the isolated effect that sharing reverses, where that is decided."""
-    found = (each for each in reversed_at(confirmed) if each.path == asked.bounds.isolated)
-    return next(found, None)
+    effects = (
+        effect for effect in reversed_at(confirmed) if effect.path == question.bounds.isolated
+    )
+    return next(effects, None)

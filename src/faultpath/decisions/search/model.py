@@ -8,7 +8,7 @@ from faultpath.decisions.search.bounds import Bounds
 
 
 class SearchQuestion(Frozen, allow_inf_nan=False):
-    """What was searched, as the record keeps it."""
+    """Question of a search, as the record keeps it."""
 
     system: str
     options: dict[str, str]
@@ -36,7 +36,7 @@ class Tried(Result, allow_inf_nan=False):
     isolated_pp: float
     shared_pp: float
     regret_pp: float
-    """What the isolated choice loses under the shared fault, as far as it would be made."""
+    """Loss of the isolated choice under the shared fault, as far as it would be made."""
 
 
 class SearchRecord(Result, allow_inf_nan=False):
@@ -51,7 +51,7 @@ class SearchRecord(Result, allow_inf_nan=False):
     confirmation: str
     """Folder of the confirming audit within that of the search; empty without one."""
     confirmed: DecisionRecord | None
-    """Of the confirming audit, whose scenes had no part in the choice."""
+    """Record of the confirming audit, whose scenes had no part in the choice."""
     failed: int
     """Trials that failed, in all scenes."""
     headline: str

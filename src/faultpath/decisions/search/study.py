@@ -1,4 +1,4 @@
-"""What a search asks, and the trials in which a fault is tried, or put to the test."""
+"""Question of a search, and the trials in which a fault is tried, or put to the test."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -26,7 +26,7 @@ class SearchPlan:
     """A question, and the trials of any fault within its bounds."""
 
     question: SearchQuestion
-    asked: questions.SearchQuestion
+    request: questions.SearchQuestion
     system: System
     spec: SystemSpec
     library: Library = field(repr=False)
@@ -36,30 +36,30 @@ class SearchPlan:
     def study(self, faults: Sequence[str]) -> Study:
         """Return the study of faults in the scenes that find: both variants, with each at the
         isolated module alone and with it shared. An arm that it cannot reach runs once for all."""
-        asked, rows = self.question, list[Row]()
-        variants = two_variants(self.system, self.asked)
+        question, rows = self.question, list[Row]()
+        variants = two_variants(self.system, self.request)
         for text in faults:
             paths = faults_by_path(self.system, fault_of(self.system, text), variants)
-            for path in (asked.bounds.isolated, SHARED):
+            for path in (question.bounds.isolated, SHARED):
                 for name, parts in paths[path].items():
-                    for seed in asked.seeds:
+                    for seed in question.seeds:
                         arm = Arm(variant=name, faults=parts, seed=seed)
                         at = f"{path}: {text}"
                         rows.append(Row(variant=name, path=at, seed=seed, arm=arm))
         return Study(
-            name=f"{self.spec.name}-search-{asked.repair}-vs-{asked.baseline}",
+            name=f"{self.spec.name}-search-{question.repair}-vs-{question.baseline}",
             system=self.spec,
-            library=asked.library,
+            library=question.library,
             scenes=self.finding,
             rows=tuple(rows),
         )
 
     def tried(self, fault: str, table: OutcomeTable) -> Tried:
         """Return what the scenes that find show of a fault; nothing without a pair of trials."""
-        asked, ahead = self.question, list[Floats]()
-        for path in (asked.bounds.isolated, SHARED):
+        question, ahead = self.question, list[Floats]()
+        for path in (question.bounds.isolated, SHARED):
             at = f"{path}: {fault}"
-            pairs = pair(table, Side(asked.repair, at), Side(asked.baseline, at))
+            pairs = pair(table, Side(question.repair, at), Side(question.baseline, at))
             difference = pairs.first.success.astype(np.float64) - pairs.second.success
             ahead.append(difference.mean(axis=1) if len(pairs.scenes) else np.zeros(1))
         isolated, shared = ahead
@@ -72,9 +72,9 @@ class SearchPlan:
 
     def audit(self, fault: str) -> Audit:
         """Return the audit of a fault in the scenes that confirm."""
-        scenes = tuple(each for each in self.library.scenes if each.id in self.confirming)
-        asked = self.asked.audit_of(fault).model_copy(update={"scenes": None})
-        return plan_audit(self.system, self.spec, asked, replace(self.library, scenes=scenes))
+        scenes = tuple(scene for scene in self.library.scenes if scene.id in self.confirming)
+        question = self.request.audit_of(fault).model_copy(update={"scenes": None})
+        return plan_audit(self.system, self.spec, question, replace(self.library, scenes=scenes))
 
 
 def regret(isolated: Floats, shared: Floats) -> float:
@@ -112,38 +112,38 @@ def halves(library: Library, count: int | None) -> tuple[tuple[str, ...], tuple[
 
 
 def plan_search(
-    system: System, spec: SystemSpec, asked: questions.SearchQuestion, library: Library
+    system: System, spec: SystemSpec, request: questions.SearchQuestion, library: Library
 ) -> SearchPlan:
     """Lay out a search. `UserError` for anything that cannot be run or means nothing."""
-    variants = two_variants(system, asked)
-    bounds = read_bounds(asked.within, system)
+    variants = two_variants(system, request)
+    bounds = read_bounds(request.within, system)
     for corner in (0.0, 1.0):
         fault = fault_of(system, bounds.fault([corner] * len(bounds.ranges())))
         paths = faults_by_path(system, fault, variants)
         alone = [path for path in paths if path not in (CORRECT, SHARED)]
         if SHARED not in paths:
             raise UserError(
-                f"{asked.within}: only the {listed(alone)} gets this fault, so that nothing is "
+                f"{request.within}: only the {listed(alone)} gets this fault, so that nothing is "
                 "shared: name a channel that several modules read."
             )
         if bounds.isolated not in alone:
             raise UserError(
-                f"{asked.within}: isolated: '{bounds.isolated}' is no module that gets the fault: "
-                f"name one of {listed(alone)}."
+                f"{request.within}: isolated: '{bounds.isolated}' is no module that gets the "
+                f"fault: name one of {listed(alone)}."
             )
-    finding, confirming = halves(library, asked.scenes)
+    finding, confirming = halves(library, request.scenes)
     question = SearchQuestion(
         system=spec.name,
         options=spec.options,
-        baseline=asked.baseline,
-        repair=asked.repair,
+        baseline=request.baseline,
+        repair=request.repair,
         bounds=bounds,
-        candidates=asked.candidates,
-        search_seed=asked.search_seed,
+        candidates=request.candidates,
+        search_seed=request.search_seed,
         library=library.name,
         library_hash=library.content_hash,
         finding=len(finding),
         confirming=len(confirming),
-        seeds=asked.seeds,
+        seeds=request.seeds,
     )
-    return SearchPlan(question, asked, system, spec, library, finding, confirming)
+    return SearchPlan(question, request, system, spec, library, finding, confirming)

@@ -24,13 +24,13 @@ def conclude(
     findings: Sequence[str] = (),
 ) -> SensitivityRecord:
     """Return the record of `values` `[rows of the design]`, a mean over `scenes` each."""
-    names = [each.name for each in question.groups]
+    names = [group.name for group in question.groups]
     level = 1.0 - ALPHA / (2 * len(names))  # two indices a group
-    found = indices(values, len(names), level, question.design_seed)
+    estimates = indices(values, len(names), level, question.design_seed)
     every: tuple[Indices, ...] = ()
-    if found is not None:
-        firsts = zip(found.first.tolist(), found.first_width.tolist(), strict=True)
-        totals = zip(found.total.tolist(), found.total_width.tolist(), strict=True)
+    if estimates is not None:
+        firsts = zip(estimates.first.tolist(), estimates.first_width.tolist(), strict=True)
+        totals = zip(estimates.total.tolist(), estimates.total_width.tolist(), strict=True)
         every = tuple(
             Indices(group=name, first=_index(*first), total=_index(*total))
             for name, first, total in zip(names, firsts, totals, strict=True)
@@ -44,8 +44,8 @@ def conclude(
         failed=failed,
         findings=tuple(findings),
     )
-    said = {"headline": headline(record), "sentences": tuple(sentences(record))}
-    return record.model_copy(update=said)
+    texts = {"headline": headline(record), "sentences": tuple(sentences(record))}
+    return record.model_copy(update=texts)
 
 
 def _index(value: float, width: float) -> Index:
@@ -54,47 +54,48 @@ def _index(value: float, width: float) -> Index:
 
 def foremost(record: SensitivityRecord) -> str:
     """Return the group whose first-order index is decided to be the largest; empty for none."""
-    for each in record.indices:
-        others = [other.first.high for other in record.indices if other is not each]
-        if each.first.counts and each.first.low > max(others):
-            return each.group
+    for index in record.indices:
+        others = [other.first.high for other in record.indices if other is not index]
+        if index.first.counts and index.first.low > max(others):
+            return index.group
     return ""
 
 
 def headline(record: SensitivityRecord) -> str:
     """Return which source explains most, as far as that is decided in the scenes that were run."""
-    asked = record.question
+    question = record.question
     if not record.indices:
         return (
-            f"{capital(asked.said)} hardly varies with these errors: there is nothing to explain."
+            f"{capital(question.said)} hardly varies with these errors: there is nothing to "
+            "explain."
         )
     if first := foremost(record):
         where = counted(record.scenes, "scene")
         return f"Alone, {first} explains more than any other source in the {where} that ran."
-    alone = [each.group for each in record.indices if each.first.counts]
+    alone = [index.group for index in record.indices if index.first.counts]
     if len(alone) == 1:
         return f"{alone[0]} explains a share by itself; whether it is the largest is not decided."
     if alone:
         return f"{series(alone)} each explain a share; which explains most is not decided."
-    if matter := [each.group for each in record.indices if each.total.counts]:
+    if matter := [index.group for index in record.indices if index.total.counts]:
         return f"{series(matter)} matter, but no share of one alone is decided."
     return "Nothing is decided: of no source is it shown that its error matters."
 
 
 def sentences(record: SensitivityRecord) -> Iterator[str]:
     """Say which indices leave out zero, whose order is decided, and what is taken for granted."""
-    asked = record.question
-    for each in record.indices:
-        told: list[str] = []
-        if each.first.counts:
-            told.append(f"alone it explains {_percent(each.first)} of the variance")
-        if each.total.counts:
-            told.append(f"with all that it does together with others {_percent(each.total)}")
-        if each.total.counts and each.total.low > each.first.high:
-            told.append("part of it acts only together with others")
-        if told:
-            yield f"{each.group}: {'; '.join(told)}."
-    for kind, said in (("first", "alone"), ("total", "with others")):
+    question = record.question
+    for index in record.indices:
+        clauses: list[str] = []
+        if index.first.counts:
+            clauses.append(f"alone it explains {_percent(index.first)} of the variance")
+        if index.total.counts:
+            clauses.append(f"with all that it does together with others {_percent(index.total)}")
+        if index.total.counts and index.total.low > index.first.high:
+            clauses.append("part of it acts only together with others")
+        if clauses:
+            yield f"{index.group}: {'; '.join(clauses)}."
+    for kind, phrase in (("first", "alone"), ("total", "with others")):
         ordered = [
             f"{one.group} more than {other.group}"
             for one in record.indices
@@ -102,12 +103,12 @@ def sentences(record: SensitivityRecord) -> Iterator[str]:
             if getattr(one, kind).counts and getattr(one, kind).low > getattr(other, kind).high
         ]
         if ordered:
-            yield f"Decided of what they explain {said}: {series(ordered)}."
+            yield f"Decided of what they explain {phrase}: {series(ordered)}."
     if record.indices and (open_ := [e.group for e in record.indices if not e.total.counts]):
         yield f"Of {series(open_)} nothing is shown; that is no proof that it does not matter."
-    drawn = np.array(record.values).reshape(-1, len(asked.groups) + 2)[:, [0, -1]]
+    drawn = np.array(record.values).reshape(-1, len(question.groups) + 2)[:, [0, -1]]
     yield (
-        f"Under these errors {asked.said} is {plain(float(drawn.mean()), 2)} {asked.unit} on "
+        f"Under these errors {question.said} is {plain(float(drawn.mean()), 2)} {question.unit} on "
         f"average, with a standard deviation of {plain(float(drawn.std()), 2)}."
     )
     yield (
@@ -116,11 +117,11 @@ def sentences(record: SensitivityRecord) -> Iterator[str]:
     )
     yield (
         f"All of it holds for the {counted(record.scenes, 'scene')} that were run and for errors "
-        f"as large as declared; the {2 * len(asked.groups)} intervals hold at once in about "
+        f"as large as declared; the {2 * len(question.groups)} intervals hold at once in about "
         f"{100 * (1 - ALPHA):g} % of such designs."
     )
-    if asked.left_out:
-        yield f"No error is declared of {series(asked.left_out)}: read without error throughout."
+    if question.left_out:
+        yield f"No error is declared of {series(question.left_out)}: read without error throughout."
 
 
 def _percent(index: Index) -> str:

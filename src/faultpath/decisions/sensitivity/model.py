@@ -6,7 +6,7 @@ from faultpath.core.results import Frozen, Result
 from faultpath.interface import Uncertainty
 
 _NOTHING = 0.005
-"""Of the variance."""
+"""Share of the variance that counts as nothing."""
 
 
 class Part(Frozen, allow_inf_nan=False):
@@ -28,7 +28,7 @@ class Uncertain(Frozen):
 
 
 class SensitivityQuestion(Frozen, allow_inf_nan=False):
-    """What was varied, as the record keeps it."""
+    """Question of a sensitivity analysis, as the record keeps it."""
 
     system: str
     options: dict[str, str]
@@ -39,7 +39,7 @@ class SensitivityQuestion(Frozen, allow_inf_nan=False):
     metric: str
     """Empty for success."""
     said: str
-    """What is explained, in words."""
+    """Name of the outcome that is explained, in words."""
     unit: str
     points: int
     design_seed: int
@@ -63,13 +63,13 @@ class Index(Frozen):
 
 
 class Indices(Result):
-    """What a group contributes."""
+    """Contribution of a group."""
 
     group: str
     first: Index
-    """Of the group alone."""
+    """Index of the group alone."""
     total: Index
-    """Of the group alone, and with others."""
+    """Index of the group, alone and with others."""
 
 
 class SensitivityRecord(Result, allow_inf_nan=False):
@@ -78,13 +78,13 @@ class SensitivityRecord(Result, allow_inf_nan=False):
     format: Literal[1] = 1
     question: SensitivityQuestion
     values: tuple[float, ...]
-    """What came out at each row of the design: the mean over scenes and seeds."""
+    """Outcome at each row of the design: the mean over scenes and seeds."""
     scenes: int
     """In which every trial of the design ran to its end."""
     indices: tuple[Indices, ...]
     """In the order of the question; empty where nothing varies."""
     level: float
-    """Of each interval, such that all of them hold at once in about 95 % of analyses."""
+    """Level of each interval, such that all hold at once in about 95 % of analyses."""
     failed: int
     headline: str = ""
     sentences: tuple[str, ...] = ()

@@ -31,7 +31,7 @@ from faultpath.trials import (
 from faultpath.trials.sensitivity_question import SensitivityQuestion as Asked
 
 _MOST_COMPONENTS = 16
-"""Of a vector whose components err each by itself."""
+"""Most components of a vector whose components err each by itself."""
 _EDGE = 1e-9
 """Normal errors stop about six standard deviations out."""
 
@@ -49,16 +49,16 @@ class SensitivityPlan:
 
         `UserError` where no scene is left.
         """
-        asked = self.question
-        found: list[list[list[float]]] = []
+        question = self.question
+        trials: list[list[list[float]]] = []
         for path in dict.fromkeys(row.path for row in self.study.rows):
-            arms = [table.arm(asked.variant, path, seed) for seed in asked.seeds]
-            found.append([[_value(row.outcome, asked.metric) for row in arm] for arm in arms])
-        every = np.array(found).mean(axis=1)  # rows of the design by scenes
+            arms = [table.arm(question.variant, path, seed) for seed in question.seeds]
+            trials.append([[_value(row.outcome, question.metric) for row in arm] for arm in arms])
+        every = np.array(trials).mean(axis=1)  # rows of the design by scenes
         sound = np.isfinite(every).all(axis=0)
         if not sound.any():
             raise UserError(
-                f"no scene is left in which every trial has {asked.said}: see what failed, or "
+                f"no scene is left in which every trial has {question.said}: see what failed, or "
                 "leave --metric out."
             )
         return every[:, sound].mean(axis=1), int(sound.sum())
@@ -74,56 +74,56 @@ def _value(outcome: Outcome, metric: str) -> float:
 
 
 def plan_sensitivity(
-    system: System, spec: SystemSpec, asked: Asked, library: Library
+    system: System, spec: SystemSpec, request: Asked, library: Library
 ) -> SensitivityPlan:
     """Lay out the design. `UserError` for anything that cannot be run or means nothing."""
-    if asked.variant not in system.variants:
-        raise UserError(f"{system.name}: {unknown('variant', asked.variant, system.variants)}")
-    if asked.metric and asked.metric not in system.metrics:
-        raise UserError(f"{system.name}: {unknown('metric', asked.metric, system.metrics)}")
-    variant = system.variants[asked.variant]
-    groups, left_out = uncertain(system, variant, asked.fault)
+    if request.variant not in system.variants:
+        raise UserError(f"{system.name}: {unknown('variant', request.variant, system.variants)}")
+    if request.metric and request.metric not in system.metrics:
+        raise UserError(f"{system.name}: {unknown('metric', request.metric, system.metrics)}")
+    variant = system.variants[request.variant]
+    groups, left_out = uncertain(system, variant, request.fault)
     if len(groups) < 2:
-        names = listed(each.name for each in groups)
+        names = listed(group.name for group in groups)
         raise UserError(
             f"{system.name}: two groups of sources that err are the least to compare, and "
-            f"{asked.variant} has {names}; {listed(left_out)} declare no error: declare it in the "
-            "interface, or give the largest error with --fault."
+            f"{request.variant} has {names}; {listed(left_out)} declare no error: declare it in "
+            "the interface, or give the largest error with --fault."
         )
-    scenes = scenes_of(library, asked.scenes)
-    rows = design([each.numbers for each in groups], asked.points, asked.design_seed)
+    scenes = scenes_of(library, request.scenes)
+    rows = design([group.numbers for group in groups], request.points, request.design_seed)
     arms = [
         Row(
-            variant=asked.variant,
+            variant=request.variant,
             path=f"row {number}",
             seed=seed,
-            arm=Arm(variant=asked.variant, faults=faults, seed=seed),
+            arm=Arm(variant=request.variant, faults=faults, seed=seed),
         )
         for number, drawn in enumerate(rows)
         for faults in [tuple(faults_at(system, variant, groups, drawn))]
-        for seed in asked.seeds
+        for seed in request.seeds
     ]
-    metric = system.metrics[asked.metric] if asked.metric else None
+    metric = system.metrics[request.metric] if request.metric else None
     question = SensitivityQuestion(
         system=spec.name,
         options=spec.options,
-        variant=asked.variant,
+        variant=request.variant,
         groups=groups,
         left_out=left_out,
-        metric=asked.metric,
-        said=metric.said(asked.metric) if metric else "success",
+        metric=request.metric,
+        said=metric.said(request.metric) if metric else "success",
         unit=metric.unit if metric else "%",
-        points=asked.points,
-        design_seed=asked.design_seed,
+        points=request.points,
+        design_seed=request.design_seed,
         library=library.name,
         library_hash=library.content_hash,
         n_scenes=len(scenes),
-        seeds=asked.seeds,
+        seeds=request.seeds,
     )
     study = Study(
-        name=f"{spec.name}-sensitivity-{asked.variant}",
+        name=f"{spec.name}-sensitivity-{request.variant}",
         system=spec,
-        library=asked.library,
+        library=request.library,
         scenes=scenes,
         rows=tuple(arms),
     )
@@ -131,12 +131,12 @@ def plan_sensitivity(
 
 
 def uncertain(
-    system: System, variant: Variant, given: Sequence[str]
+    system: System, variant: Variant, texts: Sequence[str]
 ) -> tuple[tuple[Uncertain, ...], tuple[str, ...]]:
     """Return the groups of sources that err, and the sources read that declare no error.
 
-    A fault `given` takes the place of what its channel's source, or its group, declares: its size
-    is the largest error, of either sign. `UserError` for one that says something else.
+    A fault of `texts` takes the place of what its channel's source, or its group, declares: its
+    size is the largest error, of either sign. `UserError` for one that says something else.
     """
     interface = system.interface
     members: dict[str, list[tuple[Source, tuple[str, ...]]]] = {}
@@ -150,13 +150,13 @@ def uncertain(
         if channels and source.provenance not in (Provenance.INTERNAL, Provenance.PRIVILEGED):
             name = source.correlation_group or source.name
             members.setdefault(name, []).append((source, channels))
-    sizes = dict(_given(text) for text in given)
+    sizes = dict(_given(text) for text in texts)
     unread = {*sizes}
     groups, left_out = list[Uncertain](), list[str]()
     for name, sources in members.items():
         parts: list[Part] = []
         for source, channels in sources:
-            named = [each for each in (*channels, source.name, name) if each in sizes]
+            named = [key for key in (*channels, source.name, name) if key in sizes]
             unread -= {*named}
             error = sizes[named[0]] if named else source.uncertainty
             if error is not None and error.expected_std > 0.0:
@@ -171,21 +171,24 @@ def uncertain(
             )
     if unread:
         known = [
-            each for sources in members.values() for _, channels in sources for each in channels
+            channel
+            for sources in members.values()
+            for _, channels in sources
+            for channel in channels
         ]
         raise UserError(f"--fault: {unknown('channel', min(unread), [*known, *members])}")
     return tuple(groups), tuple(left_out)
 
 
 def _given(text: str) -> tuple[str, Uncertainty]:
-    asked = FaultText.read(text)
+    parsed = FaultText.read(text)
     try:
-        (size,) = map(float, asked.sizes)
-        if asked.kind not in ("scale", "offset") or asked.consumers or asked.options:
+        (size,) = map(float, parsed.sizes)
+        if parsed.kind not in ("scale", "offset") or parsed.consumers or parsed.options:
             raise ValueError
-        relative = asked.kind == "scale"
+        relative = parsed.kind == "scale"
         half_range = abs(size - 1.0) if relative else abs(size)
-        return asked.name, Uncertainty(half_range=half_range, relative=relative)
+        return parsed.name, Uncertainty(half_range=half_range, relative=relative)
     except ValueError:
         raise UserError(
             f"--fault {text}: give the largest error of a source, as `gain:scale=1.1` for a tenth "
@@ -206,7 +209,7 @@ def faults_at(
                 sizes = (2.0 * shares - 1.0) * error.half_range
             else:
                 sizes = ndtri(np.clip(shares, _EDGE, 1.0 - _EDGE)) * error.expected_std
-            numbers = tuple(float(each) for each in sizes + (1.0 if error.relative else 0.0))
+            numbers = tuple(float(size) for size in sizes + (1.0 if error.relative else 0.0))
             value = numbers if group.numbers > 1 else numbers[0]
             act = Scale(factor=value) if error.relative else Offset(by=value)
             for channel in part.channels:

@@ -17,12 +17,12 @@ _MARKDOWN = str.maketrans(
     {c: f"\\{c}" for c in r"\`*_[]|#$~"} | {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
 )
 _OPENING = re.compile(r"(?:[-+]|\d+[.)])(?= |$)|(?:-+|=+)$")
-"""What opens a list, or makes a heading of the line before."""
+"""Text that opens a list, or makes a heading of the line before."""
 
 
 def visible(text: str) -> str:
     """Return text in which what cannot be seen stands by its number."""
-    return _UNSEEN.sub(lambda found: f"[U+{ord(found[0]):04X}]", text)
+    return _UNSEEN.sub(lambda match: f"[U+{ord(match[0]):04X}]", text)
 
 
 def html(text: str) -> str:

@@ -28,14 +28,14 @@ def html(table: Table, style: str = "numbers", *, caption: bool = True) -> str:
 
 
 def _entry(entry: Entry) -> str:
-    found = " found" if entry.detected else ""
+    mark = " found" if entry.detected else ""
     alarm = ' class="alarm"' if entry.tone == "bad" else ""
     theirs = ""
     if entry.published:
         aloud = '<span class="aloud">paper </span>'
         theirs = f'<span class="theirs">{aloud}{escape(entry.published)}</span>'
     text = f"{escape(entry.text)}{_aside(entry.aside)}"
-    return f'<td{alarm}><span class="ours{found}">{text}</span>{theirs}</td>'
+    return f'<td{alarm}><span class="ours{mark}">{text}</span>{theirs}</td>'
 
 
 def _aside(text: str) -> str:

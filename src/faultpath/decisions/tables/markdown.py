@@ -31,7 +31,7 @@ def _entry(entry: Entry) -> str:
     if entry.detected or entry.tone == "bad":
         text = f"**{text}**"
     behind = (entry.aside, entry.published)
-    return " ".join([text, *(f"({escape(each)})" for each in behind if each)])
+    return " ".join([text, *(f"({escape(part)})" for part in behind if part)])
 
 
 def _code(name: str) -> str:

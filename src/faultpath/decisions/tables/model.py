@@ -22,7 +22,7 @@ class _Frozen(BaseModel):
 
 
 class Entry(_Frozen):
-    """What stands where a line and a column meet."""
+    """Entry of a table, where a line and a column meet."""
 
     text: str
     """Ours, as printed."""
@@ -31,7 +31,7 @@ class Entry(_Frozen):
     detected: bool = False
     """Whether it is a detected difference, printed in bold."""
     aside: str = ""
-    """What qualifies it, such as `ceiling`: stands behind it in parentheses."""
+    """Qualification, such as `ceiling`: stands behind it in parentheses."""
     tone: Tone = ""
     name: bool = False
     """Whether it is a name or a digest, set as code where there is such a type."""
@@ -43,7 +43,7 @@ class Line(_Frozen):
     label: str
     entries: tuple[Entry, ...] = ()
     aside: str = ""
-    """What qualifies the label."""
+    """Qualification of the label."""
     name: bool = False
     """Whether the label is the name of something, set as code."""
 
@@ -58,7 +58,7 @@ class Table(_Frozen):
     """Headings of the entries."""
     lines: tuple[Line, ...]
     notes: tuple[str, ...] = ()
-    """What a reader has to know: units, seeds, scenes, what differs from the paper's."""
+    """Remarks for the reader: units, seeds, scenes, what differs from the paper's."""
     corner: str = ""
     """Heading of the labels."""
     words: tuple[str, ...] = ()
@@ -68,26 +68,26 @@ class Table(_Frozen):
         """Return what the marks of the entries mean, where there are any."""
         entries = [entry for line in self.lines for entry in line.entries]
         marks = (
-            ("In parentheses: the paper's figures.", any(each.published for each in entries)),
-            ("Bold: a detected difference.", any(each.detected for each in entries)),
+            ("In parentheses: the paper's figures.", any(entry.published for entry in entries)),
+            ("Bold: a detected difference.", any(entry.detected for entry in entries)),
         )
-        said = " ".join(words for words, there in marks if there)
-        return (said,) if said else ()
+        text = " ".join(words for words, there in marks if there)
+        return (text,) if text else ()
 
     def blocks(self) -> Iterator[tuple[str, tuple[Line, ...]]]:
         """Yield the lines cut at the inner headings; the first heading may be empty."""
         heading, lines = "", list[Line]()
-        for each in self.lines:
-            if each.entries:
-                lines.append(each)
+        for row in self.lines:
+            if row.entries:
+                lines.append(row)
                 continue
             if heading or lines:
                 yield heading, tuple(lines)
-            heading, lines = each.label, []
+            heading, lines = row.label, []
         yield heading, tuple(lines)
 
 
 def line(label: str, *entries: str | Entry, name: bool = False, aside: str = "") -> Line:
     """Return a line whose plain texts are entries."""
-    made = tuple(Entry(text=each) if isinstance(each, str) else each for each in entries)
-    return Line(label=label, entries=made, name=name, aside=aside)
+    cells = tuple(Entry(text=entry) if isinstance(entry, str) else entry for entry in entries)
+    return Line(label=label, entries=cells, name=name, aside=aside)

@@ -30,11 +30,11 @@ def drawn(
     from rich.text import Text
 
     title = Text(table.title) if table.title else None
-    made = Drawn(
+    drawing = Drawn(
         title=title, title_justify="left", box=None, pad_edge=False, padding=apart or _apart(table)
     )
     # Columns of words give way first, else the labels, but never below their longest word.
-    made.add_column(
+    drawing.add_column(
         Text(table.corner),
         no_wrap=one_line and bool(table.words),
         min_width=_longest(word for line in table.lines for word in line.label.split()),
@@ -43,7 +43,7 @@ def drawn(
         words = column in table.words
         head = column if words or not one_line else _folded(column, index, table)
         side = "left" if words else "right"
-        made.add_column(Text(head), justify=side, no_wrap=one_line and not words)
+        drawing.add_column(Text(head), justify=side, no_wrap=one_line and not words)
     between = "\n" if _tall(table) else " "
     for line in table.lines:
         label = Text(line.label, "" if line.entries else "italic")
@@ -52,8 +52,8 @@ def drawn(
         cells = [_text(entry) for entry in line.entries]
         for cell in cells:
             cell.no_wrap, cell.overflow = one_line, "ellipsis" if one_line else None
-        made.add_row(label, *cells)
-    return made
+        drawing.add_row(label, *cells)
+    return drawing
 
 
 class Parted:
@@ -88,7 +88,7 @@ def _columns_within(width: int, table: Table) -> int:
         head = column if column in table.words else _folded(column, index, table)
         texts = [_text(line.entries[index]).plain for line in table.lines if line.entries]
         used += _apart(table)[1] + _longest(
-            each for text in (head, *texts) for each in text.splitlines()
+            line for text in (head, *texts) for line in text.splitlines()
         )
         if used > width:
             return index
