@@ -198,7 +198,9 @@ def check(made: DecisionRecord) -> None:
         assert ("Interaction detected" in said) == (not opposite and changes[change.isolated] != 0)
     turned = {c.isolated for c in made.changes if effects[c.isolated] * effects[c.shared] < 0}
     extreme = {e.path for e in made.effects if e.extreme}
-    assert ("Do not" in whole) == bool(turned - extreme and SHARED not in extreme)
+    correct = 0 if CORRECT in extreme else effects[CORRECT]
+    misleading = {path for path in turned - extreme if effects[path] != correct}
+    assert ("Do not" in whole) == bool(misleading and SHARED not in extreme)
     plain = answers(made)
     advised = "Ask which" in " ".join(plain.values())
     if made.scenes < made.scenes_needed:

@@ -106,7 +106,7 @@ def places(clause: str, paths: list[str]) -> Iterator[str]:
     alone = re.search(r"with only the ((?:\w+)(?: or the \w+)*) faulted", clause)
     yield from alone[1].split(" or the ") if alone else ()
     yield from (path for path in (CORRECT, SHARED) if path in paths and where(path) in clause)
-    if "with the fault shared" in clause:
+    if "with it shared" in clause:
         yield SHARED
 
 

@@ -32,6 +32,17 @@ def test_a_reversal_is_the_headline_and_names_who_is_ahead_where(isolated, share
     )
 
 
+def test_an_isolated_fault_that_leaves_the_ranking_of_correct_inputs_is_not_the_headline():
+    made = three((40, 2, 30), LOSS, GAIN)
+    (change,) = made.changes
+    assert change.turn == "reversal"
+    assert "Do not choose" not in made.headline
+    assert made.headline == (
+        f"{REPAIR} is ahead under the shared fault; {BASELINE} is ahead under correct inputs and "
+        "with only the observer faulted."
+    )
+
+
 def test_a_change_without_two_effects_is_an_interaction_and_no_advice():
     made = three((50, 0, 0), (50, 9, 9), LOSS)
     (change,) = made.changes

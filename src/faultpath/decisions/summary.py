@@ -38,7 +38,9 @@ def headline(record: DecisionRecord) -> str:
     if ends <= {0.0, 100.0} and not any(any((*e.wins, *e.losses)) for e in tested):
         every = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
         return f"No difference could show: in every scene both arms {' or '.join(every)}."
-    turned = reversed_at(record)
+    # Where correct inputs rank the arms as an isolated fault does, they are told together.
+    correct = [effect.sign for effect in tested if effect.path == CORRECT and effect.leads]
+    turned = [effect for effect in reversed_at(record) if effect.sign not in correct]
     text = ""
     for text in _turned(record, main, turned) if turned else _compared(record, main, tested):
         if len(text.split()) <= MOST_WORDS:
