@@ -50,10 +50,10 @@ def main() -> None:
             state = "stale" if stale(run) else "as it was flown"
             print(f"{name:36s}{run.wall_s:6.0f} s  {state}")
         return
-    checkout()
+    commit = checkout()
     for name in chosen:
         print(f"{name}: {' '.join(runs[name].command)}", flush=True)
-        fly(name, runs[name])
+        fly(name, runs[name], commit)
     if chosen:
         sys.exit(documents.main(["--images"]))
 
@@ -76,22 +76,24 @@ def stale(run: RunProvenance) -> bool:
     return STALE in flown_by(run, system, options)
 
 
-def checkout() -> None:
-    """Bring the checkout to the last commit; runs in it stay."""
+def checkout() -> str:
+    """Bring the checkout to the last commit, and return that; runs in it stay."""
     if not TREE.is_dir():
         TREE.parent.mkdir(exist_ok=True)
         subprocess.run(("git", "worktree", "prune"), cwd=ROOT, check=True)
         add = ("git", "worktree", "add", "--detach", str(TREE), "HEAD")
         subprocess.run(add, cwd=ROOT, check=True)
     head = subprocess.run(("git", "rev-parse", "HEAD"), cwd=ROOT, check=True, capture_output=True)
-    subprocess.run(("git", "checkout", "-q", head.stdout.decode().strip()), cwd=TREE, check=True)
+    commit = head.stdout.decode().strip()
+    subprocess.run(("git", "checkout", "-q", commit), cwd=TREE, check=True)
     for kernels in (ROOT / "quadrotor/src/faultpath_quadrotor/native").glob("kernels-*.so"):
         shutil.copy(kernels, TREE / kernels.relative_to(ROOT).parent)
+    return commit
 
 
-def fly(name: str, run: RunProvenance) -> None:
+def fly(name: str, run: RunProvenance, commit: str) -> None:
     """Fly a run and make it the reference."""
-    folder = Path("runs", name)
+    folder = Path("runs", f"{name}-{commit[:12]}")
     command = list(run.command[1:])
     command[command.index("--out") + 1] = str(folder)
     sources = (TREE / part / "src" for part in (".", "quadrotor", "paper"))
