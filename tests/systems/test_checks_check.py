@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from faultpath.cli.main import main
-from faultpath.core.errors import UserError
+from faultpath.core.errors import SystemMistake, UserError
 from faultpath.systems import ComposedSystem, FunctionPlant, writes
 from faultpath.systems.checks.check import check_system
+from faultpath.systems.checks.judging import _remedy
 from faultpath.systems.checks.names import other_names
 from faultpath.systems.checks.room import ENOUGH, diverged, successes, without_room
 from faultpath.trials import Outcome, Status, SystemSpec, load_system
@@ -71,6 +72,31 @@ def test_a_sound_system_passes(name, library):
     report = check(name if name == BROKEN else f"{ROOT / name}", library=library, **options)
     assert failed(report) == {}
     assert {each.status for each in report.checks} == {"passed"}
+
+
+def test_an_error_is_told_with_its_line_and_an_if_on_a_reading_with_what_to_take():
+    (said,) = failed(check(broken="raises"))["trials end"]
+    assert re.search(r"ValueError: no air \(\S*broken\.py, line \d+\); let every trial", said)
+    assert "np.where" in _remedy("ValueError: The truth value of an array is ambiguous")
+
+
+def test_a_source_that_nobody_writes_is_looked_up_where_a_module_reads_it():
+    @writes("push")
+    def controller(sped):
+        return sped
+
+    plant = FunctionPlant(
+        lambda rng: {"speed": 1.0},
+        lambda state, push, rng: state,
+        observes={"speed": "speed"},
+        action="push",
+        steps=2,
+        dt_s=0.1,
+        succeeded=lambda episode: True,
+    )
+    said = "module 'controller': unknown source 'sped'; did you mean 'speed'"
+    with pytest.raises(SystemMistake, match=said):
+        ComposedSystem("cart", plant, {"old": [controller]}, {"speed": "m/s", "push": "1"})
 
 
 def test_a_baseline_that_always_ends_alike_leaves_an_audit_no_room():

@@ -6,6 +6,7 @@ decides.
 """
 
 import os
+import re
 import sys
 import sysconfig
 import traceback
@@ -49,6 +50,13 @@ def note_system(file: str) -> None:
 def place(error: BaseException) -> str:
     """Return the innermost line of a system's own code that an error came through, or nothing."""
     return next(filter(None, _frames(error)), "")
+
+
+def place_in(report: str) -> str:
+    """Return the same of a traceback that was formatted, where the error itself is gone."""
+    frames = re.findall(r'^  File "(.+?)", line (\d+)', report, re.MULTILINE)
+    own = (_said(file, int(line)) for file, line in reversed(frames) if not _passed_over(file))
+    return next(own, "")
 
 
 def described(error: BaseException) -> str:

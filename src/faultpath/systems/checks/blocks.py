@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
-from faultpath.core.error_source import described
+from faultpath.core.error_source import described, place_in
 from faultpath.core.errors import UserError
 from faultpath.loop import (
     FaultedElsewhere,
@@ -128,7 +128,8 @@ def run_block(system: System, block: Block) -> RecordedBlock:
                 error, fails = f"{lost.error} in scene {lost.scene!r}", TRIALS
         elif isinstance(result, Raised):
             kind, _, text = result.error.partition(": ")
-            error, fails = result.error, TRIALS
+            at = place_in(result.traceback)
+            error, fails = f"{result.error} ({at})" if at else result.error, TRIALS
             if kind == NotFinite.__name__:
                 error, fails = text, "shape and unit"
         elif isinstance(result, Wrong):
