@@ -11,7 +11,7 @@ from faultpath.cli.main import main
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.systems import ComposedSystem, FunctionPlant, writes
 from faultpath.systems.checks.check import check_system
-from faultpath.systems.checks.judging import _remedy
+from faultpath.systems.checks.judging import remedy
 from faultpath.systems.checks.names import other_names
 from faultpath.systems.checks.room import ENOUGH, diverged, successes, without_room
 from faultpath.trials import Outcome, Status, SystemSpec, load_system
@@ -77,7 +77,7 @@ def test_a_sound_system_passes(name, library):
 def test_an_error_is_told_with_its_line_and_an_if_on_a_reading_with_what_to_take():
     (said,) = failed(check(broken="raises"))["trials end"]
     assert re.search(r"ValueError: no air \(\S*broken\.py, line \d+\); let every trial", said)
-    assert "np.where" in _remedy("ValueError: The truth value of an array is ambiguous")
+    assert "np.where" in remedy("ValueError: The truth value of an array is ambiguous")
 
 
 def test_a_source_that_nobody_writes_is_looked_up_where_a_module_reads_it():
@@ -157,7 +157,7 @@ def test_modules_that_stand_for_each_other_under_two_names_are_a_remark():
             succeeded=lambda episode: True,
         )
         variants = {"old": [observer, controller], "new": [nominal, controller]}
-        units = dict.fromkeys(("speed", "slope", "push"), "1")
+        units: dict[str, str] = dict.fromkeys(("speed", "slope", "push"), "1")
         return ComposedSystem("cart", plant, variants, units)
 
     (said,) = other_names(cart("nominal"), ["old", "new"])

@@ -113,14 +113,15 @@ def judged(seen: Seen) -> tuple[Check, ...]:
             if run.fails == check.name and why != "tap"
         }
         errors = tuple(
-            f"Variant '{name}': {error}{'' if check.name in MISTAKES else _remedy(error)}."
+            f"Variant '{name}': {error}{'' if check.name in MISTAKES else remedy(error)}."
             for error, name in stopped.items()
         )
         checks[at] = check.model_copy(update={"failures": (*errors, *check.failures)})
     return tuple(checks)
 
 
-def _remedy(error: str) -> str:
+def remedy(error: str) -> str:
+    """Return what to do about an error that kept a trial from its end."""
     if "truth value of an array" in error:
         return "; a reading has one value for each scene: take `np.where` in place of `if`"
     return "; let every trial end in an outcome, see it with `faultpath audit --workers 0`"
