@@ -203,7 +203,7 @@ class Whole(Steer):
         (lambda: plant(observes={"place": "at"}), "holds no such part"),
         (lambda: plant(dt_s=None, environment="CartPole-v1"), "does not say dt_s: give it"),
         (lambda: plant(steps=None), "does not say steps: give it"),
-        (lambda: system(plant(), units={"push": "1"}), "'place' has no unit"),
+        (lambda: ComposedSystem("walk", plant(), {"only": [Steer()]}, {}), "'place' has no unit"),
         (lambda: system(plant(), modules=[Choose()]), "'choose': unknown source 'eye'; known:"),
         (lambda: fly(system(plant(), [Whole()])), r"shape \[1\], and.* of shape \[2\]"),
         (
