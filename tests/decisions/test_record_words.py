@@ -38,8 +38,8 @@ def test_an_isolated_fault_that_leaves_the_ranking_of_correct_inputs_is_not_the_
     assert change.turn == "reversal"
     assert "Do not choose" not in made.headline
     assert made.headline == (
-        f"{REPAIR} is ahead under the shared fault; {BASELINE} is ahead under correct inputs and "
-        "with only the observer faulted."
+        f"{BASELINE} is ahead without the fault and with it at the observer alone, {REPAIR} with "
+        "it shared."
     )
 
 

@@ -38,9 +38,7 @@ def headline(record: DecisionRecord) -> str:
     if ends <= {0.0, 100.0} and not any(any((*e.wins, *e.losses)) for e in tested):
         every = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
         return f"No difference could show: in every scene both arms {' or '.join(every)}."
-    # Where correct inputs rank the arms as an isolated fault does, they are told together.
-    correct = [effect.sign for effect in tested if effect.path == CORRECT and effect.leads]
-    turned = [effect for effect in reversed_at(record) if effect.sign not in correct]
+    turned = reversed_at(record)
     text = ""
     for text in _turned(record, main, turned) if turned else _compared(record, main, tested):
         if len(text.split()) <= MOST_WORDS:
@@ -60,9 +58,19 @@ def reversed_at(record: DecisionRecord) -> list[Effect]:
 
 def _turned(record: DecisionRecord, main: Effect, turned: Sequence[Effect]) -> Iterator[str]:
     modules = " or ".join(effect.path for effect in turned)
+    one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
+    leads = main.path == SHARED or main in turned
+    correct = [e.sign for e in record.effects if e.path == CORRECT and e.leads]
+    if turned[0].sign in correct:  # a test there shows no more than one without the fault
+        if leads:
+            yield (
+                f"{one} is ahead without the fault and with it at the {modules} alone, {other} "
+                "with it shared."
+            )
+        yield f"{one} is ahead without the fault, {other} with it shared."
+        return
     advice = f"Do not choose by the fault at the {modules} alone"
-    if main.path == SHARED or main in turned:
-        one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
+    if leads:
         yield f"{advice}: {one} is ahead there, {other} with it shared."
     else:
         yield f"{_sentence(record, [[main]])} {advice}: sharing reverses the ranking."
