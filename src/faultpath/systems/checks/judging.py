@@ -271,9 +271,9 @@ def _delivery(name: str, seen: Seen) -> Check:
             and not (ends and difference(first.outcomes, Done(ends, ())))
         ):
             remarks.append(
-                f"{lead} changed nothing else, in no outcome and at no other tap, in the steps that "
-                "were looked at; its module may use it later, or not at all, or may use something "
-                "else than it was handed."
+                f"{lead} changed nothing else, in no outcome and at no other tap, in the steps "
+                "that were looked at; its module may use it later, or not at all, or may use "
+                "something else than it was handed."
             )
     says = f"{len(alone)} taps, each faulted alone: {altered} readings altered, at no other tap"
     return Check(name=name, says=says, failures=tuple(failures), remarks=tuple(remarks))
