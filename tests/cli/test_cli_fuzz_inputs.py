@@ -62,11 +62,11 @@ def limited(seconds: float) -> Iterator[None]:
 
 
 def held(folder: Path) -> dict[str, str]:
-    """Return the digest of each file."""
+    """Return the digest of each file that holds anything: a command may fill an empty one."""
     return {
         str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in sorted(folder.rglob("*"))
-        if path.is_file() and path.name != ".lock"
+        if path.is_file() and path.name != ".lock" and path.stat().st_size
     }
 
 
