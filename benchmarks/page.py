@@ -103,7 +103,8 @@ def _gpu(name: str, figures: dict[str, Any]) -> str:
         text += (
             f"\n\n`faultpath reproduce {paper['page']} --profile paper`, {paper['trials']} trials, "
             f"took {paper['cpu_s']:.0f} s on the {paper['cores']} cores of that machine and "
-            f"{paper['gpu_s']:.0f} s on its GPU."
+            f"{paper['gpu_s']:.0f} s on its GPU"
+            + (f", in {parts} parts." if (parts := paper.get("gpu_parts", 1)) > 1 else ".")
         )
     return text
 

@@ -28,7 +28,7 @@ from faultpath.systems.gymnasium import GymnasiumPlant
 FILES = Path(__file__).with_suffix("")
 ONNX, WEIGHTS = FILES / "policy.onnx", FILES / "policy.safetensors"
 MODEL = {"policy": "MlpPolicy", "env": "CartPole-v1", "policy_kwargs": {"net_arch": [32, 32]}}
-"""What the network is made of; its weights are in both files."""
+"""Architecture of the network; its weights are in both files."""
 
 
 # --- onnx ---

@@ -102,7 +102,8 @@ def main():
     torch.set_num_threads(1)
     data = windows(options.windows)
     for name in options.names.split(","):
-        model = fitted(*data, options.seed, name == "augmented", options.epochs)
+        with torch.random.fork_rng():  # the caller's random numbers stay as they were
+            model = fitted(*data, options.seed, name == "augmented", options.epochs)
         save_file(model.state_dict(), options.folder / f"{name}-{options.seed}.safetensors")
 
 

@@ -33,11 +33,11 @@ def test_a_reversal_is_the_headline_and_names_who_is_ahead_where(isolated, share
 
 
 def test_an_isolated_fault_that_leaves_the_ranking_of_correct_inputs_is_not_the_headline():
-    made = three((40, 2, 30), LOSS, GAIN)
-    (change,) = made.changes
+    decided = three((40, 2, 30), LOSS, GAIN)
+    (change,) = decided.changes
     assert change.turn == "reversal"
-    assert "Do not choose" not in made.headline
-    assert made.headline == (
+    assert "Do not choose" not in decided.headline
+    assert decided.headline == (
         f"{BASELINE} is ahead without the fault and with it at the observer alone, {REPAIR} with "
         "it shared."
     )

@@ -172,8 +172,8 @@ def test_no_input_is_run(kept: tuple[str, ...], tmp_path: Path) -> None:
     """The more inputs are sound, the further the hostile ones get."""
     names = [name for name in ACTION["inputs"] if name.replace("-", "_") not in kept]
     ended, status = job(tmp_path, **dict.fromkeys(names, HOSTILE))
-    (stub := tmp_path / "python").write_text('#!/bin/sh\nprintf "%s\\n" "$@" >called\n')
-    stub.chmod(0o755)
+    (command := tmp_path / "python").write_text('#!/bin/sh\nprintf "%s\\n" "$@" >called\n')
+    command.chmod(0o755)
     ended.run(INSTALL | {"run": f'PATH="{tmp_path}:$PATH"\n{INSTALL["run"]}'})
     assert status == 2
     assert not list(tmp_path.rglob("caught"))

@@ -1,4 +1,4 @@
-"""What flies stored runs again: which of them, in which order, and in which environment."""
+"""Stored runs are flown again: which of them, in which order, and in which environment."""
 
 import sys
 

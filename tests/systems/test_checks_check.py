@@ -94,8 +94,8 @@ def test_a_source_that_nobody_writes_is_looked_up_where_a_module_reads_it():
         dt_s=0.1,
         succeeded=lambda episode: True,
     )
-    said = "module 'controller': unknown source 'sped'; did you mean 'speed'"
-    with pytest.raises(SystemMistake, match=said):
+    sentence = "module 'controller': unknown source 'sped'; did you mean 'speed'"
+    with pytest.raises(SystemMistake, match=sentence):
         ComposedSystem("cart", plant, {"old": [controller]}, {"speed": "m/s", "push": "1"})
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.trials import SystemSpec, load_system
+from faultpath.trials import Metric, SystemSpec, load_system
 from faultpath.trials.checks import check_system, library_of, paths_of
 from faultpath.trials.shown import system_shown
 
@@ -68,7 +68,7 @@ def test_what_is_declared_wrongly_is_named(toy: type, attribute: str, value: obj
     ],
 )
 def test_the_odd_character_of_a_metric_is_shown(toy: type, name: str, said: str) -> None:
-    metrics = {name: next(iter(toy.metrics.values()))}  # pyright: ignore[reportAttributeAccessIssue]
+    metrics = {name: Metric(unit="m", better="less")}
     with pytest.raises(SystemMistake) as refused:
         check_system(type("Mine", (toy,), {"metrics": metrics})(), "mine.py:create")
     assert said in str(refused.value)

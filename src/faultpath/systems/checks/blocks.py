@@ -1,10 +1,13 @@
 """Blocks of scenes that a check, a trace or a replay runs and records, and what came of them."""
 
 import copy
+import math
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
+
+import numpy as np
 
 from faultpath.core.error_source import described, place_in
 from faultpath.core.errors import UserError
@@ -24,6 +27,7 @@ from faultpath.systems.episodes import EpisodePlant
 from faultpath.trials import Arm, LoopSystem, Outcome, System
 from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
 from faultpath.trials.execution.dispatch import Built, UndeclaredFile, dispatch
+from faultpath.trials.pairing import unlike
 from faultpath.trials.store.signals import DRAWN, Signal
 from faultpath.trials.work.executor import Executor
 
@@ -146,6 +150,37 @@ def run_block(system: System, block: Block) -> RecordedBlock:
         error,
         fails,
     )
+
+
+def coarsest(run: RecordedBlock) -> float:
+    """Return the relative spacing of the coarsest numbers that were read."""
+    kinds = {read.dtype for read in run.reads}
+    return max((float(np.finfo(k).eps) for k in kinds if k.startswith("float")), default=0.0)
+
+
+def gap_of(first: RecordedBlock, again: RecordedBlock, dt_s: float) -> float:
+    """Return by how much of their size metrics and sums of readings differ at most; infinity for
+    other ends. Nothing that ran differs from nothing."""
+    by_scene = {outcome.scene: outcome for outcome in first.outcomes}
+    for two in again.outcomes:
+        one = by_scene[two.scene]
+        if (one.status, one.time_s) != (two.status, two.time_s) or unlike(one, two):
+            return math.inf
+
+    def numbers(run: RecordedBlock) -> dict[tuple[Any, ...], float]:
+        read = run.readings(dt_s, "sums")
+        sums = {((channel, at), scene, step): v for (scene, step, channel, at), v in read.items()}
+        metrics = ((outcome.scene, outcome.metrics.items()) for outcome in run.outcomes)
+        return sums | {(name, scene): v or 0.0 for scene, named in metrics for name, v in named}
+
+    then, sizes = numbers(first), dict[Any, float]()
+    for (what, *_), value in then.items():
+        sizes[what] = max(sizes.get(what, 0.0), abs(value))
+    gaps = (
+        abs(value - then.get(key, math.inf)) / (sizes.get(key[0]) or 1.0)
+        for key, value in numbers(again).items()
+    )
+    return max(gaps, default=0.0)
 
 
 def _with_plant(system: System, recording: Recording) -> System:

@@ -8,8 +8,8 @@ from faultpath.core.results import Result
 from faultpath.core.text import unknown
 from faultpath.faults import AnyIntervention, Erase, Fault, Offset, Scale
 from faultpath.faults import Sequence as InTurn
-from faultpath.systems.checks.blocks import Block, RecordedBlock, run_blocks
-from faultpath.systems.checks.judging import Check, Seen, coarsest, judged
+from faultpath.systems.checks.blocks import Block, RecordedBlock, coarsest, run_blocks
+from faultpath.systems.checks.judging import Check, Seen, judged
 from faultpath.systems.checks.recording import Read
 from faultpath.trials import Arm, System, SystemSpec, Variant, library_of
 from faultpath.trials.execution.dispatch import Built

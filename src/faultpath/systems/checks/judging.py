@@ -3,12 +3,10 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
-
-import numpy as np
+from typing import Literal
 
 from faultpath.core.results import Result
-from faultpath.systems.checks.blocks import MISTAKES, TRIALS, RecordedBlock
+from faultpath.systems.checks.blocks import MISTAKES, TRIALS, RecordedBlock, coarsest, gap_of
 from faultpath.systems.checks.names import other_names
 from faultpath.systems.checks.room import diverged, successes, without_room
 from faultpath.trials import System, Variant
@@ -151,7 +149,7 @@ def _independence(name: str, seen: Seen) -> Check:
         if not (differs := seen.differs(variant, "part")):
             continue
         lead = f"Variant '{variant}' run in another order, without some of the scenes beside it,"
-        gap, rounding = (_gap(first, seen.of(variant, why), dt_s) for why in ("part", "rounded"))
+        gap, rounding = (gap_of(first, seen.of(variant, why), dt_s) for why in ("part", "rounded"))
         if gap > _SEVERAL * max(rounding, coarsest(first)):
             failures.append(
                 f"{lead} {differs}; let nothing that scenes of one call of run() share decide a "
@@ -175,37 +173,6 @@ def _independence(name: str, seen: Seen) -> Check:
         says = "a last digit decides how scenes end"
     sentences = {"failures": tuple(failures), "remarks": tuple(remarks)}
     return Check(name=name, says=says, judged=not open_ended, **sentences)
-
-
-def coarsest(run: RecordedBlock) -> float:
-    """Return the relative spacing of the coarsest numbers that were read."""
-    kinds = {read.dtype for read in run.reads}
-    return max((float(np.finfo(k).eps) for k in kinds if k.startswith("float")), default=0.0)
-
-
-def _gap(first: RecordedBlock, again: RecordedBlock, dt_s: float) -> float:
-    """Return by how much of their size metrics and sums of readings differ at most; infinity for
-    other ends. Nothing that ran differs from nothing."""
-    by_scene = {outcome.scene: outcome for outcome in first.outcomes}
-    for two in again.outcomes:
-        one = by_scene[two.scene]
-        if (one.status, one.time_s) != (two.status, two.time_s) or unlike(one, two):
-            return math.inf
-
-    def numbers(run: RecordedBlock) -> dict[tuple[Any, ...], float]:
-        read = run.readings(dt_s, "sums")
-        sums = {((channel, at), scene, step): v for (scene, step, channel, at), v in read.items()}
-        metrics = ((outcome.scene, outcome.metrics.items()) for outcome in run.outcomes)
-        return sums | {(name, scene): v or 0.0 for scene, named in metrics for name, v in named}
-
-    then, sizes = numbers(first), dict[Any, float]()
-    for (what, *_), value in then.items():
-        sizes[what] = max(sizes.get(what, 0.0), abs(value))
-    gaps = (
-        abs(value - then.get(key, math.inf)) / (sizes.get(key[0]) or 1.0)
-        for key, value in numbers(again).items()
-    )
-    return max(gaps, default=0.0)
 
 
 def _pairing(name: str, seen: Seen) -> Check:
