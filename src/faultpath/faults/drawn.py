@@ -67,7 +67,7 @@ class UniformScale(Intervention):
     """
 
     kind: Literal["uniform_scale"] = "uniform_scale"
-    said = "scaled by 1 ± {half_range}, one draw a scene"
+    phrase = "scaled by 1 ± {half_range}, one draw a scene"
     value_field: ClassVar[str | None] = "half_range"
     random: ClassVar[bool] = True
     half_range: float = Field(ge=0, lt=1)
@@ -214,7 +214,7 @@ class Shuffle(Intervention):
     """
 
     kind: Literal["shuffle"] = "shuffle"
-    said = "shuffled along axis {axis}"
+    phrase = "shuffled along axis {axis}"
     value_field: ClassVar[str | None] = "axis"
     axis: int = Field(default=1, ge=1)
     """Axis of `[B, ...]`; 1 is the first axis of one scene's reading."""

@@ -57,7 +57,7 @@ class Recorded(Intervention):
     """
 
     kind: Literal["recorded"] = "recorded"
-    said = "with the errors of {file}"
+    phrase = "with the errors of {file}"
     value_field: ClassVar[str | None] = "file"
     file: str
     """A Parquet file of `encode_record`."""

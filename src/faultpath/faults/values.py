@@ -18,7 +18,7 @@ class Scale(Intervention):
     """Multiply the reading by a factor."""
 
     kind: Literal["scale"] = "scale"
-    said = "scaled by {factor}"
+    phrase = "scaled by {factor}"
     value_field: ClassVar[str | None] = "factor"
     factor: Constant
 
@@ -31,7 +31,7 @@ class Offset(Intervention):
     """Add a number, or a vector along the last axis, in the reading's unit."""
 
     kind: Literal["offset"] = "offset"
-    said = "offset by {by}"
+    phrase = "offset by {by}"
     value_field: ClassVar[str | None] = "by"
     by: Constant
 
@@ -44,7 +44,7 @@ class Rotate(Intervention):
     """Turn a vector by a rotation vector in radians, as a sensor does that is mounted askew."""
 
     kind: Literal["rotate"] = "rotate"
-    said = "turned by {by} rad"
+    phrase = "turned by {by} rad"
     value_field: ClassVar[str | None] = "by"
     by: tuple[float, float, float]
 
@@ -76,7 +76,7 @@ class Quantise(Intervention):
     """Round to the nearest multiple of a step, halves to the even multiple."""
 
     kind: Literal["quantise"] = "quantise"
-    said = "rounded to multiples of {step_size}"
+    phrase = "rounded to multiples of {step_size}"
     value_field: ClassVar[str | None] = "step_size"
     step_size: float = Field(gt=0)
     """In the reading's unit."""
@@ -115,7 +115,7 @@ class Delay(Intervention):
     """Deliver the reading of some steps ago; the first reading until there is one that old."""
 
     kind: Literal["delay"] = "delay"
-    said = "delayed by {steps} steps"
+    phrase = "delayed by {steps} steps"
     value_field: ClassVar[str | None] = "steps"
     steps: int = Field(ge=0)
 
@@ -135,7 +135,7 @@ class Hold(Intervention):
     """Refresh the reading at every n-th step from the onset on: a lower rate."""
 
     kind: Literal["hold"] = "hold"
-    said = "refreshed every {every} steps"
+    phrase = "refreshed every {every} steps"
     value_field: ClassVar[str | None] = "every"
     every: int = Field(ge=1)
     """Steps between two refreshes."""
@@ -160,7 +160,7 @@ class Freeze(Intervention):
     """
 
     kind: Literal["freeze"] = "freeze"
-    said = "frozen"
+    phrase = "frozen"
 
     def begin(self, reading: Array, at: Moment) -> Memory:
         """Return the reading to hold."""

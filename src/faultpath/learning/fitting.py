@@ -20,7 +20,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.streams import key
 from faultpath.core.version import __version__
 from faultpath.faults import AnyFault, resolve
-from faultpath.learning.loop import Task, minibatches, run
+from faultpath.learning.loop import FitTask, minibatches, run
 from faultpath.learning.model_card import (
     Architecture,
     FitRecord,
@@ -199,7 +199,7 @@ def load(module: nn.Module, path: Path | str) -> Fit:
     return Fit(module.eval(), record, Path(path))
 
 
-class _WindowTask(Task):
+class _WindowTask(FitTask):
     """Windows as samples, with a delivery through the taps for each minibatch."""
 
     order_key = "repairs"

@@ -34,7 +34,7 @@ class Diverged(UserError):
 
 
 @dataclass(frozen=True)
-class Moment:
+class FitProgress:
     """Progress of a fit."""
 
     epoch: int
@@ -54,7 +54,7 @@ class History:
     duration_s: float = 0.0
 
 
-class Task(ABC):
+class FitTask(ABC):
     """The samples of a fit and their loss.
 
     For each epoch `begin_epoch`, the minibatches' `loss` and `validate` are called. A fit that was
@@ -140,10 +140,10 @@ class Journal:
 
 
 def run(
-    task: Task,
+    task: FitTask,
     net: nn.Module,
     journal: Journal | None = None,
-    progress: Callable[[Moment], None] | None = None,
+    progress: Callable[[FitProgress], None] | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> History:
     """Fit all epochs, or those after the last one that the journal holds.
@@ -192,7 +192,7 @@ def run(
             total += value * len(index)
             if progress is not None:
                 done = epoch + (number + 1) / len(batches)
-                progress(Moment(epoch, done / schedule.epochs, value))
+                progress(FitProgress(epoch, done / schedule.epochs, value))
         net.eval()
         with torch.no_grad():
             metrics = {key: float(value) for key, value in task.validate(net).items()}
@@ -209,7 +209,7 @@ def run(
     return history
 
 
-def minibatches(task: Task, epoch: int) -> tuple[LongTensor, ...]:
+def minibatches(task: FitTask, epoch: int) -> tuple[LongTensor, ...]:
     """Cut a permutation of the samples; its address names the order, the seed and the epoch."""
     import torch
 

@@ -163,12 +163,12 @@ class ComposedSystem(LoopSystem):
             if shaped := [name for name in fed if name in shapes]:
                 shapes = dict.fromkeys(fed, shapes[shaped[0]]) | dict(shapes)
         written = [name for module in modules for name in module.writes]
-        known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.told, "estimated")
+        known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.facts, "estimated")
         known |= dict.fromkeys(several.get(plant.action, (plant.action,)), "commanded")
         for module in modules:
             for port in sorted(module.ports):
-                if not {*feeds[port.channel]} & {*plant.senses, *plant.told, *written}:
-                    there = list(dict.fromkeys((*plant.senses, *plant.told, *written)))
+                if not {*feeds[port.channel]} & {*plant.senses, *plant.facts, *written}:
+                    there = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
                     wrong = unknown("source", port.channel, there)
                     raise SystemMistake(f"system '{self.name}': module '{module.name}': {wrong}")
         sources: dict[str, dict[str, Any]] = {}

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pydantic import StringConstraints
 
 from faultpath.core.results import Frozen
-from faultpath.interface.model import Words
+from faultpath.interface.declaration import Words
 from faultpath.trials.declared import shown
 
 MetricName = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]

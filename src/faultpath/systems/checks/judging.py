@@ -214,7 +214,7 @@ def _delivery(name: str, seen: Seen) -> Check:
         lead = f"Tap {tap[0]} -> {tap[1]} of variant '{variant}', faulted in {len(seen.scenes)} "
         lead += "trials,"
         here = [read for read in run.reads if read.tap == tap]
-        count = sum(read.given[scene] != read.got[scene] for read in here for scene in read.given)
+        count = sum(read.clean[scene] != read.got[scene] for read in here for scene in read.clean)
         altered += count
         first = seen.of(variant, "first")
         clean = first.readings(dt_s)

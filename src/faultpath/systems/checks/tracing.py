@@ -6,7 +6,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.results import Result
 from faultpath.core.text import unknown
 from faultpath.faults import AnyFault, resolve
-from faultpath.systems.checks.blocks import Block, run_block
+from faultpath.systems.checks.blocks import BlockSpec, run_block
 from faultpath.systems.checks.recording import Read
 from faultpath.trials import Arm, LoopSystem, System, SystemSpec, library_of
 
@@ -57,7 +57,7 @@ def trace_system(
     consumers = system.variants[variant].consumers
     faults = resolve(() if fault is None else (fault,), system.interface, consumers)
     arm = Arm(variant=variant, faults=faults, seed=seed)
-    run = run_block(system, Block(arm, (chosen,), steps=steps))
+    run = run_block(system, BlockSpec(arm, (chosen,), steps=steps))
     if run.error and not run.reads:
         raise UserError(f"variant '{variant}' does not run: {run.error}")
     taps = {read.tap for read in run.reads}
@@ -101,7 +101,7 @@ def trace_system(
         fault="" if fault is None else fault.describe(),
         reads=tuple(
             read.model_copy(update={"altered_by": (words[read.tap],)})
-            if read.given != read.got
+            if read.clean != read.got
             else read
             for read in run.reads
         ),
