@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Self, TypeAlias, cast
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
+from typing_extensions import override
 
 from faultpath.core.arrays import Array, misfit
 from faultpath.core.streams import generators
@@ -112,11 +113,17 @@ class Intervention(BaseModel, ABC):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     value_field: ClassVar[str | None] = None
-    """The field that takes VALUE in fault text `CHANNEL:KIND=VALUE`; `None`: KIND stands alone."""
+    """The field that takes VALUE in fault text `CHANNEL:KIND=VALUE`: the first after `kind`.
+    `None`: there is none, and KIND stands alone."""
     random: ClassVar[bool] = False
     """Whether errors are drawn, so that those of several channels can be correlated."""
     phrase: ClassVar[str] = ""
     """Effect on the reading in a few words; a field's name in braces stands for its value."""
+
+    @classmethod
+    @override
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        cls.value_field = next((name for name in cls.model_fields if name != "kind"), None)
 
     def begin(self, reading: Array, at: Moment) -> Memory:
         """Return the memory before the first `apply`, at the first delivery."""

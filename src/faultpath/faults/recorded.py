@@ -3,7 +3,7 @@
 import hashlib
 from collections.abc import Collection, Mapping
 from functools import lru_cache
-from typing import Any, ClassVar, Literal, NamedTuple, Self, TypeAlias
+from typing import Any, Literal, NamedTuple, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,7 +58,6 @@ class Recorded(Intervention):
 
     kind: Literal["recorded"] = "recorded"
     phrase = "with the errors of {file}"
-    value_field: ClassVar[str | None] = "file"
     file: str
     """A Parquet file of `encode_record`."""
     channel: str = ""

@@ -4,7 +4,7 @@ Those that hold a reading keep copies, so a producer may reuse its memory.
 """
 
 import math
-from typing import ClassVar, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -19,7 +19,6 @@ class Scale(Intervention):
 
     kind: Literal["scale"] = "scale"
     phrase = "scaled by {factor}"
-    value_field: ClassVar[str | None] = "factor"
     factor: Constant
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
@@ -32,7 +31,6 @@ class Offset(Intervention):
 
     kind: Literal["offset"] = "offset"
     phrase = "offset by {by}"
-    value_field: ClassVar[str | None] = "by"
     by: Constant
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
@@ -45,7 +43,6 @@ class Rotate(Intervention):
 
     kind: Literal["rotate"] = "rotate"
     phrase = "turned by {by} rad"
-    value_field: ClassVar[str | None] = "by"
     by: tuple[float, float, float]
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
@@ -77,7 +74,6 @@ class Quantise(Intervention):
 
     kind: Literal["quantise"] = "quantise"
     phrase = "rounded to multiples of {step_size}"
-    value_field: ClassVar[str | None] = "step_size"
     step_size: float = Field(gt=0)
     """In the reading's unit."""
 
@@ -90,7 +86,6 @@ class Erase(Intervention):
     """Replace the reading by a default that carries no information (paper: erasure)."""
 
     kind: Literal["erase"] = "erase"
-    value_field: ClassVar[str | None] = "default"
     default: Constant | None = None
     """In the reading's unit; `None`: the erasure default that the channel declares."""
 
@@ -116,16 +111,11 @@ class Delay(Intervention):
 
     kind: Literal["delay"] = "delay"
     phrase = "delayed by {steps} steps"
-    value_field: ClassVar[str | None] = "steps"
     steps: int = Field(ge=0)
-
-    def begin(self, reading: Array, at: Moment) -> Memory:
-        """Return an empty past."""
-        return ()
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the newest reading that is at least `steps` old, and the past since it."""
-        past = (*memory, (at.step, copy(reading)))
+        past = (*(memory or ()), (at.step, copy(reading)))
         while len(past) > 1 and past[1][0] <= at.step - self.steps:
             past = past[1:]
         return past[0][1], past
@@ -136,17 +126,12 @@ class Hold(Intervention):
 
     kind: Literal["hold"] = "hold"
     phrase = "refreshed every {every} steps"
-    value_field: ClassVar[str | None] = "every"
     every: int = Field(ge=1)
     """Steps between two refreshes."""
 
-    def begin(self, reading: Array, at: Moment) -> Memory:
-        """Return the held reading and which refresh it belongs to."""
-        return copy(reading), at.elapsed // self.every
-
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the held reading, refreshed when its time has come."""
-        value, last = memory
+        value, last = memory or (None, None)
         refresh = at.elapsed // self.every
         if refresh != last or at.elapsed < 0:
             value = copy(reading)
@@ -162,11 +147,7 @@ class Freeze(Intervention):
     kind: Literal["freeze"] = "freeze"
     phrase = "frozen"
 
-    def begin(self, reading: Array, at: Moment) -> Memory:
-        """Return the reading to hold."""
-        return copy(reading)
-
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the held reading, which follows the readings up to the onset."""
-        value = copy(reading) if at.elapsed <= 0 else memory
+        value = copy(reading) if memory is None or at.elapsed <= 0 else memory
         return value, value
