@@ -7,7 +7,6 @@ error of size zero changes no bit; the process keeps the random numbers of torch
 from __future__ import annotations
 
 import copy
-import platform
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,9 +17,8 @@ from typing_extensions import override
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import key
-from faultpath.core.version import __version__
 from faultpath.faults import AnyFault, resolve
-from faultpath.learning.loop import FitTask, minibatches, run
+from faultpath.learning.loop import FitTask, History, minibatches, run
 from faultpath.learning.model_card import (
     Architecture,
     FitRecord,
@@ -126,52 +124,43 @@ def fit(
         initial = weights_sha256(net)
         first_loss = task.mean_loss(net, task.training[minibatches(task, 0)[0].numpy()], ())
         history = run(task, net)
-    structure = [str(net)]
-    for place, part in net.named_modules():
-        plain = {
-            name: value
-            for name, value in sorted(vars(part).items())
-            if isinstance(value, bool | int | float | str | tuple) and name != "training"
-        }
-        structure.append(f"{place or type(net).__name__}: {plain}")
-    record = FitRecord(
+    record = _record(net, task, data, repairs, history, initial, first_loss)
+    path = None
+    if folder is not None:
+        make_folder(Path(folder))
+        path = save(net, record, Path(folder))
+    return Fit(net.eval(), record, path)
+
+
+def _record(
+    net: nn.Module,
+    task: _WindowTask,
+    data: Windows,
+    repairs: tuple[Repair, ...],
+    history: History,
+    initial_sha256: str,
+    first_loss: float,
+) -> FitRecord:
+    return FitRecord(
         name=task.name,
-        seed=seed,
+        seed=task.seed,
         repairs=repairs,
         reads=tuple(f"{port.channel} -> {consumer}" for port, consumer in data.ports.items()),
-        architecture=Architecture(
-            name=type(net).__name__,
-            structure="\n".join(structure),
-            tensors={
-                name: f"{str(value.dtype).removeprefix('torch.')} {list(value.shape)}"
-                for name, value in net.state_dict().items()
-            },
-        ),
+        architecture=Architecture.of(net),
         parameters=parameter_count(net),
         data=data.digested(task.host_targets, task.training),
-        loss=_name_of(loss),
+        loss=_name_of(task.loss_function),
         schedule=task.schedule,
-        initial_sha256=initial,
+        initial_sha256=initial_sha256,
         first_loss=first_loss,
         order_sha256=tuple(task.order),
         training_loss=history.training_loss,
         validation=tuple(metrics for metrics in history.validation if metrics),
         taps=task.taps,
         weights_sha256=weights_sha256(net),
-        machine=Machine(
-            torch=torch.__version__,
-            faultpath=__version__,
-            python=".".join(platform.python_version_tuple()[:2]),
-            device=task.device.type,
-            threads=torch.get_num_threads(),
-        ),
+        machine=Machine.here(task.device.type),
         duration_s=round(history.duration_s, 3),
     )
-    path = None
-    if folder is not None:
-        make_folder(Path(folder))
-        path = save(net, record, Path(folder))
-    return Fit(net.eval(), record, path)
 
 
 def evaluate(
@@ -228,7 +217,8 @@ class _WindowTask(FitTask):
         self.order: list[str] = []
         """Digest of the order of the windows in each epoch."""
         self.taps: tuple[TapCount, ...] = ()
-        self._data, self._loss, self._epoch = data, loss, 0
+        self.loss_function = loss
+        self._data, self._epoch = data, 0
         self._faults: list[Any] = [fault for repair in repairs for fault in repair.faults]
         self._kept = kept(repairs)
         read = {port.channel for port in data.ports}
@@ -276,7 +266,7 @@ class _WindowTask(FitTask):
         targets: Any = {name: value[rows] for name, value in self._targets.items()}
         if not isinstance(self.host_targets, Mapping):
             targets = targets["target"]
-        loss = self._loss(net(inputs), targets)
+        loss = self.loss_function(net(inputs), targets)
         if not isinstance(loss, torch.Tensor) or loss.ndim:
             what = f"of shape {list(loss.shape)}" if hasattr(loss, "shape") else _name_of(loss)
             raise UserError(f"fit: the loss must be a tensor of one number, not {what}")
