@@ -30,9 +30,9 @@ _MISUSE = (TypeError, ValueError, AttributeError, LookupError)
 
 
 def ours(module: str) -> bool:
-    """Whether a module is the engine's, or of a distribution that carries its name, as
-    `faultpath_quadrotor` does: such a one answers for its own mistakes. The registry names what a
-    user's file holds `faultpath_system_...`, and that is the user's."""
+    """Whether a module is the engine's, or of a distribution that carries its name,
+    `faultpath_...`, and answers for its own mistakes. The registry names what a user's file holds
+    `faultpath_system_...`, and that is the user's."""
     top = module.partition(".")[0]
     return top == "faultpath" or (top.startswith("faultpath_") and "_system_" not in top)
 

@@ -176,7 +176,6 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     notebook. `UserError` for a data file that cannot be read.
     """
     fingerprint, root = system.fingerprint(), None if spec.is_object else factory_root(spec)
-    # A user's method returns what it likes.
     # A user's class may return anything, whatever the type says.
     if not isinstance(fingerprint, str):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise SystemMistake(
