@@ -111,19 +111,16 @@ def _again(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[BlockSpec
     if len(seen.scenes) > 1:
         yield BlockSpec(arm, seen.scenes[::-2], "part")
     begins, readers = _begun(first)
-
-    def faulted(channel: str, doing: AnyIntervention, consumers: Sequence[str]) -> Arm:
-        return _faulted(seen, variant, {channel: consumers}, doing)
-
     if readers:
         most = max(readers, key=lambda channel: len(readers[channel]))
-        yield BlockSpec(faulted(most, Scale(factor=1.05), readers[most]), seen.scenes, "faulted")
+        arm = _faulted(seen, variant, {most: readers[most]}, Scale(factor=1.05))
+        yield BlockSpec(arm, seen.scenes, "faulted")
     for (channel, consumer), read in begins.items():
         if "float" in read.dtype:  # alters whatever it delivers
             doing = InTurn(parts=(Scale(factor=1.5), Offset(by=0.25)))
         else:  # keeps whole numbers and truths what they are
             doing = Erase(default=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
-        alone = faulted(channel, doing, (consumer,))
+        alone = _faulted(seen, variant, {channel: (consumer,)}, doing)
         yield BlockSpec(alone, seen.scenes, "tap", read.step + _AFTER, read.tap)
 
 
