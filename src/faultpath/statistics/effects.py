@@ -136,8 +136,8 @@ def median_effect(
 class WindowQuantiles:
     """Quantiles over the windows of some scenes, all on the same resamples of these scenes.
 
-    Windows of a scene share a vehicle, a flight and its wind, so they are not independent: a
-    resample takes or leaves a scene with all its windows. Arrays are [windows, seeds], or
+    Windows of a scene share its trial and disturbances, so they are not independent: a resample
+    takes or leaves a scene with all its windows. Arrays are [windows, seeds], or
     [windows] for one seed; a quantile is taken over the windows of each seed, and then the mean
     over seeds (paper, Table VI: "mean of per-seed window medians").
 

@@ -98,7 +98,7 @@ class Decision(NamedTuple):
     adjusted_p: float
     """Holm's."""
     critical_p: float
-    """Largest p that the test could have, with the others' p-values as they are."""
+    """Largest p at which it would be detected, given the others' p-values."""
 
 
 class Region(Frozen, allow_inf_nan=False):
