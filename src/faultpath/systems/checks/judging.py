@@ -7,8 +7,7 @@ from typing import Literal
 
 from faultpath.core.results import Result
 from faultpath.systems.checks.blocks import MISTAKES, TRIALS, RecordedBlock, coarsest, gap_of
-from faultpath.systems.checks.names import other_names
-from faultpath.systems.checks.room import diverged, successes, without_room
+from faultpath.systems.checks.remarks import diverged, other_names, successes, without_room
 from faultpath.trials import System, Variant
 from faultpath.trials.attempt import Done
 from faultpath.trials.execution.recheck import difference
