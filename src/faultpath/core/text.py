@@ -44,6 +44,14 @@ def one_line(text: str) -> str:
     return line if len(line) <= _LONGEST else _cut(line, _LONGEST // 2)
 
 
+def represented(value: object) -> str:
+    """Return `repr(value)`, or its type where a system's own object fails at that."""
+    try:
+        return repr(value)
+    except Exception:
+        return f"a {type(value).__name__}"
+
+
 def shortened(text: str, most: int) -> str:
     """Return a text of at most so many letters."""
     return text if len(text) <= most else f"{text[: most - 1]}…"

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast, get_args
 
-from faultpath.core.text import printable, shortened, unknown
+from faultpath.core.text import printable, represented, shortened, unknown
 
 if TYPE_CHECKING:
     from pydantic import BaseModel, ValidationError
@@ -133,8 +133,4 @@ def _fields(model: object, place: Sequence[str | int]) -> tuple[str, ...]:
 def _shown(value: object) -> str:
     if value is None or isinstance(value, bool):
         return {None: "empty", True: "true", False: "false"}[value]
-    try:
-        text = printable(repr(value))
-    except Exception:  # whatever a system's own object does when it is printed
-        return f"a {type(value).__name__}"
-    return shortened(text, _SHOWN)
+    return shortened(printable(represented(value)), _SHOWN)

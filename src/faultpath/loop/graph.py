@@ -52,10 +52,7 @@ def graph(
 
 
 def _check_ports(
-    interface: Interface,
-    part: Part,
-    bound: Mapping[str, str],
-    writers: Mapping[str, object],
+    interface: Interface, part: Part, bound: Mapping[str, str], writers: Mapping[str, object]
 ) -> None:
     twice = part.reads & part.reads_past
     if twice:

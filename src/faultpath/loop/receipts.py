@@ -165,9 +165,7 @@ class Receipts:
 
 
 def check_delivered(
-    receipts: Receipts,
-    faulted: frozenset[tuple[str, str]],
-    last_step: NDArray[np.int64],
+    receipts: Receipts, faulted: frozenset[tuple[str, str]], last_step: NDArray[np.int64]
 ) -> None:
     """Compare receipts with the taps `(channel, consumer)` that the faults name.
 

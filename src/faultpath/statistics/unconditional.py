@@ -149,11 +149,7 @@ def _law(n_pairs: int) -> _NullLaw:
             split[0] *= 0.5
         tails[total, 1:] = np.minimum(1.0, 2.0 * np.cumsum(split[:-1]))
     return _NullLaw(
-        tails=tails,
-        others=others,
-        chances=chances,
-        shares=shares,
-        mixed=_mixed(n_pairs, shares),
+        tails=tails, others=others, chances=chances, shares=shares, mixed=_mixed(n_pairs, shares)
     )
 
 

@@ -36,10 +36,7 @@ class Metric(Frozen):
 
 VEHICLE = {
     "terminal_distance_m": Metric(
-        unit="m",
-        better="less",
-        words="terminal distance",
-        title="Distance to the goal at the end",
+        unit="m", better="less", words="terminal distance", title="Distance to the goal at the end"
     ),
     "min_clearance_m": Metric(unit="m", better="more", words="least clearance"),
 }
