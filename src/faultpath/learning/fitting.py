@@ -121,46 +121,15 @@ def fit(
         task.name = name or "+".join((type(net).__name__.lower(), *kinds))
         if not task.count:
             raise UserError("fit: no window is left for training: give more, or validation=0")
-        initial = weights_sha256(net)
-        first_loss = task.mean_loss(net, task.training[minibatches(task, 0)[0].numpy()], ())
+        task.initial_sha256 = weights_sha256(net)
+        task.first_loss = task.mean_loss(net, task.training[minibatches(task, 0)[0].numpy()], ())
         history = run(task, net)
-    record = _record(net, task, data, repairs, history, initial, first_loss)
+    record = task.record(net, history)
     path = None
     if folder is not None:
         make_folder(Path(folder))
         path = save(net, record, Path(folder))
     return Fit(net.eval(), record, path)
-
-
-def _record(
-    net: nn.Module,
-    task: _WindowTask,
-    data: Windows,
-    repairs: tuple[Repair, ...],
-    history: History,
-    initial_sha256: str,
-    first_loss: float,
-) -> FitRecord:
-    return FitRecord(
-        name=task.name,
-        seed=task.seed,
-        repairs=repairs,
-        reads=tuple(f"{port.channel} -> {consumer}" for port, consumer in data.ports.items()),
-        architecture=Architecture.of(net),
-        parameters=parameter_count(net),
-        data=data.digested(task.host_targets, task.training),
-        loss=_name_of(task.loss_function),
-        schedule=task.schedule,
-        initial_sha256=initial_sha256,
-        first_loss=first_loss,
-        order_sha256=tuple(task.order),
-        training_loss=history.training_loss,
-        validation=tuple(metrics for metrics in history.validation if metrics),
-        taps=task.taps,
-        weights_sha256=weights_sha256(net),
-        machine=Machine.here(task.device.type),
-        duration_s=round(history.duration_s, 3),
-    )
 
 
 def evaluate(
@@ -192,6 +161,8 @@ class _WindowTask(FitTask):
     """Windows as samples, with a delivery through the taps for each minibatch."""
 
     order_key = "repairs"
+    initial_sha256: str
+    first_loss: float
 
     def __init__(
         self,
@@ -208,7 +179,7 @@ class _WindowTask(FitTask):
         def tensor(array: np.ndarray) -> Tensor:
             return torch.from_numpy(np.ascontiguousarray(array)).to(self.device)
 
-        self.seed, self.schedule = seed, schedule
+        self.repairs, self.seed, self.schedule = repairs, seed, schedule
         parameter = next(net.parameters(), None)
         self.device = torch.device("cpu") if parameter is None else parameter.device
         self.host_targets = data.learned(repairs)
@@ -217,8 +188,7 @@ class _WindowTask(FitTask):
         self.order: list[str] = []
         """Digest of the order of the windows in each epoch."""
         self.taps: tuple[TapCount, ...] = ()
-        self.loss_function = loss
-        self._data, self._epoch = data, 0
+        self._data, self._loss, self._epoch = data, loss, 0
         self._faults: list[Any] = [fault for repair in repairs for fault in repair.faults]
         self._kept = kept(repairs)
         read = {port.channel for port in data.ports}
@@ -244,6 +214,31 @@ class _WindowTask(FitTask):
         cases = {"correct": self._kept, "perturbed": self._faults}
         return {name: self.mean_loss(net, self._held_out, faults) for name, faults in cases.items()}
 
+    def record(self, net: nn.Module, history: History) -> FitRecord:
+        """Return the record of a finished fit."""
+        return FitRecord(
+            name=self.name,
+            seed=self.seed,
+            repairs=self.repairs,
+            reads=tuple(
+                f"{port.channel} -> {consumer}" for port, consumer in self._data.ports.items()
+            ),
+            architecture=Architecture.of(net),
+            parameters=parameter_count(net),
+            data=self._data.digested(self.host_targets, self.training),
+            loss=_name_of(self._loss),
+            schedule=self.schedule,
+            initial_sha256=self.initial_sha256,
+            first_loss=self.first_loss,
+            order_sha256=tuple(self.order),
+            training_loss=history.training_loss,
+            validation=tuple(metrics for metrics in history.validation if metrics),
+            taps=self.taps,
+            weights_sha256=weights_sha256(net),
+            machine=Machine.here(self.device.type),
+            duration_s=round(history.duration_s, 3),
+        )
+
     def mean_loss(self, net: nn.Module, index: np.ndarray, faults: Iterable[Any]) -> float:
         """Return the mean loss of some windows, without gradients and in evaluation mode."""
         import torch
@@ -266,7 +261,7 @@ class _WindowTask(FitTask):
         targets: Any = {name: value[rows] for name, value in self._targets.items()}
         if not isinstance(self.host_targets, Mapping):
             targets = targets["target"]
-        loss = self.loss_function(net(inputs), targets)
+        loss = self._loss(net(inputs), targets)
         if not isinstance(loss, torch.Tensor) or loss.ndim:
             what = f"of shape {list(loss.shape)}" if hasattr(loss, "shape") else _name_of(loss)
             raise UserError(f"fit: the loss must be a tensor of one number, not {what}")
