@@ -3,7 +3,7 @@
 import numpy as np
 
 from faultpath.faults import parse_fault
-from faultpath.systems.checks.blocks import Block, run_block
+from faultpath.systems.checks.blocks import BlockSpec, run_block
 from faultpath.trials import Arm, SystemSpec, load_system
 from faultpath.trials.attempt import Done, attempt
 from faultpath.trials.execution.recheck import difference
@@ -21,7 +21,7 @@ def test_a_recorded_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
     told: list[dict[str, np.ndarray]] = []
     for faults in ((), faulted):
         arm = Arm(variant="dob", faults=faults)
-        run = run_block(system, Block(arm, SCENE, signals=True))
+        run = run_block(system, BlockSpec(arm, SCENE, signals=True))
         assert run.error == ""
         if faults:
             again = attempt(system, arm, SCENE)

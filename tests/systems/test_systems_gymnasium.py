@@ -11,7 +11,7 @@ import faultpath
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Module, Port
 from faultpath.systems import ComposedSystem, Parts
-from faultpath.systems.checks.blocks import Block, run_block
+from faultpath.systems.checks.blocks import BlockSpec, run_block
 from faultpath.systems.episodes import EpisodePlant
 from faultpath.trials import Arm, SystemSpec
 from faultpath.trials.code import system_code
@@ -148,7 +148,7 @@ def test_what_is_traced_and_rendered_is_kept_for_the_player():
         units={"place": {"unit": "m, 1", "components": ("where", "clock")}},
         modules=[Ahead()],
     )
-    found = run_block(made, Block(Arm(variant="only", seed=0), SCENES[:2], signals=True))
+    found = run_block(made, BlockSpec(Arm(variant="only", seed=0), SCENES[:2], signals=True))
     for outcome, signals in zip(found.outcomes, found.signals, strict=True):
         named = {each.name: each for each in signals}
         assert named["place"].parts == ("where", "clock")

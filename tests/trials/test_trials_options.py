@@ -63,6 +63,8 @@ def test_a_signature_says_what_there_is():
         Option("note", default=""),
         Option("own"),
     )
+    kinds = [option.kind for option in options_of(typed)]
+    assert kinds == ["str", "int", "str", "float", "str", "str"]
 
 
 def test_a_model_says_what_there_is():

@@ -102,7 +102,7 @@ def _predicted(recording: Recording) -> Mapping[int, Mapping[int, Values]]:
     Positions `[B, 3]`, metres, by horizon in steps and by the step that they are predicted for. The
     predictor is queried after the flight, and answers from the readings of its step.
     """
-    request = recording.asked.get(_MOTION)
+    request = recording.requests.get(_MOTION)
     if request is None:
         return {}
     flown = recording.got["action", "vehicle.actuators"]

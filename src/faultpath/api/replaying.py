@@ -14,7 +14,7 @@ from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import by_scene, read_pairs
 from faultpath.report.viewer_choice import choose as picked
-from faultpath.systems.checks.blocks import Block, RecordedBlock, run_blocks
+from faultpath.systems.checks.blocks import BlockSpec, RecordedBlock, run_blocks
 from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
 from faultpath.trials.attempt import Done
 from faultpath.trials.execution.dispatch import Built
@@ -142,11 +142,11 @@ def run_again(
             if at in chosen:
                 arms[key := row.arm.key()] = row.arm
                 addresses.setdefault(key, {}).setdefault(scene, []).append(at)
-    tasks = [Block(arms[key], tuple(scenes), signals=True) for key, scenes in addresses.items()]
+    tasks = [BlockSpec(arms[key], tuple(scenes), signals=True) for key, scenes in addresses.items()]
     replays: dict[TrialAddress, Replayed] = {}
     done = 0
 
-    def settle(task: Block, run: RecordedBlock) -> None:
+    def settle(task: BlockSpec, run: RecordedBlock) -> None:
         nonlocal done
         done += 1
         for place, scene in enumerate(task.scenes):

@@ -169,7 +169,7 @@ def with_system_flags(
             text += f"{'; d' if text else 'D'}efault {option.default}"
         shown = typer.Option(
             spelling,
-            metavar=f"<{choices}>" if short else "<str>",
+            metavar=f"<{choices if short else option.kind}>",
             help=f"{text}." if text else None,
             rich_help_panel=literal(f"Options of {system}"),
         )

@@ -1,1 +1,1 @@
-"""What every room stands on: errors and whose they are, arrays, streams, readers of files."""
+"""The ground of all rooms: errors and whose they are, arrays, streams, readers of files."""

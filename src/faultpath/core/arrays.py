@@ -1,4 +1,4 @@
-"""What the core asks of an array, NumPy and torch alike, without importing torch.
+"""Operations on arrays, NumPy and torch alike, without importing torch.
 
 Readings carry the scene batch on their first axis, `[B, ...]`. Nothing here reads a value back
 from an accelerator except `to_numpy`, which is meant for the end of a run.
@@ -30,10 +30,9 @@ _NAMESPACES: dict[type, Any] = {}
 def namespace(array: Array) -> Any:
     """Return the array-API namespace of `array`, remembered by type (a look-up costs 2 us)."""
     kind = cast("type[Any]", type(array))
-    found = _NAMESPACES.get(kind)
-    if found is None:
-        found = _NAMESPACES[kind] = _COMPAT.array_namespace(array)
-    return found
+    if kind not in _NAMESPACES:
+        _NAMESPACES[kind] = _COMPAT.array_namespace(array)
+    return _NAMESPACES[kind]
 
 
 def is_array(value: Any) -> bool:
@@ -145,10 +144,10 @@ def is_zero(value: Constant) -> bool:
 
 def misfit(name: str, value: Constant, shape: tuple[int, ...]) -> str | None:
     """Return what is wrong with laying `value` on one scene's reading of `shape`, or `None`."""
-    given = np.shape(np.asarray(value, dtype=np.float64))
-    if not given or (len(given) <= len(shape) and shape[len(shape) - len(given) :] == given):
+    own = np.shape(np.asarray(value, dtype=np.float64))
+    if not own or (len(own) <= len(shape) and shape[len(shape) - len(own) :] == own):
         return None
-    return f"{name} has shape {list(given)} and the reading of one scene has {list(shape)}"
+    return f"{name} has shape {list(own)} and the reading of one scene has {list(shape)}"
 
 
 def to_numpy(array: Any) -> HostArray:

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from typing import Any, cast
 
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.core.text import one_line
+from faultpath.core.text import near, one_line
 from faultpath.core.validation_messages import misfit_of
 
 _STANDARD = tuple(
@@ -26,13 +26,13 @@ _systems: set[str] = set()
 """Folders of systems that are loaded, for those that are installed packages themselves."""
 
 _MISUSE = (TypeError, ValueError, AttributeError, LookupError)
-"""What comes of handing a function something that it does not take."""
+"""Errors that an argument of the wrong kind causes."""
 
 
 def ours(module: str) -> bool:
-    """Whether a module is the engine's, or of a distribution that carries its name, as
-    `faultpath_quadrotor` does: such a one answers for its own mistakes. The registry names what a
-    user's file holds `faultpath_system_...`, and that is the user's."""
+    """Whether a module is the engine's, or of a distribution that carries its name,
+    `faultpath_...`, and answers for its own mistakes. The registry names what a user's file holds
+    `faultpath_system_...`, and that is the user's."""
     top = module.partition(".")[0]
     return top == "faultpath" or (top.startswith("faultpath_") and "_system_" not in top)
 
@@ -55,7 +55,9 @@ def place(error: BaseException) -> str:
 def place_in(report: str) -> str:
     """Return the same of a traceback that was formatted, where the error itself is gone."""
     frames = re.findall(r'^  File "(.+?)", line (\d+)', report, re.MULTILINE)
-    own = (_said(file, int(line)) for file, line in reversed(frames) if not _passed_over(file))
+    own = (
+        f"{near(file)}, line {line}" for file, line in reversed(frames) if not _passed_over(file)
+    )
     return next(own, "")
 
 
@@ -66,10 +68,10 @@ def described(error: BaseException) -> str:
     if pydantic is not None and isinstance(error, pydantic.ValidationError):
         return one_line(f"{refused.title} cannot be made: {misfit_of(refused)}")
     try:
-        said = error.msg if isinstance(error, SyntaxError) else str(error)
+        message = error.msg if isinstance(error, SyntaxError) else str(error)
     except Exception:  # an error of the system's own may fail even at that
-        said = ""
-    return one_line(f"{type(error).__name__}: {said}" if said else type(error).__name__)
+        message = ""
+    return one_line(f"{type(error).__name__}: {message}" if message else type(error).__name__)
 
 
 def located(error: UserError) -> UserError:
@@ -87,33 +89,33 @@ def explained(error: BaseException) -> UserError | None:
     """
     if isinstance(error, UserError):
         return located(error)
-    found, innermost = place(error), next(_frames(error), "")
-    if not found or not (innermost or isinstance(error, (SystemExit, *_MISUSE))):
+    own, innermost = place(error), next(_frames(error), "")
+    if not own or not (innermost or isinstance(error, (SystemExit, *_MISUSE))):
         return None
     what = described(error)
     if isinstance(error, SystemExit):
-        said = f"the system ends the program ({what}); let it raise an error instead"
+        advice = f"the system ends the program ({what}); let it raise an error instead"
     elif innermost:
-        said = f"{what}; correct the system there, or see all of it with --traceback"
+        advice = f"{what}; correct the system there, or see all of it with --traceback"
     else:
-        said = (
+        advice = (
             f"faultpath fails on what it is handed there ({what}); correct the call, or see with "
             "--traceback whether the fault is faultpath's"
         )
-    mistake = SystemMistake(said)
-    mistake.place, mistake.__cause__ = found, error
+    mistake = SystemMistake(advice)
+    mistake.place, mistake.__cause__ = own, error
     return mistake
 
 
 def _frames(error: BaseException) -> Iterator[str]:
     if isinstance(error, SyntaxError) and error.filename and not _passed_over(error.filename):
-        yield _said(error.filename, error.lineno or 1)
+        yield f"{near(error.filename)}, line {error.lineno or 1}"
     for frame, line in reversed(list(traceback.walk_tb(error.__traceback__))):
         file = os.path.realpath(frame.f_code.co_filename)
         if file.startswith(_our_folders()):
             yield ""
         elif not _passed_over(frame.f_code.co_filename):
-            yield _said(file, line)
+            yield f"{near(file)}, line {line}"
 
 
 def _passed_over(name: str) -> bool:
@@ -130,8 +132,3 @@ def _our_folders() -> tuple[str, ...]:
     loaded = ((name, module) for name, module in tuple(sys.modules.items()) if "." not in name)
     files = (getattr(module, "__file__", None) for name, module in loaded if ours(name))
     return tuple(os.path.dirname(os.path.realpath(file)) + os.sep for file in files if file)
-
-
-def _said(file: str, line: int) -> str:
-    near = os.path.relpath(file)
-    return f"{file if near.startswith(os.pardir) else near}, line {line}"

@@ -17,7 +17,7 @@ class Stopped(UserError):
 
 
 class Notice(UserWarning):
-    """What a user should know of a run, in a sentence; workers hand it to their parent."""
+    """A sentence that a user should know of a run; workers hand it to their parent."""
 
 
 class SystemMistake(UserError):
@@ -27,5 +27,5 @@ class SystemMistake(UserError):
     """File and line of that code, once they are known; `faultpath.core.error_source` finds them."""
 
     def __str__(self) -> str:
-        said = super().__str__()
-        return f"{self.place}: {said}" if self.place else said
+        sentence = super().__str__()
+        return f"{self.place}: {sentence}" if self.place else sentence

@@ -1,4 +1,4 @@
-"""What models of data have in common, and how results look in a console: a line."""
+"""Base classes of models of data; a result is one line in a console."""
 
 from pydantic import BaseModel, ConfigDict
 
@@ -19,13 +19,12 @@ class Shown(BaseModel):
 
     def __repr__(self) -> str:
         """Return the headline where there is one, else the fields that say something."""
-        said = getattr(self, "headline", "")
-        said = said or ", ".join(
+        line = getattr(self, "headline", "") or ", ".join(
             f"{name}={shortened(printable(str(value)), _CELL)}"
             for name, value in self
             if value not in (None, (), {}, "")
         )
-        return f"<{type(self).__name__}: {shortened(said, _LINE)}>"
+        return f"<{type(self).__name__}: {shortened(line, _LINE)}>"
 
     __str__ = __repr__
 

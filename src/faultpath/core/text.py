@@ -44,6 +44,14 @@ def one_line(text: str) -> str:
     return line if len(line) <= _LONGEST else _cut(line, _LONGEST // 2)
 
 
+def represented(value: object) -> str:
+    """Return `repr(value)`, or its type where a system's own object fails at that."""
+    try:
+        return repr(value)
+    except Exception:
+        return f"a {type(value).__name__}"
+
+
 def shortened(text: str, most: int) -> str:
     """Return a text of at most so many letters."""
     return text if len(text) <= most else f"{text[: most - 1]}…"
@@ -67,6 +75,12 @@ def unknown(what: str, name: str, known: Iterable[str]) -> str:
     return f"unknown {what} '{name}'; {hint}known: {listed(shown)}{more}"
 
 
+def near(file: str) -> str:
+    """Return the path of a file from here where it lies below, and in full elsewhere."""
+    path = os.path.relpath(file)
+    return file if path.startswith(os.pardir) else path
+
+
 def extra(name: str) -> str:
     """Say how to install what an extra of faultpath names: it comes from its checkout."""
     return f"in the checkout of faultpath, pip install '.[{name}]'"
@@ -83,10 +97,8 @@ def show_warning(
     del more
     if issubclass(category, RuntimeWarning) and _NUMPY.match(str(message)):
         return
-    near = os.path.relpath(filename)
-    place = filename if near.startswith(os.pardir) else near
-    said = one_line(f"{place}, line {lineno}: {category.__name__}: {message}")
-    sys.stderr.write(f"{said}\n")
+    line = one_line(f"{near(filename)}, line {lineno}: {category.__name__}: {message}")
+    sys.stderr.write(f"{line}\n")
 
 
 def _cut(text: str, kept: int) -> str:

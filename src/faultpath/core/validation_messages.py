@@ -1,4 +1,4 @@
-"""What does not fit a model of data, in words: the field, what is wrong, what is allowed.
+"""Sentences on data that does not fit its model: the field, what is wrong, what is allowed.
 
 Pydantic's own sentences are written for programmers; whatever tells a user of one asks here.
 """
@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast, get_args
 
-from faultpath.core.text import printable, shortened, unknown
+from faultpath.core.text import printable, represented, shortened, unknown
 
 if TYPE_CHECKING:
     from pydantic import BaseModel, ValidationError
@@ -28,7 +28,7 @@ _KINDS = {
     **dict.fromkeys(("tuple", "list", "set", "frozen", "iterable"), "a list"),
     **dict.fromkeys(("dict", "mapping", "model", "dataclass"), "a group of fields, `name: value`"),
 }
-"""What is allowed, by the first word of a kind of error."""
+"""Values allowed, by the first word of a kind of error."""
 _WITH = {
     "greater_than": "a number above {gt:g}",
     "greater_than_equal": "a number of at least {ge:g}",
@@ -42,13 +42,13 @@ _WITH = {
     "too_short": "of at least {min_length} values, and has {actual_length}",
     "too_long": "of at most {max_length} values, and has {actual_length}",
 }
-"""What is allowed, by the kind of error, with what the error says of it."""
+"""Values allowed, by the kind of error, with what the error says of it."""
 _SHOWN = 60
 
 
 @dataclass(frozen=True)
 class Misfit:
-    """What is wrong first."""
+    """The first thing that is wrong."""
 
     place: tuple[str | int, ...]
     """Keys and indices that lead to it."""
@@ -69,18 +69,18 @@ class Misfit:
 
 def misfit_of(error: "ValidationError", model: "type[BaseModel] | None" = None) -> Misfit:
     """Return what is wrong in words. With the `model`, an unknown field comes with the known."""
-    found = error.errors(include_url=False)
-    first = found[0]
+    errors = error.errors(include_url=False)
+    first = errors[0]
     if where := first.get("ctx", {}).get("where"):  # a sentence of faultpath's own
         return Misfit(tuple(where), str(first["msg"]), names_it=True)
     if first["type"] == "missing":
         # What is misspelt is missing as well; the word that stands there says more.
         beside = first["loc"][:-1]
-        strange = (e for e in found if e["type"] == "extra_forbidden" and e["loc"][:-1] == beside)
+        strange = (e for e in errors if e["type"] == "extra_forbidden" and e["loc"][:-1] == beside)
         first = next(strange, first)
     place = _place(first)
-    same = [each for each in found if _place(each) == place]
-    return Misfit(place, _said(same, _fields(model, place[:-1])))
+    same = [e for e in errors if _place(e) == place]
+    return Misfit(place, _problem(same, _fields(model, place[:-1])))
 
 
 def _place(error: Mapping[str, Any]) -> tuple[str | int, ...]:
@@ -93,7 +93,7 @@ def _place(error: Mapping[str, Any]) -> tuple[str | int, ...]:
     )
 
 
-def _said(errors: Sequence[Mapping[str, Any]], known: Sequence[str]) -> str:
+def _problem(errors: Sequence[Mapping[str, Any]], known: Sequence[str]) -> str:
     """Say what is wrong at one place: `errors` are of the branches that were tried."""
     first = errors[0]
     kind, context = str(first["type"]), first.get("ctx", {})
@@ -106,12 +106,12 @@ def _said(errors: Sequence[Mapping[str, Any]], known: Sequence[str]) -> str:
     if kind in ("value_error", "assertion_error"):
         return str(context["error"]).rstrip(".") if "error" in context else "does not fit"
     allowed: list[str] = []
-    for each in errors:
-        kind = str(each["type"])
-        said = _KINDS.get(kind.partition("_")[0], "")
+    for error in errors:
+        kind = str(error["type"])
+        values = _KINDS.get(kind.partition("_")[0], "")
         if kind in _WITH:
-            said = _WITH[kind].format_map(each.get("ctx", {}))
-        allowed += [said] if said and said not in allowed else []
+            values = _WITH[kind].format_map(error.get("ctx", {}))
+        allowed += [values] if values and values not in allowed else []
     if {_NUMBER, _WHOLE} <= set(allowed):
         allowed.remove(_WHOLE)
     must = f"and must be {' or '.join(allowed)}" if allowed else "which does not fit"
@@ -130,11 +130,7 @@ def _fields(model: object, place: Sequence[str | int]) -> tuple[str, ...]:
     return tuple(name for part in get_args(model) for name in _fields(part, place))
 
 
-def _shown(given: object) -> str:
-    if given is None or isinstance(given, bool):
-        return {None: "empty", True: "true", False: "false"}[given]
-    try:
-        text = printable(repr(given))
-    except Exception:  # whatever a system's own object does when it is printed
-        return f"a {type(given).__name__}"
-    return shortened(text, _SHOWN)
+def _shown(value: object) -> str:
+    if value is None or isinstance(value, bool):
+        return {None: "empty", True: "true", False: "false"}[value]
+    return shortened(printable(represented(value)), _SHOWN)

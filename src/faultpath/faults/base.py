@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Self, TypeAlias, cast
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
+from typing_extensions import override
 
 from faultpath.core.arrays import Array, misfit
 from faultpath.core.streams import generators
@@ -103,20 +104,26 @@ class Intervention(BaseModel, ABC):
 
     A reading is an array `[B, ...]` of NumPy, torch or any array-API namespace; the value has its
     shape, dtype and device. A step costs no host wait on an accelerator. Neither the reading nor
-    the memory is written to. `apply` is called at every delivery from the first on, also before
-    the onset, so that a delay has a past to draw on; the tap takes the value within the window.
+    the memory is written to. `apply` is called at every delivery until the fault is over, also
+    before the onset, so that a delay has a past to draw on; the tap takes the value in the window.
 
-    A subclass has a literal `kind`, states its fields, and is added to `Listed` in `fault.py`.
+    A subclass has a literal `kind` and is one of `faultpath.faults.fault.Listed`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     value_field: ClassVar[str | None] = None
-    """The field that takes VALUE in fault text `CHANNEL:KIND=VALUE`; `None`: KIND stands alone."""
+    """The field that takes VALUE in fault text `CHANNEL:KIND=VALUE`: the first after `kind`.
+    `None`: there is none, and KIND stands alone."""
     random: ClassVar[bool] = False
     """Whether errors are drawn, so that those of several channels can be correlated."""
-    said: ClassVar[str] = ""
+    phrase: ClassVar[str] = ""
     """Effect on the reading in a few words; a field's name in braces stands for its value."""
+
+    @classmethod
+    @override
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        cls.value_field = next((name for name in cls.model_fields if name != "kind"), None)
 
     def begin(self, reading: Array, at: Moment) -> Memory:
         """Return the memory before the first `apply`, at the first delivery."""
@@ -132,7 +139,7 @@ class Intervention(BaseModel, ABC):
 
     def words(self) -> str:
         """Return what is done, in a few words."""
-        return self.said.format_map({name: number(value) for name, value in self})
+        return self.phrase.format_map({name: number(value) for name, value in self})
 
     def resolved(self, channel: Channel) -> Self:
         """Return the intervention with what it takes from the channel's declaration filled in."""

@@ -41,7 +41,6 @@ class Noise(Intervention):
     """Add Gaussian noise, drawn anew at every step and for every number of the reading."""
 
     kind: Literal["noise"] = "noise"
-    value_field: ClassVar[str | None] = "std"
     random: ClassVar[bool] = True
     std: Std
     """In the reading's unit, or as a fraction of the reading when `relative`."""
@@ -67,8 +66,7 @@ class UniformScale(Intervention):
     """
 
     kind: Literal["uniform_scale"] = "uniform_scale"
-    said = "scaled by 1 ± {half_range}, one draw a scene"
-    value_field: ClassVar[str | None] = "half_range"
+    phrase = "scaled by 1 ± {half_range}, one draw a scene"
     random: ClassVar[bool] = True
     half_range: float = Field(ge=0, lt=1)
 
@@ -90,7 +88,6 @@ class Bias(Intervention):
     """
 
     kind: Literal["bias"] = "bias"
-    value_field: ClassVar[str | None] = "std"
     random: ClassVar[bool] = True
     std: Std
     """In the reading's unit, or as a fraction of the reading when `relative`."""
@@ -127,7 +124,6 @@ class Drift(Intervention):
     """Add an error that is zero at the onset and grows: a ramp, a random walk, or both."""
 
     kind: Literal["drift"] = "drift"
-    value_field: ClassVar[str | None] = "rate_per_s"
     random: ClassVar[bool] = True
     rate_per_s: Constant = 0.0
     """Ramp, in the reading's unit per second."""
@@ -169,7 +165,6 @@ class Dropout(Intervention):
     """Lose each reading with a probability, drawn per scene and step."""
 
     kind: Literal["dropout"] = "dropout"
-    value_field: ClassVar[str | None] = "probability"
     random: ClassVar[bool] = True
     probability: float = Field(ge=0, le=1)
     substitute: Erase | None = None
@@ -214,8 +209,7 @@ class Shuffle(Intervention):
     """
 
     kind: Literal["shuffle"] = "shuffle"
-    said = "shuffled along axis {axis}"
-    value_field: ClassVar[str | None] = "axis"
+    phrase = "shuffled along axis {axis}"
     axis: int = Field(default=1, ge=1)
     """Axis of `[B, ...]`; 1 is the first axis of one scene's reading."""
 

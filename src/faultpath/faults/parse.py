@@ -1,14 +1,14 @@
 """Faults as text, for the command line.
 
-    calibration=+0.1                    a preset that the system names
-    wind:delay=5                        CHANNEL:KIND=VALUE, at every consumer of the channel
-    wind:offset=1/0/0                   a vector
+    gain:delay=5                        CHANNEL:KIND=VALUE, at every consumer of the channel
+    velocity:offset=1/0/0               a vector
     velocity:noise=0.1,relative         more fields of the intervention after commas
-    wind:freeze,onset=20,for=40         when, in control steps; onset_s= and for_s= in seconds
-    mass:scale=1.1@planner+predictor.trim   only these modules and consumers
+    velocity:freeze,onset=20,for=40     when, in control steps; onset_s= and for_s= in seconds
+    gain:scale=1.1@observer+controller.inverse   only these modules and consumers
+    PRESET=+0.1                         a fault that the system names
 
 Further sizes stand after commas without a name: `gain:scale=0.8,0.9,1.1,onset=20@observer`, or a
-range `FROM..TO/COUNT`. A correlation group may stand for its channels: `calibration:scale=1.1`.
+range `FROM..TO/COUNT`. The name of a correlation group may stand for its channels.
 """
 
 import re
@@ -138,7 +138,7 @@ def _spread(item: str) -> tuple[str, ...]:
     if match is None:
         if ".." in item:
             raise UserError(
-                "a range cannot be read: write FROM..TO/COUNT, as in calibration=-0.2..0.2/9"
+                "a range cannot be read: write FROM..TO/COUNT, as in gain:scale=0.6..1.2/7"
             )
         return (item,)
     low, high, count = match.groups()

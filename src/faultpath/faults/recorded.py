@@ -3,7 +3,7 @@
 import hashlib
 from collections.abc import Collection, Mapping
 from functools import lru_cache
-from typing import Any, ClassVar, Literal, NamedTuple, Self, TypeAlias
+from typing import Any, Literal, NamedTuple, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,8 +57,7 @@ class Recorded(Intervention):
     """
 
     kind: Literal["recorded"] = "recorded"
-    said = "with the errors of {file}"
-    value_field: ClassVar[str | None] = "file"
+    phrase = "with the errors of {file}"
     file: str
     """A Parquet file of `encode_record`."""
     channel: str = ""

@@ -4,7 +4,7 @@ Those that hold a reading keep copies, so a producer may reuse its memory.
 """
 
 import math
-from typing import ClassVar, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -18,8 +18,7 @@ class Scale(Intervention):
     """Multiply the reading by a factor."""
 
     kind: Literal["scale"] = "scale"
-    said = "scaled by {factor}"
-    value_field: ClassVar[str | None] = "factor"
+    phrase = "scaled by {factor}"
     factor: Constant
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
@@ -31,8 +30,7 @@ class Offset(Intervention):
     """Add a number, or a vector along the last axis, in the reading's unit."""
 
     kind: Literal["offset"] = "offset"
-    said = "offset by {by}"
-    value_field: ClassVar[str | None] = "by"
+    phrase = "offset by {by}"
     by: Constant
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
@@ -44,8 +42,7 @@ class Rotate(Intervention):
     """Turn a vector by a rotation vector in radians, as a sensor does that is mounted askew."""
 
     kind: Literal["rotate"] = "rotate"
-    said = "turned by {by} rad"
-    value_field: ClassVar[str | None] = "by"
+    phrase = "turned by {by} rad"
     by: tuple[float, float, float]
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
@@ -76,8 +73,7 @@ class Quantise(Intervention):
     """Round to the nearest multiple of a step, halves to the even multiple."""
 
     kind: Literal["quantise"] = "quantise"
-    said = "rounded to multiples of {step_size}"
-    value_field: ClassVar[str | None] = "step_size"
+    phrase = "rounded to multiples of {step_size}"
     step_size: float = Field(gt=0)
     """In the reading's unit."""
 
@@ -90,7 +86,6 @@ class Erase(Intervention):
     """Replace the reading by a default that carries no information (paper: erasure)."""
 
     kind: Literal["erase"] = "erase"
-    value_field: ClassVar[str | None] = "default"
     default: Constant | None = None
     """In the reading's unit; `None`: the erasure default that the channel declares."""
 
@@ -115,17 +110,12 @@ class Delay(Intervention):
     """Deliver the reading of some steps ago; the first reading until there is one that old."""
 
     kind: Literal["delay"] = "delay"
-    said = "delayed by {steps} steps"
-    value_field: ClassVar[str | None] = "steps"
+    phrase = "delayed by {steps} steps"
     steps: int = Field(ge=0)
-
-    def begin(self, reading: Array, at: Moment) -> Memory:
-        """Return an empty past."""
-        return ()
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the newest reading that is at least `steps` old, and the past since it."""
-        past = (*memory, (at.step, copy(reading)))
+        past = (*(memory or ()), (at.step, copy(reading)))
         while len(past) > 1 and past[1][0] <= at.step - self.steps:
             past = past[1:]
         return past[0][1], past
@@ -135,18 +125,13 @@ class Hold(Intervention):
     """Refresh the reading at every n-th step from the onset on: a lower rate."""
 
     kind: Literal["hold"] = "hold"
-    said = "refreshed every {every} steps"
-    value_field: ClassVar[str | None] = "every"
+    phrase = "refreshed every {every} steps"
     every: int = Field(ge=1)
     """Steps between two refreshes."""
 
-    def begin(self, reading: Array, at: Moment) -> Memory:
-        """Return the held reading and which refresh it belongs to."""
-        return copy(reading), at.elapsed // self.every
-
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the held reading, refreshed when its time has come."""
-        value, last = memory
+        value, last = memory or (None, None)
         refresh = at.elapsed // self.every
         if refresh != last or at.elapsed < 0:
             value = copy(reading)
@@ -160,13 +145,9 @@ class Freeze(Intervention):
     """
 
     kind: Literal["freeze"] = "freeze"
-    said = "frozen"
-
-    def begin(self, reading: Array, at: Moment) -> Memory:
-        """Return the reading to hold."""
-        return copy(reading)
+    phrase = "frozen"
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the held reading, which follows the readings up to the onset."""
-        value = copy(reading) if at.elapsed <= 0 else memory
+        value = copy(reading) if memory is None or at.elapsed <= 0 else memory
         return value, value

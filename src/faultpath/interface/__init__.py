@@ -1,5 +1,6 @@
 """The interface that a system declares: sources, channels, consumers, reconstructions."""
 
+from faultpath.interface.declaration import Channel, Gap, Provenance, Source, Uncertainty
 from faultpath.interface.interface import (
     Interface,
     groups,
@@ -8,7 +9,6 @@ from faultpath.interface.interface import (
     rank,
     transitive_consumers,
 )
-from faultpath.interface.model import Channel, Gap, Provenance, Source, Uncertainty
 from faultpath.interface.yaml_io import read_interface
 
 __all__ = [

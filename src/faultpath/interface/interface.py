@@ -16,7 +16,7 @@ from faultpath.core.arrays import misfit
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.text import listed, unknown
-from faultpath.interface.model import Channel, Made, Name, Source
+from faultpath.interface.declaration import Channel, Made, Name, Source
 
 Where = tuple[str | int, ...]
 

@@ -7,7 +7,6 @@ error of size zero changes no bit; the process keeps the random numbers of torch
 from __future__ import annotations
 
 import copy
-import platform
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,9 +17,8 @@ from typing_extensions import override
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import key
-from faultpath.core.version import __version__
 from faultpath.faults import AnyFault, resolve
-from faultpath.learning.loop import Task, minibatches, run
+from faultpath.learning.loop import FitTask, History, minibatches, run
 from faultpath.learning.model_card import (
     Architecture,
     FitRecord,
@@ -123,50 +121,10 @@ def fit(
         task.name = name or "+".join((type(net).__name__.lower(), *kinds))
         if not task.count:
             raise UserError("fit: no window is left for training: give more, or validation=0")
-        initial = weights_sha256(net)
-        first_loss = task.mean_loss(net, task.training[minibatches(task, 0)[0].numpy()], ())
+        task.initial_sha256 = weights_sha256(net)
+        task.first_loss = task.mean_loss(net, task.training[minibatches(task, 0)[0].numpy()], ())
         history = run(task, net)
-    structure = [str(net)]
-    for place, part in net.named_modules():
-        plain = {
-            name: value
-            for name, value in sorted(vars(part).items())
-            if isinstance(value, bool | int | float | str | tuple) and name != "training"
-        }
-        structure.append(f"{place or type(net).__name__}: {plain}")
-    record = FitRecord(
-        name=task.name,
-        seed=seed,
-        repairs=repairs,
-        reads=tuple(f"{port.channel} -> {consumer}" for port, consumer in data.ports.items()),
-        architecture=Architecture(
-            name=type(net).__name__,
-            structure="\n".join(structure),
-            tensors={
-                name: f"{str(value.dtype).removeprefix('torch.')} {list(value.shape)}"
-                for name, value in net.state_dict().items()
-            },
-        ),
-        parameters=parameter_count(net),
-        data=data.digested(task.host_targets, task.training),
-        loss=_name_of(loss),
-        schedule=task.schedule,
-        initial_sha256=initial,
-        first_loss=first_loss,
-        order_sha256=tuple(task.order),
-        training_loss=history.training_loss,
-        validation=tuple(metrics for metrics in history.validation if metrics),
-        taps=task.taps,
-        weights_sha256=weights_sha256(net),
-        machine=Machine(
-            torch=torch.__version__,
-            faultpath=__version__,
-            python=".".join(platform.python_version_tuple()[:2]),
-            device=task.device.type,
-            threads=torch.get_num_threads(),
-        ),
-        duration_s=round(history.duration_s, 3),
-    )
+    record = task.record(net, history)
     path = None
     if folder is not None:
         make_folder(Path(folder))
@@ -199,10 +157,12 @@ def load(module: nn.Module, path: Path | str) -> Fit:
     return Fit(module.eval(), record, Path(path))
 
 
-class _WindowTask(Task):
+class _WindowTask(FitTask):
     """Windows as samples, with a delivery through the taps for each minibatch."""
 
     order_key = "repairs"
+    initial_sha256: str
+    first_loss: float
 
     def __init__(
         self,
@@ -219,7 +179,7 @@ class _WindowTask(Task):
         def tensor(array: np.ndarray) -> Tensor:
             return torch.from_numpy(np.ascontiguousarray(array)).to(self.device)
 
-        self.seed, self.schedule = seed, schedule
+        self.repairs, self.seed, self.schedule = repairs, seed, schedule
         parameter = next(net.parameters(), None)
         self.device = torch.device("cpu") if parameter is None else parameter.device
         self.host_targets = data.learned(repairs)
@@ -253,6 +213,31 @@ class _WindowTask(Task):
             return {}
         cases = {"correct": self._kept, "perturbed": self._faults}
         return {name: self.mean_loss(net, self._held_out, faults) for name, faults in cases.items()}
+
+    def record(self, net: nn.Module, history: History) -> FitRecord:
+        """Return the record of a finished fit."""
+        return FitRecord(
+            name=self.name,
+            seed=self.seed,
+            repairs=self.repairs,
+            reads=tuple(
+                f"{port.channel} -> {consumer}" for port, consumer in self._data.ports.items()
+            ),
+            architecture=Architecture.of(net),
+            parameters=parameter_count(net),
+            data=self._data.digested(self.host_targets, self.training),
+            loss=_name_of(self._loss),
+            schedule=self.schedule,
+            initial_sha256=self.initial_sha256,
+            first_loss=self.first_loss,
+            order_sha256=tuple(self.order),
+            training_loss=history.training_loss,
+            validation=tuple(metrics for metrics in history.validation if metrics),
+            taps=self.taps,
+            weights_sha256=weights_sha256(net),
+            machine=Machine.here(self.device.type),
+            duration_s=round(history.duration_s, 3),
+        )
 
     def mean_loss(self, net: nn.Module, index: np.ndarray, faults: Iterable[Any]) -> float:
         """Return the mean loss of some windows, without gradients and in evaluation mode."""

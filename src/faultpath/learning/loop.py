@@ -34,7 +34,7 @@ class Diverged(UserError):
 
 
 @dataclass(frozen=True)
-class Moment:
+class FitProgress:
     """Progress of a fit."""
 
     epoch: int
@@ -54,7 +54,7 @@ class History:
     duration_s: float = 0.0
 
 
-class Task(ABC):
+class FitTask(ABC):
     """The samples of a fit and their loss.
 
     For each epoch `begin_epoch`, the minibatches' `loss` and `validate` are called. A fit that was
@@ -140,10 +140,10 @@ class Journal:
 
 
 def run(
-    task: Task,
+    task: FitTask,
     net: nn.Module,
     journal: Journal | None = None,
-    progress: Callable[[Moment], None] | None = None,
+    progress: Callable[[FitProgress], None] | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> History:
     """Fit all epochs, or those after the last one that the journal holds.
@@ -152,47 +152,26 @@ def run(
     Raises `Diverged` for a loss, weights or metrics that are not finite.
     """
     import torch
-    from torch import nn, optim
 
     def diverged(what: str) -> Diverged:
         kept = f"; the state after epoch {epoch} is kept in {journal.path}" if journal else ""
         return Diverged(
             f"the {what} of {task.name}-{task.seed} left the finite numbers in epoch {epoch + 1} "
-            f"of {schedule.epochs}: lower the learning rate or clip the gradient"
+            f"of {task.schedule.epochs}: lower the learning rate or clip the gradient"
             f"{kept if epoch else ''}."
         )
 
-    schedule, history = task.schedule, History()
-    fitted = [parameter for parameter in net.parameters() if parameter.requires_grad]
-    if schedule.optimiser == "adam":
-        optimiser: Optimizer = optim.Adam(fitted, lr=schedule.learning_rate)
-    else:
-        decay = schedule.weight_decay
-        optimiser = optim.AdamW(fitted, lr=schedule.learning_rate, weight_decay=decay)
+    history, optimiser = History(), _optimiser(task.schedule, net)
     if journal is not None and journal.path.exists():
         restored = journal.read(net, optimiser)
         if restored is None and notice is not None:
             notice(f"{journal.path} is damaged or of another fit: starting from the first epoch.")
         history = restored or history
-    while (epoch := len(history.training_loss)) < schedule.epochs:
-        started, total = time.monotonic(), 0.0
-        task.begin_epoch(epoch)
-        net.train()
-        batches = minibatches(task, epoch)
-        for number, index in enumerate(batches):
-            optimiser.zero_grad(set_to_none=True)
-            loss = task.loss(net, index)
-            value = loss.item()
-            if not math.isfinite(value):
-                raise diverged("loss")
-            loss.backward()
-            if schedule.clip_norm is not None:
-                nn.utils.clip_grad_norm_(net.parameters(), schedule.clip_norm)
-            optimiser.step()
-            total += value * len(index)
-            if progress is not None:
-                done = epoch + (number + 1) / len(batches)
-                progress(Moment(epoch, done / schedule.epochs, value))
+    while (epoch := len(history.training_loss)) < task.schedule.epochs:
+        started = time.monotonic()
+        loss = _train(task, net, optimiser, epoch, progress)
+        if not math.isfinite(loss):
+            raise diverged("loss")
         net.eval()
         with torch.no_grad():
             metrics = {key: float(value) for key, value in task.validate(net).items()}
@@ -200,7 +179,7 @@ def run(
         if not finite or not all(v.isfinite().all() for v in net.parameters()):
             raise diverged("weights or validation")
         history = History(
-            (*history.training_loss, total / task.count),
+            (*history.training_loss, loss),
             (*history.validation, metrics),
             history.duration_s + time.monotonic() - started,
         )
@@ -209,7 +188,47 @@ def run(
     return history
 
 
-def minibatches(task: Task, epoch: int) -> tuple[LongTensor, ...]:
+def _optimiser(schedule: Schedule, net: nn.Module) -> Optimizer:
+    from torch import optim
+
+    fitted = [parameter for parameter in net.parameters() if parameter.requires_grad]
+    if schedule.optimiser == "adam":
+        return optim.Adam(fitted, lr=schedule.learning_rate)
+    return optim.AdamW(fitted, lr=schedule.learning_rate, weight_decay=schedule.weight_decay)
+
+
+def _train(
+    task: FitTask,
+    net: nn.Module,
+    optimiser: Optimizer,
+    epoch: int,
+    progress: Callable[[FitProgress], None] | None,
+) -> float:
+    """Fit one epoch and return its mean loss, or at once a loss that is not finite."""
+    from torch import nn
+
+    schedule, total = task.schedule, 0.0
+    task.begin_epoch(epoch)
+    net.train()
+    batches = minibatches(task, epoch)
+    for number, index in enumerate(batches):
+        optimiser.zero_grad(set_to_none=True)
+        loss = task.loss(net, index)
+        value = loss.item()
+        if not math.isfinite(value):
+            return value
+        loss.backward()
+        if schedule.clip_norm is not None:
+            nn.utils.clip_grad_norm_(net.parameters(), schedule.clip_norm)
+        optimiser.step()
+        total += value * len(index)
+        if progress is not None:
+            done = epoch + (number + 1) / len(batches)
+            progress(FitProgress(epoch, done / schedule.epochs, value))
+    return total / task.count
+
+
+def minibatches(task: FitTask, epoch: int) -> tuple[LongTensor, ...]:
     """Cut a permutation of the samples; its address names the order, the seed and the epoch."""
     import torch
 

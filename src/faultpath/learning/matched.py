@@ -34,9 +34,7 @@ class Comparison(Frozen):
 
     def __str__(self) -> str:
         if self.differences:
-            return "\n".join(
-                ("not matched:", *(f"  - {difference}" for difference in self.differences))
-            )
+            return "\n  - ".join(("not matched:", *self.differences))
         if self.same_repair:
             return f"the same fit twice: even the repair ({self.repair}) is the same"
         against = "" if self.baseline == "none" else f" against {self.baseline}"

@@ -6,9 +6,10 @@ A card is read without torch. Weights are safetensors: reading them runs no code
 from __future__ import annotations
 
 import json
+import platform
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 from pydantic import Field
 
@@ -17,6 +18,7 @@ from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.core.results import Frozen
 from faultpath.core.text import extra
+from faultpath.core.version import __version__
 from faultpath.learning.repair import Repair
 from faultpath.loop import TapCount
 from faultpath.trials.store.atomic import write_file, write_text
@@ -77,6 +79,23 @@ class Architecture(Frozen):
     tensors: dict[str, str]
     """Type and shape of each parameter and buffer."""
 
+    @classmethod
+    def of(cls, net: nn.Module) -> Self:
+        """Return the architecture of a module."""
+        structure = [str(net)]
+        for place, part in net.named_modules():
+            plain = {
+                name: value
+                for name, value in sorted(vars(part).items())
+                if isinstance(value, bool | int | float | str | tuple) and name != "training"
+            }
+            structure.append(f"{place or type(net).__name__}: {plain}")
+        tensors = {
+            name: f"{str(value.dtype).removeprefix('torch.')} {list(value.shape)}"
+            for name, value in net.state_dict().items()
+        }
+        return cls(name=type(net).__name__, structure="\n".join(structure), tensors=tensors)
+
 
 class Data(Frozen):
     """The windows of a fit, in digests."""
@@ -102,6 +121,19 @@ class Machine(Frozen):
     python: str
     device: str
     threads: int
+
+    @classmethod
+    def here(cls, device: str) -> Self:
+        """Return this machine, fitting on a torch device of this type."""
+        import torch
+
+        return cls(
+            torch=torch.__version__,
+            faultpath=__version__,
+            python=".".join(platform.python_version_tuple()[:2]),
+            device=device,
+            threads=torch.get_num_threads(),
+        )
 
 
 class FitRecord(Card):

@@ -2,7 +2,7 @@
 
 from faultpath.loop.graph import graph, interface_of
 from faultpath.loop.loop import Deliverer, Instant, Loop
-from faultpath.loop.module import (
+from faultpath.loop.parts import (
     Batch,
     Graph,
     Inputs,

@@ -7,7 +7,7 @@ from typing import Any
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import listed
 from faultpath.interface import Interface, read_interface
-from faultpath.loop.module import Graph, Module, Part, Plant
+from faultpath.loop.parts import Graph, Module, Part, Plant
 
 
 def graph(
@@ -52,10 +52,7 @@ def graph(
 
 
 def _check_ports(
-    interface: Interface,
-    part: Part,
-    bound: Mapping[str, str],
-    writers: Mapping[str, object],
+    interface: Interface, part: Part, bound: Mapping[str, str], writers: Mapping[str, object]
 ) -> None:
     twice = part.reads & part.reads_past
     if twice:

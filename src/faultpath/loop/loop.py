@@ -11,7 +11,7 @@ from faultpath.core.arrays import Array
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import listed
 from faultpath.interface import Interface, Source
-from faultpath.loop.module import Batch, Graph, Inputs, Module, Outputs, Part, Port, State
+from faultpath.loop.parts import Batch, Graph, Inputs, Module, Outputs, Part, Port, State
 from faultpath.loop.reading import Reading
 
 _SLACK = 1e-6

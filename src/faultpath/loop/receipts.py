@@ -53,18 +53,18 @@ class Guard:
     NumPy arrays are read-only views and need none of this. Any other is compared with what it was.
     """
 
-    __slots__ = ("_given", "_kept", "_written")
+    __slots__ = ("_kept", "_lent", "_written")
 
     def __init__(self) -> None:
-        self._given: Array = None
+        self._lent: Array = None
         self._kept: Array = None
         self._written: Any = False
 
     def hand_out(self, value: Array) -> Array:
         """Return a copy for the consumer, after a look at the last one."""
         self._look()
-        self._given, self._kept = copy(value), copy(value)
-        return self._given
+        self._lent, self._kept = copy(value), copy(value)
+        return self._lent
 
     def written(self) -> bool:
         """Return whether a consumer wrote; this waits for the device."""
@@ -72,8 +72,8 @@ class Guard:
         return bool(to_numpy(self._written))
 
     def _look(self) -> None:
-        if self._given is not None:
-            unequal = differs(self._given, self._kept)
+        if self._lent is not None:
+            unequal = differs(self._lent, self._kept)
             self._written = self._written | namespace(unequal).any(unequal)
 
 
@@ -165,9 +165,7 @@ class Receipts:
 
 
 def check_delivered(
-    receipts: Receipts,
-    faulted: frozenset[tuple[str, str]],
-    last_step: NDArray[np.int64],
+    receipts: Receipts, faulted: frozenset[tuple[str, str]], last_step: NDArray[np.int64]
 ) -> None:
     """Compare receipts with the taps `(channel, consumer)` that the faults name.
 

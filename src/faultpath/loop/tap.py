@@ -81,10 +81,10 @@ class Tap:
     deliveries: int = 0
     asks: int = 0
     """Answers of a query, over all steps."""
-    asked: int = 0
-    """Answers of a query in the last step."""
+    ask: int = 0
+    """Answers of a query in the last step, which number its next one."""
     last_step: int = -1
-    given: Array = None
+    value: Array = None
     """The value of the step's reading."""
     cached: Array = None
     """Value that the consumer got of it."""
@@ -180,8 +180,8 @@ class Tap:
         if step < 0:
             raise MalformedReading(f"tap {self}: step {step} is before the first, which is 0")
         alike = is_array(value) and tuple(value.shape) == self.shape
-        if alike and device_kind(value) == device_kind(self.given) == "cpu":
-            alike = not to_numpy(differs(value, self.given)).any()
+        if alike and device_kind(value) == device_kind(self.value) == "cpu":
+            alike = not to_numpy(differs(value, self.value)).any()
         if not alike:
             raise MalformedReading(
                 f"tap {self}: step {step} brings two different readings, but a channel has one in "

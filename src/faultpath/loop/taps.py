@@ -142,9 +142,9 @@ class Taps:
                 tap.check_first(value, self._scenes)
             tap.last_step = step
             tap.deliveries += 1
-            tap.given = value
+            tap.value = value
             if isinstance(value, Query):
-                tap.asked = 0
+                tap.ask = 0
                 got = partial(self._answer, tap, value, step)
             else:
                 got = self._corrupted(tap, value, step) if tap.corruptions else value
@@ -155,7 +155,7 @@ class Taps:
                 elif tap.guard is not None:
                     got = tap.guard.hand_out(got)
             tap.cached = got
-        elif value is not tap.given:
+        elif value is not tap.value:
             tap.check_same(value, step)
         if self._observer is not None:
             self._observer.delivered(tap, reading, step, tap.cached)
@@ -168,8 +168,8 @@ class Taps:
                 "was delivered in this step"
             )
         answer = read_only(query.answer(request))
-        ask, first = tap.asked, not tap.asks
-        tap.asked, tap.asks = ask + 1, tap.asks + 1
+        ask, first = tap.ask, not tap.asks
+        tap.ask, tap.asks = ask + 1, tap.asks + 1
         got = answer
         if first or tap.corruptions or tap.guard:
             clean = value = query.value(answer)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from faultpath.statistics.inputs import Floats
 
 _SHARES = np.sin((np.arange(32) + 0.5) * np.pi / 64.0)
-"""What is staked, with equal weights: quantiles of the arcsine law between 0 and 1, never all."""
+"""Shares staked, with equal weights: quantiles of the arcsine law between 0 and 1, never all."""
 _HALVINGS = 44
 
 

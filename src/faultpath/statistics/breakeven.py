@@ -22,7 +22,7 @@ from faultpath.statistics.inputs import Floats
 _GRID, _POINTS = 400, 41
 _HALVINGS = 40
 _DIGITS = 9
-"""Of a mixture's values, so that values which cancel leave exactly 0."""
+"""Digits of a mixture's values, so that values which cancel leave exactly 0."""
 Bools = NDArray[np.bool_]
 Piece = tuple[float, float]
 Ends = tuple[Contrast, Contrast]
@@ -42,8 +42,8 @@ def break_even(
     mixture, *others = (_Mixture(*ends, level) for ends in ((correct, faulty), *fills))
 
     def undecided(p: Floats) -> Bools:
-        apart = [np.sign(each.value(p)) != np.sign(mixture.value(p)) for each in others]
-        return np.any([*apart, *(each.undecided(p) for each in (mixture, *others))], axis=0)
+        apart = [np.sign(other.value(p)) != np.sign(mixture.value(p)) for other in others]
+        return np.any([*apart, *(mix.undecided(p) for mix in (mixture, *others))], axis=0)
 
     delta_0, delta_f = correct.value, faulty.value
     grid = np.linspace(0.0, 1.0, _GRID + 1)
@@ -72,13 +72,13 @@ def break_even(
     )
 
 
-def only(found: BreakEven, regions: Sequence[Region]) -> BreakEven:
+def only(whole: BreakEven, regions: Sequence[Region]) -> BreakEven:
     """Return what is left where of all regions only some are decided."""
-    edges = [0.0, *(end for each in regions for end in (each.low, each.high)), 1.0]
+    edges = [0.0, *(end for region in regions for end in (region.low, region.high)), 1.0]
     spans = zip(edges[::2], edges[1::2], strict=True)
     # A set that begins or ends in a single frequency keeps it.
-    pieces = tuple(span for span in spans if span[0] < span[1] or span in found.pieces)
-    return found.model_copy(
+    pieces = tuple(span for span in spans if span[0] < span[1] or span in whole.pieces)
+    return whole.model_copy(
         update={"pieces": pieces, "kind": _kind(pieces), "regions": tuple(regions)}
     )
 
@@ -104,7 +104,7 @@ def mixture_curve(
 
 
 class _Mixture:
-    """What is known of the difference at fault frequencies ``p`` [frequencies]."""
+    """The difference at fault frequencies ``p`` [frequencies], with its test and interval."""
 
     def __init__(self, correct: Contrast, faulty: Contrast, level: float) -> None:
         check_joint(correct, faulty)

@@ -31,7 +31,7 @@ MIN_SCENES = fewest_scenes()
 ROUNDING = 1e-12
 """Draws that spread no more than this are all the same."""
 _DIGITS = 9
-"""Of weighted sums, so that contrasts which cancel leave exactly 0."""
+"""Digits of weighted sums, so that contrasts which cancel leave exactly 0."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ class Contrast:
     test: PairedTest | None = None
     """See `with_test`; without one the interval decides."""
     decision: Decision | None = None
-    """What its family makes of it; `None` outside of one."""
+    """Its place in a family of contrasts; `None` outside of one."""
     notable: float | None = None
     """Where a greater difference than this could have been missed, detecting none says nothing."""
 
@@ -207,9 +207,9 @@ def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Con
     first, *others = contrasts
     for other in others:
         check_joint(first, other)
-    parts = [each.scenes for each in contrasts if each.scenes is not None]
-    alike = len({each.n_seeds for each in contrasts}) == 1
-    by_seed = zip(*(each.per_seed for each in contrasts), strict=True) if alike else ()
+    parts = [part.scenes for part in contrasts if part.scenes is not None]
+    alike = len({part.n_seeds for part in contrasts}) == 1
+    by_seed = zip(*(part.per_seed for part in contrasts), strict=True) if alike else ()
     scenes = combined(weights, parts) if len(parts) == len(contrasts) else None
     if scenes is None or first.estimand == SCENES_AND_SEEDS:
         method = f"combined effects, {first.method}"
@@ -219,11 +219,11 @@ def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Con
         method = "score on scene differences (Tango's, cluster-robust)"
     return replace(
         first,
-        value=_dot(weights, [each.value for each in contrasts]),
-        draws=np.dot(weights, [each.draws for each in contrasts]).round(_DIGITS),
+        value=_dot(weights, [part.value for part in contrasts]),
+        draws=np.dot(weights, [part.draws for part in contrasts]).round(_DIGITS),
         per_seed=tuple(_dot(weights, values) for values in by_seed),
         method=method,
-        n_seeds=max(each.n_seeds for each in contrasts),
+        n_seeds=max(part.n_seeds for part in contrasts),
         arms=None,
         scenes=scenes,
         test=None,

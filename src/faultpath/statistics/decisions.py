@@ -1,4 +1,4 @@
-"""What counts as found: interval and test together, within the family of all that is announced."""
+"""Rules of detection: interval and test together, within the family of all that is announced."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -75,7 +75,7 @@ def decide_family(
     ``alpha`` of audits, whichever of the nulls are true. With ``shares`` (of ``alpha``, at most 1
     together) each contrast stands by itself at its own share of it, Bonferroni's procedure.
     """
-    tests = {name: each.test for name, each in contrasts.items() if each.test is not None}
+    tests = {name: contrast.test for name, contrast in contrasts.items() if contrast.test}
     p_values = {name: tests[name].p_value for name in contrasts}
     weighs = {name: 1.0 if weights is None else weights[name] for name in contrasts}
     adjusted = holm(p_values, weighs)
@@ -83,9 +83,9 @@ def decide_family(
         adjusted = {name: min(1.0, p / shares[name]) for name, p in p_values.items()}
     ordered = sorted(p_values, key=lambda name: p_values[name] / weighs[name])
     decided: dict[str, Contrast] = {}
-    for name, each in contrasts.items():
+    for name, contrast in contrasts.items():
         leans = tests[name].leans if adjusted[name] <= alpha else 0
-        sign = leans if leans and leans == each.side else 0
+        sign = leans if leans and leans == contrast.side else 0
         if shares:
             critical = alpha * shares[name]
         else:
@@ -97,7 +97,7 @@ def decide_family(
                     break
                 del left[other]
             critical = alpha * weighs[name] / sum(left.values())
-        decided[name] = replace(each, decision=Decision(sign, adjusted[name], critical))
+        decided[name] = replace(contrast, decision=Decision(sign, adjusted[name], critical))
     return decided
 
 

@@ -33,8 +33,7 @@ def success_effect(
     # Summed first, so that wins and losses of a scene cancel exactly.
     values = (one - two).sum(axis=1) / one.shape[1]
     scenes = SceneValues.paired(values, 1.0, 100.0, sequential, RULES[rule])
-    found = _mean(one - two, resamples, "pp", scenes, models)
-    return replace(found, arms=(one, two))
+    return replace(_mean(one - two, resamples, "pp", scenes, models), arms=(one, two))
 
 
 def mean_effect(first: Numbers, second: Numbers, resamples: Resamples, unit: str) -> Contrast:
@@ -137,8 +136,8 @@ def median_effect(
 class WindowQuantiles:
     """Quantiles over the windows of some scenes, all on the same resamples of these scenes.
 
-    Windows of a scene share a vehicle, a flight and its wind, so they are not independent: a
-    resample takes or leaves a scene with all its windows. Arrays are [windows, seeds], or
+    Windows of a scene share its trial and disturbances, so they are not independent: a resample
+    takes or leaves a scene with all its windows. Arrays are [windows, seeds], or
     [windows] for one seed; a quantile is taken over the windows of each seed, and then the mean
     over seeds (paper, Table VI: "mean of per-seed window medians").
 
@@ -159,8 +158,8 @@ class WindowQuantiles:
 
     def value(self, values: Numbers, q: float, unit: str = "") -> Contrast:
         """Return the quantile ``q`` of ``values``."""
-        found = self._quantiles(by_scene_and_seed(values), q)
-        return self._effect(*found, unit, f"quantile {q:g} over windows")
+        seen, drawn = self._quantiles(by_scene_and_seed(values), q)
+        return self._effect(seen, drawn, unit, f"quantile {q:g} over windows")
 
     def log_ratio(self, first: Numbers, second: Numbers, q: float) -> Contrast:
         """Return the natural logarithm of the ratio of two quantiles, which must be positive.
@@ -181,8 +180,8 @@ class WindowQuantiles:
             raise ValueError(f"{len(values)} values are not of {len(self._scene)} windows")
         counts = np.concatenate([np.ones((1, self.resamples.n_scenes)), self.resamples.counts])
         every = [quantiles(counts, column, self._scene, q) for column in values.T]
-        found: Floats = np.stack(every, axis=1)
-        return found[0], found[1:]
+        rows: Floats = np.stack(every, axis=1)
+        return rows[0], rows[1:]
 
     def _effect(self, seen: Floats, drawn: Floats, unit: str, what: str) -> Contrast:
         return Contrast(

@@ -1,4 +1,4 @@
-"""What the statistics give: estimates, tests and break-even frequencies as data.
+"""Results of the statistics: estimates, tests and break-even frequencies as data.
 
 Every model is frozen, refuses unknown fields and refuses NaN, so a number that does not exist has
 to be said with ``None`` and a reason. Differences are always *first minus second*.
@@ -91,14 +91,14 @@ class PairedTest(NamedTuple):
 
 
 class Decision(NamedTuple):
-    """What a family of contrasts makes of one of them."""
+    """The place of a contrast in the family that it is decided with."""
 
     sign: Sign
     """Side of 0 on which the difference is detected; 0 where it is not."""
     adjusted_p: float
     """Holm's."""
     critical_p: float
-    """What the test had to reach, given the others' p-values."""
+    """Largest p at which it would be detected, given the others' p-values."""
 
 
 class Region(Frozen, allow_inf_nan=False):
@@ -138,7 +138,7 @@ class Rule(NamedTuple):
     weighted: bool
     """Whether half of the error rate is the primary contrast's, and the others share the rest."""
     prior: float
-    """Of `score.reach`: scenes of the largest possible difference that several seeds are given."""
+    """For `score.reach`: scenes of the largest possible difference that several seeds are given."""
     graded: bool = False
     """Whether several seeds and changes take the test of degrees (`score`)."""
 

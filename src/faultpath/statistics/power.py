@@ -17,12 +17,12 @@ from faultpath.statistics.inputs import Floats, Numbers, paired
 from faultpath.statistics.score import degrees_rejects, quantile, reach, rejects
 
 LEVEL = 0.95
-"""Of the interval that has to exclude 0 as well."""
+"""Level of the interval that has to exclude 0 as well."""
 AUDITS = 2000
 """Simulated audits, where power has no closed form."""
 _PRECISION = 1e-3
 _PRIOR_ALIKE, _PRIOR_SCENES = 0.5, 1.0
-"""What is taken to have been seen of seeds that end alike, before anything was."""
+"""Counts of seeds that end alike, taken as seen before anything was."""
 
 
 def fewest_scenes(alpha: float = ALPHA) -> int:
@@ -115,9 +115,9 @@ def detected(
     if RULES[rule].graded:
         return degrees_rejects(values, counts, 1.0, alpha)
     if rule != "exact":
-        found = rejects(values, counts, 0.0, far, quantile(max(LEVEL, 1.0 - alpha)))
-        found[found] = signflip.p_values(values, counts[found]) <= alpha
-        return found
+        beyond = rejects(values, counts, 0.0, far, quantile(max(LEVEL, 1.0 - alpha)))
+        beyond[beyond] = signflip.p_values(values, counts[beyond]) <= alpha
+        return beyond
     first = counts[:, values > 0].sum(axis=1)
     second = counts[:, values < 0].sum(axis=1)
     tested = 2.0 * binomial_cdf(np.minimum(first, second), first + second, 0.5) <= alpha

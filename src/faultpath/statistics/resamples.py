@@ -79,7 +79,7 @@ def quantiles(counts: Floats, values: Floats, scenes: NDArray[np.intp], q: float
     """
     order = np.argsort(values, kind="stable")
     ordered, columns = values[order], scenes[order]
-    found: list[Floats] = []
+    parts: list[Floats] = []
     for rows in _blocks(len(counts), len(values)):
         # How many values of a resample lie up to and with each: whole numbers, and so exact.
         reached = np.cumsum(counts[rows][:, columns], axis=1, dtype=np.float64)
@@ -87,8 +87,8 @@ def quantiles(counts: Floats, values: Floats, scenes: NDArray[np.intp], q: float
         rank = q * reached[:, -1:]
         lower = (reached < rank - _SLACK).sum(axis=1)
         upper = (reached <= rank + _SLACK).sum(axis=1)
-        found.append((ordered[lower] + ordered[upper]) / 2.0)
-    return np.concatenate(found)
+        parts.append((ordered[lower] + ordered[upper]) / 2.0)
+    return np.concatenate(parts)
 
 
 def _blocks(rows: int, items: int) -> Iterator[slice]:

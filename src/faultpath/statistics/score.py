@@ -24,7 +24,7 @@ from faultpath.statistics.inputs import Floats
 
 _HALVINGS = 44
 _DIGITS = 9
-"""Of a combined value, so that values which cancel leave exactly 0."""
+"""Digits of a combined value, so that values which cancel leave exactly 0."""
 PRIOR, _DOUBT = 3.0, 10.0
 """Scenes of the largest possible difference that `reach` adds by itself, where a rule has not its
 own; and those of the test of degrees, before anything was seen."""
@@ -63,11 +63,11 @@ class SceneValues:
         """
         if sequential:
             return cls(values, bound, far=bound, scale=scale, sequential=True)
-        found = cls(values, bound, bound, scale, graded=rule.graded)
-        kinds, often = found.kinds()
+        scenes = cls(values, bound, bound, scale, graded=rule.graded)
+        kinds, often = scenes.kinds()
         # Summed in both orders, since swapping the arms turns the order round.
         orders = ((kinds, often), (kinds[::-1], often[::-1]))
-        return replace(found, far=float(max(reach(*each, bound, rule.prior) for each in orders)))
+        return replace(scenes, far=float(max(reach(*pair, bound, rule.prior) for pair in orders)))
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Return the interval of the mean, in the unit of the effect: by score, or by betting."""
@@ -142,10 +142,10 @@ def degrees_rejects(
 ) -> NDArray[np.bool_]:
     """Return [...]: whether that p is at most ``alpha``; all samples have as many scenes."""
     z, discordants, far = _degrees(values, counts, bound)
-    found = rejects(values, counts, 0.0, far, quantile(1.0 - alpha))
+    beyond = rejects(values, counts, 0.0, far, quantile(1.0 - alpha))
     most = round(float(counts.sum(axis=-1).max()))
-    found[found] = unconditional.degrees_rejects(z[found], discordants[found], most, alpha)
-    return found
+    beyond[beyond] = unconditional.degrees_rejects(z[beyond], discordants[beyond], most, alpha)
+    return beyond
 
 
 def degrees_interval(
@@ -153,11 +153,11 @@ def degrees_interval(
 ) -> tuple[Floats, Floats]:
     """Return both ends [...] of `interval`, of which one is moved where it and the test of degrees
     disagree on 0: onto it, or to the end at the reach of that test."""
-    z, found = quantile(level), degrees_rejects(values, counts, bound, 1.0 - level)
+    z, beyond = quantile(level), degrees_rejects(values, counts, bound, 1.0 - level)
     low, high = interval(values, counts, far, z)
     near, most = interval(values, counts, _degrees(values, counts, bound)[2], z)
-    low = np.where(found & (near > 0.0), np.where(low > 0.0, low, near), np.minimum(low, 0.0))
-    high = np.where(found & (most < 0.0), np.where(high < 0.0, high, most), np.maximum(high, 0.0))
+    low = np.where(beyond & (near > 0.0), np.where(low > 0.0, low, near), np.minimum(low, 0.0))
+    high = np.where(beyond & (most < 0.0), np.where(high < 0.0, high, most), np.maximum(high, 0.0))
     return low, high
 
 

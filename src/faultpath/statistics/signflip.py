@@ -9,7 +9,7 @@ import numpy as np
 from faultpath.statistics.inputs import Floats
 
 _HALVINGS = 12
-"""Of the unit in which scenes differ: of means over seeds, and of weighted sums of these."""
+"""Halvings tried of the unit in which scenes differ: means over seeds, and weighted sums."""
 _SLACK = 1e-6
 
 

@@ -34,8 +34,7 @@ def design(sizes: Sequence[int], points: int, seed: int) -> Floats:
     second draw of all. `points` is a power of two. `UserError` without the package SALib.
     """
     sample = _salib()[0]
-    found: Floats = sample(_problem(sizes), points, calc_second_order=False, seed=seed)
-    return found
+    return sample(_problem(sizes), points, calc_second_order=False, seed=seed)
 
 
 def indices(values: Floats, groups: int, level: float, seed: int) -> Sobol | None:
@@ -46,7 +45,7 @@ def indices(values: Floats, groups: int, level: float, seed: int) -> Sobol | Non
         return None
     analyze = _salib()[1]
     # A seed of 0 would draw from NumPy's global state.
-    found = analyze(
+    shares = analyze(
         _problem([1] * groups),
         values,
         calc_second_order=False,
@@ -54,7 +53,7 @@ def indices(values: Floats, groups: int, level: float, seed: int) -> Sobol | Non
         conf_level=level,
         seed=seed + 1,
     )
-    return Sobol(*(np.asarray(found[name]) for name in ("S1", "S1_conf", "ST", "ST_conf")))
+    return Sobol(*(np.asarray(shares[name]) for name in ("S1", "S1_conf", "ST", "ST_conf")))
 
 
 def _problem(sizes: Sequence[int]) -> dict[str, Any]:

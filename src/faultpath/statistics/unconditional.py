@@ -25,7 +25,7 @@ _TIE = 1e-9
 _SPREAD = 9.0
 """Standard deviations of a number of discordant pairs beyond which none is expected."""
 _PEAKS, _FINER = 3, 25
-"""Of the chance over the shares: how many are looked at closely, and at how many points."""
+"""Peaks of the chance over the shares that are looked at closely, and at how many points."""
 
 
 @lru_cache(maxsize=4096)
@@ -71,8 +71,8 @@ def _bounds(n_pairs: int) -> tuple[Counts, Counts]:
     return np.full_like(total, -1), (total - 1) // 2
 
 
-class _Law(NamedTuple):
-    """What tables of one number of pairs have in common under no difference."""
+class _NullLaw(NamedTuple):
+    """The law of tables of one number of pairs under no difference."""
 
     tails: Floats
     """[discordants, 1 + fewer]: the chance of so few or fewer on either side."""
@@ -81,7 +81,7 @@ class _Law(NamedTuple):
     chances: Floats
     """[discordants, expected]: of each of them."""
     shares: Floats
-    """Of discordant pairs, where the largest chance is looked for."""
+    """Shares of discordant pairs, at which the largest chance is looked for."""
     mixed: Floats
     """[shares, discordants]: the chance of each number of discordant pairs."""
 
@@ -136,7 +136,7 @@ class _Law(NamedTuple):
 
 
 @lru_cache(maxsize=4)
-def _law(n_pairs: int) -> _Law:
+def _law(n_pairs: int) -> _NullLaw:
     others, chances = _near(n_pairs, np.arange(n_pairs + 1.0))
     points = 32 + 16 * int(np.ceil(np.sqrt(n_pairs)))
     shares = np.sin(np.linspace(0.0, np.pi / 2.0, points)) ** 2
@@ -148,12 +148,8 @@ def _law(n_pairs: int) -> _Law:
             split[1:] = 0.5 * (split[1:] + split[:-1])
             split[0] *= 0.5
         tails[total, 1:] = np.minimum(1.0, 2.0 * np.cumsum(split[:-1]))
-    return _Law(
-        tails=tails,
-        others=others,
-        chances=chances,
-        shares=shares,
-        mixed=_mixed(n_pairs, shares),
+    return _NullLaw(
+        tails=tails, others=others, chances=chances, shares=shares, mixed=_mixed(n_pairs, shares)
     )
 
 

@@ -14,7 +14,6 @@ from faultpath.core.text import unknown
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Loop, Module, Reading, graph, interface_of
 from faultpath.systems.episodes import SCENE, EpisodePlant
-from faultpath.systems.modules import FunctionModule
 from faultpath.trials import Library, LoopSystem, SceneRef, Wiring
 
 SCENES: Mapping[str, Sequence[int]] = {
@@ -81,7 +80,7 @@ class ComposedSystem(LoopSystem):
         self._parts = {
             key: parts
             if isinstance(parts, Parts)
-            else Parts(f"Modules: {', '.join(map(_described, parts))}.", parts)
+            else Parts(f"Modules: {', '.join(map(str, parts))}.", parts)
             for key, parts in variants.items()
         }
         self.components = dict[str, tuple[str, ...]]()
@@ -163,36 +162,24 @@ class ComposedSystem(LoopSystem):
             if shaped := [name for name in fed if name in shapes]:
                 shapes = dict.fromkeys(fed, shapes[shaped[0]]) | dict(shapes)
         written = [name for module in modules for name in module.writes]
-        known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.told, "estimated")
+        known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.facts, "estimated")
         known |= dict.fromkeys(several.get(plant.action, (plant.action,)), "commanded")
         for module in modules:
             for port in sorted(module.ports):
-                if not {*feeds[port.channel]} & {*plant.senses, *plant.told, *written}:
-                    there = list(dict.fromkeys((*plant.senses, *plant.told, *written)))
+                if not {*feeds[port.channel]} & {*plant.senses, *plant.facts, *written}:
+                    there = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
                     wrong = unknown("source", port.channel, there)
                     raise SystemMistake(f"system '{self.name}': module '{module.name}': {wrong}")
-        sources: dict[str, dict[str, Any]] = {}
-        for name in (*plant.senses, *written, *(n for fed in feeds.values() for n in fed)):
-            if name not in units:
-                raise SystemMistake(
-                    f"system '{self.name}': source '{name}' has no unit: add it to units, '1' for "
-                    "a number without one"
-                )
-            entry = units[name]
-            facts = {"unit": entry} if isinstance(entry, str) else dict(entry)
-            if named := facts.pop("components", ()):
-                self.components[name] = tuple(named)
-                if name in shapes and len(named) != np.prod(shapes[name], dtype=int):
-                    raise SystemMistake(
-                        f"system '{self.name}': source '{name}' has {len(named)} components and is "
-                        f"of shape {list(shapes[name])}: name each of its numbers once"
-                    )
-            sources[name] = {
+        names = (*plant.senses, *written, *(n for fed in feeds.values() for n in fed))
+        sources = {
+            name: {
                 "name": name,
                 "shape": shapes.get(name, ()),
                 "provenance": known.get(name, "reconstructed"),
-                **facts,
+                **self._facts(name, units, shapes.get(name)),
             }
+            for name in names
+        }
         declared = [
             {
                 "name": channel,
@@ -207,9 +194,28 @@ class ComposedSystem(LoopSystem):
         except UserError as error:
             raise SystemMistake(f"system '{self.name}': {error}") from None
 
-
-def _described(module: Module) -> str:
-    return str(module) if isinstance(module, FunctionModule) else module.name
+    def _facts(
+        self,
+        source: str,
+        units: Mapping[str, str | Mapping[str, Any]],
+        shape: tuple[int, ...] | None,
+    ) -> dict[str, Any]:
+        """Return what `units` says of a source, and note what its numbers are called."""
+        label = f"system '{self.name}': source '{source}'"
+        if source not in units:
+            raise SystemMistake(
+                f"{label} has no unit: add it to units, '1' for a number without one"
+            )
+        entry = units[source]
+        facts = {"unit": entry} if isinstance(entry, str) else dict(entry)
+        if named := facts.pop("components", ()):
+            self.components[source] = tuple(named)
+            if shape is not None and len(named) != np.prod(shape, dtype=int):
+                raise SystemMistake(
+                    f"{label} has {len(named)} components and is of shape {list(shape)}: name each "
+                    "of its numbers once"
+                )
+        return facts
 
 
 class _Shapes:

@@ -50,13 +50,13 @@ class Episode:
 
 
 @dataclass(frozen=True)
-class World:
+class SceneInstance:
     """One scene at its start; made for one trial and thrown away with it."""
 
     observation: Any
     """An array, or a mapping or tuple of such."""
-    told: Mapping[str, Any]
-    """Facts about the scene that its set-up returned, by source."""
+    facts: Mapping[str, Any]
+    """Values that its set-up returned, by source."""
     initial: str
     """A hash of its initial state."""
     disturbance: str
@@ -90,7 +90,7 @@ Show = Callable[[Any], Any]
 class _Batch:
     """A batch under way."""
 
-    worlds: Sequence[World]
+    worlds: Sequence[SceneInstance]
     seen: list[Any]
     """The last observation of each world."""
     sensed: dict[str, HostArray]
@@ -144,17 +144,19 @@ class EpisodePlant(Plant):
         self.action = action
         self._observes, self._succeeded = dict(observes), succeeded
         probed = self.world(f"{SCENE}0", 0)
-        self.told = tuple(probed.told)
-        self.senses = (*self._observes, *self.told)
+        self.facts = tuple(probed.facts)
+        self.senses = (*self._observes, *self.facts)
         sensed = self._sensed([probed], [probed.observation])
         self.shapes = {name: np.shape(value)[1:] for name, value in sensed.items()}
         probed.close()
 
     @abstractmethod
-    def world(self, scene: str, seed: int) -> World:
+    def world(self, scene: str, seed: int) -> SceneInstance:
         """Return a scene at its start."""
 
-    def _sensed(self, worlds: Sequence[World], observations: Sequence[Any]) -> dict[str, HostArray]:
+    def _sensed(
+        self, worlds: Sequence[SceneInstance], observations: Sequence[Any]
+    ) -> dict[str, HostArray]:
         """Return every source, `[B, ...]`, of worlds with these observations."""
         batch, sources = stacked(observations), dict[str, HostArray]()
         try:
@@ -170,8 +172,8 @@ class EpisodePlant(Plant):
                 f"observes: the observation ({kind}) holds no such part ({error}): give a key, an "
                 "index or a slice of it"
             ) from error
-        for name in self.told:
-            sources[name] = np.array([np.asarray(world.told[name]) for world in worlds])
+        for name in self.facts:
+            sources[name] = np.array([np.asarray(world.facts[name]) for world in worlds])
         return sources
 
     @override
@@ -193,7 +195,7 @@ class EpisodePlant(Plant):
             at=self._places(worlds),
         )
 
-    def _places(self, worlds: Sequence[World]) -> HostArray | None:
+    def _places(self, worlds: Sequence[SceneInstance]) -> HostArray | None:
         """Return where each world is, `[B, 3]`."""
         if self._trace is None:
             return None

@@ -8,7 +8,7 @@ from typing_extensions import override
 
 from faultpath.core.arrays import HostArray
 from faultpath.core.streams import generator
-from faultpath.systems.episodes import Episode, EpisodePlant, Look, Measure, Show, World
+from faultpath.systems.episodes import Episode, EpisodePlant, Look, Measure, SceneInstance, Show
 from faultpath.systems.observed import hashed
 
 
@@ -60,7 +60,7 @@ class FunctionPlant(EpisodePlant):
         )
 
     @override
-    def world(self, scene: str, seed: int) -> World:
+    def world(self, scene: str, seed: int) -> SceneInstance:
         state = self._start(generator("plant/start", scene, 0))
 
         def step(action: HostArray, step: int) -> tuple[Any, float, bool, bool, dict[str, Any]]:
@@ -69,4 +69,4 @@ class FunctionPlant(EpisodePlant):
             return state, 0.0, self._over is not None and self._over(state), False, {}
 
         # What a step draws is addressed by scene and seed, so these are all that decides it.
-        return World(state, {}, hashed(state), hashed(scene, seed), step, lambda: state)
+        return SceneInstance(state, {}, hashed(state), hashed(scene, seed), step, lambda: state)

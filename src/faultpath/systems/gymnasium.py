@@ -22,8 +22,8 @@ from faultpath.systems.episodes import (
     EpisodePlant,
     Look,
     Measure,
+    SceneInstance,
     Show,
-    World,
 )
 from faultpath.systems.observed import hashed
 from faultpath.trials import Metric
@@ -97,7 +97,7 @@ class GymnasiumPlant(EpisodePlant):
         )
 
     @override
-    def world(self, scene: str, seed: int) -> World:
+    def world(self, scene: str, seed: int) -> SceneInstance:
         digits = scene.removeprefix(SCENE)
         if digits == scene or not digits.isdecimal():
             raise SystemMistake(f"scene '{scene}' names no seed: such scenes are called {SCENE}7")
@@ -134,7 +134,7 @@ class GymnasiumPlant(EpisodePlant):
                 ) from None
             return env.step(row[()])
 
-        return World(observation, facts, initial, disturbance, step, lambda: env, env.close)
+        return SceneInstance(observation, facts, initial, disturbance, step, lambda: env, env.close)
 
     def _make(self) -> Any:
         if not isinstance(self._environment, str):

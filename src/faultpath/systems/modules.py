@@ -68,7 +68,7 @@ class FunctionModule(Module):
         name: str,
     ) -> None:
         self.name, self.writes = name, (source,)
-        self._function, self._past, self._before, self._given = function, past, before, values
+        self._function, self._past, self._before, self._values = function, past, before, values
         self._of = of
         parameters = dict(signature(function).parameters)
         if of is not None:  # the first argument are the objects
@@ -105,7 +105,7 @@ class FunctionModule(Module):
         A value is handed over as it is: a number is one for every scene, where a reading has one a
         scene, `[B]`.
         """
-        values = self._given | values
+        values = self._values | values
         source = self.writes[0]
         return FunctionModule(
             self._function, source, self._past, self._before, values, self._of, self.name
@@ -118,7 +118,7 @@ class FunctionModule(Module):
 
     @property
     def _numbers(self) -> dict[str, int | float]:
-        return {n: v for n, v in self._given.items() if isinstance(v, int | float)}
+        return {n: v for n, v in self._values.items() if isinstance(v, int | float)}
 
     def _refused(self, numbers: Iterable[str], error: Exception) -> SystemMistake:
         """Return what to tell of an error at the first step of a module that was given numbers."""
@@ -147,13 +147,13 @@ class FunctionModule(Module):
         if self._of:
             for i, scene in enumerate(cast("list[Made]", memory)):
                 if inputs.running is None or inputs.running[i]:
-                    row = {name: value[i] for name, value in rows.items()} | self._given
+                    row = {name: value[i] for name, value in rows.items()} | self._values
                     with scene.reading(inputs, i) as objects:
                         scene.last = np.array(self._function(objects, **row))
             return {self.writes[0]: np.stack([scene.last for scene in memory])}, memory
         more = {MEMORY: memory} if self._remembers else {}
         try:
-            pair: Any = self._function(**rows, **self._given, **more)
+            pair: Any = self._function(**rows, **self._values, **more)
         except (TypeError, ValueError, AttributeError, LookupError) as error:
             if inputs.step == 0 and (numbers := self._numbers):
                 raise self._refused(numbers, error) from error

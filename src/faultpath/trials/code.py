@@ -19,7 +19,7 @@ from faultpath.core.results import Frozen
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import paths_of
 from faultpath.trials.declared import shown
-from faultpath.trials.imports import Graph, Root
+from faultpath.trials.imports import ImportGraph, Root
 from faultpath.trials.registry import factory_root
 from faultpath.trials.system import System
 
@@ -130,7 +130,7 @@ def read_code(
 
     Paths of data are taken from `base`. `UserError` for a file that cannot be read.
     """
-    graph, roots, base = Graph(), tuple(roots), base or Path()
+    graph, roots, base = ImportGraph(), tuple(roots), base or Path()
     collects = gc.isenabled()
     gc.disable()  # it would look through all of torch for the sake of syntax trees
     try:
@@ -176,7 +176,6 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     notebook. `UserError` for a data file that cannot be read.
     """
     fingerprint, root = system.fingerprint(), None if spec.is_object else factory_root(spec)
-    # A user's method returns what it likes.
     # A user's class may return anything, whatever the type says.
     if not isinstance(fingerprint, str):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise SystemMistake(

@@ -6,7 +6,7 @@ from numbers import Integral
 from typing import Any, cast
 
 from faultpath.core.errors import SystemMistake
-from faultpath.core.text import one_line, steers
+from faultpath.core.text import one_line, represented, steers
 
 _LONGEST_NAME = 200
 _LARGEST_INDEX = 2**63 - 1
@@ -103,10 +103,7 @@ def _items(what: str, members: Any) -> Iterable[Any]:
 
 def shown(value: Any) -> str:
     """Return a wrong value in a line that is short enough for a message."""
-    try:
-        text = one_line(repr(value))
-    except Exception:  # whatever a system's own object does when it is printed
-        return f"a {type(value).__name__}"
+    text = one_line(represented(value))
     return text if len(text) <= 80 else f"{text[:80]}…"
 
 

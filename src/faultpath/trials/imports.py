@@ -41,7 +41,7 @@ class Root:
         return self.file or file_of(locate(self.module))
 
 
-class Graph:
+class ImportGraph:
     """The files and installed packages that some modules reach.
 
     Files count wherever an import of them stands, so that one inside a function counts before it

@@ -11,7 +11,7 @@ from typing_extensions import override
 from faultpath.core.arrays import Array, namespace, to_numpy
 from faultpath.interface import Provenance
 from faultpath.loop import Batch, Deliverer, Graph, Loop, Module, Plant, Taps, consumers, graph
-from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.outcome import Outcome, Status, control_steps
 from faultpath.trials.system import System, Variant
 
 
@@ -110,8 +110,8 @@ class LoopSystem(System):
         outcomes: list[Outcome] = []
         for i, scene in enumerate(batch.scenes):
             time_s = float(times[i])
+            steps = control_steps(time_s, batch.dt_s)
             status = Status.SUCCESS if succeeded[i] else Status.TIMEOUT
-            instants = int(np.ceil(time_s / batch.dt_s - 1e-6)) + 1
             outcomes.append(
                 Outcome(
                     scene=scene,
@@ -121,7 +121,7 @@ class LoopSystem(System):
                     disturbance_hash=disturbed[i],
                     planner_noise_hash=noise[i],
                     metrics={name: float(values[i]) for name, values in metrics.items()},
-                    trace=None if traces is None else traces[:instants, i].astype(np.float32),
+                    trace=None if traces is None else traces[: steps + 1, i].astype(np.float32),
                 )
             )
         return outcomes

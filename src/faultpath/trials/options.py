@@ -43,6 +43,12 @@ class Option:
     annotation: Any = field(default=None, compare=False, repr=False)
     factories: bool = field(default=False, compare=False, repr=False)
 
+    @property
+    def kind(self) -> str:
+        """Type of its values as help shows it: `int`, `float`, or `str` for all others."""
+        kind = _needed(self.annotation)
+        return kind.__name__ if kind in (int, float) else "str"
+
     def read(self, text: str, system: str) -> Any:
         """Return the value that `text` stands for; `UserError` where there is none."""
         if self.values:
@@ -175,14 +181,18 @@ def _hints(builder: Any, known: Mapping[str, type]) -> dict[str, Any]:
     return hints
 
 
+def _needed(kind: Any) -> Any:
+    """Return the type of `kind` where it may also be `None`, else `kind` itself."""
+    some = [member for member in get_args(kind) if member is not types.NoneType]
+    return some[0] if len(some) == 1 and len(get_args(kind)) == 2 else kind
+
+
 def _values(kind: Any) -> dict[str, Any]:
+    kind = _needed(kind)
     if isinstance(kind, type) and issubclass(kind, Enum):
         return {_text(member): member for member in kind}
-    inner = get_args(kind)
     if kind is bool or get_origin(kind) is Literal:
-        return {_text(value): value for value in inner or (True, False)}
-    if len(inner) == 2 and type(None) in inner:
-        return _values(inner[0] if inner[1] is type(None) else inner[1])
+        return {_text(value): value for value in get_args(kind) or (True, False)}
     return {}
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pydantic import StringConstraints
 
 from faultpath.core.results import Frozen
-from faultpath.interface.model import Words
+from faultpath.interface.declaration import Words
 from faultpath.trials.declared import shown
 
 MetricName = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]
@@ -36,14 +36,12 @@ class Metric(Frozen):
 
 VEHICLE = {
     "terminal_distance_m": Metric(
-        unit="m",
-        better="less",
-        words="terminal distance",
-        title="Distance to the goal at the end",
+        unit="m", better="less", words="terminal distance", title="Distance to the goal at the end"
     ),
     "min_clearance_m": Metric(unit="m", better="more", words="least clearance"),
 }
-"""Metrics of a vehicle that flies to a goal among obstacles. Tables hold both or neither."""
+"""Metrics of records that name none: all of these are of a vehicle that flies to a goal. Tables
+hold both or neither."""
 
 
 class Status(StrEnum):
@@ -89,8 +87,13 @@ class Outcome:
         return self.status is Status.FAILED
 
     def steps(self, dt_s: float) -> int:
-        """Return how many control steps of `dt_s` it took; its time is a rounded sum of these."""
-        return math.ceil(self.time_s / dt_s - 1e-6)
+        """Return how many control steps of `dt_s` it took."""
+        return control_steps(self.time_s, dt_s)
+
+
+def control_steps(time_s: float, dt_s: float) -> int:
+    """Return how many control steps a time took that is a rounded sum of them."""
+    return math.ceil(time_s / dt_s - 1e-6)
 
 
 _LONGEST_ERROR = 2000

@@ -26,7 +26,7 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
-from faultpath.trials.imports import Graph, Root, file_of, kind_of, locate
+from faultpath.trials.imports import ImportGraph, Root, file_of, kind_of, locate
 from faultpath.trials.opened import reads
 from faultpath.trials.options import Factory, Option, builds, call, options_of
 from faultpath.trials.system import System
@@ -229,7 +229,7 @@ class _FromSource(SourceFileLoader):
 
 def _check_own(root: Root, folder: Path) -> None:
     """Refuse a system that would run another system's module in place of its own."""
-    graph = Graph()
+    graph = ImportGraph()
     graph.add(root)
     for name in sorted(graph.seen):
         place, origin = folder.joinpath(*name.split(".")), file_of(locate(name))

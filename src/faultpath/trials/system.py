@@ -19,7 +19,7 @@ from faultpath.trials.outcome import Metric, Outcome, Status
 Values: TypeAlias = NDArray[np.float64]
 
 
-class Recorded(Protocol):
+class TrialReadings(Protocol):
     """Readings recorded in one trial, `[T, P]`: a row a control step, not a number where nothing
     was read. `KeyError` for what the variant has not got."""
 
@@ -38,7 +38,7 @@ class ErrorTerm:
 
     words: str
     """The module, and what it has wrong: `controller: gain`."""
-    of: Callable[[Recorded], Values]
+    of: Callable[[TrialReadings], Values]
     """Takes it from a trial, a number a step; a pure function."""
 
 

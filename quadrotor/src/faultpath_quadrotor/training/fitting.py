@@ -19,7 +19,7 @@ from torch import nn
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.version import __version__
-from faultpath.learning.loop import Journal, Moment, Task, minibatches, run
+from faultpath.learning.loop import FitProgress, FitTask, Journal, minibatches, run
 from faultpath.learning.model_card import parameter_count, read_card, save, weights_sha256
 from faultpath.trials.store.atomic import make_folder
 from faultpath_quadrotor.checkpoint import ModelCard
@@ -29,7 +29,7 @@ _SAME_LOSS = 1e-3
 _log = logging.getLogger("faultpath")
 
 
-class ModelTask(Task):
+class ModelTask(FitTask):
     """One model to be fitted, with a seed; its data, its loss, and what its card says."""
 
     platform: str = ""
@@ -59,7 +59,7 @@ class ModelTask(Task):
 def fit(
     task: ModelTask,
     folder: Path,
-    progress: Callable[[Moment], None] | None = None,
+    progress: Callable[[FitProgress], None] | None = None,
     notice: Callable[[str], None] = _log.warning,
 ) -> Path:
     """Fit a model, from wherever an earlier call left it, and return its weights file.

@@ -12,7 +12,7 @@ from functools import partial
 from pathlib import Path
 
 from faultpath.core.errors import Stopped, UserError
-from faultpath.learning.loop import Moment
+from faultpath.learning.loop import FitProgress
 from faultpath.learning.model_card import read_card
 from faultpath.trials.store.atomic import locked, make_folder, sweep
 from faultpath.trials.work.executor import Lost, Returned, run_each, tell
@@ -88,7 +88,7 @@ class Overview:
     total: int
     fraction: float
     """Fraction of the work done, by the costs in the catalogue."""
-    running: Mapping[str, Moment | None]
+    running: Mapping[str, FitProgress | None]
     """Models at work, as `<name>-<seed>`; `None` until the first minibatch."""
 
 
@@ -113,7 +113,7 @@ def run_jobs(
     executor = local(workers)
     make_folder(out)
     order = sorted(jobs, key=lambda job: -job.entry.cost)
-    running: dict[str, Moment | None] = {}
+    running: dict[str, FitProgress | None] = {}
     results: dict[str, ModelCard | Failure] = {}
 
     def show() -> None:
@@ -123,7 +123,7 @@ def run_jobs(
         whole = sum(job.entry.cost for job in order)
         progress(Overview(len(results), len(order), done / whole, dict(running)))
 
-    def receive(place: int, message: Moment | str | None) -> None:
+    def receive(place: int, message: FitProgress | str | None) -> None:
         if isinstance(message, str):
             notice(message)
         else:
@@ -169,7 +169,7 @@ def fit_job(job: Job, data: Path, out: Path) -> Path:
     tell(None)  # it has begun: its data may take a while
     reported_s = 0.0
 
-    def advance(moment: Moment) -> None:
+    def advance(moment: FitProgress) -> None:
         nonlocal reported_s
         if time.monotonic() - reported_s > _TELL_EVERY_S:
             reported_s = time.monotonic()

@@ -79,7 +79,7 @@ class PredictorTask(ModelTask):
         self.platform = PLATFORM.weights_hash(name)
 
     def load(self) -> None:
-        """See `Task.load`; several pools contribute equally many windows."""
+        """See `ModelTask.load`; several pools contribute equally many windows."""
         pools = [windows_of(self._data / f"{name}.parquet") for name in self._recipe.pools]
         training, self._validation = _equal_mix(pools)
         self._train, self.count = training, len(training)

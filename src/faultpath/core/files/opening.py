@@ -48,10 +48,10 @@ def opened(path: str | os.PathLike[str], most: int = LARGEST) -> BufferedReader:
             raise OSError(errno.ENXIO, "it is a socket, not a file", path) from error
         raise
     try:
-        found = os.fstat(descriptor)
-        if kind := unlike_file(found.st_mode):
+        status = os.fstat(descriptor)
+        if kind := unlike_file(status.st_mode):
             raise OSError(errno.EINVAL, f"it is {kind}, not a file", path)
-        if found.st_size > most:
+        if status.st_size > most:
             raise _too_large(path, most)
         return os.fdopen(descriptor, "rb")
     except BaseException:

@@ -104,7 +104,7 @@ def decode(
     `Unreadable` when a column of `schema` is not there, or has gaps and is not in `may_lack`.
     """
     table = read_table(data)
-    others = [each.name for each in table.schema if each.type == more and each.name not in schema]
+    others = [f.name for f in table.schema if f.type == more and f.name not in schema]
     kinds = {**schema, **dict.fromkeys(others, more)}
     columns: list[list[Any]] = []
     for name, kind in kinds.items():
@@ -116,7 +116,7 @@ def decode(
         if column.null_count and name not in (*may_lack, *others):
             raise Unreadable(f"column {name!r} has gaps")
         if kind is NUMBERS:
-            columns.append([each.values.to_numpy() if each.is_valid else None for each in column])
+            columns.append([cell.values.to_numpy() if cell.is_valid else None for cell in column])
         else:
             columns.append(column.to_pylist())
     rows = (dict(zip(kinds, row, strict=True)) for row in zip(*columns, strict=True))

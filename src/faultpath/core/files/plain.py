@@ -58,16 +58,16 @@ def text_of(data: bytes) -> str:
 def read_json(data: bytes) -> Any:
     """Return what JSON says; `Misread` for anything that is not strictly JSON."""
 
-    def no_number(said: str) -> NoReturn:
-        raise Misread(f"holds {said}, which is no number of JSON")
+    def no_number(text: str) -> NoReturn:
+        raise Misread(f"holds {text}, which is no number of JSON")
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        found: dict[str, Any] = {}
+        entries: dict[str, Any] = {}
         for key, value in pairs:
-            if key in found:
+            if key in entries:
                 raise Misread(f"key '{key}' appears twice; drop one")
-            found[key] = value
-        return found
+            entries[key] = value
+        return entries
 
     try:
         return json.loads(
@@ -97,7 +97,7 @@ class Document:
     """A YAML file that was read."""
 
     data: Any
-    """Of the types of JSON."""
+    """Values of the types of JSON."""
     _root: Node | None
 
     def line(self, path: Sequence[str | int]) -> int:
@@ -118,8 +118,8 @@ class Document:
         try:
             return model.model_validate_json(json.dumps(self.data), strict=True)
         except ValidationError as error:
-            found = misfit_of(error, model)
-            raise Misread(str(found), self.line(found.place)) from None
+            misfit = misfit_of(error, model)
+            raise Misread(str(misfit), self.line(misfit.place)) from None
 
 
 def read_yaml(data: bytes) -> Document:
@@ -131,14 +131,14 @@ def read_yaml(data: bytes) -> Document:
         _check_events(cast(Any, yaml).parse(text, Loader=_Loader))
         root: Node | None = cast(Any, yaml).compose(text, Loader=_Loader)
     except yaml.MarkedYAMLError as error:
-        said = " ".join(" ".join(filter(None, (error.context, error.problem))).split())
+        problem = " ".join(" ".join(filter(None, (error.context, error.problem))).split())
         line = None if error.problem_mark is None else error.problem_mark.line + 1
-        if "nesting depth" in said:  # newer parsers keep a limit of their own
+        if "nesting depth" in problem:  # newer parsers keep a limit of their own
             raise Misread(_TOO_DEEP, line) from None
-        raise Misread(f"is not plain YAML ({said}); correct it", line) from None
+        raise Misread(f"is not plain YAML ({problem}); correct it", line) from None
     except yaml.YAMLError as error:
-        said = " ".join(str(error).split())
-        raise Misread(f"is not plain YAML ({said}); correct it") from None
+        problem = " ".join(str(error).split())
+        raise Misread(f"is not plain YAML ({problem}); correct it") from None
     return Document(None if root is None else _value(root), root)
 
 
@@ -192,17 +192,17 @@ def _check_events(events: Iterator[Any]) -> None:
 
 def _value(node: Node) -> Any:
     if isinstance(node, MappingNode):
-        found: dict[str, Any] = {}
+        entries: dict[str, Any] = {}
         for key, value in cast(list[tuple[Node, Node]], node.value):
             line = key.start_mark.line + 1
             if not isinstance(key, ScalarNode):
                 raise Misread("a key is no text; write a word before the colon", line)
-            if key.value in found:
+            if key.value in entries:
                 raise Misread(f"key '{key.value}' appears twice; drop one", line)
-            found[cast(str, key.value)] = _value(value)
-        return found
+            entries[cast(str, key.value)] = _value(value)
+        return entries
     if isinstance(node, SequenceNode):
-        return [_value(each) for each in cast(list[Node], node.value)]
+        return [_value(item) for item in cast(list[Node], node.value)]
     text = cast(str, node.value)
     try:
         match node.tag.removeprefix(_TYPE):

@@ -42,7 +42,7 @@ TRIALS = "trials end"
 
 
 @dataclass(frozen=True)
-class Block:
+class BlockSpec:
     """An arm over some scenes."""
 
     arm: Arm
@@ -71,7 +71,7 @@ class RecordedBlock:
     fails: str = ""
     """The check that reports the error."""
 
-    def readings(self, dt_s: float, what: str = "given") -> dict[tuple[str, int, str, str], Any]:
+    def readings(self, dt_s: float, what: str = "clean") -> dict[tuple[str, int, str, str], Any]:
         """Return what is noted of each reading by scene, step, channel and consumer, while it ran.
 
         `what` is a field of `Read` by scene: a digest, or the sum.
@@ -88,8 +88,8 @@ class RecordedBlock:
 def run_blocks(
     executor: Executor,
     built: Built,
-    blocks: Iterable[Block],
-    settle: Callable[[Block, RecordedBlock], None],
+    blocks: Iterable[BlockSpec],
+    settle: Callable[[BlockSpec, RecordedBlock], None],
 ) -> None:
     """Run blocks on the workers of an executor; `settle` gets each result.
 
@@ -97,7 +97,7 @@ def run_blocks(
     """
     waiting = iter(blocks)
 
-    def settled(block: Block, reply: RecordedBlock | Died | Wrong) -> None:
+    def settled(block: BlockSpec, reply: RecordedBlock | Died | Wrong) -> None:
         if isinstance(reply, Wrong) and isinstance(reply.error, UndeclaredFile):
             reply = RecordedBlock(error=str(reply.error), fails="data files")
         elif isinstance(reply, Wrong):
@@ -111,7 +111,7 @@ def run_blocks(
     dispatch(executor, built, run_block, lambda _: next(waiting, None), settled)
 
 
-def run_block(system: System, block: Block) -> RecordedBlock:
+def run_block(system: System, block: BlockSpec) -> RecordedBlock:
     """Run in blocks of the system's size; an error ends it."""
     outcomes, counts, reads = list[Outcome](), list[TapCount](), list[Read]()
     signals_by_scene = list[tuple[Signal, ...]]()

@@ -8,7 +8,7 @@ from faultpath.core.results import Result
 from faultpath.core.text import unknown
 from faultpath.faults import AnyIntervention, Erase, Fault, Offset, Scale
 from faultpath.faults import Sequence as InTurn
-from faultpath.systems.checks.blocks import Block, RecordedBlock, coarsest, run_blocks
+from faultpath.systems.checks.blocks import BlockSpec, RecordedBlock, coarsest, run_blocks
 from faultpath.systems.checks.judging import Check, Seen, judged
 from faultpath.systems.checks.recording import Read
 from faultpath.trials import Arm, System, SystemSpec, Variant, library_of
@@ -65,15 +65,18 @@ def check_system(
     seen = Seen(system, variants, scenes, question.seed, workers > 0)
     built = Built.of(system, spec, question.library)
 
-    def run(blocks: Sequence[Block], known: int | None) -> None:
-        def settle(block: Block, result: RecordedBlock) -> None:
+    def run(blocks: Sequence[BlockSpec], known: int | None) -> None:
+        def settle(block: BlockSpec, result: RecordedBlock) -> None:
             seen.runs[block.arm.variant, block.why, block.tap] = result
             note(len(seen.runs), known)
 
         with local(workers) as executor:
             run_blocks(executor, built, blocks, settle)
 
-    run([Block(Arm(variant=v.name, seed=question.seed), scenes, "first") for v in variants], None)
+    run(
+        [BlockSpec(Arm(variant=v.name, seed=question.seed), scenes, "first") for v in variants],
+        None,
+    )
     again = [block for name, first in seen.firsts() for block in _again(seen, name, first)]
     run(again, len(variants) + len(again))  # in new processes: they share nothing with the first
     rounded = [block for name, first in seen.firsts() for block in _rounded(seen, name, first)]
@@ -101,35 +104,32 @@ def chosen_variants(system: System, names: Sequence[str]) -> tuple[Variant, ...]
     return tuple(every[name] for name in dict.fromkeys(chosen))
 
 
-def _again(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[Block]:
+def _again(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[BlockSpec]:
     """Yield what is run of a variant beside its first run."""
     arm = Arm(variant=variant, seed=seen.seed)
-    yield Block(arm, seen.scenes, "again")
+    yield BlockSpec(arm, seen.scenes, "again")
     if len(seen.scenes) > 1:
-        yield Block(arm, seen.scenes[::-2], "part")
+        yield BlockSpec(arm, seen.scenes[::-2], "part")
     begins, readers = _begun(first)
-
-    def faulted(channel: str, doing: AnyIntervention, consumers: Sequence[str]) -> Arm:
-        return _faulted(seen, variant, {channel: consumers}, doing)
-
     if readers:
         most = max(readers, key=lambda channel: len(readers[channel]))
-        yield Block(faulted(most, Scale(factor=1.05), readers[most]), seen.scenes, "faulted")
+        arm = _faulted(seen, variant, {most: readers[most]}, Scale(factor=1.05))
+        yield BlockSpec(arm, seen.scenes, "faulted")
     for (channel, consumer), read in begins.items():
         if "float" in read.dtype:  # alters whatever it delivers
             doing = InTurn(parts=(Scale(factor=1.5), Offset(by=0.25)))
         else:  # keeps whole numbers and truths what they are
             doing = Erase(default=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
-        alone = faulted(channel, doing, (consumer,))
-        yield Block(alone, seen.scenes, "tap", read.step + _AFTER, read.tap)
+        alone = _faulted(seen, variant, {channel: (consumer,)}, doing)
+        yield BlockSpec(alone, seen.scenes, "tap", read.step + _AFTER, read.tap)
 
 
-def _rounded(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[Block]:
+def _rounded(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[BlockSpec]:
     """Yield what shows how far rounding goes, where scenes differ by those beside them."""
     readers = _begun(first)[1]
     if readers and seen.differs(variant, "part") and not seen.differs(variant, "again"):
         arm = _faulted(seen, variant, readers, Scale(factor=1.0 + 4.0 * coarsest(first)))
-        yield Block(arm, seen.scenes, "rounded")
+        yield BlockSpec(arm, seen.scenes, "rounded")
 
 
 def _begun(run: RecordedBlock) -> tuple[dict[tuple[str, str], Read], dict[str, list[str]]]:
@@ -137,7 +137,7 @@ def _begun(run: RecordedBlock) -> tuple[dict[tuple[str, str], Read], dict[str, l
     begins: dict[tuple[str, str], Read] = {}
     readers: dict[str, list[str]] = {}
     for read in run.reads:
-        if read.given and read.tap not in begins:
+        if read.clean and read.tap not in begins:
             begins[read.tap] = read
             if "float" in read.dtype:
                 readers.setdefault(read.channel, []).append(read.consumer)

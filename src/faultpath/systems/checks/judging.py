@@ -7,8 +7,7 @@ from typing import Literal
 
 from faultpath.core.results import Result
 from faultpath.systems.checks.blocks import MISTAKES, TRIALS, RecordedBlock, coarsest, gap_of
-from faultpath.systems.checks.names import other_names
-from faultpath.systems.checks.room import diverged, successes, without_room
+from faultpath.systems.checks.remarks import diverged, other_names, successes, without_room
 from faultpath.trials import System, Variant
 from faultpath.trials.attempt import Done
 from faultpath.trials.execution.recheck import difference
@@ -214,7 +213,7 @@ def _delivery(name: str, seen: Seen) -> Check:
         lead = f"Tap {tap[0]} -> {tap[1]} of variant '{variant}', faulted in {len(seen.scenes)} "
         lead += "trials,"
         here = [read for read in run.reads if read.tap == tap]
-        count = sum(read.given[scene] != read.got[scene] for read in here for scene in read.given)
+        count = sum(read.clean[scene] != read.got[scene] for read in here for scene in read.clean)
         altered += count
         first = seen.of(variant, "first")
         clean = first.readings(dt_s)

@@ -27,7 +27,7 @@ from faultpath.trials import System
 from faultpath.trials.attempt import Done
 from faultpath.trials.registry import named
 from faultpath.trials.store.signals import IN_FORCE, TOGETHER, Signal
-from faultpath.trials.system import Recorded
+from faultpath.trials.system import TrialReadings
 
 Values: TypeAlias = NDArray[np.float64]
 Steps: TypeAlias = dict[int, Values]
@@ -61,7 +61,7 @@ class Read(Result):
     """Largest of the finite numbers of all scenes, as `low` is the smallest."""
     lost: str = Field(default="", exclude=True)
     """A scene with a number that is not finite."""
-    given: Mapping[str, bytes] = Field(default={}, exclude=True)
+    clean: Mapping[str, bytes] = Field(default={}, exclude=True)
     """A digest of what the source held, by scene."""
     sums: Mapping[str, float] = Field(default={}, exclude=True)
     """Sum of the finite numbers that the source held, by scene."""
@@ -90,13 +90,13 @@ class Recording(Observer):
         """By source, or by `plant.truth` for what the plant shows to estimators alone."""
         self.got: dict[tuple[str, str], Steps] = {}
         """By channel and consumer."""
-        self.given: dict[tuple[str, str], Steps] = {}
+        self.clean: dict[tuple[str, str], Steps] = {}
         """Numbers that the source had held, where they were delivered."""
         self.force: dict[int, Any] = {}
         """Scenes in which a fault was in force at some tap."""
         self.queries: dict[str, dict[int, Query]] = {}
         """By source: what could be asked at a step."""
-        self.asked: dict[str, Any] = {}
+        self.requests: dict[str, Any] = {}
         """By source: the first thing that was asked of it."""
 
     @override
@@ -121,14 +121,14 @@ class Recording(Observer):
         self.source(reading.source, reading.value, reading.step)
         clean, received = _numbers(reading.value), _numbers(got)
         if clean is not None and received is not None:
-            self.given.setdefault(key[1:], {})[step] = clean
+            self.clean.setdefault(key[1:], {})[step] = clean
             self.got.setdefault(key[1:], {})[step] = received
 
     @override
     def answered(
         self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
     ) -> None:
-        self.asked.setdefault(tap.source, request)
+        self.requests.setdefault(tap.source, request)
         if self._scenes:
             key = step, tap.channel, tap.consumer
             self._note(key, query.value(answer), query.value(got), asks=1)
@@ -162,7 +162,7 @@ class Recording(Observer):
         sums = np.where(finite, numbers, 0.0).reshape(len(values), -1).sum(axis=1).tolist()
         scenes = zip(self._scenes, sums, strict=False)
         changed["sums"] = {scene: read.sums.get(scene, 0.0) + total for scene, total in scenes}
-        for name, before, rows in (("given", read.given, values), ("got", read.got, to_numpy(got))):
+        for name, before, rows in (("clean", read.clean, values), ("got", read.got, to_numpy(got))):
             changed[name] = {
                 scene: blake2b(before.get(scene, b"") + row.tobytes(), digest_size=8).digest()
                 for scene, row in zip(self._scenes, rows, strict=False)
@@ -178,7 +178,7 @@ def _numbers(value: Any) -> Values | None:
 
 
 @dataclass(frozen=True)
-class Trial(Recorded):
+class Trial(TrialReadings):
     """One scene of a recording, while its trial ran."""
 
     recording: Recording
@@ -229,7 +229,7 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
         like = name if name in units else fed.get(part, "")
         series.append((name, topic, units.get(like, ""), parts.get(like, ()), by_step))
     for (channel, consumer), got in recording.got.items():
-        clean = recording.given[channel, consumer]
+        clean = recording.clean[channel, consumer]
         if all(np.array_equal(got[step], clean[step], equal_nan=True) for step in got):
             continue
         unit, named_parts = units[fed[channel]], parts.get(fed[channel], ())

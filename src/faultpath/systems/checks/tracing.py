@@ -1,12 +1,15 @@
 """Trace of who read what, when, in the first steps of a run, and where that is not as declared."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
 from faultpath.core.text import unknown
 from faultpath.faults import AnyFault, resolve
-from faultpath.systems.checks.blocks import Block, run_block
+from faultpath.interface import module_of
+from faultpath.systems.checks.blocks import BlockSpec, run_block
+from faultpath.systems.checks.check import chosen_variants
 from faultpath.systems.checks.recording import Read
 from faultpath.trials import Arm, LoopSystem, System, SystemSpec, library_of
 
@@ -48,16 +51,14 @@ def trace_system(
     Raises `UserError` for a variant, library or scene that there is not, a fault that
     reaches no consumer there, and a run that fails.
     """
-    if variant not in system.variants:
-        raise UserError(f"{system.name}: {unknown('variant', variant, system.variants)}")
+    consumers = chosen_variants(system, (variant,))[0].consumers
     known = [ref.id for ref in library_of(system, library).scenes]
     chosen = known[0] if scene is None else scene
     if chosen not in known:
         raise UserError(f"library '{library}': {unknown('scene', chosen, known)}")
-    consumers = system.variants[variant].consumers
     faults = resolve(() if fault is None else (fault,), system.interface, consumers)
     arm = Arm(variant=variant, faults=faults, seed=seed)
-    run = run_block(system, Block(arm, (chosen,), steps=steps))
+    run = run_block(system, BlockSpec(arm, (chosen,), steps=steps))
     if run.error and not run.reads:
         raise UserError(f"variant '{variant}' does not run: {run.error}")
     taps = {read.tap for read in run.reads}
@@ -75,21 +76,6 @@ def trace_system(
         for resolved in faults
         for consumer in resolved.consumers
     }
-    sources = {read.source for read in run.reads}
-    readers: dict[str, list[str]] = {}
-    for read in run.reads:
-        readers.setdefault(read.consumer.partition(".")[0], []).append(read.channel)
-    permitted = {
-        read.consumer: read.source
-        for read in run.reads
-        if read.source in system.variants[variant].privileged
-    }
-    reconstructed = {
-        source: (module, tuple(dict.fromkeys(readers.get(module, ()))))
-        for module, source in system.interface.reconstructions
-        if source in sources
-    }
-    modules = system.modules(variant, None) if isinstance(system, LoopSystem) else ()
     return TraceReport(
         system=spec.name,
         options=spec.options,
@@ -101,21 +87,42 @@ def trace_system(
         fault="" if fault is None else fault.describe(),
         reads=tuple(
             read.model_copy(update={"altered_by": (words[read.tap],)})
-            if read.given != read.got
+            if read.clean != read.got
             else read
             for read in run.reads
         ),
-        reconstructed=reconstructed,
-        privileged=(
-            *(
-                f"{consumer} reads '{source}', which is privileged, by permission of the variant."
-                for consumer, source in permitted.items()
-            ),
-            *(
-                f"Module '{module.name}' takes the plant's truth '{truth}' past all taps."
-                for module in modules
-                for truth in sorted(module.truths)
-            ),
-        ),
+        reconstructed=_reconstructed(system, run.reads),
+        privileged=_privileged(system, variant, run.reads),
         findings=findings,
+    )
+
+
+def _reconstructed(system: System, reads: Sequence[Read]) -> dict[str, tuple[str, tuple[str, ...]]]:
+    """Return by reconstructed source that was read its module and what that module read."""
+    sources = {read.source for read in reads}
+    readers: dict[str, dict[str, None]] = {}
+    for read in reads:
+        readers.setdefault(module_of(read.consumer), {})[read.channel] = None
+    return {
+        source: (module, tuple(readers.get(module, ())))
+        for module, source in system.interface.reconstructions
+        if source in sources
+    }
+
+
+def _privileged(system: System, variant: str, reads: Sequence[Read]) -> tuple[str, ...]:
+    """Return a sentence on each read of what deployment does not have."""
+    permitted = system.variants[variant].privileged
+    by_permission = {read.consumer: read.source for read in reads if read.source in permitted}
+    modules = system.modules(variant, None) if isinstance(system, LoopSystem) else ()
+    return (
+        *(
+            f"{consumer} reads '{source}', which is privileged, by permission of the variant."
+            for consumer, source in by_permission.items()
+        ),
+        *(
+            f"Module '{module.name}' takes the plant's truth '{truth}' past all taps."
+            for module in modules
+            for truth in sorted(module.truths)
+        ),
     )

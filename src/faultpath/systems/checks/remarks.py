@@ -1,7 +1,11 @@
-"""Whether trials without a fault leave an audit room to see an effect."""
+"""Remarks on what may be a mistake: no room for an effect, divergence, two names of one role."""
 
 from collections.abc import Mapping, Sequence
+from itertools import combinations
 
+from faultpath.core.text import listed
+from faultpath.loop import Module
+from faultpath.trials import LoopSystem, System
 from faultpath.trials.outcome import Outcome
 
 ENOUGH = 20
@@ -65,3 +69,31 @@ def without_room(outcomes: Mapping[str, Sequence[Outcome]]) -> tuple[str, ...]:
             verb = how if names[1:] else how.replace("succeed", "succeeds")
             sentences.append(f"{who} {verb} of {max(scenes)} checked scenes without a fault; {so}.")
     return tuple(sentences)
+
+
+def other_names(system: System, variants: Sequence[str]) -> tuple[str, ...]:
+    """Return a sentence for each two modules that stand for each other under two names.
+
+    They write the same source in two variants and read the same channel.
+    """
+    if not isinstance(system, LoopSystem):
+        return ()
+    modules = {name: system.modules(name, None) for name in variants}
+    sentences: dict[str, None] = {}
+    for one, other in combinations(modules, 2):
+        for first in _alone(modules[one], modules[other]):
+            for second in _alone(modules[other], modules[one]):
+                read = {port.channel for port in first.ports} & {p.channel for p in second.ports}
+                if read and {*first.writes} & {*second.writes}:
+                    sentences[
+                        f"Modules '{first.name}' of {one} and '{second.name}' of {other} read "
+                        f"{listed(sorted(read))} and write {listed(sorted(first.writes))}; a fault "
+                        "at either one alone reaches one of the two variants. To fault both, give "
+                        f'them one name: @writes(..., name="{first.name}").'
+                    ] = None
+    return tuple(sentences)
+
+
+def _alone(modules: Sequence[Module], others: Sequence[Module]) -> list[Module]:
+    names = {module.name for module in others}
+    return [module for module in modules if module.name not in names]

@@ -105,6 +105,9 @@ class Part(ABC):
     writes: tuple[str, ...] = ()
     """Sources of the interface that it produces at every step; a plant senses its sources."""
 
+    def __str__(self) -> str:
+        return self.name
+
     @property
     def ports(self) -> frozenset[Port]:
         """All that it may know."""
