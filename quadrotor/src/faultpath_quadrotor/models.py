@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 import torch
 from torch import nn
 
-from faultpath.core.errors import UserError
+from faultpath.plugin.system import UserError
 from faultpath_quadrotor.checkpoint import checkpoint_path, load_checkpoint
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.perception import ClearanceModel

@@ -16,11 +16,15 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from faultpath.core.error_source import explained, located
-from faultpath.core.errors import SystemMistake
-from faultpath.core.text import listed
+from faultpath.plugin.system import (
+    SystemMistake,
+    explained,
+    factory_root,
+    listed,
+    load_parts,
+    located,
+)
 from faultpath.trials import SystemSpec
-from faultpath.trials.registry import factory_root, load_parts
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators import Estimator
 from faultpath_quadrotor.estimators.protocol import SOURCES

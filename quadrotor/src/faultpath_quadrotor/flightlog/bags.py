@@ -9,9 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import opened
-from faultpath.core.text import one_line, unknown
+from faultpath.plugin.system import UserError, one_line, opened, unknown
 
 Floats: TypeAlias = NDArray[np.float64]
 SUFFIXES = (".mcap", ".db3", ".bag")

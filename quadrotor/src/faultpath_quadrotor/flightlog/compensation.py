@@ -8,12 +8,8 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.errors import UserError
-from faultpath.core.results import Frozen
-from faultpath.statistics.contrast import Contrast
-from faultpath.statistics.distributions import t_quantile
-from faultpath.statistics.effects import N_RESAMPLES, WindowQuantiles
-from faultpath.statistics.estimate import Estimate
+from faultpath.plugin.results import N_RESAMPLES, Contrast, Estimate, WindowQuantiles, t_quantile
+from faultpath.plugin.system import Frozen, UserError
 from faultpath_quadrotor.flightlog.flight import INTERVAL_S, Flight, nominal, through_air
 from faultpath_quadrotor.flightlog.reading import Floats
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
-from faultpath.core.errors import UserError
+from faultpath.plugin.system import UserError
 from faultpath_quadrotor.flightlog.reading import (
     SPEED_UNITS,
     ColumnMap,

@@ -6,8 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from faultpath.core.errors import UserError
-from faultpath.core.text import listed, one_line
+from faultpath.plugin.system import UserError, listed, one_line
 from faultpath_quadrotor.flightlog.bags import SUFFIXES, check_fields, opened_bag, read_bag
 
 _WISHES = ("setpoint", "target", "reference", "desired", "goal", "command", "cmd")

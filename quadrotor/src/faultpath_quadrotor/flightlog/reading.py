@@ -12,12 +12,8 @@ import pyarrow as pa
 import pyarrow.csv as csv
 from pydantic import Field
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import contents
-from faultpath.core.files.parquet import Unreadable, read_table
-from faultpath.core.files.plain import Misread, read_yaml
-from faultpath.core.results import Frozen
-from faultpath.core.text import unknown
+from faultpath.plugin.data import Unreadable, read_table
+from faultpath.plugin.system import Frozen, Misread, UserError, contents, read_yaml, unknown
 from faultpath_quadrotor.flightlog.bags import SUFFIXES, Floats, read_bag, why
 
 _LONGEST_S = 1e12

@@ -2,9 +2,7 @@
 
 from math import exp
 
-from faultpath.decisions.tables import MISSING, Table, line
-from faultpath.decisions.wording import counted, interval, plain
-from faultpath.statistics.estimate import Estimate
+from faultpath.plugin.results import MISSING, Estimate, Table, counted, interval, line, plain
 from faultpath_quadrotor.flightlog.compensation import Combination, Compensation
 
 CAVEAT = (

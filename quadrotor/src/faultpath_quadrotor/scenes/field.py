@@ -23,7 +23,7 @@ from faultpath_quadrotor import native
 from faultpath_quadrotor.native.kernel_args import covered
 from faultpath_quadrotor.scenes.compiled import CompiledField
 from faultpath_quadrotor.scenes.geometry import rectangle_distance
-from faultpath_quadrotor.scenes.prisms import Prism, arena, solids
+from faultpath_quadrotor.scenes.prisms import RoundedPrism, arena, solids
 from faultpath_quadrotor.scenes.scene import Scene
 
 SPACING_M = 0.1
@@ -84,7 +84,7 @@ def exact_on_lattice(scene: Scene, lattice: Lattice, free_space: bool = False) -
     if free_space:
         return value
 
-    def height(prism: Prism) -> tuple[float, float]:
+    def height(prism: RoundedPrism) -> tuple[float, float]:
         return prism.centre_m[2], prism.half_m[2]
 
     free = value
@@ -94,7 +94,7 @@ def exact_on_lattice(scene: Scene, lattice: Lattice, free_space: bool = False) -
     return torch.where(outside > _ROUNDING, value, free)
 
 
-def _plan_distance(prisms: list[Prism], x: Tensor, y: Tensor) -> Tensor:
+def _plan_distance(prisms: list[RoundedPrism], x: Tensor, y: Tensor) -> Tensor:
     table = torch.tensor(
         [[*p.centre_m[:2], *p.half_m[:2], p.yaw_rad, p.rounding_m] for p in prisms],
         dtype=torch.float64,

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from faultpath.core.errors import UserError
+from faultpath.plugin.system import UserError
 
 if TYPE_CHECKING:
     from faultpath_quadrotor.training.fitting import ModelTask

@@ -19,13 +19,8 @@ from safetensors import SafetensorError
 from safetensors.torch import load, save
 from torch import Tensor
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import contents
-from faultpath.core.files.plain import Misread, read_json
-from faultpath.core.results import Frozen
-from faultpath.core.streams import generator
-from faultpath.trials.store import atomic
-from faultpath.trials.store.atomic import locked
+from faultpath.plugin.data import locked, sweep, write, write_text
+from faultpath.plugin.system import Frozen, Misread, UserError, contents, generator, read_json
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.perception.camera import HEIGHT, WIDTH, rays
 from faultpath_quadrotor.perception.labels import visible_distance
@@ -122,10 +117,10 @@ def collect(
     try:
         place.mkdir(parents=True, exist_ok=True)
         with locked(place, lambda notice: print(notice, file=sys.stderr)):
-            atomic.sweep(place)
+            sweep(place)
             parts = [Part(shard, partial(_make, recipe, scene, shard)) for scene, shard in shards]
             make_missing([parts], workers, progress)
-        atomic.write_text(path, json.dumps(provenance, indent=2, sort_keys=True) + "\n")
+        write_text(path, json.dumps(provenance, indent=2, sort_keys=True) + "\n")
     except OSError as error:
         raise UserError(
             f"cannot write to {folder} ({error.strerror}): choose a folder that you may write to."
@@ -215,7 +210,7 @@ def _shards(folder: Path, recipe: Recipe, library: Library) -> list[tuple[Scene,
 def _make(recipe: Recipe, scene: Scene, shard: Path) -> None:
     samples = draw(recipe, scene)
     parts = {"depth": samples.depth, "points": samples.points, "clearance": samples.clearance}
-    atomic.write(shard, save(parts))
+    write(shard, save(parts))
 
 
 def _provenance(recipe: Recipe, library: Library) -> dict:

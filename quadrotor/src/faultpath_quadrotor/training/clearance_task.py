@@ -10,8 +10,8 @@ from torch import LongTensor, Tensor, nn
 from torch.nn import functional
 from typing_extensions import override
 
-from faultpath.core.streams import generator
-from faultpath.learning.model_card import Schedule
+from faultpath.plugin.system import generator
+from faultpath.plugin.training import Schedule
 from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 from faultpath_quadrotor.platform import CLEARANCE, PLATFORM

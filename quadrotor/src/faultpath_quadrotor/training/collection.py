@@ -13,11 +13,9 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from faultpath.core.errors import UserError
-from faultpath.core.version import __version__
-from faultpath.trials.execution.provenance import packages
-from faultpath.trials.store import atomic
-from faultpath.trials.store.atomic import locked
+from faultpath import __version__
+from faultpath.plugin.data import locked, packages, sweep, write
+from faultpath.plugin.system import UserError
 from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.parts import Part, Progress, make_missing
 from faultpath_quadrotor.training.pool import episodes_path, join_flights, write_flights
@@ -39,7 +37,7 @@ _log = logging.getLogger("faultpath")
 
 
 @dataclass(frozen=True)
-class Batch:
+class EpisodeBatch:
     """Episodes that are flown together."""
 
     name: str
@@ -106,7 +104,7 @@ def is_there(path: Path, expected: Recipe) -> bool:
 def make_pool(
     folder: Path,
     recipe: Recipe,
-    batches: Sequence[Batch],
+    batches: Sequence[EpisodeBatch],
     workers: int,
     progress: Progress | None = None,
 ) -> Path:
@@ -121,11 +119,11 @@ def make_pool(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with locked(folder, _log.warning):
-            atomic.sweep(folder)
+            sweep(folder)
             if is_there(path, recipe):
                 return path
             place.mkdir(exist_ok=True)
-            atomic.sweep(place)
+            sweep(place)
             parts = [
                 Part(place / f"{batch.name}.rows", partial(batch.make, place), len(batch.episodes))
                 for batch in batches
@@ -152,15 +150,17 @@ def _join(path: Path, recipe: Recipe, stems: Sequence[Path]) -> None:
         rows_sha256=hashlib.sha256(rows).hexdigest(),
         episodes_sha256=hashlib.sha256(episodes).hexdigest(),
     )
-    atomic.write(episodes_path(path), episodes)
-    atomic.write(path, rows)
-    atomic.write(provenance_path(path), provenance.encode())
+    write(episodes_path(path), episodes)
+    write(path, rows)
+    write(provenance_path(path), provenance.encode())
 
 
-def _batches(recipe: Recipe) -> list[Batch]:
+def _batches(recipe: Recipe) -> list[EpisodeBatch]:
     every = range(recipe.episodes)
     parts = (every[first : first + BATCH] for first in every[::BATCH])
     return [
-        Batch(f"{part.start:06d}+{len(part)}", part, partial(fly, recipe.pool, part, recipe.seed))
+        EpisodeBatch(
+            f"{part.start:06d}+{len(part)}", part, partial(fly, recipe.pool, part, recipe.seed)
+        )
         for part in parts
     ]

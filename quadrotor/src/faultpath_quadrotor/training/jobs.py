@@ -11,14 +11,12 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from faultpath.core.errors import Stopped, UserError
-from faultpath.learning.loop import Moment
-from faultpath.learning.model_card import read_card
-from faultpath.trials.store.atomic import locked, make_folder, sweep
-from faultpath.trials.work.executor import Lost, Returned, run_each, tell
-from faultpath.trials.work.processes import local
+from faultpath.plugin.data import locked, make_folder, sweep, write_file
+from faultpath.plugin.system import Stopped, UserError
+from faultpath.plugin.training import Moment, read_card
+from faultpath.plugin.work import Lost, Returned, local, run_each, tell
 from faultpath_quadrotor import native
-from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path, ship
+from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path, shipped_folder
 from faultpath_quadrotor.training import clearance_data, trajectories
 from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL, Job
 from faultpath_quadrotor.training.collection import collect, is_there, recipe
@@ -176,3 +174,10 @@ def fit_job(job: Job, data: Path, out: Path) -> Path:
             tell(moment)
 
     return fit(job.task(data), out, advance, tell)
+
+
+def ship(path: Path) -> None:
+    """Copy a checkpoint and its card into the package; `UserError` when that is not writable."""
+    make_folder(shipped_folder())
+    for file in (path, path.with_suffix(".json")):
+        write_file(shipped_folder() / file.name, file.read_bytes())

@@ -4,8 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from faultpath.trials.work.executor import run_all
-from faultpath.trials.work.processes import local
+from faultpath.plugin.work import local, run_all
 
 Progress = Callable[[float, float], None]
 """Called with the amount done and the total; its first call counts existing files."""

@@ -9,8 +9,8 @@ import torch
 from torch import LongTensor, Tensor, nn
 from typing_extensions import override
 
-from faultpath.core.streams import generator
-from faultpath.learning.model_card import Schedule
+from faultpath.plugin.system import generator
+from faultpath.plugin.training import Schedule
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.models import PREDICTORS
 from faultpath_quadrotor.platform import PLATFORM

@@ -7,12 +7,8 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import contents
-from faultpath.core.files.plain import Misread, model_of
-from faultpath.core.results import Frozen
-from faultpath.trials.code import read_code
-from faultpath.trials.imports import Root
+from faultpath.plugin.data import Root, read_code
+from faultpath.plugin.system import Frozen, Misread, UserError, contents, model_of
 
 FORMAT = 2
 

@@ -13,10 +13,9 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from faultpath import loop
-from faultpath.loop import Taps
+from faultpath.loop import Batch, Taps
+from faultpath.plugin.data import system_code
 from faultpath.trials import SystemSpec
-from faultpath.trials.code import system_code
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant.module import ACTION, Flying
@@ -24,7 +23,7 @@ from faultpath_quadrotor.plant.world import CONTROL_STEPS
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import recorded
-from faultpath_quadrotor.training.collection import Batch, make_pool
+from faultpath_quadrotor.training.collection import EpisodeBatch, make_pool
 from faultpath_quadrotor.training.parts import Progress
 from faultpath_quadrotor.training.provenance import Recipe, code_of
 from faultpath_quadrotor.training.recorded import Flights, blank_values
@@ -48,7 +47,7 @@ def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed:
         consumers=wired.consumers,
         privileged=wired.privileged,
     )
-    batch = loop.Batch(tuple(scenes), seed, system.control_dt_s)
+    batch = Batch(tuple(scenes), seed, system.control_dt_s)
     values, world = blank_values(CONTROL_STEPS, len(scenes)), None
     for instant in system.loop(variant, seed).execute(batch, taps):
         flying: Flying = instant.state
@@ -78,7 +77,7 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
     predictor's checkpoint is missing.
     """
     batches = [
-        Batch(
+        EpisodeBatch(
             f"{level}-{first:03d}",
             range(count * SCENES + first, count * SCENES + first + BLOCK),
             partial(fly, level, first),

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import Json, path, refuse_with
-from faultpath.core.errors import UserError
+from faultpath.plugin.commands import Json, path, refuse_with
+from faultpath.plugin.system import UserError
 
 ERRORS = "0.1,-0.1"
 EXAMPLE = "flight.ulg --columns px4 --mass 1.5"
@@ -53,7 +53,7 @@ def command(
         said = said.model_copy(update={"mass_kg": mass})
     found = compensation(read_flight(log, said), _sizes(errors or ERRORS))
 
-    from faultpath.trials.store.atomic import check_output, make_folder, write_text
+    from faultpath.plugin.data import check_output, make_folder, write_text
     from faultpath_quadrotor.flightlog.words import CAVEAT, sentences, table
 
     text = found.model_dump_json(indent=2) + "\n"
@@ -64,8 +64,7 @@ def command(
     if as_json:
         typer.echo(text, nl=False)
         return
-    from faultpath.api.display import SafeConsole
-    from faultpath.decisions.tables.terminal import drawn
+    from faultpath.plugin.results import SafeConsole, drawn
 
     console = SafeConsole()
     for sentence in (*sentences(found), CAVEAT):
@@ -75,8 +74,8 @@ def command(
 
 
 def _propose(log: Path, to: Path, mass_kg: float | None) -> None:
-    from faultpath.api.display import SafeConsole
-    from faultpath.trials.store.atomic import check_output, write_text
+    from faultpath.plugin.data import check_output, write_text
+    from faultpath.plugin.results import SafeConsole
     from faultpath_quadrotor.flightlog.proposing import propose
 
     check_output(to)

@@ -10,15 +10,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import FOUND, Verbs, path, refuse_with
-from faultpath.core.errors import Stopped
-from faultpath.trials.texts import LARGEST
+from faultpath.plugin.commands import FOUND, LARGEST, Verbs, path, refuse_with
+from faultpath.plugin.system import Stopped
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
-    from faultpath.api.display import SafeConsole
-    from faultpath.decisions.tables import Table
+    from faultpath.plugin.results import SafeConsole, Table
     from faultpath_quadrotor.checkpoint import ModelCard
     from faultpath_quadrotor.training.catalogue import Job
     from faultpath_quadrotor.training.jobs import Failure, Overview
@@ -61,8 +59,7 @@ def command(
     list_: Annotated[bool, typer.Option("--list", help="List the models and end.")] = False,
 ) -> int:
     """Fit models from wherever an earlier call left them; missing flights are collected first."""
-    from faultpath.api.display import SafeConsole
-    from faultpath.decisions.tables.terminal import drawn
+    from faultpath.plugin.results import SafeConsole, drawn
 
     console = SafeConsole()
     if list_:
@@ -71,7 +68,7 @@ def command(
         console.print(drawn(_models()))
         return 0
 
-    from faultpath.trials.store.atomic import make_folder
+    from faultpath.plugin.data import make_folder
     from faultpath_quadrotor.training.catalogue import choose, stages
     from faultpath_quadrotor.training.jobs import Failure, check_pilots
 
@@ -100,7 +97,7 @@ def command(
 
 def _models() -> "Table":
     """Return the table of what can be fitted."""
-    from faultpath.decisions.tables import Table, line
+    from faultpath.plugin.results import Table, line
     from faultpath_quadrotor.training.catalogue import ALL
 
     columns = ("seeds", "what it is")
@@ -110,7 +107,7 @@ def _models() -> "Table":
 
 def result_table(cards: "Sequence[ModelCard]") -> "Table":
     """Return the table of fitted models."""
-    from faultpath.decisions.tables import Line, Table, line
+    from faultpath.plugin.results import Line, Table, line
 
     lines: list[Line] = []
     for card in cards:
