@@ -48,15 +48,15 @@ def command(
     from faultpath_quadrotor.flightlog.compensation import compensation
     from faultpath_quadrotor.flightlog.flight import read_flight
 
-    said = read_columns(columns)
+    column_map = read_columns(columns)
     if mass is not None:
-        said = said.model_copy(update={"mass_kg": mass})
-    found = compensation(read_flight(log, said), _sizes(errors or ERRORS))
+        column_map = column_map.model_copy(update={"mass_kg": mass})
+    result = compensation(read_flight(log, column_map), _sizes(errors or ERRORS))
 
     from faultpath.plugin.data import check_output, make_folder, write_text
     from faultpath_quadrotor.flightlog.words import CAVEAT, sentences, table
 
-    text = found.model_dump_json(indent=2) + "\n"
+    text = result.model_dump_json(indent=2) + "\n"
     if out is not None:
         make_folder(out)
         check_output(out / "compensation.json", b'"flown_s"')
@@ -67,10 +67,10 @@ def command(
     from faultpath.plugin.results import SafeConsole, drawn
 
     console = SafeConsole()
-    for sentence in (*sentences(found), CAVEAT):
+    for sentence in (*sentences(result), CAVEAT):
         console.print(sentence, style="bold" if sentence != CAVEAT else "")
-    made = table(found)
-    console.print("", drawn(made, one_line=True), *made.notes, sep="\n")
+    errors_table = table(result)
+    console.print("", drawn(errors_table, one_line=True), *errors_table.notes, sep="\n")
 
 
 def _propose(log: Path, to: Path, mass_kg: float | None) -> None:
