@@ -122,7 +122,7 @@ def readings(passed: Sequence[State]) -> Mapping[str, Tensor]:
     }
 
 
-class Errors:
+class SensorErrors:
     """The errors of sensors in some scenes, drawn by scene and seed for a whole trial."""
 
     def __init__(

@@ -12,12 +12,14 @@ from faultpath_quadrotor.flightlog.reading import (
     SPEED_UNITS,
     ColumnMap,
     Floats,
-    Series,
+    LogColumn,
     read_series,
 )
+from faultpath_quadrotor.vehicle import CONTROL_DT_S
 
 GRAVITY_MPS2 = 9.80665
-INTERVAL_S = 0.05  # paper, Section IV-A
+"""Standard gravity; the simulated vehicles fly with the paper's 9.81."""
+INTERVAL_S = CONTROL_DT_S
 _GAP = 10.0
 """A pause longer than so many usual ones, and than two intervals, ends a stretch of the flight."""
 
@@ -119,7 +121,7 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
     return flight
 
 
-def _grids(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]:
+def _grids(path: Path, series: Mapping[str, LogColumn]) -> tuple[list[Floats], int]:
     """Return the ends of the control intervals of each stretch, and how many pauses there are."""
     columns = list(series.values())
     pauses: list[tuple[float, float]] = []
@@ -149,12 +151,12 @@ def _grids(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]
     return grids, len(merged)
 
 
-def _on(time_s: Floats, columns: Sequence[Series]) -> Floats:
+def _on(time_s: Floats, columns: Sequence[LogColumn]) -> Floats:
     """Return columns interpolated at some times, `[T, columns]`."""
     return np.stack([np.interp(time_s, column.time_s, column.values) for column in columns], axis=1)
 
 
-def _attitude(path: Path, columns: ColumnMap, series: Mapping[str, Series]) -> Slerp:
+def _attitude(path: Path, columns: ColumnMap, series: Mapping[str, LogColumn]) -> Slerp:
     components = [series[name] for name in columns.attitude.columns]
     time_s = components[0].time_s
     quaternion = _on(time_s, components)

@@ -85,10 +85,9 @@ def propose(path: Path, mass_kg: float | None = None) -> str:
     parts: dict[str, str] = {}
     with opened_bag(path) as bag:
         candidates = {what: _search(path, bag, what, lines) for what in _TYPES}
-        measured = [
-            {topic.frame for topic in candidates[what]} for what in ("attitude", "velocity")
-        ]
-        frame = max(("ENU", "NED"), key=lambda name: sum(name in frames for frames in measured))
+        motion = [candidates["attitude"], candidates["velocity"]]
+        frames = [{topic.frame for topic in topics} for topics in motion]
+        frame = max(("ENU", "NED"), key=lambda name: sum(name in known for known in frames))
         chosen: list[_Candidate] = []
         for what, topics in candidates.items():
             fitting = [topic for topic in topics if what == "thrust" or topic.frame == frame]
@@ -142,9 +141,7 @@ def _search(path: Path, bag: Any, what: str, lines: list[str]) -> list[_Candidat
                     candidates.append(_Candidate(topic, info.msgcount, kind, fields, more, note))
                 except UserError as error:
                     lines.append(f"{error}.")
-    return sorted(
-        candidates, key=lambda candidate: any(word in candidate.topic for word in _WISHES)
-    )
+    return sorted(candidates, key=lambda one: any(wish in one.topic for wish in _WISHES))
 
 
 def _clock(path: Path, names: list[str]) -> tuple[str, str] | None:

@@ -106,14 +106,14 @@ def read_columns(where: str) -> ColumnMap:
 
 
 @dataclass(frozen=True)
-class Series:
+class LogColumn:
     """One column: times in s, ascending, and values, all finite."""
 
     time_s: Floats
     values: Floats
 
 
-def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
+def read_series(path: Path, columns: ColumnMap) -> Mapping[str, LogColumn]:
     """Return the columns that the map names.
 
     Raises `UserError` for a file that cannot be read, a column that it does not have or that holds
@@ -126,7 +126,7 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
             f"{path}: is not a .csv, .parquet, .ulg, .mcap, .db3 or .bag file, nor the folder of a "
             "bag: convert it to one"
         )
-    series: dict[str, Series] = {}
+    series: dict[str, LogColumn] = {}
     for name, (time_s, values) in reader(path, columns).items():
         for what, numbers, most in (("times", time_s, _LONGEST_S), ("values", values, _LARGEST)):
             if (odd := np.flatnonzero(np.abs(numbers) > most)).size:  # infinite ones too
@@ -151,7 +151,7 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
                 f"{path}: column '{name}' has {rate_hz:.3g} readings a second, which no flight log "
                 "has: correct the unit of time"
             )
-        series[name] = Series(times, values[first])
+        series[name] = LogColumn(times, values[first])
     return series
 
 
@@ -238,9 +238,8 @@ def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         raise UserError(
             f"{path}: cannot be read as a ULog file ({why(error)}): give a whole log"
         ) from None
-    messages = {
-        message.name: message.data for message in reversed(log.data_list)
-    }  # the first of a name
+    # Of several messages with one name the first counts.
+    messages = {message.name: message.data for message in reversed(log.data_list)}
     series: dict[str, tuple[Floats, Floats]] = {}
     for name in columns.names:
         topic, _, field = name.partition(".")

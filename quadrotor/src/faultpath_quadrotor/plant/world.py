@@ -11,7 +11,7 @@ from torch import Tensor
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators.sensors import SAMPLES
 from faultpath_quadrotor.plant import Plant, TorchPlant
-from faultpath_quadrotor.plant.protocol import Contact, Progress
+from faultpath_quadrotor.plant.protocol import Contact, TrialProgress
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.scenes.geometry import Geometry
@@ -98,7 +98,7 @@ class World:
         self.progress = _with_arrivals(progress)
 
 
-def _with_arrivals(progress: Progress) -> Progress:
+def _with_arrivals(progress: TrialProgress) -> TrialProgress:
     """Return the progress with arrivals: checked once a control step, as the planner acts."""
     arrived = progress.running & (progress.terminal_distance_m <= GOAL_RADIUS_M)
     return replace(

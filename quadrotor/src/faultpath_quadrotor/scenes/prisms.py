@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import cos, hypot, sin
 
 from faultpath.trials import FloorPlan, Pillar, Prism
-from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Point, Scene
+from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Point, Scene
 
 _BURIED_M = 10.0
 """How far a solid that touches the floor or the ceiling goes on beyond it. What lies beyond is
@@ -77,7 +77,7 @@ def solids(scene: Scene) -> list[RoundedPrism]:
     return [prism(solid, scene.bounds) for solid in (*scene.boxes, *scene.cylinders)]
 
 
-def prism(solid: Box | Cylinder, bounds: Bounds | None = None) -> RoundedPrism:
+def prism(solid: Box | Cylinder, bounds: ArenaBounds | None = None) -> RoundedPrism:
     """Return a solid as a prism; between `bounds` it goes on beyond a face that it touches."""
     if isinstance(solid, Box):
         (x, y, z), (hx, hy, hz) = solid.centre_m, solid.half_extents_m

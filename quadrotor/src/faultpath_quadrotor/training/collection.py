@@ -17,11 +17,11 @@ from faultpath import __version__
 from faultpath.plugin.data import locked, packages, sweep, write
 from faultpath.plugin.system import UserError
 from faultpath_quadrotor.training.flight import fly
-from faultpath_quadrotor.training.parts import Part, Progress, make_missing
+from faultpath_quadrotor.training.parts import DataFile, Progress, make_missing
 from faultpath_quadrotor.training.pool import episodes_path, join_flights, write_flights
 from faultpath_quadrotor.training.provenance import (
-    Provenance,
-    Recipe,
+    PoolProvenance,
+    PoolRecipe,
     code_of,
     provenance_path,
     read_provenance,
@@ -74,7 +74,7 @@ def collect(
     }
 
 
-def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> Recipe:
+def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> PoolRecipe:
     """Return what decides a pool's numbers; `UserError` for a pool that cannot be."""
     if pool not in EPISODES:
         raise UserError(f"there is no pool '{pool}': choose from {', '.join(EPISODES)}.")
@@ -82,15 +82,15 @@ def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> Recipe:
     if count < 1:
         raise UserError(f"pool '{pool}' cannot have {count} episodes: ask for at least one.")
     code = code_of("faultpath_quadrotor.training.flight", "faultpath_quadrotor.training.pool")
-    return Recipe(pool=pool, episodes=count, seed=seed, code_sha256=code)
+    return PoolRecipe(pool=pool, episodes=count, seed=seed, code_sha256=code)
 
 
-def is_there(path: Path, expected: Recipe) -> bool:
+def is_there(path: Path, expected: PoolRecipe) -> bool:
     """Return whether a pool is finished; `UserError` for one of another recipe."""
     provenance = read_provenance(path)
     if provenance is None:
         return False
-    for field in Recipe.model_fields:
+    for field in PoolRecipe.model_fields:
         if getattr(provenance, field) != getattr(expected, field):
             how = "by other code" if field == "code_sha256" else f"with another '{field}'"
             raise UserError(
@@ -103,7 +103,7 @@ def is_there(path: Path, expected: Recipe) -> bool:
 
 def make_pool(
     folder: Path,
-    recipe: Recipe,
+    recipe: PoolRecipe,
     batches: Sequence[EpisodeBatch],
     workers: int,
     progress: Progress | None = None,
@@ -125,7 +125,9 @@ def make_pool(
             place.mkdir(exist_ok=True)
             sweep(place)
             parts = [
-                Part(place / f"{batch.name}.rows", partial(batch.make, place), len(batch.episodes))
+                DataFile(
+                    place / f"{batch.name}.rows", partial(batch.make, place), len(batch.episodes)
+                )
                 for batch in batches
             ]
             make_missing([parts], workers, progress)
@@ -140,10 +142,10 @@ def make_pool(
     return path
 
 
-def _join(path: Path, recipe: Recipe, stems: Sequence[Path]) -> None:
+def _join(path: Path, recipe: PoolRecipe, stems: Sequence[Path]) -> None:
     """Write a finished pool, its provenance last."""
     rows, episodes = join_flights(stems)
-    provenance = Provenance(
+    provenance = PoolProvenance(
         **dict(recipe),
         faultpath_version=__version__,
         packages=packages(),
@@ -155,7 +157,7 @@ def _join(path: Path, recipe: Recipe, stems: Sequence[Path]) -> None:
     write(provenance_path(path), provenance.encode())
 
 
-def _batches(recipe: Recipe) -> list[EpisodeBatch]:
+def _batches(recipe: PoolRecipe) -> list[EpisodeBatch]:
     every = range(recipe.episodes)
     parts = (every[first : first + BATCH] for first in every[::BATCH])
     return [

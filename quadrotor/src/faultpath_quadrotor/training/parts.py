@@ -11,7 +11,7 @@ Progress = Callable[[float, float], None]
 
 
 @dataclass(frozen=True)
-class Part:
+class DataFile:
     """A file and the function that makes it; it counts as made once the file exists."""
 
     path: Path
@@ -21,7 +21,9 @@ class Part:
     """Its weight in the progress."""
 
 
-def make_missing(stages: Sequence[Sequence[Part]], workers: int, progress: Progress | None) -> None:
+def make_missing(
+    stages: Sequence[Sequence[DataFile]], workers: int, progress: Progress | None
+) -> None:
     """Make what is missing, one stage after the other, with so many processes (0: this one).
 
     Raises the error of the first part that fails.

@@ -25,7 +25,7 @@ from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import recorded
 from faultpath_quadrotor.training.collection import EpisodeBatch, make_pool
 from faultpath_quadrotor.training.parts import Progress
-from faultpath_quadrotor.training.provenance import Recipe, code_of
+from faultpath_quadrotor.training.provenance import PoolRecipe, code_of
 from faultpath_quadrotor.training.recorded import Flights, blank_values
 from faultpath_quadrotor.vehicle import CONTROL_RATE_HZ
 
@@ -88,7 +88,7 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
     return make_pool(folder, recipe(), batches, workers, progress)
 
 
-def recipe() -> Recipe:
+def recipe() -> PoolRecipe:
     """Return what decides the pool's numbers: the system, its weights, and the settings here."""
     spec = SystemSpec(name=Quadrotor.name, options={"clearance": "true"})
     state = system_code(Quadrotor.parse(**spec.options), spec).state
@@ -97,7 +97,7 @@ def recipe() -> Recipe:
         (state.contents, code_of("faultpath_quadrotor.training.trajectories"), *settings)
     )
     code = hashlib.sha256(content.encode()).hexdigest()
-    return Recipe(pool=POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code)
+    return PoolRecipe(pool=POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code)
 
 
 @native.using(native.PORTABLE)

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     from faultpath.plugin.results import SafeConsole, Table
     from faultpath_quadrotor.checkpoint import ModelCard
-    from faultpath_quadrotor.training.catalogue import Job
-    from faultpath_quadrotor.training.jobs import Failure, Overview
+    from faultpath_quadrotor.training.catalogue import FitJob
+    from faultpath_quadrotor.training.jobs import FitFailure, Overview
 
 EXAMPLE = "quadrotor gru gru+dcc --seed 0"
 
@@ -70,7 +70,7 @@ def command(
 
     from faultpath.plugin.data import make_folder
     from faultpath_quadrotor.training.catalogue import choose, stages
-    from faultpath_quadrotor.training.jobs import Failure, check_pilots
+    from faultpath_quadrotor.training.jobs import FitFailure, check_pilots
 
     data, out = data or Path("data"), out or Path("runs/train")
     workers = (os.cpu_count() or 1) if workers is None else workers
@@ -83,12 +83,12 @@ def command(
     for jobs in stages(chosen):  # models whose data are flown with other models come after those
         _collect(console, jobs, data, workers)
         results = _fit(console, jobs, data, out, workers, ship)
-        for failure in (result for result in results if isinstance(result, Failure)):
+        for failure in (result for result in results if isinstance(result, FitFailure)):
             text = f"{failure.job.stem} was not fitted: {failure.error}"
             text += f" ({failure.details})" if failure.details else ""
             console.print(text, markup=False, style="bold red", soft_wrap=True)
             status = FOUND
-        cards = [result for result in results if not isinstance(result, Failure)]
+        cards = [result for result in results if not isinstance(result, FitFailure)]
         if cards:
             console.print(drawn(result_table(cards), one_line=True))
             console.print(f"Checkpoints: {out}", markup=False, soft_wrap=True)
@@ -127,7 +127,7 @@ def result_table(cards: "Sequence[ModelCard]") -> "Table":
     return Table(title="Fitted models", corner="model", columns=columns, lines=tuple(lines))
 
 
-def _collect(console: "SafeConsole", jobs: "Sequence[Job]", data: Path, workers: int) -> None:
+def _collect(console: "SafeConsole", jobs: "Sequence[FitJob]", data: Path, workers: int) -> None:
     from faultpath_quadrotor.training.jobs import check_pools, collect_missing, missing_pools
 
     check_pools(jobs, data)
@@ -151,8 +151,13 @@ def _collect(console: "SafeConsole", jobs: "Sequence[Job]", data: Path, workers:
 
 
 def _fit(
-    console: "SafeConsole", jobs: "Sequence[Job]", data: Path, out: Path, workers: int, ship: bool
-) -> "tuple[ModelCard | Failure, ...]":
+    console: "SafeConsole",
+    jobs: "Sequence[FitJob]",
+    data: Path,
+    out: Path,
+    workers: int,
+    ship: bool,
+) -> "tuple[ModelCard | FitFailure, ...]":
     from faultpath_quadrotor.training.jobs import run_jobs
 
     with _progress(console) as bar:
