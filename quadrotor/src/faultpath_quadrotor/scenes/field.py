@@ -25,8 +25,8 @@ from faultpath_quadrotor.scenes.compiled import CompiledField
 from faultpath_quadrotor.scenes.geometry import rectangle_distance
 from faultpath_quadrotor.scenes.prisms import RoundedPrism, arena, solids
 from faultpath_quadrotor.scenes.scene import Scene
+from faultpath_quadrotor.scenes.soundness import CELL_M
 
-SPACING_M = 0.1
 _MARGIN = 2
 _ROUNDING = 1e-6
 """Part of a cell, and of a metre, that is rounding: 9 m are 90 cells of 0.1 m, not 91."""
@@ -48,7 +48,7 @@ class Lattice:
     spacing_m: float
 
     @classmethod
-    def over(cls, scene: Scene, spacing_m: float = SPACING_M) -> "Lattice":
+    def over(cls, scene: Scene, spacing_m: float = CELL_M) -> "Lattice":
         """Return the lattice that covers a scene; its third point is the arena's low corner."""
         axes: list[Tensor] = []
         for low, high in zip(scene.bounds.low_m, scene.bounds.high_m, strict=True):
@@ -133,7 +133,7 @@ class DistanceField:
         scenes: Scene | Sequence[Scene],
         free_space: bool = False,
         *,
-        spacing_m: float = SPACING_M,
+        spacing_m: float = CELL_M,
         device: torch.device | str | None = None,
     ) -> "DistanceField":
         """Bake scenes into one table: about 0.8 MB each.
