@@ -41,15 +41,15 @@ def _range(log: Estimate) -> str:
 
 
 def _label(combination: Combination) -> str:
-    observer, predictor = (
-        f"{100 * error:+g} %".replace("-", "−") if error else ""
-        for error in (combination.observer, combination.predictor)
-    )
-    if observer and predictor:
-        return f"both {observer}"
-    if observer or predictor:
-        return f"observer {observer}" if observer else f"predictor {predictor}"
-    return "correct"
+    if combination.observer and combination.predictor:
+        return f"both {_percent(combination.observer)}"
+    if combination.observer:
+        return f"observer {_percent(combination.observer)}"
+    return f"predictor {_percent(combination.predictor)}" if combination.predictor else "correct"
+
+
+def _percent(error: float) -> str:
+    return f"{100 * error:+g} %".replace("-", "−")
 
 
 def table(compensation: Compensation) -> Table:
