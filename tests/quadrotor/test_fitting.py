@@ -188,8 +188,7 @@ def test_a_missing_checkpoint_is_named_with_the_command_that_makes_it() -> None:
 def test_shipping_puts_a_checkpoint_where_the_package_finds_it(
     fitted: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in (checkpoint, jobs):
-        monkeypatch.setattr(module, "shipped_folder", lambda: tmp_path / "package")
+    monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path / "package")
     jobs.ship(fitted)
     found = checkpoint_path("toy", 0)
     assert found.parent == tmp_path / "package"

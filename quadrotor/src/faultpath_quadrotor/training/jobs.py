@@ -15,8 +15,8 @@ from faultpath.plugin.data import locked, make_folder, sweep, write_file
 from faultpath.plugin.system import Stopped, UserError
 from faultpath.plugin.training import Moment, read_card
 from faultpath.plugin.work import Lost, Returned, local, run_each, tell
-from faultpath_quadrotor import native
-from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path, shipped_folder
+from faultpath_quadrotor import checkpoint, native
+from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path
 from faultpath_quadrotor.training import clearance_data, trajectories
 from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL, FitJob
 from faultpath_quadrotor.training.collection import collect, is_there, recipe
@@ -178,6 +178,7 @@ def fit_job(job: FitJob, data: Path, out: Path) -> Path:
 
 def ship(path: Path) -> None:
     """Copy a checkpoint and its card into the package; `UserError` when that is not writable."""
-    make_folder(shipped_folder())
+    package = checkpoint.shipped_folder()
+    make_folder(package)
     for file in (path, path.with_suffix(".json")):
-        write_file(shipped_folder() / file.name, file.read_bytes())
+        write_file(package / file.name, file.read_bytes())
