@@ -1,8 +1,9 @@
 """Audit whether a repair still helps when a fault reaches every module that shares its source.
 
 The names below are public, and so are those with which a user's system is written (see
-`docs/audit-your-own-system.md`). All other modules and names are private: they may change in any
-version. Each name loads what it needs when it is first used, so importing this is quick.
+`docs/audit-your-own-system.md`) and those of `faultpath.plugin`. All other modules and names are
+private: they may change in any version. Each name loads what it needs when it is first used, so
+importing this is quick.
 """
 
 from importlib import import_module

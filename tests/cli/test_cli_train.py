@@ -90,7 +90,7 @@ def test_flights_that_are_missing_are_collected_first(monkeypatch: pytest.Monkey
     monkeypatch.setattr(
         catalogue,
         "ALL",
-        (catalogue.Entry("one", entry("one").factory, ("nominal",), "", 1.0, seeds=(0,)),),
+        (catalogue.ModelEntry("one", entry("one").factory, ("nominal",), "", 1.0, seeds=(0,)),),
     )
     ended = _train("one", "--data", "flights")
     assert ended.status == 0, ended.err
@@ -105,7 +105,7 @@ def test_data_that_models_fly_are_collected_when_those_are_fitted(
         assert Path("runs/train/one-0.safetensors").exists()
         progress(1.0, 1.0)
 
-    needy = catalogue.Entry(
+    needy = catalogue.ModelEntry(
         "needy", entry("needy").factory, ("flown",), "", 9.0, seeds=(0,), after=("one",)
     )
     monkeypatch.setattr(jobs, "collect", collect)
@@ -119,7 +119,7 @@ def test_closed_loop_flights_without_their_predictor_are_refused_before_any_fit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path)
-    flown = catalogue.Entry(
+    flown = catalogue.ModelEntry(
         "flown", entry("one").factory, ("trajectory",), "", 9.0, seeds=(0,), after=("one",)
     )
     monkeypatch.setattr(catalogue, "ALL", (flown, entry("one")))

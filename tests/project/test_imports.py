@@ -1,7 +1,10 @@
 """What gets loaded: the core works without torch, and help comes at once."""
 
+import ast
 import json
 from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
 from subprocess import CompletedProcess
 from textwrap import dedent
 
@@ -9,6 +12,9 @@ import grimp
 
 Run = Callable[..., CompletedProcess[str]]
 
+ROOMS = ("loop", "faults", "interface", "trials", "systems", "learning")
+PUBLIC = {"faultpath", *(f"faultpath.{room}" for room in ROOMS)}
+"""With the modules of `faultpath.plugin`, where a package may take names of the engine from."""
 HEAVY = ["mujoco", "pyarrow", "scipy", "torch"]
 
 
@@ -51,3 +57,22 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
         for module in free:
             del left[module]
     assert not left, f"these import each other, or depend on some that do: {sorted(left)}"
+
+
+def test_the_quadrotor_takes_only_names_that_the_engine_lists(root: Path) -> None:
+    names: list[tuple[str, str]] = []
+    for path in (root / "quadrotor/src").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Import):
+                names += [(alias.name, "") for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                names += [(node.module or "", alias.name) for alias in node.names]
+    engine = {pair for pair in names if pair[0].partition(".")[0] == "faultpath"}
+    public = {module for module, _ in engine if module.startswith("faultpath.plugin.")} | PUBLIC
+    private = [
+        f"{module}.{name}".rstrip(".")
+        for module, name in sorted(engine)
+        if module not in public or name not in import_module(module).__all__
+    ]
+    assert engine
+    assert not private

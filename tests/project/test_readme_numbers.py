@@ -14,8 +14,9 @@ from faultpath.decisions.decide import decide
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.trials import OutcomeTable, SystemSpec, load_system
-from faultpath.trials.execution.provenance import packages, processor
+from faultpath.trials.execution.provenance import processor
 from faultpath.trials.execution.runner import run_study
+from faultpath.trials.imports import packages
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import AuditQuestion
 from faultpath.trials.store.folder import read_outcomes

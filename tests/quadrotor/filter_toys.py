@@ -9,7 +9,7 @@ from faultpath_quadrotor import so3
 from faultpath_quadrotor.estimators import ErrorStateFilter
 from faultpath_quadrotor.estimators.eskf import Filtered
 from faultpath_quadrotor.estimators.kalman import Trust
-from faultpath_quadrotor.estimators.sensors import SENSORS, Errors, readings, sensors
+from faultpath_quadrotor.estimators.sensors import SENSORS, SensorErrors, readings, sensors
 from faultpath_quadrotor.plant import TorchPlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.state import State
@@ -61,9 +61,9 @@ class Sensed:
         """Fly each course `repeats` times; fixes arrive as late as they are declared to."""
         known, steps = sensors(), len(exact)
         names = [f"course/{lane}" for lane in range(LANES * repeats)]
-        errors = Errors(names, 0, size, known, steps)
+        errors = SensorErrors(names, 0, size, known, steps)
         still = {name: replace(each, noise=0.0) for name, each in known.items()}
-        biased = Errors(names, 0, size, still, steps)
+        biased = SensorErrors(names, 0, size, still, steps)
         found: list[dict[str, Tensor]] = []
         biases: list[Tensor] = []
         for step, given in enumerate(exact):

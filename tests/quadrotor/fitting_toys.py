@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import torch
-from faultpath_quadrotor.training.catalogue import Entry
+from faultpath_quadrotor.training.catalogue import ModelEntry
 from faultpath_quadrotor.training.fitting import ModelTask
 from torch import LongTensor, Tensor, nn
 from torch.nn import functional
@@ -98,5 +98,5 @@ def make(name: str, seed: int, data: Path) -> ModelTask:
     return task
 
 
-def entry(name: str, **more: Any) -> Entry:
-    return Entry(name, make, (), f"{name} of the tests", **{"cost": 1.0, "seeds": (0,)} | more)
+def entry(name: str, **more: Any) -> ModelEntry:
+    return ModelEntry(name, make, (), f"{name} of the tests", **{"cost": 1.0, "seeds": (0,)} | more)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from faultpath_quadrotor.scenes.library import Library, as_text
-from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene, Topology
+from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Scene, Topology
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath_quadrotor.training.recorded import Flights
@@ -153,7 +153,7 @@ def hall(
         topology=Topology.CLUTTER,
         obstacles=bool(things),
         occluded=False,
-        bounds=Bounds(low_m=(-x / 2, -y / 2, 0.0), high_m=(x / 2, y / 2, z)),
+        bounds=ArenaBounds(low_m=(-x / 2, -y / 2, 0.0), high_m=(x / 2, y / 2, z)),
         boxes=boxes,
         cylinders=tuple(each for each in things if isinstance(each, Cylinder)),
         start_m=start,

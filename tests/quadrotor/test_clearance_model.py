@@ -23,7 +23,7 @@ from faultpath_quadrotor.perception.labels import (
 )
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.training import clearance_data
-from faultpath_quadrotor.training.clearance_data import Recipe, Samples
+from faultpath_quadrotor.training.clearance_data import ClearanceRecipe, Samples
 from faultpath_quadrotor.training.clearance_task import (
     VALIDATION_FROM,
     ClearanceTask,
@@ -105,7 +105,7 @@ def test_what_no_pixel_can_show_has_little_clearance_and_what_one_shows_keeps_it
     assert (found[shown] > UNSEEN_M).any()
 
 
-SMALL = Recipe(images=1, in_view=16, near_surface=16, around=8)
+SMALL = ClearanceRecipe(images=1, in_view=16, near_surface=16, around=8)
 
 
 @pytest.fixture(scope="module")

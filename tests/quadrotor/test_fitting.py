@@ -11,9 +11,9 @@ from faultpath_quadrotor.checkpoint import (
     ModelCard,
     checkpoint_path,
     load_checkpoint,
-    ship,
     shipped_folder,
 )
+from faultpath_quadrotor.training import jobs
 from faultpath_quadrotor.training.fitting import fit, journal_path
 from fitting_toys import Net, Toy
 from safetensors.torch import load_file
@@ -189,7 +189,7 @@ def test_shipping_puts_a_checkpoint_where_the_package_finds_it(
     fitted: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path / "package")
-    ship(fitted)
+    jobs.ship(fitted)
     found = checkpoint_path("toy", 0)
     assert found.parent == tmp_path / "package"
     assert load_checkpoint(Net(3), found) == read_card(fitted)

@@ -6,18 +6,18 @@ from pathlib import Path
 
 import pytest
 from faultpath_quadrotor.training import catalogue, jobs, trajectories
-from faultpath_quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
+from faultpath_quadrotor.training.catalogue import ALL, GROUPS, FitJob, choose, stages
 from faultpath_quadrotor.training.collection import EPISODES, recipe
 from faultpath_quadrotor.training.fitting import fit, journal_path
 from faultpath_quadrotor.training.jobs import Overview, missing_pools, run_jobs
-from faultpath_quadrotor.training.provenance import Provenance
+from faultpath_quadrotor.training.provenance import PoolProvenance
 from fitting_toys import Toy, entry
 
 from faultpath.core.errors import Stopped, UserError
 from faultpath.trials.work import processes as processes_of_work
 
 
-def _run(tmp_path: Path, wanted: list[Job], workers: int = 0, told=lambda _: None, **more):
+def _run(tmp_path: Path, wanted: list[FitJob], workers: int = 0, told=lambda _: None, **more):
     return run_jobs(
         wanted, tmp_path / "data", tmp_path / "out", workers, told, lambda _: None, **more
     )
@@ -65,7 +65,7 @@ def test_a_pool_of_other_code_is_not_fitted_on(pool: str, tmp_path: Path) -> Non
     model = {"nominal": "wm-a", "trajectory": "gru-trajectory"}[pool]
     wanted = [job for job in choose([model]) if job.seed == 0]
     asked = recipe(pool) if pool == "nominal" else trajectories.recipe()
-    found = Provenance(
+    found = PoolProvenance(
         **dict(asked), faultpath_version="0", packages={}, rows_sha256="", episodes_sha256=""
     )
     path = tmp_path / f"{pool}.json"
@@ -78,7 +78,7 @@ def test_a_pool_of_other_code_is_not_fitted_on(pool: str, tmp_path: Path) -> Non
 
 @pytest.mark.slow
 def test_worker_processes_give_the_same_bits_and_fail_alone(tmp_path: Path) -> None:
-    good, dies = (Job(entry(name), 0) for name in ("good", "dies"))
+    good, dies = (FitJob(entry(name), 0) for name in ("good", "dies"))
     (alone,) = _run(tmp_path / "0", [good])
     killed, beside = _run(tmp_path / "2", [dies, good], 2)
     same = {"duration_s"}
@@ -99,7 +99,7 @@ def gate(tmp_path: Path) -> Path:
 def _finishes_to_the_same_bits(tmp_path: Path) -> None:
     task = Toy(epochs=30)
     task.name = "slow"
-    _run(tmp_path, [Job(entry("slow"), 0)])
+    _run(tmp_path, [FitJob(entry("slow"), 0)])
     ours, whole = tmp_path / "out" / "slow-0.safetensors", fit(task, tmp_path / "whole")
     assert ours.read_bytes() == whole.read_bytes()
 
@@ -122,6 +122,6 @@ def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(
 
     monkeypatch.setattr(processes_of_work._Process, "__init__", note)
     with pytest.raises(Stopped, match="with 0 of 1 models finished"):
-        _run(tmp_path, [Job(entry("slow"), 0)], 1, stop)
+        _run(tmp_path, [FitJob(entry("slow"), 0)], 1, stop)
     assert [process.returncode for process in processes] == [-signal.SIGKILL]
     _finishes_to_the_same_bits(tmp_path)

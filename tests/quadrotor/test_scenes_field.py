@@ -5,12 +5,13 @@ import math
 import numpy as np
 import pytest
 import torch
-from faultpath_quadrotor.scenes.field import SPACING_M, DistanceField, Lattice, exact_on_lattice
+from faultpath_quadrotor.scenes.field import DistanceField, Lattice, exact_on_lattice
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
+from faultpath_quadrotor.scenes.soundness import CELL_M
 
-HALF_DIAGONAL_M = SPACING_M * math.sqrt(3) / 2
+HALF_DIAGONAL_M = CELL_M * math.sqrt(3) / 2
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +59,7 @@ def test_outside_the_field_falls_by_the_distance_beyond_each_wall(scenes, field)
     bounds = [(scene.bounds.low_m, scene.bounds.high_m) for scene in scenes]
     low, high = torch.tensor(bounds).permute(1, 2, 0)[..., None]
     beyond = (low - points).clamp_min(0) + (points - high).clamp_min(0)
-    outside = beyond.amax(0) > SPACING_M + 1e-4  # nearer, a cell has corners on the face
+    outside = beyond.amax(0) > CELL_M + 1e-4  # nearer, a cell has corners on the face
     assert outside.double().mean() > 0.5
     error = (field.query(points) / beyond.sum(0) + 1).abs()
     assert error[outside].max() < 0.01  # rounding, tens of metres away

@@ -8,7 +8,7 @@ import pytest
 import torch
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import FROZEN, Library, as_text, frozen_file, load_library
-from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
+from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Scene
 from faultpath_quadrotor.scenes.soundness import MOST_OBSTACLES, clearance_m, unsound
 
 from faultpath.core.errors import UserError
@@ -69,9 +69,12 @@ PILLAR = Cylinder(centre_m=BASE[1].start_m[:2], radius_m=0.3, low_m=LOW[2], high
 CRATE = Box(centre_m=BASE[1].goal_m, half_extents_m=(0.3, 0.3, 0.3), yaw_rad=1.0)
 FAR = (5e4, 0.0, 1.0)
 UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
-    "bounds": ({"bounds": Bounds(low_m=HIGH, high_m=LOW)}, "field bounds"),
-    "flat": ({"bounds": Bounds(low_m=LOW, high_m=(*HIGH[:2], LOW[2]))}, "along z"),
-    "huge": ({"bounds": Bounds(low_m=(-900,) * 3, high_m=(900,) * 3)}, "cells of 0.1 m are too"),
+    "bounds": ({"bounds": ArenaBounds(low_m=HIGH, high_m=LOW)}, "field bounds"),
+    "flat": ({"bounds": ArenaBounds(low_m=LOW, high_m=(*HIGH[:2], LOW[2]))}, "along z"),
+    "huge": (
+        {"bounds": ArenaBounds(low_m=(-900,) * 3, high_m=(900,) * 3)},
+        "cells of 0.1 m are too",
+    ),
     "far": ({"goal_m": FAR}, "field goal_m: lies beyond 1000 m"),
     "start outside": ({"start_m": (HIGH[0] + 1, 0.0, 1.0)}, "start_m: .*outside the bounds"),
     "goal below": ({"goal_m": (*BASE[1].goal_m[:2], LOW[2] - 1)}, "goal_m: .*outside the bounds"),

@@ -28,7 +28,7 @@ def _closed_loop(folder: Path) -> None:
 
 
 def _images(folder: Path) -> None:
-    recipe = clearance_data.Recipe(images=1, in_view=16, near_surface=16, around=8)
+    recipe = clearance_data.ClearanceRecipe(images=1, in_view=16, near_surface=16, around=8)
     clearance_data.draw(recipe, load_library(recipe.library).scenes[0])
 
 

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 from pydantic import JsonValue
 
-from faultpath.core.errors import UserError
-from faultpath.learning.model_card import Card, fill
-from faultpath.trials.store.atomic import make_folder, write_file
+from faultpath.plugin.system import UserError
+from faultpath.plugin.training import Card, fill
 
 if TYPE_CHECKING:
     from torch import nn
@@ -63,10 +62,3 @@ def load_checkpoint(module: "nn.Module", path: Path) -> ModelCard:
     to another architecture.
     """
     return fill(module, path, ModelCard)
-
-
-def ship(path: Path) -> None:
-    """Copy a checkpoint and its card into the package; `UserError` when that is not writable."""
-    make_folder(shipped_folder())
-    for file in (path, path.with_suffix(".json")):
-        write_file(shipped_folder() / file.name, file.read_bytes())

@@ -8,8 +8,8 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from faultpath.core.errors import UserError
 from faultpath.faults import Coupled, Delay, Fault, Noise, Rotate, Scale, Sequence
+from faultpath.plugin.system import UserError
 from faultpath.trials import Offered
 
 

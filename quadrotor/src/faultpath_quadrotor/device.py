@@ -7,8 +7,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from faultpath.core.errors import UserError
-from faultpath.trials.work.executor import one_thread
+from faultpath.plugin.system import UserError, one_thread
 from faultpath_quadrotor.choices import DeviceName
 
 CPU = torch.device("cpu")

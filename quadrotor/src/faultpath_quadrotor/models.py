@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 import torch
 from torch import nn
 
-from faultpath.core.errors import UserError
+from faultpath.plugin.system import UserError
 from faultpath_quadrotor.checkpoint import checkpoint_path, load_checkpoint
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.perception import ClearanceModel
@@ -47,7 +47,7 @@ def fill(network: nn.Module, name: str, seed: int) -> None:
 
 
 @dataclass(frozen=True)
-class Kind(Generic[Model]):
+class NamedModel(Generic[Model]):
     """A predictor or a wind reconstruction by name."""
 
     description: str
@@ -88,27 +88,27 @@ def _recurrent(calibrated: bool) -> Callable[[], Reconstruction]:
     return lambda: RecurrentReconstruction(WindNetwork(calibrated))
 
 
-PREDICTORS: Mapping[str, Kind[Predictor]] = MappingProxyType(
+PREDICTORS: Mapping[str, NamedModel[Predictor]] = MappingProxyType(
     {
-        "dki": Kind("physics without drag", _integrator(drag=False)),
-        "dki-drag": Kind("physics with nominal drag", _integrator(drag=True)),
-        "true-parameter": Kind(
+        "dki": NamedModel("physics without drag", _integrator(drag=False)),
+        "dki-drag": NamedModel("physics with nominal drag", _integrator(drag=True)),
+        "true-parameter": NamedModel(
             "the simulator's physics and parameters",
             TrueParameter,
         ),
-        "wm-a": Kind("physics with a learned correction", _anchored(wind=False)),
-        "wm-a+dcc": Kind(
+        "wm-a": NamedModel("physics with a learned correction", _anchored(wind=False)),
+        "wm-a+dcc": NamedModel(
             "physics with a learned correction, trained with errors of mass and thrust",
             _anchored(wind=False),
         ),
-        "wm-u": Kind("a learned model without physics", _unanchored),
-        "wm-u+dcc": Kind(
+        "wm-u": NamedModel("a learned model without physics", _unanchored),
+        "wm-u+dcc": NamedModel(
             "a learned model without physics, trained with errors of mass and thrust", _unanchored
         ),
-        "wm-a-wind": Kind(
+        "wm-a-wind": NamedModel(
             "physics with a learned correction and a wind input", _anchored(wind=True)
         ),
-        "wm-a-nowind": Kind(
+        "wm-a-nowind": NamedModel(
             "physics with a learned correction, trained in wind that it is not told",
             _anchored(wind=False),
         ),
@@ -117,34 +117,34 @@ PREDICTORS: Mapping[str, Kind[Predictor]] = MappingProxyType(
 
 INERTIAL = "dob-inertial"
 """The one that reads a raw sensor: a variant only with a shipped filter, which reads them too."""
-RECONSTRUCTIONS: Mapping[str, Kind[Reconstruction]] = MappingProxyType(
+RECONSTRUCTIONS: Mapping[str, NamedModel[Reconstruction]] = MappingProxyType(
     {
-        "dob": Kind(
+        "dob": NamedModel(
             "the acceleration that mass, thrust and drag do not explain",
             lambda: DisturbanceObserver(drag_kgps=_DRAG),
         ),
-        INERTIAL: Kind(
+        INERTIAL: NamedModel(
             "the acceleration that mass, thrust and drag do not explain, by the accelerometer",
             lambda: InertialObserver(drag_kgps=_DRAG),
         ),
-        "gru": Kind(
+        "gru": NamedModel(
             "a network that reads recent motion, mass and thrust scale", _recurrent(calibrated=True)
         ),
-        "gru+dcc": Kind(
+        "gru+dcc": NamedModel(
             "a network that reads recent motion, mass and thrust scale, and was trained "
             "with errors of both",
             _recurrent(calibrated=True),
         ),
-        "gru+state": Kind(
+        "gru+state": NamedModel(
             "a network that reads recent motion, mass and thrust scale, and was trained "
             "with errors of motion",
             _recurrent(calibrated=True),
         ),
-        "gru-withheld": Kind(
+        "gru-withheld": NamedModel(
             "a network that reads recent motion, and neither mass nor thrust scale",
             _recurrent(calibrated=False),
         ),
-        "gru-trajectory": Kind(
+        "gru-trajectory": NamedModel(
             "a network that reads recent motion alone, trained on flights of the planner",
             _recurrent(calibrated=False),
         ),
@@ -163,7 +163,7 @@ def reconstruction(name: str, seed: int | None, device: torch.device = CPU) -> R
 
 
 @lru_cache
-def _loaded(kind: Kind[Model], name: str, seed: int | None, device: torch.device) -> Model:
+def _loaded(kind: NamedModel[Model], name: str, seed: int | None, device: torch.device) -> Model:
     with device:
         return kind.load(name, seed)
 

@@ -4,8 +4,7 @@ from typing import Self
 
 import torch
 
-from faultpath.core.errors import UserError
-from faultpath.trials.options import call
+from faultpath.plugin.system import UserError, call
 from faultpath_quadrotor.choices import (
     FILTERS,
     ClearanceName,

@@ -6,9 +6,7 @@ from dataclasses import replace
 import numpy as np
 import torch
 
-from faultpath.systems.checks.recording import Recording, Trial, Values, added, trials
-from faultpath.trials.attempt import Done
-from faultpath.trials.store.signals import Signal
+from faultpath.plugin.recording import Done, Recording, Signal, Trial, Values, added, trials
 from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors.kinematic import LinearDrag

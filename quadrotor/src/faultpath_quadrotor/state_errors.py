@@ -7,11 +7,11 @@ import numpy as np
 import torch
 from typing_extensions import override
 
-from faultpath.core.errors import UserError
 from faultpath.faults import Address, AnyFault, Record, resolve
 from faultpath.loop import Observer, Reading, Tap
+from faultpath.plugin.recording import taps_of
+from faultpath.plugin.system import UserError
 from faultpath.trials import Arm
-from faultpath.trials.attempt import taps_of
 from faultpath_quadrotor.estimators import ErrorStateFilter
 from faultpath_quadrotor.estimators.eskf import AT, Filtered
 from faultpath_quadrotor.estimators.protocol import STATE_SOURCES

@@ -9,12 +9,11 @@ from typing import Self
 import torch
 from typing_extensions import override
 
-from faultpath.core.errors import UserError
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.loop import Deliverer, Loop, Module, Part, Plant
-from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
-from faultpath.trials.outcome import VEHICLE
+from faultpath.plugin.system import UserError
+from faultpath.trials import VEHICLE, FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
 from faultpath_quadrotor import native
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.choices import ClearanceName, DeviceName, calibration, mount, noisy_state

@@ -16,11 +16,15 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from faultpath.core.error_source import explained, located
-from faultpath.core.errors import SystemMistake
-from faultpath.core.text import listed
+from faultpath.plugin.system import (
+    SystemMistake,
+    explained,
+    factory_root,
+    listed,
+    load_parts,
+    located,
+)
 from faultpath.trials import SystemSpec
-from faultpath.trials.registry import factory_root, load_parts
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators import Estimator
 from faultpath_quadrotor.estimators.protocol import SOURCES
@@ -58,7 +62,7 @@ class UserPart:
 
     name: str
     blank: Any
-    """What its factory gives without a seed: a `Part`."""
+    """A `Part`, from its factory without a seed."""
     _folder: Path
     _create: Callable[[int | None], Part]
     _settings: SamplerSettings
@@ -71,14 +75,14 @@ class UserPart:
 
     @property
     def description(self) -> str:
-        """What it is, in words."""
+        """Its class and its name, in words."""
         return f"{type(self.blank).__name__} of {self.name}"
 
     @property
     def data_files(self) -> Sequence[Path]:
         """The files that decide what it does beside its code; relative ones lie beside that."""
         files = getattr(self.blank, "data_files", None) or ()
-        return tuple(self._folder / each for each in files)
+        return tuple(self._folder / file for file in files)
 
     def load(self, seed: int | None, device: torch.device = CPU) -> Any:
         """Return a new one for an arm of this seed; the first one of a seed is tried out.
@@ -133,8 +137,8 @@ def _loaded(name: str, create: Callable[..., Any], settings: SamplerSettings) ->
             f"{name} writes {min(odd)!r}, which is no source of an estimator: "
             f"choose from {listed(SOURCES.values())}"
         )
-    held = () if isinstance(part, type) else (part, *vars(part).values())
-    trained = (isinstance(p, nn.Module) and next(p.parameters(), None) is not None for p in held)
+    members = () if isinstance(part, type) else (part, *vars(part).values())
+    trained = (isinstance(p, nn.Module) and next(p.parameters(), None) is not None for p in members)
     if getattr(part, "data_files", None) is None and any(trained):
         raise SystemMistake(
             f"{name} returned a {type(part).__name__} that holds trained weights and does not say "
@@ -234,12 +238,12 @@ def _try_predictor(name: str, predictor: Predictor) -> None:
 
 
 def _try_reconstruction(name: str, reconstruction: Reconstruction) -> None:
-    given = {
+    readings = {
         read: _spread(_READINGS[read[0]], LANE_MULTIPLE).double() for read in reconstruction.reads
     }
-    memory = reconstruction.begin(dict(given))
+    memory = reconstruction.begin(dict(readings))
     for _ in range(_STEPS):
-        memory = reconstruction.update(memory, dict(given))
+        memory = reconstruction.update(memory, dict(readings))
         wind: Any = reconstruction.wind(memory)
         _check(name, "wind()", wind, 3, LANE_MULTIPLE, kinds=(torch.float32, torch.float64))
 
@@ -247,10 +251,10 @@ def _try_reconstruction(name: str, reconstruction: Reconstruction) -> None:
 def _try_planner(name: str, planner: Planner, settings: SamplerSettings) -> None:
     mine: Any = getattr(getattr(planner, "sampler", None), "settings", None)
     for what in ("horizon", "candidates"):
-        asked, has = getattr(settings, what), getattr(mine, what, None)
-        if has != asked:
+        option, has = getattr(settings, what), getattr(mine, what, None)
+        if has != option:
             raise SystemMistake(
-                f"{name}: the sampler's {what} is {has}, and the options ask for {asked}: build "
+                f"{name}: the sampler's {what} is {has}, and the options ask for {option}: build "
                 "it with that, or choose the option that it has"
             )
     predictor = KinematicIntegrator(wind=False)

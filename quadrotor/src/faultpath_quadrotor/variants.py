@@ -22,7 +22,7 @@ from faultpath_quadrotor.models import (
     INERTIAL,
     PREDICTORS,
     RECONSTRUCTIONS,
-    Kind,
+    NamedModel,
     predictor,
     reconstruction,
 )
@@ -118,7 +118,7 @@ class Setup:
             words = f"{words}. Estimating: {self._description(self.estimator, FILTERS)}"
         return Wiring(f"{words}.", bindings)
 
-    def _description(self, name: str, shipped: Mapping[str, Kind[Any] | Tuned]) -> str:
+    def _description(self, name: str, shipped: Mapping[str, NamedModel[Any] | Tuned]) -> str:
         return (self.user_parts.get(name) or shipped[name]).description
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from hashlib import sha256
 from importlib.machinery import ModuleSpec
-from importlib.metadata import PackageNotFoundError, distribution, packages_distributions
+from importlib.metadata import PackageNotFoundError, distribution, packages_distributions, version
 from importlib.util import resolve_name
 from pathlib import Path
 from types import ModuleType
@@ -23,6 +23,7 @@ _COMPUTED = (
 )
 """Words in a source that import by a name or path which may be known only when it runs."""
 _INSTALLED = frozenset({"site-packages", "dist-packages"})
+_PACKAGES = ("numpy", "scipy", "pydantic", "pyarrow", "array-api-compat", "torch", "mujoco")
 _NO_SOURCE = frozenset({"__pycache__", "node_modules"})
 
 
@@ -198,6 +199,17 @@ def release(package: str) -> str | None:
     lines = (holder.read_text("RECORD") or "").splitlines()
     records = sorted(line for line in lines if "sha256=" in line and "dist-info" not in line)
     return f"{holder.version} ({sha256(repr(records).encode()).hexdigest()[:16]})"
+
+
+def packages() -> dict[str, str]:
+    """Return the versions of the packages that numbers depend on, of those installed."""
+    versions: dict[str, str] = {}
+    for name in _PACKAGES:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return versions
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
-from faultpath_quadrotor.training.parts import Part, Progress, make_missing
+from faultpath_quadrotor.training.parts import DataFile, Progress, make_missing
 from faultpath_quadrotor.training.provenance import code_of
 from faultpath_quadrotor.training.windows import HISTORY, Windows
 from torch import Tensor
@@ -149,13 +149,15 @@ def measure(
         atomic.sweep(folder)
         waiting = {m: path for m, path in paths.items() if not path.exists()}
         flights = [
-            Part(block.rows(folder), partial(_fly, block, folder), len(block.scenes))
+            DataFile(block.rows(folder), partial(_fly, block, folder), len(block.scenes))
             for recording in dict.fromkeys(measurement.recording for measurement in waiting)
             for block in flown[recording]
             if not block.rows(folder).exists()
         ]
         tables = [  # a measurement takes about as long as a flight
-            Part(path, partial(_measure, measurement, flown[measurement.recording], folder, path))
+            DataFile(
+                path, partial(_measure, measurement, flown[measurement.recording], folder, path)
+            )
             for measurement, path in waiting.items()
         ]
         make_missing((flights, tables), workers, progress)

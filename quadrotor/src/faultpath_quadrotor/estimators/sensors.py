@@ -9,7 +9,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath.core.streams import generator
+from faultpath.plugin.system import generator
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.choices import Fixes
 from faultpath_quadrotor.state import State
@@ -122,7 +122,7 @@ def readings(passed: Sequence[State]) -> Mapping[str, Tensor]:
     }
 
 
-class Errors:
+class SensorErrors:
     """The errors of sensors in some scenes, drawn by scene and seed for a whole trial."""
 
     def __init__(

@@ -9,13 +9,11 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import opened
-from faultpath.core.text import one_line, unknown
+from faultpath.plugin.system import UserError, one_line, opened, unknown
 
 Floats: TypeAlias = NDArray[np.float64]
 SUFFIXES = (".mcap", ".db3", ".bag")
-"""Of bags that are one file; others are folders with a metadata.yaml."""
+"""Endings of bags that are one file; others are folders with a metadata.yaml."""
 _TIMES = ("builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration")
 """Seconds and nanoseconds that are one number."""
 
@@ -92,15 +90,15 @@ def read_bag(
     for a stamp; `None`: when the bag recorded it. Raises `UserError` as `opened_bag` and
     `check_fields`.
     """
-    wanted: dict[str, list[str]] = {}
+    by_topic: dict[str, list[str]] = {}
     for name in names:
         topic, _, field = name.partition(".")
-        wanted.setdefault(topic, []).append(field)
-    found: dict[str, tuple[Floats, Floats]] = {}
+        by_topic.setdefault(topic, []).append(field)
+    series: dict[str, tuple[Floats, Floats]] = {}
     with opened_bag(path) as bag:
-        for topic, fields in wanted.items():
+        for topic, fields in by_topic.items():
             check_fields(path, bag, topic, [*fields, time[0]] if time else fields)
-        for topic, fields in wanted.items():
+        for topic, fields in by_topic.items():
             rows: list[list[float]] = []
             for connection, recorded_ns, raw in bag.messages(bag.topics[topic].connections):
                 message = bag.deserialize(raw, connection.msgtype)
@@ -108,8 +106,8 @@ def read_bag(
                 rows.append([when, *(_number(message, field) for field in fields)])
             columns = np.array(rows, np.float64).reshape(len(rows), 1 + len(fields)).T
             for field, values in zip(fields, columns[1:], strict=True):
-                found[f"{topic}.{field}"] = columns[0], values
-    return found
+                series[f"{topic}.{field}"] = columns[0], values
+    return series
 
 
 def _number(message: Any, field: str) -> float:
@@ -123,5 +121,5 @@ def _number(message: Any, field: str) -> float:
 
 def why(error: Exception) -> str:
     """Return what an error says, in one line."""
-    said = (error.strerror if isinstance(error, OSError) else "") or str(error)
-    return one_line(said) or type(error).__name__
+    text = (error.strerror if isinstance(error, OSError) else "") or str(error)
+    return one_line(text) or type(error).__name__

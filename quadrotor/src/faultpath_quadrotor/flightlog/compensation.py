@@ -8,12 +8,8 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.errors import UserError
-from faultpath.core.results import Frozen
-from faultpath.statistics.contrast import Contrast
-from faultpath.statistics.distributions import t_quantile
-from faultpath.statistics.effects import N_RESAMPLES, WindowQuantiles
-from faultpath.statistics.estimate import Estimate
+from faultpath.plugin.results import N_RESAMPLES, Contrast, Estimate, WindowQuantiles, t_quantile
+from faultpath.plugin.system import Frozen, UserError
 from faultpath_quadrotor.flightlog.flight import INTERVAL_S, Flight, nominal, through_air
 from faultpath_quadrotor.flightlog.reading import Floats
 
@@ -33,7 +29,7 @@ Decided: TypeAlias = Literal["more", "less", "not decided"]
 
 
 class Combination(Frozen):
-    """What remains with one calibration error in the observer and one in the predictor."""
+    """Error with one calibration error in the observer and one in the predictor."""
 
     observer: float
     predictor: float
@@ -54,12 +50,12 @@ class SharedAgainstIsolated(Frozen):
 
 
 class Compensation(Frozen):
-    """What a recorded flight shows of an observer and a predictor that share a calibration."""
+    """Errors on a recorded flight of an observer and a predictor that share a calibration."""
 
     flown_s: float
     intervals: int
     blocks: int
-    """Of `block_s` each, which spans several correlation times of the errors."""
+    """Blocks of `block_s` each, which spans several correlation times of the errors."""
     block_s: float
     gaps: int
     mass_kg: float
@@ -105,10 +101,10 @@ def compensation(flight: Flight, sizes: tuple[float, ...] = (0.1, -0.1)) -> Comp
     pairs = [correct]
     for size in sizes:
         pairs += [pair for pair in product((0.0, size), repeat=2) if pair != correct]
-    of = {pair: _error(flight, settled, *pair) for pair in pairs}
-    medians = Medians(flight.stretch[settled], list(of.values()))
-    ratios = {pair: medians.log_ratio(of[pair], of[correct]) for pair in pairs[1:]}
-    shared = {size: medians.log_ratio(of[size, size], of[size, 0.0]) for size in sizes}
+    errors = {pair: _error(flight, settled, *pair) for pair in pairs}
+    medians = Medians(flight.stretch[settled], list(errors.values()))
+    ratios = {pair: medians.log_ratio(errors[pair], errors[correct]) for pair in pairs[1:]}
+    shared = {size: medians.log_ratio(errors[size, size], errors[size, 0.0]) for size in sizes}
     return Compensation(
         flown_s=len(settled) * INTERVAL_S,
         intervals=int(settled.sum()),
@@ -122,7 +118,7 @@ def compensation(flight: Flight, sizes: tuple[float, ...] = (0.1, -0.1)) -> Comp
             Combination(
                 observer=pair[0],
                 predictor=pair[1],
-                error_mps2=medians.value(of[pair], "m/s^2"),
+                error_mps2=medians.value(errors[pair], "m/s^2"),
                 log_ratio=ratios.get(pair),
                 decided=_decided(ratios[pair]) if pair in ratios else None,
             )
@@ -139,19 +135,20 @@ def _error(flight: Flight, settled: NDArray[np.bool_], observer: float, predicto
     """Return the error of the combined acceleration at each interval that counts, m/s^2."""
     residual = flight.acceleration_mps2 - nominal(flight, observer)
     raw = through_air(flight, residual * flight.mass_kg * (1 + observer), inverse=True)
-    held = np.zeros_like(raw)
+    filtered = np.zeros_like(raw)
     for index in range(1, len(raw)):
         if flight.stretch[index] == flight.stretch[index - 1]:
-            held[index] = held[index - 1] + LOW_PASS * (raw[index - 1] - held[index - 1])
-    force = through_air(flight, held)
+            before = filtered[index - 1]
+            filtered[index] = before + LOW_PASS * (raw[index - 1] - before)
+    force = through_air(flight, filtered)
     combined = nominal(flight, predictor) + force / (flight.mass_kg * (1 + predictor))
-    found = np.linalg.norm(combined - flight.acceleration_mps2, axis=1)[settled]
-    if not np.isfinite(found).all():
+    error = np.linalg.norm(combined - flight.acceleration_mps2, axis=1)[settled]
+    if not np.isfinite(error).all():
         raise UserError(
             "the log and its map leave an acceleration without end: correct mass, drag and units "
             "in the map"
         )
-    return found
+    return error
 
 
 def _decided(ratio: Estimate) -> Decided:
@@ -176,9 +173,9 @@ class Medians:
         self, stretch: Floats, errors: Sequence[Floats], n_resamples: int = N_RESAMPLES
     ) -> None:
         # A ratio above its median: logarithms, of which none is infinite.
-        logs = [np.log(np.maximum(each, np.finfo(np.float64).tiny)) for each in errors]
+        logs = [np.log(np.maximum(error, np.finfo(np.float64).tiny)) for error in errors]
         compared = [*logs, *(one - two for one, two in pairs_of(logs, 2))]
-        slowest = max(correlation_time(each, stretch) for each in compared)
+        slowest = max(correlation_time(series, stretch) for series in compared)
         length = max(round(LEAST_S / INTERVAL_S), int(np.ceil(TIMES * slowest)))
         self.block_s = length * INTERVAL_S
         """How long a block is."""
@@ -190,31 +187,34 @@ class Medians:
 
     def value(self, errors: Floats, unit: str) -> Estimate:
         """Return the median of positive errors `[N]`."""
-        found = self._windows.value(errors, 0.5, unit)
+        median = self._windows.value(errors, 0.5, unit)
         with np.errstate(divide="ignore", invalid="ignore"):
-            factor = np.exp(self._half(np.log(found.draws)))
-        return self._estimate(found, found.value / factor, found.value * factor)
+            factor = np.exp(self._half(np.log(median.draws)))
+        return self._estimate(median, median.value / factor, median.value * factor)
 
     def log_ratio(self, one: Floats, two: Floats) -> Estimate:
         """Return the logarithm of the ratio of two medians."""
-        found = self._windows.log_ratio(one, two, 0.5)
-        half = self._half(found.draws)
-        return self._estimate(found, found.value - half, found.value + half)
+        ratio = self._windows.log_ratio(one, two, 0.5)
+        half = self._half(ratio.draws)
+        return self._estimate(ratio, ratio.value - half, ratio.value + half)
 
     def _half(self, draws: Floats) -> float:
+        """Return half the width of an interval, not a number where there are too few blocks."""
         if self.blocks < LEAST:
             return float("nan")
         # A resample of K blocks has (K - 1) / K of the variance.
         spread = float(draws.std()) * np.sqrt(self.blocks / (self.blocks - 1.0))
         return spread * t_quantile(0.975, self.blocks - 1)
 
-    def _estimate(self, found: Contrast, low: float, high: float) -> Estimate:
-        what, how, ends = found.method.partition(",")[0], "too few blocks", (None, None)
+    def _estimate(self, contrast: Contrast, low: float, high: float) -> Estimate:
+        name, method, ends = contrast.method.partition(",")[0], "too few blocks", (None, None)
         if np.isfinite([low, high]).all():
             ends = low, high
-            how = f"t interval from {self.blocks} resampled blocks of {round(self.block_s, 1):g} s"
-        return found.estimate().model_copy(
-            update={"low": ends[0], "high": ends[1], "method": f"{what}, {how}"}
+            method = (
+                f"t interval from {self.blocks} resampled blocks of {round(self.block_s, 1):g} s"
+            )
+        return contrast.estimate().model_copy(
+            update={"low": ends[0], "high": ends[1], "method": f"{name}, {method}"}
         )
 
 

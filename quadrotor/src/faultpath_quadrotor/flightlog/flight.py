@@ -1,23 +1,25 @@
 """A recorded flight on a grid of control intervals."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
-from faultpath.core.errors import UserError
+from faultpath.plugin.system import UserError
 from faultpath_quadrotor.flightlog.reading import (
     SPEED_UNITS,
     ColumnMap,
     Floats,
-    Series,
+    LogColumn,
     read_series,
 )
+from faultpath_quadrotor.vehicle import CONTROL_DT_S
 
 GRAVITY_MPS2 = 9.80665
-INTERVAL_S = 0.05  # paper, Section IV-A
+"""Standard gravity; the simulated vehicles fly with the paper's 9.81."""
+INTERVAL_S = CONTROL_DT_S
 _GAP = 10.0
 """A pause longer than so many usual ones, and than two intervals, ends a stretch of the flight."""
 
@@ -67,7 +69,7 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
     done = np.concatenate([[0.0], np.cumsum(np.diff(command.time_s) * command.values[:-1])])
     parts: list[tuple[Floats, ...]] = []
     for number, grid in enumerate(grids):
-        velocity = np.stack([np.interp(grid, each.time_s, each.values) for each in speed], axis=1)
+        velocity = _on(grid, speed)
         velocity *= SPEED_UNITS[columns.velocity.unit] * up
         if columns.velocity.axes == "body":
             # Rounding may put the grid's end just beyond the last reading.
@@ -86,15 +88,15 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
             )
         )
     stretch, time_s, quaternion, acceleration, speeds, thrust = (
-        np.concatenate(each) for each in zip(*parts, strict=True)
+        np.concatenate(column) for column in zip(*parts, strict=True)
     )
     rotation = Rotation.from_quat(quaternion)
     needed = acceleration + np.array([0.0, 0.0, GRAVITY_MPS2])
-    wanted = columns.mass_kg * (needed * rotation.apply([0.0, 0.0, 1.0])).sum(1)
+    explaining = columns.mass_kg * (needed * rotation.apply([0.0, 0.0, 1.0])).sum(1)
     factor = columns.thrust.newton_per_unit
     if factor == "fit":
         power = float((thrust**2).sum())
-        factor = float((thrust * wanted).sum()) / power if power else 0.0
+        factor = float((thrust * explaining).sum()) / power if power else 0.0
     carried = float(np.median(factor * thrust)) / (columns.mass_kg * GRAVITY_MPS2)
     if not 0.5 <= carried <= 2.0:
         raise UserError(
@@ -119,22 +121,23 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
     return flight
 
 
-def _grids(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]:
+def _grids(path: Path, series: Mapping[str, LogColumn]) -> tuple[list[Floats], int]:
     """Return the ends of the control intervals of each stretch, and how many pauses there are."""
     columns = list(series.values())
     pauses: list[tuple[float, float]] = []
-    for each in columns:
-        steps = np.diff(each.time_s)
+    for column in columns:
+        steps = np.diff(column.time_s)
         long = steps > max(_GAP * float(np.median(steps)), 2 * INTERVAL_S)
-        pauses += zip(each.time_s[:-1][long], each.time_s[1:][long], strict=True)
+        pauses += zip(column.time_s[:-1][long], column.time_s[1:][long], strict=True)
     merged: list[tuple[float, float]] = []
     for before, after in sorted(pauses):
         if merged and before < merged[-1][1]:
             merged[-1] = merged[-1][0], max(merged[-1][1], after)
         else:
             merged.append((before, after))
-    starts = [max(float(each.time_s[0]) for each in columns), *(after for _, after in merged)]
-    stops = [*(before for before, _ in merged), min(float(each.time_s[-1]) for each in columns)]
+    starts = [max(float(column.time_s[0]) for column in columns), *(after for _, after in merged)]
+    end = min(float(column.time_s[-1]) for column in columns)
+    stops = [*(before for before, _ in merged), end]
     grids = [
         start + INTERVAL_S * np.arange(int((stop - start) / INTERVAL_S) + 1, dtype=np.float64)
         for start, stop in zip(starts, stops, strict=True)
@@ -148,10 +151,15 @@ def _grids(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]
     return grids, len(merged)
 
 
-def _attitude(path: Path, columns: ColumnMap, series: Mapping[str, Series]) -> Slerp:
-    found = [series[name] for name in columns.attitude.columns]
-    time_s = found[0].time_s
-    quaternion = np.stack([np.interp(time_s, each.time_s, each.values) for each in found], axis=1)
+def _on(time_s: Floats, columns: Sequence[LogColumn]) -> Floats:
+    """Return columns interpolated at some times, `[T, columns]`."""
+    return np.stack([np.interp(time_s, column.time_s, column.values) for column in columns], axis=1)
+
+
+def _attitude(path: Path, columns: ColumnMap, series: Mapping[str, LogColumn]) -> Slerp:
+    components = [series[name] for name in columns.attitude.columns]
+    time_s = components[0].time_s
+    quaternion = _on(time_s, components)
     lengths = np.linalg.norm(quaternion, axis=1)
     if abs(float(np.median(lengths)) - 1) > 0.02:
         raise UserError(
@@ -202,8 +210,8 @@ def _check_frame(path: Path, frame: str, flight: Flight) -> None:
     stretch = flight.stretch[:n].reshape(-1, few)
     same = stretch[1:, -1] == stretch[:-1, 0]
     explained, seen = (
-        np.diff(each[:n].reshape(-1, few, 3).mean(axis=1), axis=0)[same]
-        for each in (nominal(flight), flight.acceleration_mps2)
+        np.diff(acceleration[:n].reshape(-1, few, 3).mean(axis=1), axis=0)[same]
+        for acceleration in (nominal(flight), flight.acceleration_mps2)
     )
     size = float(np.sqrt((explained**2).sum() * (seen**2).sum()))
     against = -float((explained * seen).sum()) / size if size else 0.0

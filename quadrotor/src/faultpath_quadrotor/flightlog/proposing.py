@@ -6,8 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from faultpath.core.errors import UserError
-from faultpath.core.text import listed, one_line
+from faultpath.plugin.system import UserError, listed, one_line
 from faultpath_quadrotor.flightlog.bags import SUFFIXES, check_fields, opened_bag, read_bag
 
 _WISHES = ("setpoint", "target", "reference", "desired", "goal", "command", "cmd")
@@ -49,7 +48,7 @@ _TYPES = {
 _COMPONENTS = {"attitude": ("wxyz", "0123"), "velocity": ("xyz", "012"), "thrust": ("-", "-")}
 
 
-class _Found(NamedTuple):
+class _Candidate(NamedTuple):
     """A topic that holds what is looked for."""
 
     topic: str
@@ -85,12 +84,13 @@ def propose(path: Path, mass_kg: float | None = None) -> str:
     lines = [f"Proposed from the types of the topics in {json.dumps(path.name)}: check it."]
     parts: dict[str, str] = {}
     with opened_bag(path) as bag:
-        found = {what: _search(path, bag, what, lines) for what in _TYPES}
-        measured = [{each.frame for each in found[what]} for what in ("attitude", "velocity")]
-        frame = max(("ENU", "NED"), key=lambda name: sum(name in one for one in measured))
-        chosen: list[_Found] = []
-        for what, every in found.items():
-            fitting = [each for each in every if what == "thrust" or each.frame == frame]
+        candidates = {what: _search(path, bag, what, lines) for what in _TYPES}
+        motion = [candidates["attitude"], candidates["velocity"]]
+        frames = [{topic.frame for topic in topics} for topics in motion]
+        frame = max(("ENU", "NED"), key=lambda name: sum(name in known for known in frames))
+        chosen: list[_Candidate] = []
+        for what, topics in candidates.items():
+            fitting = [topic for topic in topics if what == "thrust" or topic.frame == frame]
             if not fitting:
                 types = ", ".join(kind for kind, *_ in _TYPES[what])
                 lines.append(f"{what.capitalize()} was not found in {frame}; looked for {types}.")
@@ -98,7 +98,7 @@ def propose(path: Path, mass_kg: float | None = None) -> str:
             best = fitting[0]
             chosen.append(best)
             lines.append(f"{what.capitalize()} is that of {best}.")
-            if others := [str(each) for each in every if each != best]:
+            if others := [str(topic) for topic in topics if topic != best]:
                 lines.append(f"{' and '.join(others)} has it too: which is right, no bag says.")
             if best.note:
                 connection, _, raw = next(bag.messages(bag.topics[best.topic].connections))
@@ -112,7 +112,7 @@ def propose(path: Path, mass_kg: float | None = None) -> str:
                 f"{path}: no topic has a type known to hold attitude, velocity or thrust, only "
                 f"{listed(kinds)}: write the map as in docs/recorded-flights.md"
             )
-    if field := _clock(path, [name for each in chosen for name in each.names]):
+    if field := _clock(path, [name for topic in chosen for name in topic.names]):
         parts["time"] = f"{{column: {field[0]}, unit: {field[1]}}}"
     else:
         lines.append(
@@ -125,33 +125,33 @@ def propose(path: Path, mass_kg: float | None = None) -> str:
         lines.append("The mass is in no bag: write mass_kg here, or give --mass.")
     else:
         parts["mass_kg"] = str(mass_kg)
-    said = [f"# {one_line(line)}" for line in lines]
-    return "\n".join([*said, *(f"{key}: {value}" for key, value in parts.items()), ""])
+    comments = [f"# {one_line(line)}" for line in lines]
+    return "\n".join([*comments, *(f"{key}: {value}" for key, value in parts.items()), ""])
 
 
-def _search(path: Path, bag: Any, what: str, lines: list[str]) -> list[_Found]:
+def _search(path: Path, bag: Any, what: str, lines: list[str]) -> list[_Candidate]:
     """Return topics that hold something, the best first; `lines` gets why others cannot be read."""
-    found: list[_Found] = []
+    candidates: list[_Candidate] = []
     for kind, field, more, note in _TYPES[what]:
         fields = tuple(dict.fromkeys(map(field.format, _COMPONENTS[what]["[" in field])))
         for topic, info in bag.topics.items():
             if info.msgtype == kind and info.msgcount:
                 try:
                     check_fields(path, bag, topic, fields)
-                    found.append(_Found(topic, info.msgcount, kind, fields, more, note))
+                    candidates.append(_Candidate(topic, info.msgcount, kind, fields, more, note))
                 except UserError as error:
                     lines.append(f"{error}.")
-    return sorted(found, key=lambda each: any(word in each.topic for word in _WISHES))
+    return sorted(candidates, key=lambda one: any(wish in one.topic for wish in _WISHES))
 
 
 def _clock(path: Path, names: list[str]) -> tuple[str, str] | None:
     """Return the field that holds the time of all these messages, and its unit, if one does."""
     for field, unit, scale in (("header.stamp", "s", 1.0), ("timestamp", "us", 1e-6)):
         try:
-            times = [each for each, _ in read_bag(path, names, (field, scale)).values()]
+            times = [time_s for time_s, _ in read_bag(path, names, (field, scale)).values()]
         except UserError:  # not all of them have it
             continue
-        ascends = all(each[0] > 0 and (np.diff(each) >= 0).all() for each in times)
-        if ascends and max(each[0] for each in times) < min(each[-1] for each in times):
+        ascends = all(time_s[0] > 0 and (np.diff(time_s) >= 0).all() for time_s in times)
+        if ascends and max(time_s[0] for time_s in times) < min(time_s[-1] for time_s in times):
             return field, unit
     return None

@@ -12,12 +12,8 @@ import pyarrow as pa
 import pyarrow.csv as csv
 from pydantic import Field
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import contents
-from faultpath.core.files.parquet import Unreadable, read_table
-from faultpath.core.files.plain import Misread, read_yaml
-from faultpath.core.results import Frozen
-from faultpath.core.text import unknown
+from faultpath.plugin.data import Unreadable, read_table
+from faultpath.plugin.system import Frozen, Misread, UserError, contents, read_yaml, unknown
 from faultpath_quadrotor.flightlog.bags import SUFFIXES, Floats, read_bag, why
 
 _LONGEST_S = 1e12
@@ -71,7 +67,7 @@ class Thrust(Frozen):
 
 
 class ColumnMap(Frozen):
-    """What a log's columns mean, and what is known of its vehicle."""
+    """Meaning of a log's columns, and constants of its vehicle."""
 
     time: TimeColumn | None = None
     attitude: Attitude
@@ -97,12 +93,8 @@ def read_columns(where: str) -> ColumnMap:
     Raises `UserError` for a file that cannot be read or says something else.
     """
     try:
-        if where == PX4:
-            data = (
-                resources.files("faultpath_quadrotor.flightlog").joinpath("px4.yaml").read_bytes()
-            )
-        else:
-            data = contents(where)
+        shipped = resources.files("faultpath_quadrotor.flightlog") / "px4.yaml"
+        data = shipped.read_bytes() if where == PX4 else contents(where)
         return read_yaml(data).fill(ColumnMap)
     except OSError as error:
         raise UserError(
@@ -114,14 +106,14 @@ def read_columns(where: str) -> ColumnMap:
 
 
 @dataclass(frozen=True)
-class Series:
+class LogColumn:
     """One column: times in s, ascending, and values, all finite."""
 
     time_s: Floats
     values: Floats
 
 
-def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
+def read_series(path: Path, columns: ColumnMap) -> Mapping[str, LogColumn]:
     """Return the columns that the map names.
 
     Raises `UserError` for a file that cannot be read, a column that it does not have or that holds
@@ -134,16 +126,17 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
             f"{path}: is not a .csv, .parquet, .ulg, .mcap, .db3 or .bag file, nor the folder of a "
             "bag: convert it to one"
         )
-    series: dict[str, Series] = {}
+    series: dict[str, LogColumn] = {}
     for name, (time_s, values) in reader(path, columns).items():
-        for what, found, most in (("times", time_s, _LONGEST_S), ("values", values, _LARGEST)):
-            if (odd := np.flatnonzero(np.abs(found) > most)).size:  # infinite ones too
+        for what, numbers, most in (("times", time_s, _LONGEST_S), ("values", values, _LARGEST)):
+            if (odd := np.flatnonzero(np.abs(numbers) > most)).size:  # infinite ones too
                 raise UserError(
-                    f"{path}: the {what} of column '{name}' reach {found[odd[0]]:g} at its reading "
-                    f"{odd[0]}, which no flight does: correct the log, or leave the cell empty"
+                    f"{path}: the {what} of column '{name}' reach {numbers[odd[0]]:g} at its "
+                    f"reading {odd[0]}, which no flight does: correct the log, or leave the cell "
+                    "empty"
                 )
         there = np.isfinite(time_s) & np.isfinite(values)  # what is empty is not a number
-        times, numbers = time_s[there], values[there]
+        times, values = time_s[there], values[there]
         if len(times) < 2:
             raise UserError(f"{path}: column '{name}' has fewer than two numbers: name another")
         if (back := np.flatnonzero(np.diff(times) < 0)).size:
@@ -158,7 +151,7 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
                 f"{path}: column '{name}' has {rate_hz:.3g} readings a second, which no flight log "
                 "has: correct the unit of time"
             )
-        series[name] = Series(times, numbers[first])
+        series[name] = LogColumn(times, values[first])
     return series
 
 
@@ -177,7 +170,7 @@ def _table(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         )
     if columns.time is None:
         raise UserError(f"{path}: the map names no time column: add time: {{column: …, unit: s}}")
-    found: dict[str, Floats] = {}
+    numbers: dict[str, Floats] = {}
     for name in (columns.time.column, *columns.names):
         whole, _, place = name.removesuffix("]").rpartition("[")
         listed = (
@@ -189,13 +182,13 @@ def _table(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         if table.column_names.count(of) > 1:
             raise UserError(f"{path}: two columns are called '{of}': give each a name of its own")
         try:
-            found[name] = _listed(table[of], int(place)) if listed else _plain(table[of])
+            numbers[name] = _listed(table[of], int(place)) if listed else _plain(table[of])
         except (pa.ArrowException, ValueError) as error:
             raise UserError(
                 f"{path}: column '{of}' holds {error}: name another, or correct it"
             ) from None
-    time_s = found[columns.time.column] * TIME_UNITS[columns.time.unit]
-    return {name: (time_s, found[name]) for name in columns.names}
+    time_s = numbers[columns.time.column] * TIME_UNITS[columns.time.unit]
+    return {name: (time_s, numbers[name]) for name in columns.names}
 
 
 def _plain(column: Any) -> Floats:
@@ -245,8 +238,9 @@ def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         raise UserError(
             f"{path}: cannot be read as a ULog file ({why(error)}): give a whole log"
         ) from None
-    messages = {each.name: each.data for each in reversed(log.data_list)}  # the first of a name
-    found: dict[str, tuple[Floats, Floats]] = {}
+    # Of several messages with one name the first counts.
+    messages = {message.name: message.data for message in reversed(log.data_list)}
+    series: dict[str, tuple[Floats, Floats]] = {}
     for name in columns.names:
         topic, _, field = name.partition(".")
         if topic not in messages:
@@ -256,5 +250,5 @@ def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         if "timestamp" not in messages[topic]:
             raise UserError(f"{path}: message '{topic}' has no timestamp: record it with its times")
         time_s = np.asarray(messages[topic]["timestamp"], dtype=np.float64) * TIME_UNITS["us"]
-        found[name] = time_s, np.asarray(messages[topic][field], dtype=np.float64)
-    return found
+        series[name] = time_s, np.asarray(messages[topic][field], dtype=np.float64)
+    return series

@@ -1,11 +1,13 @@
-"""What a recorded flight shows of compensation, as sentences and a table."""
+"""Sentences and a table of what sharing a calibration error did on a recorded flight."""
 
 from math import exp
 
-from faultpath.decisions.tables import MISSING, Table, line
-from faultpath.decisions.wording import counted, interval, plain
-from faultpath.statistics.estimate import Estimate
-from faultpath_quadrotor.flightlog.compensation import Combination, Compensation
+from faultpath.plugin.results import MISSING, Estimate, Table, counted, interval, line, plain
+from faultpath_quadrotor.flightlog.compensation import (
+    Combination,
+    Compensation,
+    SharedAgainstIsolated,
+)
 
 CAVEAT = (
     "This is about the acceleration one control interval ahead on this flight. It says where "
@@ -13,21 +15,23 @@ CAVEAT = (
 )
 
 
-def sentences(found: Compensation) -> tuple[str, ...]:
-    """Return what is decided, a sentence for each size of the error, and what is not."""
-    if found.too_short:
-        return (found.too_short,)
-    told: list[str] = []
-    for each in found.shared:
-        high, low = ("high", "low") if each.error > 0 else ("low", "high")
-        size = f"{abs(100 * each.error):g} %"
-        said = "whether sharing the error compensates for it is not decided"
-        if each.decided != "not decided":
-            said = "sharing compensates" if each.decided == "less" else "sharing makes it worse"
-            ratio = f"{exp(each.log_ratio.value):.2f} times {_range(each.log_ratio)}".rstrip()
-            said += f": the error is {ratio} that with the observer alone wrong"
-        told.append(f"With mass {size} too {high} and thrust {size} too {low}, {said}.")
-    return tuple(told)
+def sentences(compensation: Compensation) -> tuple[str, ...]:
+    """Return a sentence for each size of the error, or why nothing is decided."""
+    if compensation.too_short:
+        return (compensation.too_short,)
+    return tuple(map(_sentence, compensation.shared))
+
+
+def _sentence(comparison: SharedAgainstIsolated) -> str:
+    high, low = ("high", "low") if comparison.error > 0 else ("low", "high")
+    effect = "whether sharing the error compensates for it is not decided"
+    if comparison.decided != "not decided":
+        helps = comparison.decided == "less"
+        effect = "sharing compensates" if helps else "sharing makes it worse"
+        ratio = f"{exp(comparison.log_ratio.value):.2f} times {_range(comparison.log_ratio)}"
+        effect += f": the error is {ratio.rstrip()} that with the observer alone wrong"
+    size = f"{abs(100 * comparison.error):g} %"
+    return f"With mass {size} too {high} and thrust {size} too {low}, {effect}."
 
 
 def _range(log: Estimate) -> str:
@@ -36,17 +40,21 @@ def _range(log: Estimate) -> str:
     return f"[{exp(log.low):.2f}, {exp(log.high):.2f}]"
 
 
-def _label(each: Combination) -> str:
-    errors = (("observer", each.observer), ("predictor", each.predictor))
-    wrong = {module: f"{100 * error:+g} %" for module, error in errors if error}
-    if len(wrong) == len(errors):
-        wrong = {"both": wrong["observer"]}
-    return " ".join(part for each in wrong.items() for part in each).replace("-", "−") or "correct"
+def _label(combination: Combination) -> str:
+    if combination.observer and combination.predictor:
+        return f"both {_percent(combination.observer)}"
+    if combination.observer:
+        return f"observer {_percent(combination.observer)}"
+    return f"predictor {_percent(combination.predictor)}" if combination.predictor else "correct"
 
 
-def table(found: Compensation) -> Table:
+def _percent(error: float) -> str:
+    return f"{100 * error:+g} %".replace("-", "−")
+
+
+def table(compensation: Compensation) -> Table:
     """Return the error of every combination, with intervals."""
-    drag = "without a model of drag" if found.drag_kgps is None else "with linear drag"
+    drag = "without a model of drag" if compensation.drag_kgps is None else "with linear drag"
     return Table(
         name="compensation",
         title="Error of the combined acceleration",
@@ -54,18 +62,19 @@ def table(found: Compensation) -> Table:
         columns=("Median, m/s²", "95 % interval", "of correct", "95 % interval of it"),
         lines=tuple(
             line(
-                _label(each),
-                plain(each.error_mps2.value, 2),
-                interval(each.error_mps2, 2),
-                MISSING if each.log_ratio is None else f"{exp(each.log_ratio.value):.2f}",
-                "" if each.log_ratio is None else _range(each.log_ratio),
+                _label(combination),
+                plain(combination.error_mps2.value, 2),
+                interval(combination.error_mps2, 2),
+                f"{exp(ratio.value):.2f}" if (ratio := combination.log_ratio) else MISSING,
+                _range(ratio) if ratio else "",
             )
-            for each in found.combinations
+            for combination in compensation.combinations
         ),
         notes=(
-            f"{found.flown_s:.0f} s of flight, {counted(found.intervals, 'control interval')} in "
-            f"{counted(found.blocks, 'block')} of {plain(found.block_s, 1)} s, "
-            f"{counted(found.gaps, 'gap')}; mass {found.mass_kg:g} kg, {drag}. "
+            f"{compensation.flown_s:.0f} s of flight, "
+            f"{counted(compensation.intervals, 'control interval')} in "
+            f"{counted(compensation.blocks, 'block')} of {plain(compensation.block_s, 1)} s, "
+            f"{counted(compensation.gaps, 'gap')}; mass {compensation.mass_kg:g} kg, {drag}. "
             "Intervals resample blocks.",
         ),
     )

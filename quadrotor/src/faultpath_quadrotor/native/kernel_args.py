@@ -14,7 +14,7 @@ from typing import TypeGuard, TypeVar
 import torch
 from torch import Tensor
 
-from faultpath.core.errors import Notice
+from faultpath.plugin.system import Notice
 from faultpath_quadrotor.device import host_readable
 
 T = TypeVar("T")

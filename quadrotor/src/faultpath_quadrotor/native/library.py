@@ -13,7 +13,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from faultpath.core.errors import UserError
+from faultpath.plugin.system import UserError
 from faultpath_quadrotor.device import host_readable
 from faultpath_quadrotor.native.kernel_args import Block, Lent
 

@@ -84,7 +84,7 @@ _NUMBERS = (FEATURES + 1 + HIDDEN + 1 + 1) * (HIDDEN + 1)
 """Numbers of a query network (`Query` in `clearance.cpp`)."""
 
 
-class Bounds(NamedTuple):
+class ClearanceBounds(NamedTuple):
     """Bounds of the answer, and of the space that the image covers."""
 
     lowest_m: float
@@ -107,7 +107,7 @@ class _Bounds(Block):
 class CompiledClearance:
     """Capture frame, features, query network and field of view in one pass."""
 
-    def __init__(self, kernels: Kernels, makers: Sequence[Tensor], bounds: Bounds) -> None:
+    def __init__(self, kernels: Kernels, makers: Sequence[Tensor], bounds: ClearanceBounds) -> None:
         """Copy the maps that make a query network from a code.
 
         Args:

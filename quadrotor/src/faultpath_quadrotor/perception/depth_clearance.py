@@ -12,7 +12,11 @@ from faultpath_quadrotor.device import CPU, host_readable
 from faultpath_quadrotor.native.kernel_args import covered, is_exactly, tell_portable, unlike
 from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, CaptureFrame
 from faultpath_quadrotor.perception.clearance import INVERSE_SCALE, NEAREST_M, ClearanceModel
-from faultpath_quadrotor.perception.compiled import Bounds, CompiledClearance, CompiledEncoder
+from faultpath_quadrotor.perception.compiled import (
+    ClearanceBounds,
+    CompiledClearance,
+    CompiledEncoder,
+)
 from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
 
@@ -158,6 +162,6 @@ def _queries(model: ClearanceModel, settings: PerceptionSettings) -> CompiledCle
     if kernels is None:
         return None
     left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
-    bounds = Bounds(LOWEST_M, HIGHEST_M, settings.unseen_m, settings.near_m, left, up)
+    bounds = ClearanceBounds(LOWEST_M, HIGHEST_M, settings.unseen_m, settings.near_m, left, up)
     makers = [torch.cat((layer.weight, layer.bias[:, None]), 1) for layer, _ in model.makers()]
     return CompiledClearance(kernels, makers, bounds)

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath.core.streams import generator, key, words
+from faultpath.plugin.system import generator, key, words
 from faultpath_quadrotor import native
 from faultpath_quadrotor.planners import compiled
 from faultpath_quadrotor.vehicle import RATE_LIMIT_RADPS

@@ -9,10 +9,10 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress, Query
-from faultpath.trials.outcome import VEHICLE
+from faultpath.trials import VEHICLE
 from faultpath_quadrotor.batching import lanes_last, scenes_first
 from faultpath_quadrotor.device import host_readable
-from faultpath_quadrotor.estimators.sensors import Errors, Sensor, raw, readings
+from faultpath_quadrotor.estimators.sensors import Sensor, SensorErrors, raw, readings
 from faultpath_quadrotor.perception import DepthRenderer, mounted
 from faultpath_quadrotor.perception.module import geometric_clearance
 from faultpath_quadrotor.plant.world import CONTROL_STEPS, World
@@ -34,7 +34,7 @@ class Flying:
     camera: DepthRenderer | None
     clearance: Query | None
     """Clearance of the geometry itself; `None` where nothing reads it."""
-    errors: Errors
+    errors: SensorErrors
     """Errors of the raw sensors."""
 
 
@@ -80,7 +80,7 @@ class VehiclePlant(Plant):
             world=self._world(batch.scenes),
             camera=self._camera(batch.scenes) if self._camera else None,
             clearance=geometric_clearance(self._field(batch.scenes)) if self._field else None,
-            errors=Errors(
+            errors=SensorErrors(
                 batch.scenes, batch.seed, self._sensor_noise, self._needed, CONTROL_STEPS
             ),
         )

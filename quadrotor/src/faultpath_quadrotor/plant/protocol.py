@@ -20,7 +20,7 @@ CONTACT_EVERY = 5
 
 
 @dataclass(frozen=True)
-class Progress:
+class TrialProgress:
     """Where each lane's trial stands, `[L]`; a lane that is no longer running stays as it ended."""
 
     running: Tensor
@@ -30,9 +30,9 @@ class Progress:
     terminal_distance_m: Tensor
     min_clearance_m: Tensor
 
-    def to(self, device: torch.device) -> Progress:
+    def to(self, device: torch.device) -> TrialProgress:
         """Return it on another device."""
-        return Progress(*(getattr(self, field.name).to(device) for field in fields(self)))
+        return TrialProgress(*(getattr(self, field.name).to(device) for field in fields(self)))
 
 
 @dataclass(frozen=True)
@@ -50,11 +50,11 @@ class Contact:
         """The prisms as the compiled check reads them, `[K, 10, L]`: `Solid` names the rows."""
         return self.geometry.numbers().transpose(0, 1).contiguous()
 
-    def begin(self, state: State) -> Progress:
+    def begin(self, state: State) -> TrialProgress:
         """Return the progress of trials that start at `state`."""
         zero = torch.zeros_like(self.goal[0])
         none = torch.zeros_like(zero, dtype=torch.bool)
-        return Progress(
+        return TrialProgress(
             running=~none,
             crashed=none,
             succeeded=none,
@@ -63,7 +63,7 @@ class Contact:
             min_clearance_m=self._clearance(state),
         )
 
-    def look(self, progress: Progress, state: State, steps: int) -> Progress:
+    def look(self, progress: TrialProgress, state: State, steps: int) -> TrialProgress:
         """Return the progress once `steps` plant steps of the trials have led to `state`."""
         clearance = self._clearance(state)
         hit = progress.running & (clearance <= 0)
@@ -132,9 +132,9 @@ class Plant(ABC):
         command: Tensor,
         winds: Tensor,
         contact: Contact,
-        progress: Progress,
+        progress: TrialProgress,
         steps: int,
-    ) -> tuple[PlantState, Progress]:
+    ) -> tuple[PlantState, TrialProgress]:
         """Advance as `advance` does, and look for contact on the way.
 
         `steps` plant steps of the trials came before. A plant that has a faster way to the same

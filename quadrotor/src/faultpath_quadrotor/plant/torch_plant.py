@@ -12,7 +12,7 @@ from faultpath_quadrotor.native.kernel_args import covered
 from faultpath_quadrotor.plant import motors
 from faultpath_quadrotor.plant.compiled import CompiledPlant, watch
 from faultpath_quadrotor.plant.motors import RateLoop
-from faultpath_quadrotor.plant.protocol import Contact, Plant, PlantState, Progress
+from faultpath_quadrotor.plant.protocol import Contact, Plant, PlantState, TrialProgress
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import (
@@ -25,7 +25,7 @@ from faultpath_quadrotor.vehicle import (
 )
 
 _WATCHED = ("running", "crashed", "time_s", "terminal_distance_m", "min_clearance_m")
-"""Fields of `Progress` that the compiled contact checks change, in the order of `watch`."""
+"""Fields of `TrialProgress` that the compiled contact checks change, in the order of `watch`."""
 
 
 class TorchPlant(Plant):
@@ -74,9 +74,9 @@ class TorchPlant(Plant):
         command: Tensor,
         winds: Tensor,
         contact: Contact,
-        progress: Progress,
+        progress: TrialProgress,
         steps: int,
-    ) -> tuple[PlantState, Progress]:
+    ) -> tuple[PlantState, TrialProgress]:
         """Fly as every plant does; with a kernel in one call, contact checks among its steps."""
         if self._compiled is None:
             return super().fly(plant_state, command, winds, contact, progress, steps)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
-from faultpath.core.streams import generator
+from faultpath.plugin.system import generator
 from faultpath_quadrotor.vehicle import PLANT_RATE_HZ, Range
 
 Array = NDArray[np.float64]

@@ -11,11 +11,12 @@ from torch import Tensor
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators.sensors import SAMPLES
 from faultpath_quadrotor.plant import Plant, TorchPlant
-from faultpath_quadrotor.plant.protocol import Contact, Progress
+from faultpath_quadrotor.plant.protocol import Contact, TrialProgress
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.scene import Scene
+from faultpath_quadrotor.scenes.soundness import GOAL_RADIUS_M
 from faultpath_quadrotor.state import State, padded_lanes
 from faultpath_quadrotor.vehicle import (
     CONTROL_DT_S,
@@ -24,7 +25,6 @@ from faultpath_quadrotor.vehicle import (
     STEPS_PER_CONTROL,
 )
 
-GOAL_RADIUS_M = 0.5  # paper, Section IV-B
 TIME_LIMIT_S = 12.0  # paper, Section IV-B
 CONTROL_STEPS = round(TIME_LIMIT_S * CONTROL_RATE_HZ)
 
@@ -98,7 +98,7 @@ class World:
         self.progress = _with_arrivals(progress)
 
 
-def _with_arrivals(progress: Progress) -> Progress:
+def _with_arrivals(progress: TrialProgress) -> TrialProgress:
     """Return the progress with arrivals: checked once a control step, as the planner acts."""
     arrived = progress.running & (progress.terminal_distance_m <= GOAL_RADIUS_M)
     return replace(

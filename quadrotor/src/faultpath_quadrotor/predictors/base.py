@@ -9,7 +9,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from faultpath.core.errors import SystemMistake
+from faultpath.plugin.system import SystemMistake
 from faultpath_quadrotor.batching import Delivered, Read
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2

@@ -9,8 +9,8 @@ from collections.abc import Callable, Collection
 import torch
 from torch import Tensor
 
-from faultpath.core.errors import SystemMistake
 from faultpath.loop import Inputs, Port
+from faultpath.plugin.system import SystemMistake
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.batching import Delivered, lanes_last
 from faultpath_quadrotor.device import host_readable

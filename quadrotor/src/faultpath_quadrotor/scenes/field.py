@@ -23,10 +23,10 @@ from faultpath_quadrotor import native
 from faultpath_quadrotor.native.kernel_args import covered
 from faultpath_quadrotor.scenes.compiled import CompiledField
 from faultpath_quadrotor.scenes.geometry import rectangle_distance
-from faultpath_quadrotor.scenes.prisms import Prism, arena, solids
+from faultpath_quadrotor.scenes.prisms import RoundedPrism, arena, solids
 from faultpath_quadrotor.scenes.scene import Scene
+from faultpath_quadrotor.scenes.soundness import CELL_M
 
-SPACING_M = 0.1
 _MARGIN = 2
 _ROUNDING = 1e-6
 """Part of a cell, and of a metre, that is rounding: 9 m are 90 cells of 0.1 m, not 91."""
@@ -48,7 +48,7 @@ class Lattice:
     spacing_m: float
 
     @classmethod
-    def over(cls, scene: Scene, spacing_m: float = SPACING_M) -> "Lattice":
+    def over(cls, scene: Scene, spacing_m: float = CELL_M) -> "Lattice":
         """Return the lattice that covers a scene; its third point is the arena's low corner."""
         axes: list[Tensor] = []
         for low, high in zip(scene.bounds.low_m, scene.bounds.high_m, strict=True):
@@ -84,7 +84,7 @@ def exact_on_lattice(scene: Scene, lattice: Lattice, free_space: bool = False) -
     if free_space:
         return value
 
-    def height(prism: Prism) -> tuple[float, float]:
+    def height(prism: RoundedPrism) -> tuple[float, float]:
         return prism.centre_m[2], prism.half_m[2]
 
     free = value
@@ -94,7 +94,7 @@ def exact_on_lattice(scene: Scene, lattice: Lattice, free_space: bool = False) -
     return torch.where(outside > _ROUNDING, value, free)
 
 
-def _plan_distance(prisms: list[Prism], x: Tensor, y: Tensor) -> Tensor:
+def _plan_distance(prisms: list[RoundedPrism], x: Tensor, y: Tensor) -> Tensor:
     table = torch.tensor(
         [[*p.centre_m[:2], *p.half_m[:2], p.yaw_rad, p.rounding_m] for p in prisms],
         dtype=torch.float64,
@@ -133,7 +133,7 @@ class DistanceField:
         scenes: Scene | Sequence[Scene],
         free_space: bool = False,
         *,
-        spacing_m: float = SPACING_M,
+        spacing_m: float = CELL_M,
         device: torch.device | str | None = None,
     ) -> "DistanceField":
         """Bake scenes into one table: about 0.8 MB each.

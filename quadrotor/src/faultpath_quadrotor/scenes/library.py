@@ -13,10 +13,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import LARGEST_TEXT, contents
-from faultpath.core.files.plain import read_json
-from faultpath.core.validation_messages import misfit_of
+from faultpath.plugin.system import LARGEST_TEXT, UserError, contents, misfit_of, read_json
 from faultpath_quadrotor.scenes.scene import Scene, digest
 from faultpath_quadrotor.scenes.soundness import misnamed, unsound
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import cos, hypot, sin
 
-from faultpath.trials import declared
-from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Point, Scene
+from faultpath.trials import FloorPlan, Pillar, Prism
+from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Point, Scene
 
 _BURIED_M = 10.0
 """How far a solid that touches the floor or the ceiling goes on beyond it. What lies beyond is
@@ -23,7 +23,7 @@ Plan = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Prism:
+class RoundedPrism:
     """An upright prism over a rounded rectangle, in the world frame.
 
     Attributes:
@@ -64,20 +64,20 @@ class Prism:
         return self.sign * _corner(self.plan_distance((plan[0], plan[1])), beyond)
 
 
-def arena(scene: Scene) -> Prism:
+def arena(scene: Scene) -> RoundedPrism:
     """Return the free inside of a scene's boundaries."""
     pairs = list(zip(scene.bounds.low_m, scene.bounds.high_m, strict=True))
     x, y, z = ((low + high) / 2 for low, high in pairs)
     hx, hy, hz = ((high - low) / 2 for low, high in pairs)
-    return Prism((x, y, z), (hx, hy, hz), sign=-1.0)
+    return RoundedPrism((x, y, z), (hx, hy, hz), sign=-1.0)
 
 
-def solids(scene: Scene) -> list[Prism]:
+def solids(scene: Scene) -> list[RoundedPrism]:
     """Return the obstacles of a scene, boxes first, continued beyond floor and ceiling."""
     return [prism(solid, scene.bounds) for solid in (*scene.boxes, *scene.cylinders)]
 
 
-def prism(solid: Box | Cylinder, bounds: Bounds | None = None) -> Prism:
+def prism(solid: Box | Cylinder, bounds: ArenaBounds | None = None) -> RoundedPrism:
     """Return a solid as a prism; between `bounds` it goes on beyond a face that it touches."""
     if isinstance(solid, Box):
         (x, y, z), (hx, hy, hz) = solid.centre_m, solid.half_extents_m
@@ -90,14 +90,14 @@ def prism(solid: Box | Cylinder, bounds: Bounds | None = None) -> Prism:
             low -= _BURIED_M
         if high >= bounds.high_m[2] - _TOUCH_M:
             high += _BURIED_M
-    return Prism((x, y, (low + high) / 2), (hx, hy, (high - low) / 2), yaw, rounding)
+    return RoundedPrism((x, y, (low + high) / 2), (hx, hy, (high - low) / 2), yaw, rounding)
 
 
 def _corner(first: float, second: float) -> float:
     return hypot(max(first, 0.0), max(second, 0.0)) + min(max(first, second), 0.0)
 
 
-def floor_plan(scene: Scene, free_space: bool = False) -> declared.FloorPlan:
+def floor_plan(scene: Scene, free_space: bool = False) -> FloorPlan:
     """Return the floor plan of a scene, lowest shapes first, so that what hangs is drawn on top.
 
     Args:
@@ -105,7 +105,7 @@ def floor_plan(scene: Scene, free_space: bool = False) -> declared.FloorPlan:
         free_space: Keep only the arena, as the free-space variant does.
     """
     prisms = [
-        declared.Prism(
+        Prism(
             corners=prism(box).corners_m,
             bottom=round(box.centre_m[2] - box.half_extents_m[2], 6),
             top=round(box.centre_m[2] + box.half_extents_m[2], 6),
@@ -113,10 +113,10 @@ def floor_plan(scene: Scene, free_space: bool = False) -> declared.FloorPlan:
         for box in scene.boxes
     ]
     pillars = [
-        declared.Pillar(*pillar.centre_m, pillar.radius_m, pillar.low_m, pillar.high_m)
+        Pillar(*pillar.centre_m, pillar.radius_m, pillar.low_m, pillar.high_m)
         for pillar in scene.cylinders
     ]
-    return declared.FloorPlan(
+    return FloorPlan(
         low=scene.bounds.low_m,
         high=scene.bounds.high_m,
         prisms=() if free_space else tuple(sorted(prisms, key=lambda shape: shape.bottom)),

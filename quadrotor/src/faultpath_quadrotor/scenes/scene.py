@@ -25,7 +25,7 @@ class _Frozen(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-class Bounds(_Frozen):
+class ArenaBounds(_Frozen):
     """Inner faces of floor, ceiling and walls: the free box between two corners, m."""
 
     low_m: Point
@@ -75,7 +75,7 @@ class Scene(_Frozen):
     topology: Topology
     obstacles: bool
     occluded: bool
-    bounds: Bounds
+    bounds: ArenaBounds
     boxes: tuple[Box, ...]
     cylinders: tuple[Cylinder, ...]
     start_m: Point

@@ -15,8 +15,7 @@ FURTHEST_M = 1000.0
 MOST_CELLS = 2**22
 """Cells of 0.1 m in an arena: 16 MB of baked distance a scene."""
 CELL_M = 0.1
-GOAL_RADIUS_M = 0.5
-"""Where a flight has reached its goal, as `world` has it."""
+GOAL_RADIUS_M = 0.5  # paper, Section IV-B
 _NAME = re.compile(r"\w[\w .+-]{0,63}")
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from faultpath.core.errors import UserError
+from faultpath.plugin.system import UserError
 
 if TYPE_CHECKING:
     from faultpath_quadrotor.training.fitting import ModelTask
@@ -24,7 +24,7 @@ MODEL_SEEDS = (0, 1, 2)
 
 
 @dataclass(frozen=True)
-class Entry:
+class ModelEntry:
     """A model that can be fitted."""
 
     name: str
@@ -41,10 +41,10 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Job:
+class FitJob:
     """One model with one seed."""
 
-    entry: Entry
+    entry: ModelEntry
     seed: int
 
     @property
@@ -78,21 +78,23 @@ def _clearance(name: str, seed: int, data: Path) -> ModelTask:
 
 _BOTH = ("nominal", "wind")
 PREDICTORS = (
-    Entry("wm-a", _predictor, ("nominal",), "physics-anchored predictor", 4),
-    Entry("wm-a+dcc", _predictor, ("nominal",), "wm-a fitted with perturbed calibration", 4),
-    Entry("wm-u", _predictor, ("nominal",), "unanchored predictor", 12),
-    Entry("wm-u+dcc", _predictor, ("nominal",), "wm-u fitted with perturbed calibration", 12),
-    Entry("wm-a-wind", _predictor, _BOTH, "wm-a with the wind as an input", 8),
-    Entry("wm-a-nowind", _predictor, _BOTH, "wm-a on the same windy data without that input", 8),
+    ModelEntry("wm-a", _predictor, ("nominal",), "physics-anchored predictor", 4),
+    ModelEntry("wm-a+dcc", _predictor, ("nominal",), "wm-a fitted with perturbed calibration", 4),
+    ModelEntry("wm-u", _predictor, ("nominal",), "unanchored predictor", 12),
+    ModelEntry("wm-u+dcc", _predictor, ("nominal",), "wm-u fitted with perturbed calibration", 12),
+    ModelEntry("wm-a-wind", _predictor, _BOTH, "wm-a with the wind as an input", 8),
+    ModelEntry(
+        "wm-a-nowind", _predictor, _BOTH, "wm-a on the same windy data without that input", 8
+    ),
 )
 RECONSTRUCTIONS = (
-    Entry("gru", _reconstruction, ("wind",), "wind from the history, given calibration", 5),
-    Entry("gru+dcc", _reconstruction, ("wind",), "gru fitted with perturbed calibration", 5),
-    Entry(
+    ModelEntry("gru", _reconstruction, ("wind",), "wind from the history, given calibration", 5),
+    ModelEntry("gru+dcc", _reconstruction, ("wind",), "gru fitted with perturbed calibration", 5),
+    ModelEntry(
         "gru+state", _reconstruction, ("wind",), "gru fitted with perturbed motion", 5, seeds=(0,)
     ),
-    Entry("gru-withheld", _reconstruction, ("wind",), "gru without calibration", 5),
-    Entry(
+    ModelEntry("gru-withheld", _reconstruction, ("wind",), "gru without calibration", 5),
+    ModelEntry(
         "gru-trajectory",
         _reconstruction,
         ("trajectory",),
@@ -102,19 +104,19 @@ RECONSTRUCTIONS = (
     ),
 )
 CLEARANCE_POOL = "clearance"
-CLEARANCE = Entry(
+CLEARANCE = ModelEntry(
     "clearance", _clearance, (CLEARANCE_POOL,), "obstacle clearance from depth", 6, seeds=(0,)
 )
 
 ALL = (*PREDICTORS, *RECONSTRUCTIONS, CLEARANCE)
-GROUPS: dict[str, tuple[Entry, ...]] = {
+GROUPS: dict[str, tuple[ModelEntry, ...]] = {
     "predictors": PREDICTORS,
     "reconstructions": RECONSTRUCTIONS,
     "all": ALL,
 }
 
 
-def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[Job, ...]:
+def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[FitJob, ...]:
     """Return the jobs of some models or groups, each once, in the order of the catalogue.
 
     Without names: everything. Without seeds: the default seeds of each model. Raises `UserError`
@@ -131,10 +133,10 @@ def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[Job, ...]:
             )
         chosen |= {entry.name for entry in matches}
     entries = [entry for entry in ALL if entry.name in chosen]
-    return tuple(Job(entry, s) for entry in entries for s in dict.fromkeys(seeds or entry.seeds))
+    return tuple(FitJob(entry, s) for entry in entries for s in dict.fromkeys(seeds or entry.seeds))
 
 
-def stages(jobs: Sequence[Job]) -> tuple[tuple[Job, ...], ...]:
+def stages(jobs: Sequence[FitJob]) -> tuple[tuple[FitJob, ...], ...]:
     """Part the jobs into those that come first and those whose data are flown with them."""
     first = tuple(job for job in jobs if not job.entry.after)
     rest = tuple(job for job in jobs if job.entry.after)

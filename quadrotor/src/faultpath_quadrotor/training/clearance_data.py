@@ -19,13 +19,8 @@ from safetensors import SafetensorError
 from safetensors.torch import load, save
 from torch import Tensor
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import contents
-from faultpath.core.files.plain import Misread, read_json
-from faultpath.core.results import Frozen
-from faultpath.core.streams import generator
-from faultpath.trials.store import atomic
-from faultpath.trials.store.atomic import locked
+from faultpath.plugin.data import locked, sweep, write, write_text
+from faultpath.plugin.system import Frozen, Misread, UserError, contents, generator, read_json
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.perception.camera import HEIGHT, WIDTH, rays
 from faultpath_quadrotor.perception.labels import visible_distance
@@ -34,7 +29,7 @@ from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import Library, load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.parts import Part, Progress, make_missing
+from faultpath_quadrotor.training.parts import DataFile, Progress, make_missing
 from faultpath_quadrotor.training.provenance import code_of
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 
@@ -43,7 +38,7 @@ PER_METRE = 10_000
 """Depths are stored in tenths of a millimetre, 16 bits each."""
 
 
-class Recipe(Frozen):
+class ClearanceRecipe(Frozen):
     """Settings that decide every number of the data set."""
 
     format: int = FORMAT
@@ -99,14 +94,17 @@ class Samples:
 
 
 def collect(
-    folder: Path, recipe: Recipe | None = None, workers: int = 2, progress: Progress | None = None
+    folder: Path,
+    recipe: ClearanceRecipe | None = None,
+    workers: int = 2,
+    progress: Progress | None = None,
 ) -> Path:
     """Make the data set below `folder` and return its provenance file.
 
     Files that exist are kept. Raises `UserError` when the folder holds a data set of another
     recipe or cannot be written.
     """
-    recipe = recipe or Recipe()
+    recipe = recipe or ClearanceRecipe()
     library = load_library(recipe.library)
     path = provenance_path(folder)
     provenance = _provenance(recipe, library)
@@ -122,10 +120,12 @@ def collect(
     try:
         place.mkdir(parents=True, exist_ok=True)
         with locked(place, lambda notice: print(notice, file=sys.stderr)):
-            atomic.sweep(place)
-            parts = [Part(shard, partial(_make, recipe, scene, shard)) for scene, shard in shards]
+            sweep(place)
+            parts = [
+                DataFile(shard, partial(_make, recipe, scene, shard)) for scene, shard in shards
+            ]
             make_missing([parts], workers, progress)
-        atomic.write_text(path, json.dumps(provenance, indent=2, sort_keys=True) + "\n")
+        write_text(path, json.dumps(provenance, indent=2, sort_keys=True) + "\n")
     except OSError as error:
         raise UserError(
             f"cannot write to {folder} ({error.strerror}): choose a folder that you may write to."
@@ -133,7 +133,7 @@ def collect(
     return path
 
 
-def read(folder: Path, recipe: Recipe) -> Samples:
+def read(folder: Path, recipe: ClearanceRecipe) -> Samples:
     """Return the data set that `collect` made below `folder`; `UserError` when it is not whole."""
     library = load_library(recipe.library)
     path = provenance_path(folder)
@@ -156,7 +156,7 @@ def provenance_path(folder: Path) -> Path:
 
 
 @native.using(native.PORTABLE)
-def draw(recipe: Recipe, scene: Scene) -> Samples:
+def draw(recipe: ClearanceRecipe, scene: Scene) -> Samples:
     """Return the images and labelled points of one scene."""
     random = generator("clearance-data", scene.id, recipe.seed)
     state = _poses(recipe, scene, random)
@@ -173,7 +173,7 @@ def draw(recipe: Recipe, scene: Scene) -> Samples:
     )
 
 
-def _poses(recipe: Recipe, scene: Scene, random: np.random.Generator) -> State:
+def _poses(recipe: ClearanceRecipe, scene: Scene, random: np.random.Generator) -> State:
     """Draw poses at which the vehicle touches nothing."""
     low, high = np.array(scene.bounds.low_m), np.array(scene.bounds.high_m)
     low[2], high[2] = recipe.height_m
@@ -188,7 +188,7 @@ def _poses(recipe: Recipe, scene: Scene, random: np.random.Generator) -> State:
     return State(position, torch.zeros_like(position), rotation, torch.zeros_like(position))
 
 
-def _points(recipe: Recipe, image: Tensor, random: np.random.Generator) -> Tensor:
+def _points(recipe: ClearanceRecipe, image: Tensor, random: np.random.Generator) -> Tensor:
     """Draw points of one image `[3, Q]`, in the capture frame."""
     seen = rays().flatten(1).numpy()
     spread = random.uniform(-1, 1, (2, recipe.in_view)) * np.abs(seen[1:]).max(1)[:, None] * 1.15
@@ -205,20 +205,20 @@ def _points(recipe: Recipe, image: Tensor, random: np.random.Generator) -> Tenso
     return torch.from_numpy(np.concatenate((over_view, about, around), 1)).float()
 
 
-def _shards(folder: Path, recipe: Recipe, library: Library) -> list[tuple[Scene, Path]]:
+def _shards(folder: Path, recipe: ClearanceRecipe, library: Library) -> list[tuple[Scene, Path]]:
     content = json.dumps(_provenance(recipe, library), sort_keys=True)
     digest = hashlib.sha256(content.encode()).hexdigest()
     place = provenance_path(folder).with_suffix("") / digest[:16]
     return [(scene, place / f"{scene.index:03d}.safetensors") for scene in library]
 
 
-def _make(recipe: Recipe, scene: Scene, shard: Path) -> None:
+def _make(recipe: ClearanceRecipe, scene: Scene, shard: Path) -> None:
     samples = draw(recipe, scene)
     parts = {"depth": samples.depth, "points": samples.points, "clearance": samples.clearance}
-    atomic.write(shard, save(parts))
+    write(shard, save(parts))
 
 
-def _provenance(recipe: Recipe, library: Library) -> dict:
+def _provenance(recipe: ClearanceRecipe, library: Library) -> dict:
     return {
         "recipe": recipe.model_dump(mode="json"),
         "library_sha": library.content_hash,

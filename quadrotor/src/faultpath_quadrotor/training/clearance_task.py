@@ -10,13 +10,13 @@ from torch import LongTensor, Tensor, nn
 from torch.nn import functional
 from typing_extensions import override
 
-from faultpath.core.streams import generator
-from faultpath.learning.model_card import Schedule
+from faultpath.plugin.system import generator
+from faultpath.plugin.training import Schedule
 from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 from faultpath_quadrotor.platform import CLEARANCE, PLATFORM
 from faultpath_quadrotor.training import clearance_data
-from faultpath_quadrotor.training.clearance_data import Recipe, Samples
+from faultpath_quadrotor.training.clearance_data import ClearanceRecipe, Samples
 from faultpath_quadrotor.training.fitting import ModelTask
 
 VALIDATION_FROM = 90
@@ -39,12 +39,12 @@ class ClearanceTask(ModelTask):
 
     name = order_key = "clearance"
 
-    def __init__(self, seed: int, data_folder: Path, recipe: Recipe | None = None) -> None:
+    def __init__(self, seed: int, data_folder: Path, recipe: ClearanceRecipe | None = None) -> None:
         self.seed = seed
         self.platform = PLATFORM.weights_hash(CLEARANCE)
         self.schedule = Schedule(epochs=50, batch_size=64, learning_rate=5e-4)
         self._folder = data_folder
-        self._recipe = recipe or Recipe()
+        self._recipe = recipe or ClearanceRecipe()
 
     def load(self) -> None:
         """Read the images; make them first where they are missing."""

@@ -13,17 +13,15 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from faultpath.core.errors import UserError
-from faultpath.core.version import __version__
-from faultpath.trials.execution.provenance import packages
-from faultpath.trials.store import atomic
-from faultpath.trials.store.atomic import locked
+from faultpath import __version__
+from faultpath.plugin.data import locked, packages, sweep, write
+from faultpath.plugin.system import UserError
 from faultpath_quadrotor.training.flight import fly
-from faultpath_quadrotor.training.parts import Part, Progress, make_missing
+from faultpath_quadrotor.training.parts import DataFile, Progress, make_missing
 from faultpath_quadrotor.training.pool import episodes_path, join_flights, write_flights
 from faultpath_quadrotor.training.provenance import (
-    Provenance,
-    Recipe,
+    PoolProvenance,
+    PoolRecipe,
     code_of,
     provenance_path,
     read_provenance,
@@ -39,7 +37,7 @@ _log = logging.getLogger("faultpath")
 
 
 @dataclass(frozen=True)
-class Batch:
+class EpisodeBatch:
     """Episodes that are flown together."""
 
     name: str
@@ -76,7 +74,7 @@ def collect(
     }
 
 
-def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> Recipe:
+def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> PoolRecipe:
     """Return what decides a pool's numbers; `UserError` for a pool that cannot be."""
     if pool not in EPISODES:
         raise UserError(f"there is no pool '{pool}': choose from {', '.join(EPISODES)}.")
@@ -84,15 +82,15 @@ def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> Recipe:
     if count < 1:
         raise UserError(f"pool '{pool}' cannot have {count} episodes: ask for at least one.")
     code = code_of("faultpath_quadrotor.training.flight", "faultpath_quadrotor.training.pool")
-    return Recipe(pool=pool, episodes=count, seed=seed, code_sha256=code)
+    return PoolRecipe(pool=pool, episodes=count, seed=seed, code_sha256=code)
 
 
-def is_there(path: Path, expected: Recipe) -> bool:
+def is_there(path: Path, expected: PoolRecipe) -> bool:
     """Return whether a pool is finished; `UserError` for one of another recipe."""
     provenance = read_provenance(path)
     if provenance is None:
         return False
-    for field in Recipe.model_fields:
+    for field in PoolRecipe.model_fields:
         if getattr(provenance, field) != getattr(expected, field):
             how = "by other code" if field == "code_sha256" else f"with another '{field}'"
             raise UserError(
@@ -105,8 +103,8 @@ def is_there(path: Path, expected: Recipe) -> bool:
 
 def make_pool(
     folder: Path,
-    recipe: Recipe,
-    batches: Sequence[Batch],
+    recipe: PoolRecipe,
+    batches: Sequence[EpisodeBatch],
     workers: int,
     progress: Progress | None = None,
 ) -> Path:
@@ -121,13 +119,15 @@ def make_pool(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with locked(folder, _log.warning):
-            atomic.sweep(folder)
+            sweep(folder)
             if is_there(path, recipe):
                 return path
             place.mkdir(exist_ok=True)
-            atomic.sweep(place)
+            sweep(place)
             parts = [
-                Part(place / f"{batch.name}.rows", partial(batch.make, place), len(batch.episodes))
+                DataFile(
+                    place / f"{batch.name}.rows", partial(batch.make, place), len(batch.episodes)
+                )
                 for batch in batches
             ]
             make_missing([parts], workers, progress)
@@ -142,25 +142,27 @@ def make_pool(
     return path
 
 
-def _join(path: Path, recipe: Recipe, stems: Sequence[Path]) -> None:
+def _join(path: Path, recipe: PoolRecipe, stems: Sequence[Path]) -> None:
     """Write a finished pool, its provenance last."""
     rows, episodes = join_flights(stems)
-    provenance = Provenance(
+    provenance = PoolProvenance(
         **dict(recipe),
         faultpath_version=__version__,
         packages=packages(),
         rows_sha256=hashlib.sha256(rows).hexdigest(),
         episodes_sha256=hashlib.sha256(episodes).hexdigest(),
     )
-    atomic.write(episodes_path(path), episodes)
-    atomic.write(path, rows)
-    atomic.write(provenance_path(path), provenance.encode())
+    write(episodes_path(path), episodes)
+    write(path, rows)
+    write(provenance_path(path), provenance.encode())
 
 
-def _batches(recipe: Recipe) -> list[Batch]:
+def _batches(recipe: PoolRecipe) -> list[EpisodeBatch]:
     every = range(recipe.episodes)
     parts = (every[first : first + BATCH] for first in every[::BATCH])
     return [
-        Batch(f"{part.start:06d}+{len(part)}", part, partial(fly, recipe.pool, part, recipe.seed))
+        EpisodeBatch(
+            f"{part.start:06d}+{len(part)}", part, partial(fly, recipe.pool, part, recipe.seed)
+        )
         for part in parts
     ]

@@ -5,8 +5,8 @@ from collections.abc import Collection, Iterable, Mapping
 from torch import Tensor
 
 from faultpath.faults import AnyFault, Bias, Coupled, Fault, UniformScale, resolve
-from faultpath.learning.windows import window_taps
 from faultpath.loop import Reading
+from faultpath.plugin.training import window_taps
 from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.training.windows import DeliveredInputs
 from faultpath_quadrotor.vehicle import CONTROL_DT_S

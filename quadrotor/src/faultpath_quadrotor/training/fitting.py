@@ -16,12 +16,20 @@ from typing import Any
 import torch
 from torch import nn
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import contents
-from faultpath.core.version import __version__
-from faultpath.learning.loop import FitProgress, FitTask, Journal, minibatches, run
-from faultpath.learning.model_card import parameter_count, read_card, save, weights_sha256
-from faultpath.trials.store.atomic import make_folder
+from faultpath import __version__
+from faultpath.plugin.data import make_folder
+from faultpath.plugin.system import UserError, contents
+from faultpath.plugin.training import (
+    FitProgress,
+    FitTask,
+    Journal,
+    minibatches,
+    parameter_count,
+    read_card,
+    run,
+    save,
+    weights_sha256,
+)
 from faultpath_quadrotor.checkpoint import ModelCard
 
 _SAME_LOSS = 1e-3

@@ -9,7 +9,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath.core.streams import generator
+from faultpath.plugin.system import generator
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.plant import TorchPlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle

@@ -11,28 +11,26 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from faultpath.core.errors import Stopped, UserError
-from faultpath.learning.loop import FitProgress
-from faultpath.learning.model_card import read_card
-from faultpath.trials.store.atomic import locked, make_folder, sweep
-from faultpath.trials.work.executor import Lost, Returned, run_each, tell
-from faultpath.trials.work.processes import local
-from faultpath_quadrotor import native
-from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path, ship
+from faultpath.plugin.data import locked, make_folder, sweep, write_file
+from faultpath.plugin.system import Stopped, UserError
+from faultpath.plugin.training import FitProgress, read_card
+from faultpath.plugin.work import Lost, Returned, local, run_each, tell
+from faultpath_quadrotor import checkpoint, native
+from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path
 from faultpath_quadrotor.training import clearance_data, trajectories
-from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL, Job
+from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL, FitJob
 from faultpath_quadrotor.training.collection import collect, is_there, recipe
 from faultpath_quadrotor.training.fitting import fit
 from faultpath_quadrotor.training.provenance import provenance_path
 
 
-def missing_pools(jobs: Sequence[Job], data: Path) -> tuple[str, ...]:
+def missing_pools(jobs: Sequence[FitJob], data: Path) -> tuple[str, ...]:
     """Return the pools that some jobs need and the folder does not hold whole."""
     pools = dict.fromkeys(pool for job in jobs for pool in job.entry.pools)
     return tuple(pool for pool in pools if not provenance_path(data / pool).is_file())
 
 
-def check_pools(jobs: Sequence[Job], data: Path) -> None:
+def check_pools(jobs: Sequence[FitJob], data: Path) -> None:
     """Raise `UserError` where a pool that some jobs need was made by other code, or otherwise."""
     for pool in dict.fromkeys(pool for job in jobs for pool in job.entry.pools):
         there = provenance_path(data / pool).is_file()
@@ -41,7 +39,7 @@ def check_pools(jobs: Sequence[Job], data: Path) -> None:
             is_there(data / f"{pool}.parquet", expected)
 
 
-def check_pilots(jobs: Sequence[Job]) -> None:
+def check_pilots(jobs: Sequence[FitJob]) -> None:
     """Raise `UserError` where closed-loop flights need a model that the package lacks.
 
     They are flown with the package's models, among which only `--ship` puts those of this run.
@@ -52,7 +50,7 @@ def check_pilots(jobs: Sequence[Job]) -> None:
 
 
 def collect_missing(
-    jobs: Sequence[Job], data: Path, workers: int, progress: Callable[[str, float, float], None]
+    jobs: Sequence[FitJob], data: Path, workers: int, progress: Callable[[str, float, float], None]
 ) -> None:
     """Collect the pools that are missing: training flights, closed-loop flights, depth images.
 
@@ -72,10 +70,10 @@ _TELL_EVERY_S = 0.2
 
 
 @dataclass(frozen=True)
-class Failure:
+class FitFailure:
     """A model that was not fitted, why, and the file with the traceback when there is one."""
 
-    job: Job
+    job: FitJob
     error: str
     details: Path | None = None
 
@@ -93,14 +91,14 @@ class Overview:
 
 
 def run_jobs(
-    jobs: Sequence[Job],
+    jobs: Sequence[FitJob],
     data: Path,
     out: Path,
     workers: int,
     progress: Callable[[Overview], None],
     notice: Callable[[str], None],
     shipped: bool = False,
-) -> tuple[ModelCard | Failure, ...]:
+) -> tuple[ModelCard | FitFailure, ...]:
     """Fit models, the longest first, from wherever an earlier call left them, into a folder.
 
     Returns the results of the jobs, in their order. `workers` is the number of processes; 0 fits in
@@ -114,7 +112,7 @@ def run_jobs(
     make_folder(out)
     order = sorted(jobs, key=lambda job: -job.entry.cost)
     running: dict[str, FitProgress | None] = {}
-    results: dict[str, ModelCard | Failure] = {}
+    results: dict[str, ModelCard | FitFailure] = {}
 
     def show() -> None:
         parts = {stem: moment.fraction for stem, moment in running.items() if moment}
@@ -145,14 +143,14 @@ def run_jobs(
                     if shipped:
                         ship(end.value)
                 elif isinstance(end, Lost):
-                    results[job.stem] = Failure(job, f"{end.how}; its epochs are kept")
+                    results[job.stem] = FitFailure(job, f"{end.how}; its epochs are kept")
                 elif isinstance(end.error, UserError):
-                    results[job.stem] = Failure(job, str(end.error))
+                    results[job.stem] = FitFailure(job, str(end.error))
                 else:
                     traced = "".join(traceback.format_exception(end.error))
                     details.write_text(traced, encoding="utf-8")
                     error = f"{type(end.error).__name__}: {end.error}"
-                    results[job.stem] = Failure(job, error, details)
+                    results[job.stem] = FitFailure(job, error, details)
                 show()
     except KeyboardInterrupt:
         done = sum(isinstance(result, ModelCard) for result in results.values())
@@ -164,7 +162,7 @@ def run_jobs(
 
 
 @native.using(native.PORTABLE)
-def fit_job(job: Job, data: Path, out: Path) -> Path:
+def fit_job(job: FitJob, data: Path, out: Path) -> Path:
     """Fit a model and return its file; report progress a few times a second."""
     tell(None)  # it has begun: its data may take a while
     reported_s = 0.0
@@ -176,3 +174,11 @@ def fit_job(job: Job, data: Path, out: Path) -> Path:
             tell(moment)
 
     return fit(job.task(data), out, advance, tell)
+
+
+def ship(path: Path) -> None:
+    """Copy a checkpoint and its card into the package; `UserError` when that is not writable."""
+    package = checkpoint.shipped_folder()
+    make_folder(package)
+    for file in (path, path.with_suffix(".json")):
+        write_file(package / file.name, file.read_bytes())

@@ -4,15 +4,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from faultpath.trials.work.executor import run_all
-from faultpath.trials.work.processes import local
+from faultpath.plugin.work import local, run_all
 
 Progress = Callable[[float, float], None]
 """Called with the amount done and the total; its first call counts existing files."""
 
 
 @dataclass(frozen=True)
-class Part:
+class DataFile:
     """A file and the function that makes it; it counts as made once the file exists."""
 
     path: Path
@@ -22,7 +21,9 @@ class Part:
     """Its weight in the progress."""
 
 
-def make_missing(stages: Sequence[Sequence[Part]], workers: int, progress: Progress | None) -> None:
+def make_missing(
+    stages: Sequence[Sequence[DataFile]], workers: int, progress: Progress | None
+) -> None:
     """Make what is missing, one stage after the other, with so many processes (0: this one).
 
     Raises the error of the first part that fails.

@@ -17,10 +17,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import contents
-from faultpath.core.files.parquet import read_table
-from faultpath.trials.store import atomic
+from faultpath.plugin.data import read_table, write
+from faultpath.plugin.system import UserError, contents
 from faultpath_quadrotor.training.provenance import read_provenance
 from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, Flights
 from faultpath_quadrotor.vehicle import VehicleParameters
@@ -90,8 +88,8 @@ def encode_episodes(episodes: Sequence[int], flights: Flights) -> bytes:
 
 def write_flights(stem: Path, episodes: Sequence[int], flights: Flights) -> None:
     """Write a batch as `<stem>.episodes` and `<stem>.rows`; the rows are written last."""
-    atomic.write(Path(f"{stem}.episodes"), encode_episodes(episodes, flights))
-    atomic.write(Path(f"{stem}.rows"), encode_rows(episodes, flights))
+    write(Path(f"{stem}.episodes"), encode_episodes(episodes, flights))
+    write(Path(f"{stem}.rows"), encode_rows(episodes, flights))
 
 
 def join_flights(stems: Sequence[Path]) -> tuple[bytes, bytes]:

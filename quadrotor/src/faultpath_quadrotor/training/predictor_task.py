@@ -9,8 +9,8 @@ import torch
 from torch import LongTensor, Tensor, nn
 from typing_extensions import override
 
-from faultpath.core.streams import generator
-from faultpath.learning.model_card import Schedule
+from faultpath.plugin.system import generator
+from faultpath.plugin.training import Schedule
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.models import PREDICTORS
 from faultpath_quadrotor.platform import PLATFORM
@@ -41,7 +41,7 @@ PARTS = ("position", "velocity", "rotation", "rate")
 
 
 @dataclass(frozen=True)
-class Recipe:
+class PredictorRecipe:
     """Data that a predictor learns from, and for how long (paper, Section IV-A)."""
 
     pools: tuple[str, ...]
@@ -50,11 +50,11 @@ class Recipe:
 
 
 _BOTH = ("nominal", "wind")
-RECIPES: Mapping[str, Recipe] = {
-    "wm-a": Recipe(("nominal",), 10, "physics-anchored"),
-    "wm-u": Recipe(("nominal",), 30, "unanchored"),
-    "wm-a-wind": Recipe(_BOTH, 10, "wind-conditioned anchored"),
-    "wm-a-nowind": Recipe(_BOTH, 10, "wind-withheld anchored"),
+RECIPES: Mapping[str, PredictorRecipe] = {
+    "wm-a": PredictorRecipe(("nominal",), 10, "physics-anchored"),
+    "wm-u": PredictorRecipe(("nominal",), 30, "unanchored"),
+    "wm-a-wind": PredictorRecipe(_BOTH, 10, "wind-conditioned anchored"),
+    "wm-a-nowind": PredictorRecipe(_BOTH, 10, "wind-withheld anchored"),
 }
 
 

@@ -7,17 +7,13 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.opening import contents
-from faultpath.core.files.plain import Misread, model_of
-from faultpath.core.results import Frozen
-from faultpath.trials.code import read_code
-from faultpath.trials.imports import Root
+from faultpath.plugin.data import Root, read_code
+from faultpath.plugin.system import Frozen, Misread, UserError, contents, model_of
 
 FORMAT = 2
 
 
-class Recipe(Frozen):
+class PoolRecipe(Frozen):
     """Settings that decide every number of a pool."""
 
     format: int = FORMAT
@@ -28,7 +24,7 @@ class Recipe(Frozen):
     """Hash of the code that draws and flies the episodes, with all its settings."""
 
 
-class Provenance(Recipe):
+class PoolProvenance(PoolRecipe):
     """A recipe, the versions it was made with, and the digests of the result."""
 
     faultpath_version: str
@@ -62,11 +58,11 @@ def rows_sha256(data: Path, pools: Iterable[str]) -> dict[str, str]:
     return {source.pool: source.rows_sha256 for source in sources if source is not None}
 
 
-def read_provenance(path: Path) -> Provenance | None:
+def read_provenance(path: Path) -> PoolProvenance | None:
     """Return the provenance of the pool at `path`, `None` without one; `UserError` if damaged."""
     place = provenance_path(path)
     try:
-        return model_of(contents(place), Provenance)
+        return model_of(contents(place), PoolProvenance)
     except FileNotFoundError:
         return None
     except (OSError, Misread) as error:

@@ -13,8 +13,8 @@ from torch import LongTensor, Tensor, nn
 from torch.nn import functional
 from typing_extensions import override
 
-from faultpath.core.streams import generator
-from faultpath.learning.model_card import Schedule
+from faultpath.plugin.system import generator
+from faultpath.plugin.training import Schedule
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.reconstruction.network import WindNetwork
 from faultpath_quadrotor.training.corruption import (

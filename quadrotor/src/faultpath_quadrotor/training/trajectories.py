@@ -13,10 +13,9 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from faultpath import loop
-from faultpath.loop import Taps
+from faultpath.loop import Batch, Taps
+from faultpath.plugin.data import system_code
 from faultpath.trials import SystemSpec
-from faultpath.trials.code import system_code
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant.module import ACTION, Flying
@@ -24,9 +23,9 @@ from faultpath_quadrotor.plant.world import CONTROL_STEPS
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import recorded
-from faultpath_quadrotor.training.collection import Batch, make_pool
+from faultpath_quadrotor.training.collection import EpisodeBatch, make_pool
 from faultpath_quadrotor.training.parts import Progress
-from faultpath_quadrotor.training.provenance import Recipe, code_of
+from faultpath_quadrotor.training.provenance import PoolRecipe, code_of
 from faultpath_quadrotor.training.recorded import Flights, blank_values
 from faultpath_quadrotor.vehicle import CONTROL_RATE_HZ
 
@@ -48,7 +47,7 @@ def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed:
         consumers=wired.consumers,
         privileged=wired.privileged,
     )
-    batch = loop.Batch(tuple(scenes), seed, system.control_dt_s)
+    batch = Batch(tuple(scenes), seed, system.control_dt_s)
     values, world = blank_values(CONTROL_STEPS, len(scenes)), None
     for instant in system.loop(variant, seed).execute(batch, taps):
         flying: Flying = instant.state
@@ -78,7 +77,7 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
     predictor's checkpoint is missing.
     """
     batches = [
-        Batch(
+        EpisodeBatch(
             f"{level}-{first:03d}",
             range(count * SCENES + first, count * SCENES + first + BLOCK),
             partial(fly, level, first),
@@ -89,7 +88,7 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
     return make_pool(folder, recipe(), batches, workers, progress)
 
 
-def recipe() -> Recipe:
+def recipe() -> PoolRecipe:
     """Return what decides the pool's numbers: the system, its weights, and the settings here."""
     spec = SystemSpec(name=Quadrotor.name, options={"clearance": "true"})
     state = system_code(Quadrotor.parse(**spec.options), spec).state
@@ -98,7 +97,7 @@ def recipe() -> Recipe:
         (state.contents, code_of("faultpath_quadrotor.training.trajectories"), *settings)
     )
     code = hashlib.sha256(content.encode()).hexdigest()
-    return Recipe(pool=POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code)
+    return PoolRecipe(pool=POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code)
 
 
 @native.using(native.PORTABLE)

@@ -12,13 +12,14 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor.predictors import Physics, Predictor
+from faultpath_quadrotor.predictors.history import STEPS
 from faultpath_quadrotor.predictors.predictor_inputs import Take, history, predictor_inputs
 from faultpath_quadrotor.predictors.rollout import unroll
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.training.pool import FlightData, read_pool
 from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS
 
-HISTORY = 12  # paper, Section IV-A
+HISTORY = STEPS
 HORIZON = 20  # paper, Section IV-A
 COMMANDS = HISTORY + HORIZON
 STRIDE = 29

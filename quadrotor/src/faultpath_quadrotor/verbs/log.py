@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import Json, path, refuse_with
-from faultpath.core.errors import UserError
+from faultpath.plugin.commands import Json, path, refuse_with
+from faultpath.plugin.system import UserError
 
 ERRORS = "0.1,-0.1"
 EXAMPLE = "flight.ulg --columns px4 --mass 1.5"
@@ -48,15 +48,15 @@ def command(
     from faultpath_quadrotor.flightlog.compensation import compensation
     from faultpath_quadrotor.flightlog.flight import read_flight
 
-    said = read_columns(columns)
+    column_map = read_columns(columns)
     if mass is not None:
-        said = said.model_copy(update={"mass_kg": mass})
-    found = compensation(read_flight(log, said), _sizes(errors or ERRORS))
+        column_map = column_map.model_copy(update={"mass_kg": mass})
+    result = compensation(read_flight(log, column_map), _sizes(errors or ERRORS))
 
-    from faultpath.trials.store.atomic import check_output, make_folder, write_text
+    from faultpath.plugin.data import check_output, make_folder, write_text
     from faultpath_quadrotor.flightlog.words import CAVEAT, sentences, table
 
-    text = found.model_dump_json(indent=2) + "\n"
+    text = result.model_dump_json(indent=2) + "\n"
     if out is not None:
         make_folder(out)
         check_output(out / "compensation.json", b'"flown_s"')
@@ -64,19 +64,18 @@ def command(
     if as_json:
         typer.echo(text, nl=False)
         return
-    from faultpath.api.display import SafeConsole
-    from faultpath.decisions.tables.terminal import drawn
+    from faultpath.plugin.results import SafeConsole, drawn
 
     console = SafeConsole()
-    for sentence in (*sentences(found), CAVEAT):
+    for sentence in (*sentences(result), CAVEAT):
         console.print(sentence, style="bold" if sentence != CAVEAT else "")
-    made = table(found)
-    console.print("", drawn(made, one_line=True), *made.notes, sep="\n")
+    errors_table = table(result)
+    console.print("", drawn(errors_table, one_line=True), *errors_table.notes, sep="\n")
 
 
 def _propose(log: Path, to: Path, mass_kg: float | None) -> None:
-    from faultpath.api.display import SafeConsole
-    from faultpath.trials.store.atomic import check_output, write_text
+    from faultpath.plugin.data import check_output, write_text
+    from faultpath.plugin.results import SafeConsole
     from faultpath_quadrotor.flightlog.proposing import propose
 
     check_output(to)

@@ -10,18 +10,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import FOUND, Verbs, path, refuse_with
-from faultpath.core.errors import Stopped
-from faultpath.trials.texts import LARGEST
+from faultpath.plugin.commands import FOUND, LARGEST, Verbs, path, refuse_with
+from faultpath.plugin.system import Stopped
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
-    from faultpath.api.display import SafeConsole
-    from faultpath.decisions.tables import Table
+    from faultpath.plugin.results import SafeConsole, Table
     from faultpath_quadrotor.checkpoint import ModelCard
-    from faultpath_quadrotor.training.catalogue import Job
-    from faultpath_quadrotor.training.jobs import Failure, Overview
+    from faultpath_quadrotor.training.catalogue import FitJob
+    from faultpath_quadrotor.training.jobs import FitFailure, Overview
 
 EXAMPLE = "quadrotor gru gru+dcc --seed 0"
 
@@ -61,8 +59,7 @@ def command(
     list_: Annotated[bool, typer.Option("--list", help="List the models and end.")] = False,
 ) -> int:
     """Fit models from wherever an earlier call left them; missing flights are collected first."""
-    from faultpath.api.display import SafeConsole
-    from faultpath.decisions.tables.terminal import drawn
+    from faultpath.plugin.results import SafeConsole, drawn
 
     console = SafeConsole()
     if list_:
@@ -71,9 +68,9 @@ def command(
         console.print(drawn(_models()))
         return 0
 
-    from faultpath.trials.store.atomic import make_folder
+    from faultpath.plugin.data import make_folder
     from faultpath_quadrotor.training.catalogue import choose, stages
-    from faultpath_quadrotor.training.jobs import Failure, check_pilots
+    from faultpath_quadrotor.training.jobs import FitFailure, check_pilots
 
     data, out = data or Path("data"), out or Path("runs/train")
     workers = (os.cpu_count() or 1) if workers is None else workers
@@ -86,12 +83,12 @@ def command(
     for jobs in stages(chosen):  # models whose data are flown with other models come after those
         _collect(console, jobs, data, workers)
         results = _fit(console, jobs, data, out, workers, ship)
-        for failure in (result for result in results if isinstance(result, Failure)):
+        for failure in (result for result in results if isinstance(result, FitFailure)):
             text = f"{failure.job.stem} was not fitted: {failure.error}"
             text += f" ({failure.details})" if failure.details else ""
             console.print(text, markup=False, style="bold red", soft_wrap=True)
             status = FOUND
-        cards = [result for result in results if not isinstance(result, Failure)]
+        cards = [result for result in results if not isinstance(result, FitFailure)]
         if cards:
             console.print(drawn(result_table(cards), one_line=True))
             console.print(f"Checkpoints: {out}", markup=False, soft_wrap=True)
@@ -100,7 +97,7 @@ def command(
 
 def _models() -> "Table":
     """Return the table of what can be fitted."""
-    from faultpath.decisions.tables import Table, line
+    from faultpath.plugin.results import Table, line
     from faultpath_quadrotor.training.catalogue import ALL
 
     columns = ("seeds", "what it is")
@@ -110,7 +107,7 @@ def _models() -> "Table":
 
 def result_table(cards: "Sequence[ModelCard]") -> "Table":
     """Return the table of fitted models."""
-    from faultpath.decisions.tables import Line, Table, line
+    from faultpath.plugin.results import Line, Table, line
 
     lines: list[Line] = []
     for card in cards:
@@ -130,7 +127,7 @@ def result_table(cards: "Sequence[ModelCard]") -> "Table":
     return Table(title="Fitted models", corner="model", columns=columns, lines=tuple(lines))
 
 
-def _collect(console: "SafeConsole", jobs: "Sequence[Job]", data: Path, workers: int) -> None:
+def _collect(console: "SafeConsole", jobs: "Sequence[FitJob]", data: Path, workers: int) -> None:
     from faultpath_quadrotor.training.jobs import check_pools, collect_missing, missing_pools
 
     check_pools(jobs, data)
@@ -154,8 +151,13 @@ def _collect(console: "SafeConsole", jobs: "Sequence[Job]", data: Path, workers:
 
 
 def _fit(
-    console: "SafeConsole", jobs: "Sequence[Job]", data: Path, out: Path, workers: int, ship: bool
-) -> "tuple[ModelCard | Failure, ...]":
+    console: "SafeConsole",
+    jobs: "Sequence[FitJob]",
+    data: Path,
+    out: Path,
+    workers: int,
+    ship: bool,
+) -> "tuple[ModelCard | FitFailure, ...]":
     from faultpath_quadrotor.training.jobs import run_jobs
 
     with _progress(console) as bar:

@@ -4,18 +4,17 @@ import platform
 import subprocess
 from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from faultpath.core.version import __version__
 from faultpath.trials.execution.runner import RunResult
+from faultpath.trials.imports import packages
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.atomic import write_text
 from faultpath.trials.store.folder import seal
 from faultpath.trials.work.executor import Executor
 
 PROVENANCE = "provenance.json"
-_PACKAGES = ("numpy", "scipy", "pydantic", "pyarrow", "array-api-compat", "torch", "mujoco")
 
 
 def run_provenance(
@@ -102,17 +101,6 @@ def processor() -> str:
         lines = []
     models = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
     return next(models, "") or platform.processor() or platform.machine()
-
-
-def packages() -> dict[str, str]:
-    """Return the versions of the packages that numbers depend on, of those installed."""
-    versions: dict[str, str] = {}
-    for name in _PACKAGES:
-        try:
-            versions[name] = version(name)
-        except PackageNotFoundError:
-            continue
-    return versions
 
 
 def _git(folder: Path, *arguments: str) -> str | None:

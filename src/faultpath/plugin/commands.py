@@ -1,0 +1,6 @@
+"""For a package that adds verbs to `faultpath`; light, since `--help` loads it."""
+
+from faultpath.cli.options import FOUND, Json, Verbs, path, refuse_with
+from faultpath.trials.texts import LARGEST
+
+__all__ = ["FOUND", "LARGEST", "Json", "Verbs", "path", "refuse_with"]

@@ -1,0 +1,41 @@
+"""For what runs in a trial: errors, random numbers, the user's parts, files that it reads."""
+
+from faultpath.core.error_source import explained, located
+from faultpath.core.errors import Notice, Stopped, SystemMistake, UserError
+from faultpath.core.files.opening import LARGEST_TEXT, contents, opened
+from faultpath.core.files.plain import Misread, model_of, read_json, read_yaml
+from faultpath.core.results import Frozen
+from faultpath.core.streams import generator, key, words
+from faultpath.core.text import listed, one_line, unknown
+from faultpath.core.validation_messages import misfit_of
+from faultpath.trials.options import call
+from faultpath.trials.registry import factory_root, load_parts
+from faultpath.trials.work.executor import one_thread
+
+__all__ = [
+    "LARGEST_TEXT",
+    "Frozen",
+    "Misread",
+    "Notice",
+    "Stopped",
+    "SystemMistake",
+    "UserError",
+    "call",
+    "contents",
+    "explained",
+    "factory_root",
+    "generator",
+    "key",
+    "listed",
+    "load_parts",
+    "located",
+    "misfit_of",
+    "model_of",
+    "one_line",
+    "one_thread",
+    "opened",
+    "read_json",
+    "read_yaml",
+    "unknown",
+    "words",
+]

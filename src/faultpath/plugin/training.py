@@ -1,0 +1,29 @@
+"""For a package that fits modules of its own: the loop over epochs, weights and their cards."""
+
+from faultpath.learning.loop import FitProgress, FitTask, Journal, minibatches, run
+from faultpath.learning.model_card import (
+    Card,
+    Schedule,
+    fill,
+    parameter_count,
+    read_card,
+    save,
+    weights_sha256,
+)
+from faultpath.learning.windows import window_taps
+
+__all__ = [
+    "Card",
+    "FitProgress",
+    "FitTask",
+    "Journal",
+    "Schedule",
+    "fill",
+    "minibatches",
+    "parameter_count",
+    "read_card",
+    "run",
+    "save",
+    "weights_sha256",
+    "window_taps",
+]
