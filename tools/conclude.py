@@ -6,8 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import map_blocks
-from blocks import REFERENCE, ROOT
+from blocks import REFERENCE, ROOT, load
 from faultpath_paper.claims import again
 from faultpath_paper.pages import PAGES
 from faultpath_paper.reproduction import write_pages
@@ -77,7 +76,7 @@ def audit(folder: Path) -> DecisionRecord:
 
 def reversal_map(folder: Path) -> MapRecord:
     """Decide a reference map anew from its trials; write its record and table."""
-    before = map_blocks.load(folder.name).record
+    before = load(folder.name).record
     question = before.question
     spec, system = _system(question)
     request = MapQuestion(
@@ -103,8 +102,8 @@ def reversal_map(folder: Path) -> MapRecord:
     )
     (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     (folder / "table.md").write_text(table_markdown(record), "utf-8")
-    _reseal(folder, map_blocks.load(folder.name).provenance)
-    map_blocks.load.cache_clear()
+    _reseal(folder, load(folder.name).provenance)
+    load.cache_clear()
     return record
 
 

@@ -10,7 +10,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from blocks import PARTS, REFERENCE, ROOT, Wrong
+from blocks import IMAGES, REFERENCE, Wrong
+from run_blocks import PARTS
 
 from faultpath.report.svg import template
 
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 MARGIN, TITLE = 12.0, 26.0
 SCHEMES: tuple[Literal["light"], Literal["dark"]] = ("light", "dark")
-IMAGES = ROOT / "docs" / "images"
 MADE_FROM = IMAGES / "made-from.json"
 _SMALL = """async (png) => {
   const picture = new Image();
@@ -56,7 +56,7 @@ def name_of(run: str, part: str) -> str:
 
 
 def make_images(pictures: Sequence[tuple[str, str]]) -> None:
-    """Make every picture that documents show, and drop those that they no longer do."""
+    """Take every picture that documents show of a report: run and part."""
     from playwright.sync_api import sync_playwright
 
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -70,31 +70,18 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
             (IMAGES / name_of(run, part)).write_text(picture(browser, run, part), "utf-8")
             digests[name_of(run, part)] = digest(run)
         browser.close()
-    for old in made_from().keys() - digests.keys():
-        (IMAGES / old).unlink(missing_ok=True)
     MADE_FROM.write_text(json.dumps(digests, indent=2, sort_keys=True) + "\n", "utf-8")
 
 
 def picture(browser: "Browser", run: str, part: str) -> str:
-    """Return a part of a run's page as one SVG that is light or dark as its reader has it.
-
-    A part that is one drawing stays one, with its title above; any other is taken twice, as a page
-    shows it in the light and in the dark.
-    """
-    selector = PARTS[part][1]
-    with _opened(browser, run, "light") as page:
-        drawings = page.query_selector_all(
-            f":is({selector}) svg.fig:visible, svg.fig:is({selector})"
-        )
-        texts = page.query_selector_all(f":is({selector}) p:visible, p:is({selector})")
-        if len(drawings) == 1 and not texts:
-            return standing(drawings[0].evaluate("e => new XMLSerializer().serializeToString(e)"))
+    """Return a part of a run's page as one SVG that is light or dark as its reader has it."""
     shots: list[str] = []
     size = (0.0, 0.0)
     for scheme in SCHEMES:
         with _opened(browser, run, scheme) as page:
-            boxes = [element.bounding_box() for element in page.query_selector_all(selector)]
-            areas = [box for box in boxes if box is not None and box["height"] > 0]
+            elements = page.query_selector_all(PARTS[part][1])
+            areas = [box for element in elements if (box := element.bounding_box())]
+            areas = [box for box in areas if box["height"] > 0]
             if not areas:
                 raise Wrong(f"the report of {run} has no {part}")
             clip = _around(areas, MARGIN)
