@@ -87,26 +87,28 @@ def _gpu(name: str, figures: dict[str, Any]) -> str:
         note = f"{block['kernels']} kernels a step, computed in {number(busy)} % of the time"
         measured = record(row, "ms", scenes, alone, "one core")
         records.append(measured.model_copy(update={"note": note}))
-    text = (
-        f"Measured on {figures['date']}: {name}, torch {figures['torch']}; one core with kernels "
-        f"`{figures['kernels']}`.\n\n{rows(records)}"
-    )
+    parts = [
+        f"Measured on {figures['date']} by `{figures['command']}`: {name}, torch "
+        f"{figures['torch']}; one core with kernels `{figures['kernels']}`.",
+        rows(records),
+    ]
     if audits := figures.get("audits"):
         here, there = audits["successes"]
-        text += (
-            f"\n\nOf {audits['trials']} trials of `make audit` on that machine, {audits['alike']} "
-            f"end alike on both; {here} succeed on the processor and {there} on the GPU. The audit "
+        parts.append(
+            f"Of {audits['trials']} trials of `make audit` on that machine, {audits['alike']} end "
+            f"alike on both; {here} succeed on the processor and {there} on the GPU. The audit "
             f"finds the same on both, significant or not, on {audits['decided_alike']} of "
-            f"{audits['paths']} paths."
+            f"{audits['paths']} paths (`{audits['command']}`)."
         )
     if paper := figures.get("paper"):
-        text += (
-            f"\n\n`faultpath reproduce {paper['page']} --profile paper`, {paper['trials']} trials, "
-            f"took {paper['cpu_s']:.0f} s on the {paper['cores']} cores of that machine and "
-            f"{paper['gpu_s']:.0f} s on its GPU"
-            + (f", in {parts} parts." if (parts := paper.get("gpu_parts", 1)) > 1 else ".")
+        origin = paper.get("by_hand") or f"`{paper['command']}`"
+        parts.append(
+            f"`{paper['runs']}`, {paper['trials']} trials, took {paper['cpu_s']:.0f} s with "
+            f"`--workers {paper['cores']}` on the {paper['cores']} cores of that machine and "
+            f"{paper['gpu_s']:.0f} s with `--device cuda` on its GPU "
+            f"({origin})."
         )
-    return text
+    return "\n\n".join(parts)
 
 
 KIND: Mapping[str, Callable[[], str]] = {

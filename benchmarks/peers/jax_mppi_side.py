@@ -66,7 +66,7 @@ def command() -> Side:
 
 
 def _step(problem: dict[str, Any], state: Any, command: Any) -> Any:
-    """Return the state `[50]` after one interval under `command` `[4]`, as `rows.RowsModel`."""
+    """Return the state `[50]` after one interval under `command` `[4]`, as `batched.BatchModel`."""
 
     def linear(name: str, value: Any) -> Any:
         return problem[f"{name}.weight"] @ value + problem[f"{name}.bias"]

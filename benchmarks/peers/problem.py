@@ -9,27 +9,27 @@ import numpy as np
 import torch
 
 from benchmarks import planning
-from benchmarks.peers import rows
+from benchmarks.peers import batched
 
 
 def main() -> None:
     """Write weights, constants, state, actions, and the positions of some candidates."""
-    model = rows.RowsModel()
+    model = batched.BatchModel()
     arrays = {name: weight.numpy() for name, weight in model.state_dict().items()}
-    actions = dict(zip(("centre", "sigma", "low", "high"), rows.actions(), strict=True))
+    actions = dict(zip(("centre", "sigma", "low", "high"), batched.actions(), strict=True))
     arrays |= {name: action.numpy() for name, action in actions.items()}
     candidates = planning.commands()[:, :, 0, : planning.CHECKED].permute(0, 2, 1)
     shape = (3, planning.HORIZON, planning.CHECKED)
     np.savez(
         sys.argv[1],
-        initial=rows.initial().numpy(),
+        initial=batched.initial().numpy(),
         candidates=candidates.numpy(),
         positions=np.reshape(planning.positions(), shape),
         sizes=(planning.CANDIDATES, planning.HORIZON),
-        motion=(model.gain, model.weight_n, rows.KEEP, rows.MEAN, rows.CONTROL_DT_S),
-        bounds=(rows.anchored.LINEAR_BOUND_MPS2, rows.anchored.ANGULAR_BOUND_RADPS2),
+        motion=(model.gain, model.weight_n, batched.KEEP, batched.MEAN, batched.CONTROL_DT_S),
+        bounds=(batched.anchored.LINEAR_BOUND_MPS2, batched.anchored.ANGULAR_BOUND_RADPS2),
         goal=planning.GOAL_M,
-        speed=(rows.WEIGHTS.speed, rows.WEIGHTS.v_max_mps),
+        speed=(batched.WEIGHTS.speed, batched.WEIGHTS.v_max_mps),
         **arrays,
     )
 

@@ -41,7 +41,7 @@ def linear(layer: Affine, *, over: tuple[Tensor, Tensor] | None = None, at: int 
     return folded
 
 
-class RowsModel(nn.Module):
+class BatchModel(nn.Module):
     """One step of WM-A, for one scene."""
 
     constant: Tensor
@@ -114,7 +114,7 @@ def initial() -> Tensor:
 
 
 @torch.inference_mode()
-def positions(step: RowsModel) -> list[float]:
+def positions(step: BatchModel) -> list[float]:
     """Return the positions `[3, H, 32]` under the problem's candidates, m."""
     state = initial().expand(planning.CHECKED, -1)
     path = []
