@@ -132,7 +132,7 @@ def main() -> None:
     if len(chosen) < len(options.rows):
         parser.error(f"choose rows from {', '.join(repr(row.name) for row in ROWS)}")
     records = measure(chosen, options.rounds)
-    print("\n".join(map(page.told, records)))
+    print("\n".join(map(page.summary, records)))
     machine = describe()
     if before is not None:
         machine, when = before.machine, f"measured on {machine.date}"

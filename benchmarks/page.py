@@ -4,7 +4,7 @@ As in every document, `tools/documents.py` fills the blocks that are marked in i
 """
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from statistics import median
 from typing import Any
 
@@ -17,6 +17,11 @@ _STEPS = "vehicle-steps/s"
 """Unit of the plant's rows: shown as a time, without a ratio, since the models differ."""
 
 
+def all_rows() -> str:
+    """Return the table of all rows of `results.json`."""
+    return rows(load().records)
+
+
 def rows(records: Sequence[Record]) -> str:
     """Return the table of all rows and, below it, why some were not measured."""
     table = grid(Table(columns=_COLUMNS, lines=tuple(map(_line, records))))
@@ -24,7 +29,7 @@ def rows(records: Sequence[Record]) -> str:
     return "\n\n".join([table, *(["\n".join(notes)] if notes else [])])
 
 
-def told(record: Record) -> str:
+def summary(record: Record) -> str:
     """Return a record in one line, for the terminal."""
     if record.ours is None:
         return f"{record.name}: {record.note}"
@@ -109,11 +114,3 @@ def _gpu(name: str, figures: dict[str, Any]) -> str:
             f"({origin})."
         )
     return "\n\n".join(parts)
-
-
-KIND: Mapping[str, Callable[[], str]] = {
-    "gpu": gpu,
-    "machine": machine,
-    "rows": lambda: rows(load().records),
-}
-"""The blocks of the page."""

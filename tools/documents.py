@@ -75,7 +75,9 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
     "state:accuracy": state_blocks.accuracy,
     "state:cost": state_blocks.cost,
     **{f"latent:{part}": function for part, function in latent_blocks.KIND.items()},
-    **{f"performance:{part}": function for part, function in performance.KIND.items()},
+    "performance:machine": performance.machine,
+    "performance:rows": performance.all_rows,
+    "performance:gpu": performance.gpu,
 }
 """Functions that return the text of a block from the other words of its name, by its kind."""
 
@@ -163,7 +165,7 @@ def leftover() -> list[Path]:
     """Return the pictures that no document shows."""
     pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
     text = "".join(path.read_text("utf-8") for path in pages)
-    return [path for path in sorted(IMAGES.glob("*.svg")) if f"/{path.name})" not in text]
+    return [path for path in sorted(IMAGES.glob("*.svg")) if f"/{path.name}" not in text]
 
 
 def stale() -> Iterator[str]:
