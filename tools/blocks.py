@@ -98,7 +98,7 @@ def figures_of(study: str, file: str) -> Any:
     """Return the numbers that a study of `experiments` left in a JSON file."""
     path = ROOT / "experiments" / study / file
     if not path.is_file():
-        raise Wrong(f"{path.relative_to(ROOT)} is missing: fly it as {study}/README.md says")
+        raise Wrong(f"{path.relative_to(ROOT)} is missing: {study}/README.md says how it was made")
     return json.loads(path.read_text("utf-8"))
 
 

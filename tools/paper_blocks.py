@@ -1,6 +1,7 @@
 """Blocks, pictures and pages about the shipped reproduction of the paper."""
 
 import hashlib
+import re
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -25,12 +26,12 @@ from faultpath_paper.facts import SECTIONS, STANDINGS, counted, facts, listed
 from faultpath_paper.report.page import sweep_plot
 from faultpath_paper.report.short import apart, by_kind, by_subject
 from faultpath_paper.report.words import NON_DETECTION, headline
-from pictures import standing
 
 from faultpath.decisions import wording
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.tables.escapes import markdown
 from faultpath.decisions.tables.markdown import block, grid
+from faultpath.report.svg import template
 from faultpath.trials.store.folder import read_outcomes
 
 PLACE = REFERENCE / "paper"
@@ -154,7 +155,29 @@ def picture(part: str) -> str:
 def drawing(part: str) -> tuple[str, str]:
     """Return file name and content of that picture."""
     figure = next(figure for figure in load().record.figures if figure.name == part)
-    return f"paper-{part}.svg", standing(sweep_plot(figure))
+    return f"paper-{part}.svg", standalone(sweep_plot(figure))
+
+
+def standalone(drawing: str) -> str:
+    """Return a drawing of a page as a file of its own: colours inside, and its title above it."""
+    box = re.findall(r'viewBox="([^"]*)"', drawing)[0]
+    title = re.findall(r"<title[^>]*>([^<]*)</title>", drawing)[0]
+    left, top, width, height = map(float, box.split())
+    x, y, wide, high = left - 12, top - 38, width + 24, height + 50
+    head, _, rest = drawing.partition(">")
+    head = re.sub(r'( viewBox| width| height| xmlns)="[^"]*"', "", head)
+    own = template("reproduction.css", "faultpath_paper.report").splitlines()
+    css = (
+        template("tokens.css")
+        + template("svg.css")
+        + "".join(line for line in own if line.startswith(".fig"))
+    )
+    return (
+        f'{head} viewBox="{x:g} {y:g} {wide:g} {high:g}" xmlns="http://www.w3.org/2000/svg" '
+        f'width="{wide:g}" height="{high:g}"><style>{css}</style>'
+        f'<rect class="paper" x="{x:g}" y="{y:g}" width="{wide:g}" height="{high:g}"/>'
+        f'<text class="head" x="{left:g}" y="{top - 14:g}">{title}</text>{rest}\n'
+    )
 
 
 def origin() -> str:

@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import re
 import shutil
 from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,12 +12,10 @@ from typing import TYPE_CHECKING, Literal
 from blocks import IMAGES, REFERENCE, Wrong
 from run_blocks import PARTS
 
-from faultpath.report.svg import template
-
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-MARGIN, TITLE = 12.0, 26.0
+MARGIN = 12.0
 SCHEMES: tuple[Literal["light"], Literal["dark"]] = ("light", "dark")
 MADE_FROM = IMAGES / "made-from.json"
 _SMALL = """async (png) => {
@@ -109,32 +106,6 @@ def _opened(browser: "Browser", run: str, scheme: Literal["light", "dark"]) -> "
     page.add_style_tag(content=".contents { position: static }")
     yield page
     context.close()
-
-
-def standing(drawing: str) -> str:
-    """Return a drawing of a page as a file of its own: colours inside, and its title above it where
-    it shows none itself."""
-    box = re.search(r'viewBox="([^"]*)"', drawing)
-    title = re.search(r"<title[^>]*>([^<]*)</title>", drawing)
-    if box is None or title is None:
-        raise Wrong("a drawing without a title or a size")
-    left, top, width, height = map(float, box[1].split())
-    room = 0 if 'class="head"' in drawing else TITLE
-    around = left - MARGIN, top - MARGIN - room, width + 2 * MARGIN, height + 2 * MARGIN + room
-    head, _, rest = drawing.partition(">")
-    head = re.sub(r'viewBox="[^"]*"', f'viewBox="{" ".join(f"{n:g}" for n in around)}"', head)
-    head = re.sub(r'( width| height| xmlns)="[^"]*"', "", head)
-    head += ' xmlns="http://www.w3.org/2000/svg"'
-    head += f' width="{around[2]:g}" height="{around[3]:g}">'
-    own = [
-        line
-        for line in template("reproduction.css", "faultpath_paper.report").splitlines()
-        if line.startswith(".fig")
-    ]
-    css = "".join((template("tokens.css"), template("svg.css"), *own))
-    ground = '<rect class="paper" x="{:g}" y="{:g}" width="{:g}" height="{:g}"/>'.format(*around)
-    above = f'<text class="head" x="{left:g}" y="{top - room + 12:g}">{title[1]}</text>'
-    return f"{head}<style>{css}</style>{ground}{above if room else ''}{rest}\n"
 
 
 def twice(size: tuple[float, float], light: str, dark: str) -> str:
