@@ -46,7 +46,7 @@ def timed(side: str, loops: int) -> tuple[float, int, str]:
             python, problem = str(ROOT / ELSEWHERE[side]), str(Path(folder) / "problem.npz")
             if not os.access(python, os.X_OK):
                 raise NotMeasured(f"{side} needs a newer Python, which `make bench` did not find")
-            write = [sys.executable, "-m", "benchmarks.peers.problem", problem]
+            write = [sys.executable, "-m", "benchmarks.peers.batched", problem]
             subprocess.run(write, cwd=ROOT, check=True)
             environment = {**environment, "FAULTPATH_PROBLEM": problem}
         command = [python, "-m", "benchmarks.side", where, "--processes=1", "--values=3"]
@@ -132,7 +132,7 @@ def main() -> None:
     if len(chosen) < len(options.rows):
         parser.error(f"choose rows from {', '.join(repr(row.name) for row in ROWS)}")
     records = measure(chosen, options.rounds)
-    print("\n".join(map(page.told, records)))
+    print("\n".join(map(page.summary, records)))
     machine = describe()
     if before is not None:
         machine, when = before.machine, f"measured on {machine.date}"

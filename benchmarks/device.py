@@ -2,7 +2,9 @@
 
 python -m benchmarks.device                          time control steps, on a machine with a GPU
 python -m benchmarks.device --paper                  time a table of the paper there too, 10 minutes
-python -m benchmarks.device --audits CPU_RUN GPU_RUN add one audit, flown on both
+python -m benchmarks.device --audits CPU_RUN GPU_RUN compare one audit, flown on both
+
+Each part of the file names the command that measured it.
 
 One process on one core flies blocks of 50 scenes with the fastest kernels, as a worker of an audit
 does; one process feeds the GPU blocks of 100 scenes, as `--device cuda` does, and of 200. They take
@@ -41,11 +43,12 @@ LIBRARIES = "training", "selection"
 BLOCKS = (("cpu", 50), ("cuda", 100), ("cuda", 200))
 VARIANT, WARM_UP, ROUNDS, STEPS = "gru", 5, 7, 4
 PAGE = "table-4"
+COMMAND = "python -m benchmarks.device"
 
 
 def main() -> None:
     """Measure, or compare two audits, and keep the figures."""
-    parser = argparse.ArgumentParser(prog="benchmarks.device")
+    parser = argparse.ArgumentParser(prog=COMMAND.removeprefix("python -m "))
     parser.add_argument("--audits", nargs=2, type=Path, metavar=("CPU_RUN", "GPU_RUN"))
     parser.add_argument("--paper", action="store_true", help=f"fly {PAGE} on both devices")
     parser.add_argument("--out", type=Path, default=DEVICE, help="the JSON file of the figures")
@@ -59,28 +62,29 @@ def main() -> None:
     elif options.paper:
         mine["paper"] = paper()
     else:
-        mine |= measured()
+        mine |= steps()
     options.out.write_text(json.dumps(figures, indent=1) + "\n")
     print(options.out.read_text())
 
 
-def measured() -> dict[str, Any]:
+def steps() -> dict[str, Any]:
     """Return what control steps take on each device, ms, round by round."""
     kernels, sides = native.kernels(), [_flying(*block) for block in BLOCKS]
     times: list[list[float]] = [[] for _ in sides]
     with torch.no_grad(), arithmetic():
-        for steps in sides:
-            _step(steps, WARM_UP)
+        for flying in sides:
+            _step(flying, WARM_UP)
         for _ in range(ROUNDS):
-            for steps, taken in zip(sides, times, strict=True):
+            for flying, taken in zip(sides, times, strict=True):
                 begun = time.perf_counter()
-                _step(steps, STEPS)
+                _step(flying, STEPS)
                 taken.append((time.perf_counter() - begun) / STEPS * 1e3)
         rest = [
-            _profiled(steps) if device == "cuda" else {}
-            for steps, (device, _) in zip(sides, BLOCKS, strict=True)
+            _profiled(flying) if device == "cuda" else {}
+            for flying, (device, _) in zip(sides, BLOCKS, strict=True)
         ]
     return {
+        "command": COMMAND,
         "torch": torch.__version__,
         "kernels": native.PORTABLE if kernels is None else kernels.isa,
         "date": datetime.now(UTC).date().isoformat(),
@@ -94,8 +98,12 @@ def measured() -> dict[str, Any]:
 def paper() -> dict[str, Any]:
     """Return what a table of the paper takes in its size, with every core and on the GPU, s."""
     cores = len(os.sched_getaffinity(0))
-    figures: dict[str, Any] = {"page": PAGE, "cores": cores}
-    command = (sys.executable, "-m", "faultpath", "reproduce", PAGE, "--profile", "paper")
+    figures: dict[str, Any] = {
+        "command": f"{COMMAND} --paper",
+        "runs": f"faultpath reproduce {PAGE} --profile paper",
+        "cores": cores,
+    }
+    command = (sys.executable, "-m", *figures["runs"].split())
     for name, options in (("cpu_s", ("--workers", str(cores))), ("gpu_s", ("--device", "cuda"))):
         with TemporaryDirectory() as folder:
             begun = time.perf_counter()
@@ -142,6 +150,7 @@ def compared(*folders: Path) -> dict[str, Any]:
     assert ends[0].keys() == ends[1].keys(), "the runs do not hold the same trials"
     signs = [[effect.sign for effect in run.record.effects] for run in runs]
     return {
+        "command": f"{COMMAND} --audits CPU_RUN GPU_RUN",
         "trials": len(ends[0]),
         "alike": sum(ends[0][trial] == ends[1][trial] for trial in ends[0]),
         "successes": [sum(end == "success" for end in ended.values()) for ended in ends],

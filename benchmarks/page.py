@@ -4,7 +4,7 @@ As in every document, `tools/documents.py` fills the blocks that are marked in i
 """
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from statistics import median
 from typing import Any
 
@@ -17,6 +17,11 @@ _STEPS = "vehicle-steps/s"
 """Unit of the plant's rows: shown as a time, without a ratio, since the models differ."""
 
 
+def all_rows() -> str:
+    """Return the table of all rows of `results.json`."""
+    return rows(load().records)
+
+
 def rows(records: Sequence[Record]) -> str:
     """Return the table of all rows and, below it, why some were not measured."""
     table = grid(Table(columns=_COLUMNS, lines=tuple(map(_line, records))))
@@ -24,7 +29,7 @@ def rows(records: Sequence[Record]) -> str:
     return "\n\n".join([table, *(["\n".join(notes)] if notes else [])])
 
 
-def told(record: Record) -> str:
+def summary(record: Record) -> str:
     """Return a record in one line, for the terminal."""
     if record.ours is None:
         return f"{record.name}: {record.note}"
@@ -87,31 +92,25 @@ def _gpu(name: str, figures: dict[str, Any]) -> str:
         note = f"{block['kernels']} kernels a step, computed in {number(busy)} % of the time"
         measured = record(row, "ms", scenes, alone, "one core")
         records.append(measured.model_copy(update={"note": note}))
-    text = (
-        f"Measured on {figures['date']}: {name}, torch {figures['torch']}; one core with kernels "
-        f"`{figures['kernels']}`.\n\n{rows(records)}"
-    )
+    parts = [
+        f"Measured on {figures['date']} by `{figures['command']}`: {name}, torch "
+        f"{figures['torch']}; one core with kernels `{figures['kernels']}`.",
+        rows(records),
+    ]
     if audits := figures.get("audits"):
         here, there = audits["successes"]
-        text += (
-            f"\n\nOf {audits['trials']} trials of `make audit` on that machine, {audits['alike']} "
-            f"end alike on both; {here} succeed on the processor and {there} on the GPU. The audit "
+        parts.append(
+            f"Of {audits['trials']} trials of `make audit` on that machine, {audits['alike']} end "
+            f"alike on both; {here} succeed on the processor and {there} on the GPU. The audit "
             f"finds the same on both, significant or not, on {audits['decided_alike']} of "
-            f"{audits['paths']} paths."
+            f"{audits['paths']} paths (`{audits['command']}`)."
         )
     if paper := figures.get("paper"):
-        text += (
-            f"\n\n`faultpath reproduce {paper['page']} --profile paper`, {paper['trials']} trials, "
-            f"took {paper['cpu_s']:.0f} s on the {paper['cores']} cores of that machine and "
-            f"{paper['gpu_s']:.0f} s on its GPU"
-            + (f", in {parts} parts." if (parts := paper.get("gpu_parts", 1)) > 1 else ".")
+        origin = paper.get("by_hand") or f"`{paper['command']}`"
+        parts.append(
+            f"`{paper['runs']}`, {paper['trials']} trials, took {paper['cpu_s']:.0f} s with "
+            f"`--workers {paper['cores']}` on the {paper['cores']} cores of that machine and "
+            f"{paper['gpu_s']:.0f} s with `--device cuda` on its GPU "
+            f"({origin})."
         )
-    return text
-
-
-KIND: Mapping[str, Callable[[], str]] = {
-    "gpu": gpu,
-    "machine": machine,
-    "rows": lambda: rows(load().records),
-}
-"""The blocks of the page."""
+    return "\n\n".join(parts)

@@ -1,30 +1,39 @@
-"""Marked blocks of the documents about reference runs and example files."""
+"""Stored runs and studies that documents take their numbers from, and how these become text."""
 
-import re
-import shlex
+import json
 import shutil
-from collections.abc import Callable, Collection, Iterator
+import sys
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cache
 from io import StringIO
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from flown_code import ROOT, flown_by
 from pydantic import BaseModel, ValidationError
 from rich.console import Console, RenderableType
 
+from faultpath.api.folders import MADE_FROM, MAP, MAP_MADE_FROM, RECORD
 from faultpath.decisions import wording
+from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.model import DecisionRecord
-from faultpath.decisions.tables import Table, line
+from faultpath.decisions.tables import Entry, Line, Table
 from faultpath.decisions.tables.markdown import grid
-from faultpath.report.tables import DIFFERENCE, by_quantity
-from faultpath.report.terminal import decision
 from faultpath.trials.provenance import RunProvenance
 
+sys.path.insert(0, str(ROOT / "experiments" / "carry-over"))
+from carry_design import Flown
+
 REFERENCE = ROOT / "docs" / "reference"
-TAKE_AGAIN = "take the run again"
-M = TypeVar("M", bound=BaseModel)
+IMAGES = ROOT / "docs" / "images"
+PROVENANCE, CELLS = "provenance.json", "cells.json"
+RUNS: dict[str, tuple[type[BaseModel], tuple[str, ...]]] = {
+    RECORD: (DecisionRecord, (*MADE_FROM, PROVENANCE, "report.html", "table.md")),
+    MAP: (MapRecord, (*MAP_MADE_FROM, PROVENANCE, "table.md")),
+    CELLS: (Flown, (CELLS, PROVENANCE)),
+}
+"""Kinds of reference runs, by the file of their record: its model, and the files that are kept."""
 
 
 class Wrong(Exception):
@@ -33,28 +42,47 @@ class Wrong(Exception):
 
 @dataclass(frozen=True)
 class Run:
-    """A reference run."""
+    """A stored run."""
 
     name: str
-    record: DecisionRecord
+    record: Any
     provenance: RunProvenance
 
     @property
-    def trials(self) -> int:
-        """Trials flown: an arm that a fault cannot reach is the one under correct inputs."""
-        paths = self.record.paths
-        arms = {("repair", p.consumers) for p in paths}
-        arms |= {("baseline", p.baseline_consumers) for p in paths}
-        return len(arms) * self.record.question.n_scenes * len(self.record.question.seeds)
+    def flown(self) -> str:
+        """By which code it was flown, in a sentence, and whether that is the code that is here."""
+        question = getattr(self.record, "question", None)
+        if question is not None:
+            return flown_by(self.provenance, question.system, question.options)
+        return flown_by(self.provenance, "quadrotor", getattr(self.record, "options", {}))
 
 
-def parsed(path: Path, model: type[M], again: str) -> M:
-    """Return the model in a file; `Wrong` where it cannot be read, with the remedy `again`."""
+def kind_of(folder: Path) -> str:
+    """Return the name of the record in a run folder; that of an audit where there is none."""
+    return next((file for file in RUNS if (folder / file).is_file()), RECORD)
+
+
+@cache
+def load(name: str) -> Run:
+    """Return a reference run; `Wrong` for a damaged one, and where there is none."""
+    folder = REFERENCE / name
+    file = kind_of(folder)
+    return read_run(name, folder / file, RUNS[file][0])
+
+
+def read_run(name: str, record: Path, model: type[BaseModel]) -> Run:
+    """Return the run whose record is a file of its folder; `Wrong` for a damaged one."""
+    content = parsed(record, model)
+    return Run(name, content, parsed(record.with_name(PROVENANCE), RunProvenance))
+
+
+def parsed(path: Path, model: type[BaseModel], remedy: str = "take the run again") -> Any:
+    """Return the model in a file; `Wrong` where it cannot be read, with the remedy."""
     try:
         return model.model_validate_json(path.read_bytes())
     except (OSError, ValidationError) as error:
         reason = "missing" if isinstance(error, OSError) else f"of another version ({error})"
-        raise Wrong(f"{path} is {reason}: {again}") from None
+        raise Wrong(f"{path} is {reason}: {remedy}") from None
 
 
 def copied(files: Collection[str], folder: Path, target: Path) -> None:
@@ -66,73 +94,21 @@ def copied(files: Collection[str], folder: Path, target: Path) -> None:
         shutil.copyfile(folder / file, target / file)
 
 
-@cache
-def load(name: str) -> Run:
-    """Return a reference run; `Wrong` for a damaged one, and where there is none."""
-    folder = REFERENCE / name
-    record = parsed(folder / "record.json", DecisionRecord, TAKE_AGAIN)
-    return Run(name, record, parsed(folder / "provenance.json", RunProvenance, TAKE_AGAIN))
+def figures_of(study: str, file: str) -> Any:
+    """Return the numbers that a study of `experiments` left in a JSON file."""
+    path = ROOT / "experiments" / study / file
+    if not path.is_file():
+        raise Wrong(f"{path.relative_to(ROOT)} is missing: {study}/README.md says how it was made")
+    return json.loads(path.read_text("utf-8"))
 
 
-def table(run: Run) -> str:
-    """Return success of both variants and their difference, one path a column."""
-    record, question = run.record, run.record.question
-    table = by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm", "break-even"))
-    return "\n\n".join(
-        [
-            grid(table),
-            f"{question.n_scenes} scenes of `{question.library}`, {wording.seeds(question.seeds)}, "
-            f"fault `{question.fault}`. Bold: significant (interval and test agree after Holm's "
-            f"correction for {record.hypotheses} contrasts). Floor, ceiling: both below 10 % or "
-            f"above 90 %, no headline. Break-even: the fault frequency at which neither is ahead, "
-            f"estimated, and those at which neither is significantly ahead. Intervals are for "
-            f"{record.estimand}. Void pairs: "
-            f"{sum(effect.void_pairs for effect in record.effects)}.{_tests(run)} {flown(run)}",
-        ]
-    )
+def effect_entry(effect: Sequence[float]) -> Entry:
+    """Return a difference in percentage points with its interval, bold where it is significant.
 
-
-def _tests(run: Run) -> str:
-    tests = run.record.question.tests
-    return f" Tests: {tests}." if tests else ""
-
-
-def headline(run: Run) -> str:
-    """Return the record's headline as a quotation."""
-    return f"> **{run.record.headline}**"
-
-
-def contrast(run: Run) -> str:
-    """Return the two decided effects that point opposite ways: one module alone, and shared."""
-    question, effects = run.record.question, {e.path: e for e in run.record.effects}
-    shared = effects["shared"]
-    opposed = [
-        effect
-        for effect in run.record.effects
-        if effect.detected
-        and effect.path not in ("correct", "shared")
-        and effect.success.value * shared.success.value < 0
-    ]
-    if not shared.detected or len(opposed) != 1:
-        raise Wrong(f"{run.name} has not decided one reversal: the block has nothing to say")
-
-    def row(name: str, success: Any) -> str:
-        ahead = question.repair if success.value > 0 else question.baseline
-        shown = difference(success.value, *success.interval, bold=True)
-        return f"| {name} | {shown} | `{ahead}` |"
-
-    return "\n".join(
-        [
-            f"| The fault reaches | success of `{question.repair}` minus "
-            f"`{question.baseline}`, pp | ahead |",
-            "| :-- | --: | :-- |",
-            row(f"the {opposed[0].path} alone, as in a test of one module", opposed[0].success),
-            row("every module that reads the estimate, as in deployment", shared.success),
-            "",
-            f"{run.record.scenes} scenes, {wording.seeds(question.seeds)}; bold: significant at "
-            f"5 % after Holm's correction. Flown by commit `{run.provenance.commit[:12]}`.",
-        ]
-    )
+    `effect` is value, low end, high end, and the sign that is significant, or 0.
+    """
+    value, low, high, sign = effect
+    return Entry(text=difference(value, low, high, bold=False), detected=bool(sign))
 
 
 def difference(value: float, low: float, high: float, *, bold: bool) -> str:
@@ -142,9 +118,10 @@ def difference(value: float, low: float, high: float, *, bold: bool) -> str:
     return f"{f'**{text}**' if bold else text} [{ends}]"
 
 
-def terminal(run: Run) -> str:
-    """Return the record as the command line prints it, and by which code the run was flown."""
-    return "\n\n".join([printed(decision(run.record)), flown(run)])
+def words_grid(corner: str, columns: Sequence[str], lines: Sequence[Line]) -> str:
+    """Return a table in Markdown whose columns all stand to the left."""
+    heads = tuple(columns)
+    return grid(Table(corner=corner, columns=heads, words=heads, lines=tuple(lines)))
 
 
 def printed(shown: RenderableType) -> str:
@@ -155,127 +132,6 @@ def printed(shown: RenderableType) -> str:
     return fence("text", "\n".join(lines).strip("\n"))
 
 
-def command(run: Run, *words: str) -> str:
-    """Return the command that made the run, where it goes left out; `words` follow the fence."""
-    arguments = list(run.provenance.command)
-    if "--out" in arguments:
-        at = arguments.index("--out")
-        del arguments[at : at + 2]
-    text = shlex.join([Path(arguments[0]).name, *arguments[1:]])
-    return fence(" ".join(["console", *words]), "$ " + text.replace(" --", " \\\n    --"))
-
-
-def flown(run: Run) -> str:
-    """Return by which code the run was flown, and whether that is the code that is here."""
-    question = run.record.question
-    return flown_by(run.provenance, question.system, question.options)
-
-
-def origin(run: Run) -> str:
-    """Return where the run comes from."""
-    provenance, installed = run.provenance, run.provenance.packages
-    packages = ", ".join(
-        f"{name} {installed[name]}" for name in ("numpy", "torch") if name in installed
-    )
-    return (
-        f"Made on {provenance.finished[:10]} by faultpath {provenance.faultpath_version} with "
-        f"Python {provenance.python}, {packages}. {flown(run)} "
-        f"Everything that the run left in small files is in [`docs/reference/{run.name}`]"
-        f"({{reference}}/{run.name}): decision record, outcome table, provenance and report."
-    )
-
-
-def times(*names: str) -> str:
-    """Return how long runs took, one a row."""
-    runs = [load(name) for name in names]
-    lines = tuple(
-        line(
-            str(run.record.question.n_scenes),
-            str(len(run.record.question.seeds)),
-            str(run.trials),
-            duration(run),
-            run.provenance.processor.replace("(R)", ""),
-            str(run.provenance.workers),
-        )
-        for run in runs
-    )
-    heads = ("Seeds", "Trials", "Time", "Processor", "Workers")
-    table = Table(corner="Scenes", columns=heads, words=("Processor",), lines=lines)
-    return "\n\n".join([grid(table), " ".join(dict.fromkeys(map(flown, runs)))])
-
-
-def duration(run: Run) -> str:
-    """Return the wall time of a run; `Wrong` for one that resumed and did not do it all."""
-    if run.provenance.blocks_kept:
-        raise Wrong(
-            f"docs/reference/{run.name} kept {run.provenance.blocks_kept} blocks of an earlier "
-            "invocation, so its wall time is not that of the run; run it in a new folder"
-        )
-    minutes, seconds = divmod(round(run.provenance.wall_s), 60)
-    return f"{minutes} min {seconds:02d} s" if minutes else f"{seconds} s"
-
-
-def picture(run: Run, part: str) -> str:
-    """Return the picture of a part of the run's report."""
-    about = run.record.headline
-    return f"![{PARTS[part][0]} of {run.name}: {about}]({{images}}/{run.name}-{part}.svg)"
-
-
-def code(place: str, part: str, *words: str) -> str:
-    """Return a file's part below the line `# --- PART ---`; `words` follow the fence."""
-    pieces = re.split(r"^ *# --- (.+) ---\n", (ROOT / place).read_text("utf-8"), flags=re.MULTILINE)
-    parts = dict(zip(pieces[1::2], pieces[2::2], strict=True))
-    if part not in parts:
-        raise Wrong(f"{place} has no part '{part}'; it has {', '.join(parts)}")
-    return fence(" ".join(["python", *words]), parts[part].rstrip().strip("\n"))
-
-
-def template(kind: str, name: str, *parts: str) -> str:
-    """Return the file that `faultpath init NAME --with KIND` writes, or parts of it.
-
-    A part is a function, by its name; `imports` is what stands above the first one.
-    """
-    folder = ROOT / "src" / "faultpath" / "systems" / "templates"
-    text = (folder / f"{kind}.py.txt").read_text("utf-8").replace("NAME", name).rstrip()
-    if not parts:
-        return fence("python", text)
-    head, *functions = text.split("\n\n\n")
-    pieces = {"imports": head} | {
-        re.findall(r"^def (\w+)", function, re.MULTILINE)[0]: function for function in functions
-    }
-    if unknown := [part for part in parts if part not in pieces]:
-        raise Wrong(f"template {kind} has no part '{unknown[0]}'; it has {', '.join(pieces)}")
-    return fence("python", "\n\n\n".join(pieces[part] for part in parts))
-
-
 def fence(info: str, body: str) -> str:
     """Return a fenced block."""
     return f"```{info}\n{body}\n```"
-
-
-PARTS: dict[str, tuple[str, str]] = {
-    "verdict": ("Verdict", ".masthead, #verdict > *"),
-    "interface": ("Who gets the fault", "#interface > *"),
-    "readers": ("Who gets the fault", ".forks .panels"),
-    "effects": ("Effects of the repair", "#effects"),
-    "flights": ("Some flights", "#flights > *"),
-}
-"""Parts of a report that may be pictured: name in words, and selector in the page."""
-
-
-def about(
-    load: Callable[[str], Any], *fills: Callable[..., str]
-) -> Iterator[tuple[str, Callable[..., str]]]:
-    """Yield kind and function of the blocks about a run that is loaded by its name."""
-    for fill in fills:
-        kind = fill.__name__.strip("_")
-        yield kind, lambda name, *words, fill=fill: fill(load(name), *words)
-
-
-KINDS: dict[str, Callable[..., str]] = {
-    **dict(about(load, table, headline, contrast, terminal, command, origin, picture)),
-    "times": times,
-    "code": code,
-    "template": template,
-}
-"""Functions that fill the blocks about runs and about the code of examples, by kind."""

@@ -4,17 +4,16 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-import map_blocks
-from blocks import REFERENCE, ROOT
+from blocks import PROVENANCE, REFERENCE, ROOT, load, parsed
 from faultpath_paper.claims import again
 from faultpath_paper.pages import PAGES
 from faultpath_paper.reproduction import write_pages
 from faultpath_paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
 
-from faultpath.api.folders import MAP, RECORD, SYSTEM, TRACES, as_text
+from faultpath.api.folders import MAP, RECORD, as_text
+from faultpath.api.runs import open_run
 from faultpath.decisions.decide import decide
 from faultpath.decisions.map.decide import conclude as map_decided
 from faultpath.decisions.map.lattice import UNITS
@@ -24,22 +23,17 @@ from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.model import Path as FaultPath
 from faultpath.decisions.question import Question
 from faultpath.decisions.tables import Table
-from faultpath.report.html import write_report
-from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.map import table_markdown
-from faultpath.trials import System, SystemSpec, library_of, load_system
+from faultpath.trials import SystemSpec, library_of, load_system
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import MapQuestion
-from faultpath.trials.shown import SystemShown
 from faultpath.trials.store.folder import OUTCOMES, read_outcomes, seal
-from faultpath.trials.store.signals import SIGNALS, decode_signals
-from faultpath.trials.store.tables import decode_traces
 
 
 def conclude_all(tell: Callable[[str], None]) -> None:
     """Decide every reference run anew and write its record, table and page; then the paper's."""
-    for folder in sorted(path.parent for path in REFERENCE.glob("*/record.json")):
-        before = json.loads((folder / "record.json").read_bytes())
+    for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{RECORD}")):
+        before = json.loads((folder / RECORD).read_bytes())
         record = audit(folder)
         tell(f"{folder.name}: {before['headline']}\n    now: {record.headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
@@ -50,36 +44,24 @@ def conclude_all(tell: Callable[[str], None]) -> None:
 
 def audit(folder: Path) -> DecisionRecord:
     """Decide a stored audit anew and write its record and pages."""
-    before = json.loads((folder / "record.json").read_bytes())
+    before = json.loads((folder / RECORD).read_bytes())
     question = Question.model_validate(before["question"])
     paths = [FaultPath.model_validate(path) for path in before["paths"]]
-    outcomes = read_outcomes(folder / "outcomes.parquet")
+    outcomes = read_outcomes(folder / OUTCOMES)
     record = decide(question, paths, outcomes, findings=tuple(before.get("findings", ())))
     (folder / RECORD).write_text(as_text(record), "utf-8")
-    origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
-    shown = SystemShown.model_validate_json((folder / SYSTEM).read_bytes())  # as it flew
-    kept = (folder / SIGNALS).is_file()
-    write_report(
-        ReportInput(
-            record=record,
-            provenance=_reseal(folder, origin),
-            interface=shown.interface,
-            variants=shown.variants,
-            outcomes=outcomes,
-            traces=Traces(decode_traces((folder / TRACES).read_bytes()), shown.control_dt_s),
-            plans=shown.plans,
-            signals=decode_signals((folder / SIGNALS).read_bytes()) if kept else {},
-        ),
-        folder,
-    )
+    _reseal(folder)
+    open_run(folder).report()
     return record
 
 
 def reversal_map(folder: Path) -> MapRecord:
     """Decide a reference map anew from its trials; write its record and table."""
-    before = map_blocks.load(folder.name).record
+    before = load(folder.name).record
     question = before.question
-    spec, system = _system(question)
+    place = str(ROOT / question.system) if ".py:" in question.system else question.system
+    spec = SystemSpec(name=place, options=question.options)
+    system = load_system(spec)
     request = MapQuestion(
         baseline=question.baseline,
         repair=question.repair,
@@ -103,8 +85,8 @@ def reversal_map(folder: Path) -> MapRecord:
     )
     (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     (folder / "table.md").write_text(table_markdown(record), "utf-8")
-    _reseal(folder, map_blocks.load(folder.name).provenance)
-    map_blocks.load.cache_clear()
+    _reseal(folder)
+    load.cache_clear()
     return record
 
 
@@ -120,8 +102,7 @@ def paper(folder: Path, target: Path) -> list[str]:
         }
     )
     (folder / CONCLUSIONS).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
-    origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
-    write_pages(target, record, _reseal(folder, origin))
+    write_pages(target, record, _reseal(folder))
     answers = {claim.id: claim.verdict for claim in old.ledger.claims}
     return [
         f"{claim.id}: {answers.get(claim.id, 'not answered')} -> {claim.verdict}"
@@ -130,18 +111,12 @@ def paper(folder: Path, target: Path) -> list[str]:
     ] or ["No claim changed its answer."]
 
 
-def _system(question: Any) -> tuple[SystemSpec, System]:
-    place = str(ROOT / question.system) if ".py:" in question.system else question.system
-    spec = SystemSpec(name=place, options=question.options)
-    return spec, load_system(spec)
-
-
-def _reseal(folder: Path, origin: RunProvenance) -> RunProvenance:
+def _reseal(folder: Path) -> RunProvenance:
     """Write the digests of the files that were made anew; a run that kept none keeps none."""
+    origin = parsed(folder / PROVENANCE, RunProvenance)
     if not origin.files:
         return origin
     here = [name for name in origin.files if (folder / name).is_file()]
-    files = {**origin.files, **seal(folder, here)}
-    sealed = origin.model_copy(update={"files": files})
-    (folder / "provenance.json").write_text(sealed.model_dump_json(indent=2) + "\n", "utf-8")
+    sealed = origin.model_copy(update={"files": {**origin.files, **seal(folder, here)}})
+    (folder / PROVENANCE).write_text(sealed.model_dump_json(indent=2) + "\n", "utf-8")
     return sealed

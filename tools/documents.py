@@ -8,7 +8,7 @@
     python tools/documents.py --images                 make the pictures too, with Chromium
 
 A block stands between `<!-- begin:KIND:ARGUMENT -->` and `<!-- end:KIND:ARGUMENT -->`, each on a
-line of its own; `KINDS` lists the kinds. `PAGES` are the files that are made whole.
+line of its own; `BLOCKS` lists the kinds. `DRAWINGS` and `PAGES` are files that are made whole.
 `docs/reference/README.md` says what a reference run is.
 """
 
@@ -18,42 +18,81 @@ import re
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-import blocks
 import carry_blocks
 import found_blocks
 import latent_blocks
-import map_blocks
 import model_blocks
 import paper_blocks
+import run_blocks
 import state_blocks
-from blocks import REFERENCE, ROOT, Wrong, copied, load
-from pictures import IMAGES, digest, made_from, make_images, name_of
+from blocks import IMAGES, REFERENCE, ROOT, RUNS, Wrong, copied, kind_of, load
+from pictures import digest, made_from, make_images, name_of
 
-from faultpath.api.folders import MADE_FROM, MAP
 from faultpath.trials.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))
 from benchmarks import page as performance
 
-TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md")
-"""All that `faultpath report` reads of a run folder and writes there."""
-
-KINDS: Mapping[str, Any] = {
-    **blocks.KINDS,
-    "carry": carry_blocks.KIND,
-    "audits": found_blocks.audits,
+BLOCKS: Mapping[str, Callable[..., str]] = {
+    "table": run_blocks.table,
+    "headline": run_blocks.headline,
+    "contrast": run_blocks.contrast,
+    "terminal": run_blocks.terminal,
+    "command": run_blocks.command,
+    "picture": run_blocks.picture,
+    "times": run_blocks.times,
+    "map:command": run_blocks.command,
+    "map:terminal": run_blocks.map_terminal,
+    "map:picture": run_blocks.map_picture_of,
+    "map:said": run_blocks.map_sentences,
+    "map:turns": run_blocks.map_turns,
+    "code": run_blocks.code,
+    "template": run_blocks.template,
     "found": found_blocks.table,
-    "latent": latent_blocks.KIND,
-    "map": map_blocks.KIND,
-    "central": {"answer": paper_blocks.central_answer, "table": paper_blocks.central_table},
+    "audits": found_blocks.audits,
     "models": model_blocks.table,
-    "paper": paper_blocks.KIND,
-    "performance": performance.KIND,
-    "state": state_blocks.KIND,
+    "central:answer": paper_blocks.central_answer,
+    "central:table": paper_blocks.central_table,
+    "paper:counts": paper_blocks.counts,
+    "paper:ledger": paper_blocks.ledger,
+    "paper:sizes": paper_blocks.sizes,
+    "paper:apart": paper_blocks.not_confirmed,
+    "paper:facts": paper_blocks.facts_in_short,
+    "paper:origin": paper_blocks.origin,
+    "paper:picture": paper_blocks.picture,
+    "carry:said": carry_blocks.verdicts,
+    "carry:matrix": carry_blocks.matrix,
+    "carry:factors": carry_blocks.factors,
+    "carry:cost": carry_blocks.cost,
+    "state:reading": state_blocks.reading,
+    "state:picture": state_blocks.picture,
+    "state:effects": state_blocks.effects,
+    "state:rest": state_blocks.rest,
+    "state:success": state_blocks.success,
+    "state:errors": state_blocks.errors,
+    "state:map": state_blocks.calibration_map,
+    "state:accuracy": state_blocks.accuracy,
+    "state:cost": state_blocks.cost,
+    **{f"latent:{part}": function for part, function in latent_blocks.KIND.items()},
+    "performance:machine": performance.machine,
+    "performance:rows": performance.all_rows,
+    "performance:gpu": performance.gpu,
 }
-"""Functions that fill a block from the other words of its name, by kind, or by kind and part."""
+"""Functions that return the text of a block from the other words of its name, by its kind."""
+
+DRAWINGS: Mapping[str, Callable[..., tuple[str, str]]] = {
+    "map:picture": run_blocks.map_drawing,
+    "paper:picture": paper_blocks.drawing,
+    "state:picture": state_blocks.drawing,
+}
+"""Functions that return file name and content of the picture that a block shows."""
+
+PAGES: Sequence[Callable[[], Mapping[Path, str]]] = (
+    paper_blocks.elsewhere,
+    paper_blocks.fact_page,
+)
+"""Functions that return other files that follow from numbers, by their path."""
 
 BLOCK = re.compile(
     r"^<!-- begin:(?P<name>\S+) -->\n(?P<body>.*?)^<!-- end:(?P=name) -->$",
@@ -62,32 +101,25 @@ BLOCK = re.compile(
 MARKER = re.compile(r"^<!-- (?:begin|end):\S+ -->$", flags=re.MULTILINE)
 
 
-PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
-    map_blocks.pictures,
-    paper_blocks.pictures,
-    paper_blocks.elsewhere,
-    paper_blocks.fact_page,
-    state_blocks.pictures,
-)
-"""Functions that return whole files, by their path."""
-
-
 def documents() -> list[Path]:
     """Return the documents that may have blocks."""
     return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
+def split(name: str) -> tuple[str, list[str]]:
+    """Return the kind of a block, and the other words of its name; `Wrong` for an unknown kind."""
+    words = name.split(":")
+    for count in (1, 2):
+        kind = ":".join(words[:count])
+        if kind in BLOCKS:
+            return kind, words[count:]
+    raise Wrong(f"there is no block '{words[0]}' in '{name}': use {', '.join(BLOCKS)}")
+
+
 def fill(name: str, document: Path) -> str:
     """Return the text of the block `name` of a document."""
-    filler, words = KINDS, name.split(":")
-    while isinstance(filler, Mapping):
-        kind, *words = words or [""]
-        if kind not in filler:
-            raise Wrong(
-                f"{document.name}: there is no block '{kind}' in '{name}': use {', '.join(filler)}"
-            )
-        filler = filler[kind]
-    text = filler(*words)
+    kind, words = split(name)
+    text = BLOCKS[kind](*words)
     folders = {"{docs}": ROOT / "docs", "{images}": IMAGES, "{reference}": REFERENCE}
     for word, folder in folders.items():
         text = text.replace(word, Path(os.path.relpath(folder, document.parent)).as_posix())
@@ -107,71 +139,69 @@ def filled(text: str, document: Path) -> str:
     return BLOCK.sub(replace, text)
 
 
-def made() -> Mapping[Path, str]:
+def blocks_shown() -> list[tuple[str, list[str]]]:
+    """Return kind and words of every block of all documents."""
+    texts = [path.read_text("utf-8") for path in documents()]
+    names = {match["name"] for text in texts for match in BLOCK.finditer(text)}
+    return [split(name) for name in sorted(names)]
+
+
+def photographs() -> list[tuple[str, str]]:
+    """Return run and part of every picture that is taken of a report with a browser."""
+    return [(words[0], words[1]) for kind, words in blocks_shown() if kind == "picture"]
+
+
+def generated() -> Mapping[Path, str]:
     """Return every file that follows from numbers, by its path."""
     files = {path: filled(path.read_text("utf-8"), path) for path in documents()}
-    for make in PAGES:
-        files |= make()
+    drawn = [DRAWINGS[kind](*words) for kind, words in blocks_shown() if kind in DRAWINGS]
+    files |= {IMAGES / name: content for name, content in drawn}
+    for page in PAGES:
+        files |= page()
     return files
+
+
+def leftover() -> list[Path]:
+    """Return the pictures that no document shows."""
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    text = "".join(path.read_text("utf-8") for path in pages)
+    return [path for path in sorted(IMAGES.glob("*.svg")) if f"/{path.name}" not in text]
 
 
 def stale() -> Iterator[str]:
     """Yield each file, block or picture that is not up to date, in words."""
-    files = made()
-    for path, content in files.items():
+    for path, content in generated().items():
         text = path.read_text("utf-8") if path.is_file() else ""
         if text != content:
             pairs = zip(BLOCK.finditer(text), BLOCK.finditer(content), strict=False)
             names = [f"block {a['name']}" for a, b in pairs if a["body"] != b["body"]]
             yield ": ".join(filter(None, [str(path.relative_to(ROOT)), ", ".join(names)]))
-    for path in leftover(files):
-        yield f"{path.relative_to(ROOT)}: nothing was measured for it"
-    drawn = made_from()
-    for run, part in pictures():
+    for path in leftover():
+        yield f"{path.relative_to(ROOT)}: no document shows it"
+    digests = made_from()
+    for run, part in photographs():
         name = name_of(run, part)
-        if not (IMAGES / name).is_file() or drawn.get(name) != digest(run):
+        if not (IMAGES / name).is_file() or digests.get(name) != digest(run):
             yield f"docs/images/{name}: make it with --images"
 
 
 def write() -> None:
-    """Write what is stale, and delete pictures of what is no longer measured."""
-    files = made()
-    for path, text in files.items():
+    """Write what is stale, and delete pictures that no document shows."""
+    for path, text in generated().items():
         if not path.is_file() or path.read_text("utf-8") != text:
             path.write_text(text, "utf-8")
-    for path in leftover(files):
+    for path in leftover():
         path.unlink()
 
 
-def leftover(files: Mapping[Path, str]) -> list[Path]:
-    """Return the drawn pictures that no measurement gives."""
-    pages = {IMAGES / name_of(*picture) for picture in pictures()}
-    pages |= {IMAGES / name for name in made_from()}
-    drawn = ("paper-figure-2.svg", "latent-camera-strip.svg")
-    kept = {*IMAGES.glob("fault-*.svg"), *(IMAGES / name for name in drawn)}
-    return sorted(set(IMAGES.glob("*.svg")) - set(files) - pages - kept)
-
-
-def pictures() -> list[tuple[str, str]]:
-    """Return the run and part of every picture that documents show and that a run is there for."""
-    texts = [path.read_text("utf-8") for path in documents()]
-    names = [m["name"].split(":") for text in texts for m in BLOCK.finditer(text)]
-    return sorted({(n[1], n[2]) for n in names if n[0] == "picture"})
-
-
-def take(what: str) -> None:
+def take(argument: str) -> None:
     """Make a run folder a reference run, from `NAME=FOLDER`."""
-    name, separator, folder = what.partition("=")
+    name, separator, folder = argument.partition("=")
     if not separator or not name:
-        raise Wrong(f"--take {what}: give NAME=FOLDER of a finished run")
-    if (Path(folder) / MAP).is_file():
-        map_blocks.take(name, Path(folder))
-        return
-    if (Path(folder) / carry_blocks.CELLS).is_file():
-        carry_blocks.take(name, Path(folder))
-        return
-    signals = (SIGNALS,) if (Path(folder) / SIGNALS).is_file() else ()
-    copied((*TAKEN, *signals), Path(folder), REFERENCE / name)
+        raise Wrong(f"--take {argument}: give NAME=FOLDER of a finished run")
+    source = Path(folder)
+    signals = (SIGNALS,) if (source / SIGNALS).is_file() else ()
+    copied((*RUNS[kind_of(source)][1], *signals), source, REFERENCE / name)
     load.cache_clear()
     if load(name).provenance.dirty:
         print(f"{name} was made with uncommitted changes, and the documents will say so.")
@@ -192,8 +222,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             hint = "Run python tools/documents.py."
             print("\n".join([*problems, hint] if problems else ["Up to date."]))
             return 1 if problems else 0
-        for what in options.take:
-            take(what)
+        for argument in options.take:
+            take(argument)
         if options.paper is not None:
             paper_blocks.take(options.paper)
         if options.conclude:
@@ -204,7 +234,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             paper_blocks.load.cache_clear()
         write()
         if options.images:
-            make_images(pictures())
+            make_images(photographs())
     except Wrong as wrong:
         print(f"documents.py: {wrong}", file=sys.stderr)
         return 2

@@ -1,9 +1,9 @@
-"""The table of what every audit of the documents came to."""
+"""Blocks that put audits beside each other: all of them in one table, and those of one page."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from blocks import Wrong, difference, flown, load
+from blocks import Wrong, difference, load
 from latent_blocks import FAULTS
 from latent_blocks import audits_of as audits_of_rooms
 from state_blocks import PLACES, audits_of
@@ -53,7 +53,8 @@ class Effect(NamedTuple):
 class Audit(NamedTuple):
     """An audit of the table; `turns` says by module what is decided of shared against alone."""
 
-    system: str
+    title: str
+    page: str
     fault: str
     """Empty for the one fault of its page."""
     repair: str
@@ -103,44 +104,24 @@ def table() -> str:
     )
 
 
-def audits(page: str) -> str:
-    """Return success of baseline and repair, and their difference, for each audit of a page."""
-    names = [name for name, (_, place) in PAGES.items() if place == page]
-    titles = [effect.title for effect in load(names[0]).record.paths]
-    head = f"| repair, fault | {' | '.join(titles)} |", f"| :-- |{' --: |' * len(titles)}"
-    records = [load(name).record for name in names]
-    named = [f"`{record.question.repair}`, `{record.question.fault}`" for record in records]
-    rows = [
-        f"| {name} | {' | '.join(map(_success, record.effects))} |"
-        for name, record in zip(named, records, strict=True)
-    ]
-    return "\n".join([*head, *rows, "", flown(load(names[0]))])
-
-
-def _success(effect: model.Effect) -> str:
-    rates = (wording.plain(rate, 1) for rate in (effect.baseline_percent, effect.repair_percent))
-    return f"{' → '.join(rates)}, {_shown([_effect(effect)])}"
-
-
 def grouped() -> list[list[Audit]]:
     """Return the audits; those whose faults come to the same are a group, over repairs too."""
     faults: dict[tuple[object, ...], list[Audit]] = {}
-    for audit in (*_references(), *_cameras(), *_sensors()):
+    for audit in (*_of_references(), *_of_studies()):
         signs = audit.effects[audit.module].sign, audit.effects["shared"].sign
-        faults.setdefault((audit.system, audit.word, signs, audit.repair), []).append(audit)
+        faults.setdefault((audit.title, audit.word, signs, audit.repair), []).append(audit)
     groups: dict[object, list[Audit]] = {}
     for (*same, _), audits in faults.items():
         groups.setdefault((*same, *(audit.fault for audit in audits)), []).extend(audits)
     return list(groups.values())
 
 
-def _references() -> Iterator[Audit]:
+def _of_references() -> Iterator[Audit]:
     for name, (title, page) in PAGES.items():
         record = load(name).record
         effects = {effect.path: _effect(effect) for effect in record.effects}
         turns = {change.isolated: change.turn for change in record.changes}
-        system, repair = f"[{title}]({{docs}}/{page}.md)", f"`{record.question.repair}`"
-        yield Audit(system, "", repair, effects, turns)
+        yield Audit(title, page, "", f"`{record.question.repair}`", effects, turns)
 
 
 def _effect(effect: model.Effect) -> Effect:
@@ -150,33 +131,31 @@ def _effect(effect: model.Effect) -> Effect:
     return Effect(value, *ends, 0 if effect.extreme else effect.sign)
 
 
-def _cameras() -> Iterator[Audit]:
-    for rooms, name in CAMERAS.items():
-        system = f"[{name}]({{docs}}/latent-camera.md)"
+def _of_studies() -> Iterator[Audit]:
+    for rooms, title in CAMERAS.items():
         for audit in audits_of_rooms(rooms):
-            effects = {name: Effect(*effect) for name, effect in audit["effects"].items()}
-            repair, fault = f"`{audit['repair']}`", FAULTS[audit["fault"]]
+            effects = audit["effects"]
             # At a module where the fault did not act nothing was tested.
-            acted = {
-                n: turn for n, turn in audit["turns"].items() if effects[n] != effects["correct"]
-            }
-            yield Audit(system, fault, repair, effects, acted)
-
-
-def _sensors() -> Iterator[Audit]:
+            acted = {n: t for n, t in audit["turns"].items() if effects[n] != effects["correct"]}
+            named = {"fault": FAULTS[audit["fault"]], "repair": f"`{audit['repair']}`"}
+            yield _of_study(title, "latent-camera", audit | named | {"turns": acted})
     for audit in audits_of("sensors"):
-        system = "[Quadrotor's filter]({docs}/state-errors.md)"
-        effects = {name: Effect(*effect) for name, effect in audit["effects"].items()}
-        yield Audit(system, audit["fault"], audit["repair"], effects, audit["turns"])
+        yield _of_study("Quadrotor's filter", "state-errors", audit)
+
+
+def _of_study(title: str, page: str, audit: Mapping[str, Any]) -> Audit:
+    effects = {name: Effect(*effect) for name, effect in audit["effects"].items()}
+    return Audit(title, page, audit["fault"], audit["repair"], effects, audit["turns"])
 
 
 def _row(audits: Sequence[Audit]) -> str:
     first, word = audits[0], audits[0].word
+    page = f"[{first.title}]({{docs}}/{first.page}.md)"
     faults, repairs = (audit.fault for audit in audits), (audit.repair for audit in audits)
     modules = dict.fromkeys(PLACES.get(audit.module, audit.module) for audit in audits)
     alone = [audit.effects[audit.module] for audit in audits]
     cells = (
-        ", ".join(filter(None, dict.fromkeys((first.system, *faults, *repairs)))),
+        ", ".join(filter(None, dict.fromkeys((page, *faults, *repairs)))),
         _shown([audit.effects["correct"] for audit in audits]).partition(" [")[0],
         f"{' or '.join(modules)} {_shown(alone)}",
         _shown([audit.effects["shared"] for audit in audits]),
@@ -193,3 +172,19 @@ def _shown(effects: Sequence[Effect]) -> str:
     bold = all(effect.sign for effect in effects)
     ends = " to ".join(wording.signed(effect.value, 1) for effect in (least, greatest))
     return f"**{ends}**" if bold else ends
+
+
+def audits(page: str) -> str:
+    """Return success of baseline and repair, and their difference, for each audit of a page."""
+    runs = [load(name) for name, (_, place) in PAGES.items() if place == page]
+    titles = [effect.title for effect in runs[0].record.paths]
+    rows = [f"| repair, fault | {' | '.join(titles)} |", f"| :-- |{' --: |' * len(titles)}"]
+    for run in runs:
+        question, cells = run.record.question, map(_success, run.record.effects)
+        rows.append(f"| `{question.repair}`, `{question.fault}` | {' | '.join(cells)} |")
+    return "\n".join([*rows, "", runs[0].flown])
+
+
+def _success(effect: model.Effect) -> str:
+    rates = (wording.plain(rate, 1) for rate in (effect.baseline_percent, effect.repair_percent))
+    return f"{' → '.join(rates)}, {_shown([_effect(effect)])}"

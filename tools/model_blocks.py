@@ -1,15 +1,14 @@
-"""Marked block of the documents about the models that ship: the end of each fit, from its card."""
+"""Block about the models that ship: the end of each fit, from its card."""
 
 import json
 from typing import Any
 
-from blocks import Wrong
+from blocks import Wrong, words_grid
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.training.catalogue import ALL
 
 from faultpath.decisions import wording
-from faultpath.decisions.tables import Line, Table, line
-from faultpath.decisions.tables.markdown import grid
+from faultpath.decisions.tables import Line, line
 
 MEASURES = {
     "position_error_20_m": "position after 20 steps, m",
@@ -25,13 +24,13 @@ def table() -> str:
     lines: list[Line] = []
     for entry in ALL:
         cards = [_card(f"{entry.name}-{seed}") for seed in entry.seeds]
-        last = cards[0]["validation"][-1]
-        measure = next(name for name in MEASURES if name in last)
-        errors = [wording.plain(card["validation"][-1][measure], 3) for card in cards]
+        last = [card["validation"][-1] for card in cards]
+        measure = next(name for name in MEASURES if name in last[0])
+        errors = " / ".join(wording.plain(errors[measure], 3) for errors in last)
         sizes = (f"{cards[0][name]:,}" for name in ("parameters", "samples"))
-        columns = (entry.description, *sizes, MEASURES[measure], " / ".join(errors))
+        columns = (entry.description, *sizes, MEASURES[measure], errors)
         lines.append(line(entry.name, *columns, name=True))
-    return grid(Table(corner="Model", columns=COLUMNS, words=COLUMNS, lines=tuple(lines)))
+    return words_grid("Model", COLUMNS, lines)
 
 
 def _card(stem: str) -> dict[str, Any]:

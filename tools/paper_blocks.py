@@ -1,14 +1,15 @@
-"""Marked blocks of the documents about the shipped reproduction of the paper."""
+"""Blocks, pictures and pages about the shipped reproduction of the paper."""
 
 import hashlib
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
 import blocks
-from blocks import REFERENCE, ROOT, TAKE_AGAIN, Wrong, copied, parsed
+from blocks import REFERENCE, ROOT, Run, Wrong, copied, parsed, read_run
 from faultpath_paper.answers import RUN, Reproduction
-from faultpath_paper.cells import SYSTEM, Setting
+from faultpath_paper.cells import Setting
 from faultpath_paper.central import (
     CASES,
     ELSEWHERE,
@@ -25,19 +26,18 @@ from faultpath_paper.facts import SECTIONS, STANDINGS, counted, facts, listed
 from faultpath_paper.report.page import sweep_plot
 from faultpath_paper.report.short import apart, by_kind, by_subject
 from faultpath_paper.report.words import NON_DETECTION, headline
-from flown_code import flown_by
-from pictures import IMAGES, standing
 
 from faultpath.decisions import wording
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.tables.escapes import markdown
 from faultpath.decisions.tables.markdown import block, grid
-from faultpath.trials.provenance import RunProvenance
+from faultpath.report.svg import template
 from faultpath.trials.store.folder import read_outcomes
 
 PLACE = REFERENCE / "paper"
 FACTS = PLACE / "facts.md"
-FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")
+RECORD = "reproduction.json"
+FILES = (RECORD, "provenance.json", "outcomes.parquet", "evidence.parquet")
 """Files of a run that ship with the package: the claims are evaluated from them."""
 PAGES = ("reproduction.html", "tables.md", "ledger.md")
 """Files of a run that are copied to `docs/reference/paper`."""
@@ -49,26 +49,19 @@ _FAULT, _MODULE = "calibration=+0.1", "reconstruction"
 
 
 @cache
-def load() -> tuple[Reproduction, RunProvenance]:
+def load() -> Run:
     """Return the shipped run; `Wrong` for a damaged one."""
-    record = parsed(RUN / FILES[0], Reproduction, TAKE_AGAIN)
-    return record, parsed(RUN / FILES[1], RunProvenance, TAKE_AGAIN)
+    return read_run("paper", RUN / RECORD, Reproduction)
 
 
 def take(folder: Path) -> None:
     """Ship a run of the whole paper; `Wrong` when it is not finished."""
-    record = parsed(folder / FILES[0], Reproduction, "give the folder of a finished run")
+    record = parsed(folder / RECORD, Reproduction, "give the folder of a finished run")
     if record.profile != "paper":
         raise Wrong(f"{folder} is a {record.profile} run: what is shipped is one of profile paper")
     copied(FILES, folder, RUN)
     copied(PAGES, folder, PLACE)
     load.cache_clear()
-
-
-def pictures() -> Mapping[Path, str]:
-    """Return the paper's figures, by their path."""
-    figures = load()[0].figures
-    return {IMAGES / f"paper-{figure.name}.svg": standing(sweep_plot(figure)) for figure in figures}
 
 
 def central_answer() -> str:
@@ -82,91 +75,124 @@ def central_table() -> str:
     return block(table_of(_cases()))
 
 
-def elsewhere() -> Mapping[Path, str]:
-    """Return the file with what reference runs detected on the central question, by its path."""
-    return {ELSEWHERE: CASES.dump_json(_besides(), indent=1).decode() + "\n"}
-
-
 def _cases() -> tuple[Case, ...]:
     """Return what the shipped run detected, if it was flown on the platform that is here, and what
     reference runs did."""
-    own = case_of(load()[0])
+    own = case_of(load().record)
     return (*([own] if own and not _former() else []), *_besides())
 
 
 def _former() -> str:
     """Return a sentence where the shipped run was flown on another platform than the one here."""
     weights = ROOT / "quadrotor" / "src" / "faultpath_quadrotor" / WEIGHTS
-    if load()[1].data[WEIGHTS] == hashlib.sha256(weights.read_bytes()).hexdigest():
+    if load().provenance.data[WEIGHTS] == hashlib.sha256(weights.read_bytes()).hexdigest():
         return ""
     return "**On a platform before the present one.** "
 
 
+def elsewhere() -> Mapping[Path, str]:
+    """Return the file with what reference runs detected on the central question, by its path."""
+    return {ELSEWHERE: CASES.dump_json(_besides(), indent=1).decode() + "\n"}
+
+
 def _besides() -> tuple[Case, ...]:
-    return tuple(_case(name) for name in BESIDES)
+    return tuple(_case(blocks.load(name)) for name in BESIDES)
 
 
-def _case(name: str) -> Case:
-    run = blocks.load(name)
-    record = run.record
+def _case(run: Run) -> Case:
+    record, question = run.record, run.record.question
     effects = {effect.path: effect for effect in record.effects}
+    pair = effects[_MODULE], effects[SHARED]
     isolated, shared = (
-        Effect.of(wording.with_interval(effect.success), effect.detected)
-        for effect in (effects[_MODULE], effects[SHARED])
+        Effect.of(wording.with_interval(effect.success), effect.detected) for effect in pair
     )
-    question = record.question
+    by_seed = zip(*(effect.success.per_seed or () for effect in pair), strict=True)
     return Case(
         place=f"{record.scenes} scenes of {question.library}, {wording.seeds(question.seeds)}",
         isolated=isolated,
         shared=shared,
-        reversal=any(
-            change.isolated == _MODULE and change.turn == "reversal" for change in record.changes
-        ),
-        reversing=sum(
-            one > 0 > two
-            for one, two in zip(
-                *(effects[path].success.per_seed or () for path in (_MODULE, SHARED)), strict=True
-            )
-        ),
+        reversal=(_MODULE, "reversal") in ((c.isolated, c.turn) for c in record.changes),
+        reversing=sum(one > 0 > two for one, two in by_seed),
         trainings=len(question.seeds),
         weights=run.provenance.data[WEIGHTS],
     )
 
 
-def _counts() -> str:
-    record, ledger = load()[0], load()[0].ledger
+def counts() -> str:
+    """Return how many claims came out, in a sentence."""
+    record, ledger = load().record, load().record.ledger
     return (
         f"{_former()}{headline(ledger, record.profile)} ({ledger.scenes} scenes of "
         f"`{ledger.library}`, seeds {', '.join(map(str, ledger.seeds))}; {record.trials:,} trials)."
     )
 
 
-def _apart() -> str:
+def ledger() -> str:
+    """Return how many claims of each kind got which answer."""
+    return f"{grid(by_kind(load().record.ledger))}\n\n{markdown(NON_DETECTION)}"
+
+
+def sizes() -> str:
+    """Return how the figures that the paper prints compare with ours."""
+    return grid(by_subject(load().record.ledger))
+
+
+def not_confirmed() -> str:
+    """Return each claim that is not confirmed, with the part that decides."""
     return "\n".join(
-        f"- **{verdict}.** {markdown(decisive)}." for verdict, decisive in apart(load()[0].ledger)
+        f"- **{verdict}.** {markdown(decisive)}."
+        for verdict, decisive in apart(load().record.ledger)
     )
 
 
-def _picture(part: str) -> str:
-    record = load()[0]
+def picture(part: str) -> str:
+    """Return the picture of one of the paper's figures."""
+    record = load().record
     titles = {exhibit.name: exhibit.title for exhibit in (*record.tables, *record.figures)}
-    return f"![{titles.get(part, part)}]({{images}}/paper-{part}.svg)"
+    return f"![{titles[part]}]({{images}}/paper-{part}.svg)"
 
 
-def _origin() -> str:
-    origin = load()[1]
-    place = f"[`docs/reference/{PLACE.relative_to(REFERENCE)}`]"
-    again = "" if _former() else _run_again()
+def drawing(part: str) -> tuple[str, str]:
+    """Return file name and content of that picture."""
+    figure = next(figure for figure in load().record.figures if figure.name == part)
+    return f"paper-{part}.svg", standalone(sweep_plot(figure))
+
+
+def standalone(drawing: str) -> str:
+    """Return a drawing of a page as a file of its own: colours inside, and its title above it."""
+    box = re.findall(r'viewBox="([^"]*)"', drawing)[0]
+    title = re.findall(r"<title[^>]*>([^<]*)</title>", drawing)[0]
+    left, top, width, height = map(float, box.split())
+    x, y, wide, high = left - 12, top - 38, width + 24, height + 50
+    head, _, rest = drawing.partition(">")
+    head = re.sub(r'( viewBox| width| height| xmlns)="[^"]*"', "", head)
+    own = template("reproduction.css", "faultpath_paper.report").splitlines()
+    css = (
+        template("tokens.css")
+        + template("svg.css")
+        + "".join(line for line in own if line.startswith(".fig"))
+    )
     return (
-        f"Finished on {origin.finished[:10]}, with {origin.workers} workers on "
-        f"{origin.processor.replace('(R)', '')}, and concluded anew by the code that is here, "
-        f"which a test repeats. {flown_by(origin, SYSTEM, {})} {again}Everything is in "
-        f"{place}({{reference}}/{PLACE.relative_to(REFERENCE)}): the report, the ledger and all "
-        "tables."
+        f'{head} viewBox="{x:g} {y:g} {wide:g} {high:g}" xmlns="http://www.w3.org/2000/svg" '
+        f'width="{wide:g}" height="{high:g}"><style>{css}</style>'
+        f'<rect class="paper" x="{x:g}" y="{y:g}" width="{wide:g}" height="{high:g}"/>'
+        f'<text class="head" x="{left:g}" y="{top - 14:g}">{title}</text>{rest}\n'
     )
 
 
-def _run_again() -> str:
+def origin() -> str:
+    """Return where the run comes from, and how much of it was flown again."""
+    run, place = load(), PLACE.relative_to(REFERENCE)
+    again = "" if _former() else _flown_again()
+    return (
+        f"Finished on {run.provenance.finished[:10]}, with {run.provenance.workers} workers on "
+        f"{run.provenance.processor.replace('(R)', '')}, and concluded anew by the code that is "
+        f"here, which a test repeats. {run.flown} {again}Everything is in "
+        f"[`docs/reference/{place}`]({{reference}}/{place}): the report, the ledger and all tables."
+    )
+
+
+def _flown_again() -> str:
     """Return how many trials a reference run has repeated, and how many came out alike."""
     paths = {CORRECT: CORRECT, SHARED: _FAULT, _MODULE: f"{_FAULT}@{_MODULE}"}
     setting = Setting(wind="L3")
@@ -187,6 +213,18 @@ def _run_again() -> str:
     )
 
 
+def facts_in_short() -> str:
+    """Return the counts by section, and every fact that is otherwise with its reason."""
+    otherwise = [fact for fact in facts() if fact.state == "otherwise"]
+    items = [
+        f"- **{fact.number}.** *The paper:* {markdown(fact.fact)} *Here:* {markdown(fact.ours)}"
+        for fact in otherwise
+    ]
+    where = f"{{reference}}/{FACTS.relative_to(REFERENCE)}"
+    title = f"Otherwise ([all {len(facts())} facts]({where}), with their places in the code):"
+    return "\n\n".join([grid(counted()), title, "\n".join(items)])
+
+
 def fact_page() -> Mapping[Path, str]:
     """Return the page with every fact, by its path."""
     words = ", ".join(
@@ -203,33 +241,3 @@ def fact_page() -> Mapping[Path, str]:
     for section, title in SECTIONS.items():
         parts += [f"## {title}", grid(listed(section))]
     return {FACTS: "\n\n".join(parts) + "\n"}
-
-
-def _facts() -> str:
-    """Return the counts by section, and every fact that is otherwise with its reason."""
-    every = facts()
-    otherwise = [fact for fact in every if fact.state == "otherwise"]
-    items = [
-        f"- **{fact.number}.** *The paper:* {markdown(fact.fact)} *Here:* {markdown(fact.ours)}"
-        for fact in otherwise
-    ]
-    where = f"{{reference}}/{FACTS.relative_to(REFERENCE)}"
-    return "\n\n".join(
-        [
-            grid(counted()),
-            f"Otherwise ([all {len(every)} facts]({where}), with their places in the code):",
-            "\n".join(items),
-        ]
-    )
-
-
-KIND: dict[str, Callable[..., str]] = {
-    "counts": _counts,
-    "ledger": lambda: f"{grid(by_kind(load()[0].ledger))}\n\n{markdown(NON_DETECTION)}",
-    "sizes": lambda: grid(by_subject(load()[0].ledger)),
-    "apart": _apart,
-    "facts": _facts,
-    "origin": _origin,
-    "picture": _picture,
-}
-"""Functions that fill the blocks about the paper, by kind."""

@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import re
 import shutil
 from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
@@ -10,16 +9,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from blocks import PARTS, REFERENCE, ROOT, Wrong
-
-from faultpath.report.svg import template
+from blocks import IMAGES, REFERENCE, Wrong
+from run_blocks import PARTS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-MARGIN, TITLE = 12.0, 26.0
+MARGIN = 12.0
 SCHEMES: tuple[Literal["light"], Literal["dark"]] = ("light", "dark")
-IMAGES = ROOT / "docs" / "images"
 MADE_FROM = IMAGES / "made-from.json"
 _SMALL = """async (png) => {
   const picture = new Image();
@@ -56,7 +53,7 @@ def name_of(run: str, part: str) -> str:
 
 
 def make_images(pictures: Sequence[tuple[str, str]]) -> None:
-    """Make every picture that documents show, and drop those that they no longer do."""
+    """Take every picture that documents show of a report: run and part."""
     from playwright.sync_api import sync_playwright
 
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -70,31 +67,18 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
             (IMAGES / name_of(run, part)).write_text(picture(browser, run, part), "utf-8")
             digests[name_of(run, part)] = digest(run)
         browser.close()
-    for old in made_from().keys() - digests.keys():
-        (IMAGES / old).unlink(missing_ok=True)
     MADE_FROM.write_text(json.dumps(digests, indent=2, sort_keys=True) + "\n", "utf-8")
 
 
 def picture(browser: "Browser", run: str, part: str) -> str:
-    """Return a part of a run's page as one SVG that is light or dark as its reader has it.
-
-    A part that is one drawing stays one, with its title above; any other is taken twice, as a page
-    shows it in the light and in the dark.
-    """
-    selector = PARTS[part][1]
-    with _opened(browser, run, "light") as page:
-        drawings = page.query_selector_all(
-            f":is({selector}) svg.fig:visible, svg.fig:is({selector})"
-        )
-        texts = page.query_selector_all(f":is({selector}) p:visible, p:is({selector})")
-        if len(drawings) == 1 and not texts:
-            return standing(drawings[0].evaluate("e => new XMLSerializer().serializeToString(e)"))
+    """Return a part of a run's page as one SVG that is light or dark as its reader has it."""
     shots: list[str] = []
     size = (0.0, 0.0)
     for scheme in SCHEMES:
         with _opened(browser, run, scheme) as page:
-            boxes = [element.bounding_box() for element in page.query_selector_all(selector)]
-            areas = [box for box in boxes if box is not None and box["height"] > 0]
+            elements = page.query_selector_all(PARTS[part][1])
+            areas = [box for element in elements if (box := element.bounding_box())]
+            areas = [box for box in areas if box["height"] > 0]
             if not areas:
                 raise Wrong(f"the report of {run} has no {part}")
             clip = _around(areas, MARGIN)
@@ -122,32 +106,6 @@ def _opened(browser: "Browser", run: str, scheme: Literal["light", "dark"]) -> "
     page.add_style_tag(content=".contents { position: static }")
     yield page
     context.close()
-
-
-def standing(drawing: str) -> str:
-    """Return a drawing of a page as a file of its own: colours inside, and its title above it where
-    it shows none itself."""
-    box = re.search(r'viewBox="([^"]*)"', drawing)
-    title = re.search(r"<title[^>]*>([^<]*)</title>", drawing)
-    if box is None or title is None:
-        raise Wrong("a drawing without a title or a size")
-    left, top, width, height = map(float, box[1].split())
-    room = 0 if 'class="head"' in drawing else TITLE
-    around = left - MARGIN, top - MARGIN - room, width + 2 * MARGIN, height + 2 * MARGIN + room
-    head, _, rest = drawing.partition(">")
-    head = re.sub(r'viewBox="[^"]*"', f'viewBox="{" ".join(f"{n:g}" for n in around)}"', head)
-    head = re.sub(r'( width| height| xmlns)="[^"]*"', "", head)
-    head += ' xmlns="http://www.w3.org/2000/svg"'
-    head += f' width="{around[2]:g}" height="{around[3]:g}">'
-    own = [
-        line
-        for line in template("reproduction.css", "faultpath_paper.report").splitlines()
-        if line.startswith(".fig")
-    ]
-    css = "".join((template("tokens.css"), template("svg.css"), *own))
-    ground = '<rect class="paper" x="{:g}" y="{:g}" width="{:g}" height="{:g}"/>'.format(*around)
-    above = f'<text class="head" x="{left:g}" y="{top - room + 12:g}">{title[1]}</text>'
-    return f"{head}<style>{css}</style>{ground}{above if room else ''}{rest}\n"
 
 
 def twice(size: tuple[float, float], light: str, dark: str) -> str:

@@ -18,10 +18,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import documents
-from blocks import REFERENCE, ROOT
-from flown_code import flown_by
-
-from faultpath.trials.provenance import RunProvenance
+from blocks import PROVENANCE, REFERENCE, ROOT, Run, load
 
 TREE = ROOT / "build" / "references"
 APART = ("carry-over", "paper")
@@ -44,36 +41,25 @@ def main() -> None:
     runs = by_time()
     if unknown := sorted({*options.names} - {*runs}):
         parser.error(f"no reference run is called {unknown[0]}: there are {', '.join(runs)}")
-    chosen = options.names or [name for name, run in runs.items() if stale(run)]
+    chosen = options.names or [name for name, run in runs.items() if STALE in run.flown]
     if options.list:
         for name, run in runs.items():
-            state = "stale" if stale(run) else "as it was flown"
-            print(f"{name:36s}{run.wall_s:6.0f} s  {state}")
+            state = "stale" if STALE in run.flown else "as it was flown"
+            print(f"{name:36s}{run.provenance.wall_s:6.0f} s  {state}")
         return
     commit = checkout()
     for name in chosen:
-        print(f"{name}: {' '.join(runs[name].command)}", flush=True)
-        fly(name, runs[name], commit)
+        print(f"{name}: {' '.join(runs[name].provenance.command)}", flush=True)
+        fly(runs[name], commit)
     if chosen:
         sys.exit(documents.main(["--images"]))
 
 
-def by_time() -> dict[str, RunProvenance]:
-    """Return the origin of each reference run, the quickest first."""
-    runs = {
-        path.parent.name: RunProvenance.model_validate_json(path.read_bytes())
-        for path in REFERENCE.glob("*/provenance.json")
-        if path.parent.name not in APART
-    }
-    return dict(sorted(runs.items(), key=lambda item: item[1].wall_s))
-
-
-def stale(run: RunProvenance) -> bool:
-    """Return whether code or weights that flew have changed."""
-    command = run.command
-    system = command[2]
-    options = {"wind": command[command.index("--wind") + 1]} if "--wind" in command else {}
-    return STALE in flown_by(run, system, options)
+def by_time() -> dict[str, Run]:
+    """Return the reference runs by name, the quickest first."""
+    names = {path.parent.name for path in REFERENCE.glob(f"*/{PROVENANCE}")} - {*APART}
+    runs = sorted(map(load, names), key=lambda run: run.provenance.wall_s)
+    return {run.name: run for run in runs}
 
 
 def checkout() -> str:
@@ -91,10 +77,10 @@ def checkout() -> str:
     return commit
 
 
-def fly(name: str, run: RunProvenance, commit: str) -> None:
-    """Fly a run and make it the reference."""
-    folder = Path("runs", f"{name}-{commit[:12]}")
-    command = list(run.command[1:])
+def fly(run: Run, commit: str) -> None:
+    """Fly a run again and make it the reference."""
+    folder = Path("runs", f"{run.name}-{commit[:12]}")
+    command = list(run.provenance.command[1:])
     command[command.index("--out") + 1] = str(folder)
     sources = (TREE / part / "src" for part in (".", "quadrotor", "paper"))
     variables = os.environ | {
@@ -103,15 +89,15 @@ def fly(name: str, run: RunProvenance, commit: str) -> None:
     }
     python = ROOT / environment(run) / "bin" / "python"
     subprocess.run((python, "-m", "faultpath", *command), cwd=TREE, env=variables, check=True)
-    documents.take(f"{name}={TREE / folder}")
+    documents.take(f"{run.name}={TREE / folder}")
 
 
-def environment(run: RunProvenance) -> str:
+def environment(run: Run) -> str:
     """Return the virtual environment, as make has it, in which a run's system can be built."""
-    version = ".".join(run.python.split(".")[:2])
+    version = ".".join(run.provenance.python.split(".")[:2])
     if version != f"{sys.version_info.major}.{sys.version_info.minor}":
         return f".venv-{version}"
-    example = Path(run.command[2]).name
+    example = Path(run.provenance.command[2]).name
     needed = (package for start, package in SYSTEMS.items() if example.startswith(start))
     return ".venv" if all(map(find_spec, needed)) else ".venv-foreign"
 

@@ -1,7 +1,7 @@
 """jax-mppi: its `mppi.command`, compiled by JAX, with a cheap goal and speed cost.
 
 It asks for Python 3.12, for which the torch of our sides may have no build. So it runs in an
-environment of its own and reads the problem from the file that `benchmarks.peers.problem` writes.
+environment of its own and reads the problem from the file that `benchmarks.peers.batched` writes.
 """
 
 import os
@@ -66,7 +66,7 @@ def command() -> Side:
 
 
 def _step(problem: dict[str, Any], state: Any, command: Any) -> Any:
-    """Return the state `[50]` after one interval under `command` `[4]`, as `rows.RowsModel`."""
+    """Return the state `[50]` after one interval under `command` `[4]`, as `batched.BatchModel`."""
 
     def linear(name: str, value: Any) -> Any:
         return problem[f"{name}.weight"] @ value + problem[f"{name}.bias"]

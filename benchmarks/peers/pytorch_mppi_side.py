@@ -7,19 +7,19 @@ import torch
 from pytorch_mppi import MPPI
 
 from benchmarks import planning
-from benchmarks.peers import rows
+from benchmarks.peers import batched
 from benchmarks.side import Side, check_same
 
 
 def command() -> Side:
     """`MPPI.command` for one scene."""
-    model = rows.RowsModel()
-    check_same(rows.positions(model), planning.positions(), 1e-3)
-    centre, sigma, low, high = rows.actions()
+    model = batched.BatchModel()
+    check_same(batched.positions(model), planning.positions(), 1e-3)
+    centre, sigma, low, high = batched.actions()
     planner = MPPI(
         model,
-        lambda state, action: rows.cost(state),
-        nx=rows.STATE,
+        lambda state, action: batched.cost(state),
+        nx=batched.STATE,
         noise_sigma=torch.diag(sigma.square()),
         num_samples=planning.CANDIDATES,
         horizon=planning.HORIZON,
@@ -28,5 +28,5 @@ def command() -> Side:
         u_init=centre,
         U_init=centre.repeat(planning.HORIZON, 1),
     )
-    state = rows.initial()
+    state = batched.initial()
     return Side(lambda: planner.command(state))

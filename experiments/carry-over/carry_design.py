@@ -1,4 +1,4 @@
-"""What the study asks, as its file says, and what its flights leave."""
+"""Design of the study, as its file states it, and results of its flights."""
 
 import math
 from collections import Counter
@@ -44,7 +44,7 @@ class Question(Frozen):
 
 
 class Quick(Frozen):
-    """What is left of the design for a trial."""
+    """Part of the design that a quick trial flies."""
 
     scenes: int
     only: Only
@@ -72,7 +72,7 @@ class Design(Frozen):
         except (OSError, Misread) as error:
             where = error.at(path) if isinstance(error, Misread) else f"{path}: {error.strerror}"
             raise UserError(f"{where}.") from None
-        for only in (design.quick.only, *(each.only for each in design.questions)):
+        for only in (design.quick.only, *(question.only for question in design.questions)):
             for factor, levels in only.items():
                 if odd := set(levels) - set(design.factors.get(factor, {})):
                     raise UserError(f"{path}: there is no level '{min(odd)}' of '{factor}'.")
@@ -95,7 +95,7 @@ class Design(Frozen):
         for levels in self._combined(fault=False):
             if any(True for _ in self.asked(levels)):
                 options = (self.factors[name][level] for name, level in levels.items())
-                yield levels, {key: value for each in options for key, value in each.items()}
+                yield levels, {key: value for level in options for key, value in level.items()}
 
     def asked(self, setting: Levels) -> Iterator[tuple[Question, Levels, str]]:
         """Yield what is asked in a setting: question, levels of all factors, and the fault."""
@@ -119,7 +119,7 @@ class Design(Frozen):
         """
         every = (q for levels, _ in self.settings() for q, _, _ in self.asked(levels))
         cells = Counter((q.baseline, q.repair) for q in every)
-        return {asked: math.log(2 * count / self.alpha) for asked, count in cells.items()}
+        return {pair: math.log(2 * count / self.alpha) for pair, count in cells.items()}
 
 
 class Cell(Frozen):
@@ -136,7 +136,7 @@ class Cell(Frozen):
     @property
     def void(self) -> bool:
         """Whether a pair is none: then nothing is decided."""
-        return any(VOID in each for each in self.ended)
+        return any(VOID in letters for letters in self.ended)
 
     @property
     def differences(self) -> NDArray[np.float64]:
@@ -146,7 +146,7 @@ class Cell(Frozen):
 
 
 class Round(Frozen):
-    """What was computed between two looks of a setting."""
+    """Work computed between two looks of a setting."""
 
     workers: int
     blocks: int
@@ -162,7 +162,7 @@ class Flown(Frozen):
     left_out: dict[str, str]
     """Levels that the installed system does not offer, and why."""
     options: dict[str, str]
-    """Of the system that flew last, by which its code is known."""
+    """Options of the system that flew last, by which its code is known."""
     cells: tuple[Cell, ...]
     trials: int
     """That the cells rest on; an arm of several cells counts once."""

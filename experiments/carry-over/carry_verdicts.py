@@ -1,4 +1,4 @@
-"""What is decided of each cell and of each factor, and how it is said: from decisions alone."""
+"""Decisions on each cell and each factor, and sentences that follow from these alone."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -22,7 +22,7 @@ _KINDS = np.array([-1.0, 0.0, 1.0])
 def sign(differences: Floats, needed: float) -> int:
     """Return the side that is decided: 1 for the repair, -1 for the baseline, 0 for neither."""
     counts = (differences[:, None] == _KINDS).sum(axis=0).astype(float)
-    ahead = [float(log_capital(_KINDS, each, 0.0, 1.0)) for each in (counts, counts[::-1])]
+    ahead = [float(log_capital(_KINDS, n, 0.0, 1.0)) for n in (counts, counts[::-1])]
     return (ahead[0] >= needed) - (ahead[1] >= needed)
 
 
@@ -33,7 +33,7 @@ def settled(design: Design, cell: Cell, left: int) -> bool:
     """
     needed = design.needed[cell.baseline, cell.repair]
     more = [np.append(cell.differences, np.full(left, side)) for side in (1.0, -1.0)]
-    hopeless = not any(sign(each, needed) for each in more)
+    hopeless = not any(sign(differences, needed) for differences in more)
     return cell.void or hopeless or bool(lead(design, cell))
 
 
@@ -46,7 +46,7 @@ def reason(cell: Cell) -> str:
     """Say what stands in the way of a decision: failed trials, or two arms at one end."""
     if cell.void:
         return "void"
-    rates = [each.count("1") / len(each) for each in cell.ended if each]
+    rates = [letters.count("1") / len(letters) for letters in cell.ended if letters]
     return (
         "floor" if rates and max(rates) < 0.1 else "ceiling" if rates and min(rates) > 0.9 else ""
     )
@@ -56,8 +56,8 @@ def questions(flown: Flown) -> Iterator[tuple[Question, Reach, list[Cell]]]:
     """Yield each question on each path, with its cells; none where nothing is shared."""
     for question in flown.design.questions:
         for reach in get_args(Reach):
-            asked = (question.baseline, question.repair, reach)
-            cells = [c for c in flown.cells if (c.baseline, c.repair, c.reach) == asked]
+            key = (question.baseline, question.repair, reach)
+            cells = [c for c in flown.cells if (c.baseline, c.repair, c.reach) == key]
             if cells or reach == "isolated":
                 yield question, reach, cells
 
@@ -113,7 +113,7 @@ class Mean:
 
 @dataclass(frozen=True)
 class Move:
-    """What a factor does to a question: pairs of cells that are alike in all else."""
+    """Effect of a factor on a question: pairs of cells that are alike in all else."""
 
     question: Question
     reach: Reach
@@ -126,7 +126,7 @@ class Move:
     """Decided at one level alone, which shows no difference."""
     neither: int
     change: Mean | None
-    """Of the difference, from the first level to the second; `None` of too few scenes."""
+    """Change of the difference, from the first level to the second; `None` of too few scenes."""
 
 
 def overall(flown: Flown) -> list[tuple[Question, Reach, Mean | None]]:
@@ -144,7 +144,7 @@ def overall(flown: Flown) -> list[tuple[Question, Reach, Mean | None]]:
 
 def moves(flown: Flown) -> list[Move]:
     """Return what each factor does to each question, between each two of its levels."""
-    every, found = list(_pairs(flown)), list[Move]()
+    every, results = list(_pairs(flown)), list[Move]()
     for question, reach, factor, levels, pairs in every:
         signs = [(lead(flown.design, one), lead(flown.design, two)) for one, two in pairs]
         first = flown.design.first
@@ -153,7 +153,7 @@ def moves(flown: Flown) -> list[Move]:
             for one, two in pairs
             if len(_whole(flown, (one, two))) == 2
         ]
-        found.append(
+        results.append(
             Move(
                 question=question,
                 reach=reach,
@@ -166,7 +166,7 @@ def moves(flown: Flown) -> list[Move]:
                 change=_mean(flown, changes, 2.0, len(every)),
             )
         )
-    return found
+    return results
 
 
 def _pairs(
@@ -176,12 +176,12 @@ def _pairs(
         for factor, levels in flown.design.factors.items():
 
             def rest(cell: Cell, factor: str = factor) -> tuple[str, ...]:
-                return tuple(cell.levels[each] for each in flown.design.factors if each != factor)
+                return tuple(cell.levels[name] for name in flown.design.factors if name != factor)
 
             for first, second in combinations(levels, 2):
-                others = {rest(each): each for each in cells if each.levels[factor] == second}
-                firsts = [each for each in cells if each.levels[factor] == first]
-                pairs = [(each, others[rest(each)]) for each in firsts if rest(each) in others]
+                others = {rest(cell): cell for cell in cells if cell.levels[factor] == second}
+                firsts = [cell for cell in cells if cell.levels[factor] == first]
+                pairs = [(cell, others[rest(cell)]) for cell in firsts if rest(cell) in others]
                 if pairs:
                     yield question, reach, factor, (first, second), pairs
 
@@ -196,35 +196,35 @@ def _mean(flown: Flown, values: Sequence[Floats], bound: float, moves: int) -> M
     alpha = flown.design.alpha / family
     if not values or scenes < fewest_scenes(alpha):
         return None
-    means = 100 * np.mean([each[:scenes] for each in values], axis=0)
+    means = 100 * np.mean([differences[:scenes] for differences in values], axis=0)
     least = (100 / scenes) ** 2 / 12  # a mean of so many scenes is known no better
     low, high = (float(end) for end in t_interval(means, 1 - alpha, least))
     return Mean(float(means.mean()), max(low, -100 * bound), min(high, 100 * bound))
 
 
-def moved(found: Sequence[Move]) -> str:
-    """Say of the moves of one question what is decided of them."""
-    said: list[str] = []
-    for move in found:
+def moved(moves: Sequence[Move]) -> str:
+    """Say what is decided on the moves of one question."""
+    sentences: list[str] = []
+    for move in moves:
         first, second = move.levels
         between = f"{move.factor} {first} and {second}"
         if move.opposite:
             pairs = move.same + move.opposite + move.one + move.neither
-            said.append(
+            sentences.append(
                 f"Opposite sides are decided between {between}, in {move.opposite} of "
                 f"{counted(pairs, 'pair')} of cells that are alike in all else."
             )
         if move.change and move.change.sign:
             to = move.question.repair if move.change.sign > 0 else move.question.baseline
-            said.append(
+            sentences.append(
                 f"From {move.factor} {first} to {second} the mean difference moves to {to}."
             )
-    return " ".join(said) or "No factor is decided to change it."
+    return " ".join(sentences) or "No factor is decided to change it."
 
 
 def sentences(flown: Flown) -> list[str]:
     """Return one paragraph a question and path: its verdict, and what changes it."""
-    every, said = moves(flown), list[str]()
+    every, paragraphs = moves(flown), list[str]()
     means = {(q.repair, q.baseline, reach): mean for q, reach, mean in overall(flown)}
     for question, reach, cells in questions(flown):
         parts = [verdict(question, reach, [lead(flown.design, cell) for cell in cells])]
@@ -232,10 +232,10 @@ def sentences(flown: Flown) -> list[str]:
         if mean and mean.sign and len(cells) > 1:
             ahead = question.repair if mean.sign > 0 else question.baseline
             parts.append(f"On the mean of all its cells {ahead} is ahead.")
-        own = [each for each in every if (each.question, each.reach) == (question, reach)]
+        own = [move for move in every if (move.question, move.reach) == (question, reach)]
         parts += [moved(own)] if own else []
-        said.append(f"{title(question, reach)}: {' '.join(parts)}")
-    return said
+        paragraphs.append(f"{title(question, reach)}: {' '.join(parts)}")
+    return paragraphs
 
 
 def hours(flown: Flown, nodes: int, workers: int = 2) -> float:
@@ -245,7 +245,7 @@ def hours(flown: Flown, nodes: int, workers: int = 2) -> float:
     sending costs is left out.
     """
     seconds = 0.0
-    for each in flown.rounds:
-        block = each.seconds * max(1, each.workers) / each.blocks
-        seconds += -(-each.blocks // (nodes * workers)) * block
+    for work in flown.rounds:
+        block = work.seconds * max(1, work.workers) / work.blocks
+        seconds += -(-work.blocks // (nodes * workers)) * block
     return seconds / 3600

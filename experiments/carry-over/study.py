@@ -62,7 +62,7 @@ class Flight:
         self.system = load_system(self.spec)
         self.cells: list[Cell] = []
         self.rows: list[tuple[Row, ...]] = []
-        """Of each cell."""
+        """Arms of each cell."""
         library = library_of(self.system, design.library)
         for question, every, fault in design.asked(levels):
             request = AuditQuestion(
@@ -162,9 +162,9 @@ def fly(design: Design, folder: Path, workers: int | None, executor: str, show: 
     ):
         for at, flight in enumerate(flights):
 
-            def note(now: Progress, at: int = at) -> None:
+            def note(progress: Progress, at: int = at) -> None:
                 remark = f"setting {at + 1} of {len(flights)}"
-                move(now.within(sum(most), sum(most[:at]), remark))
+                move(progress.within(sum(most), sum(most[:at]), remark))
 
             def notice(text: str) -> None:
                 if not text.startswith("Kept "):  # as each look does
@@ -174,19 +174,19 @@ def fly(design: Design, folder: Path, workers: int | None, executor: str, show: 
             before = (*before, *rounds)
             for finding in result.findings:
                 show.say(finding)
-            found = Flown(
+            flown = Flown(
                 design=design,
                 left_out=refused,
                 options=flight.options,
-                cells=tuple(cell for each in flights[: at + 1] for cell in each.cells),
-                trials=sum(each.trials(lambda cell: len(cell.ended[0])) for each in flights),
+                cells=tuple(cell for flight in flights[: at + 1] for cell in flight.cells),
+                trials=sum(flight.trials(lambda cell: len(cell.ended[0])) for flight in flights),
                 rounds=before,
                 complete=flight is flights[-1],
             )
-            write_text(path, found.model_dump_json(indent=1) + "\n", folder)
-        result = replace(result, blocks_computed=sum(each.blocks for each in before))
+            write_text(path, flown.model_dump_json(indent=1) + "\n", folder)
+        result = replace(result, blocks_computed=sum(work.blocks for work in before))
         run_provenance(folder, [CELLS], result, started, command, force, system.backend)
-    return found
+    return flown
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -197,19 +197,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--quick", action="store_true", help="a few cells of four scenes")
     parser.add_argument("--workers", type=int, default=None, help="default one per core")
     parser.add_argument("--executor", default="local", help="local, ray or ray:HOST:PORT")
-    asked = parser.parse_args(arguments)
-    folder = (asked.out or ROOT / "runs" / f"carry-over{'-quick' * asked.quick}").resolve()
+    options = parser.parse_args(arguments)
+    folder = (options.out or ROOT / "runs" / f"carry-over{'-quick' * options.quick}").resolve()
     show = Display(SafeConsole(stderr=True), ("study.py", *sys.argv[1:]))
     try:
-        design = Design.read(asked.design)
-        if asked.quick:
+        design = Design.read(options.design)
+        if options.quick:
             design = design.restricted(design.quick.only, design.quick.scenes)
         with chdir(ROOT):  # the design names files of the checkout
-            found = fly(design, folder, asked.workers, asked.executor, show)
+            flown = fly(design, folder, options.workers, options.executor, show)
     except UserError as error:
         print(f"study.py: {error}", file=sys.stderr)
         return 130 if isinstance(error, Stopped) else 2
-    print("\n\n".join(sentences(found)))
+    print("\n\n".join(sentences(flown)))
     print(f"\nEverything that was flown is in {folder / CELLS}.")
     return 0
 

@@ -32,7 +32,7 @@ class Door:
 
 @dataclass
 class Layout:
-    """What a topology builds in its arena; the origin is the middle of the floor.
+    """Obstacles that a topology builds in its arena; the origin is the middle of the floor.
 
     Attributes:
         rng: Source of all draws.

@@ -16,7 +16,7 @@ FROZEN_SEEDS = {
 """Seed and number of scenes of the libraries of the package."""
 
 
-def made(name: str, seed: int, count: int) -> Library:
+def draw_library(name: str, seed: int, count: int) -> Library:
     """Return `count` new scenes; the same name, seed and count give the same scenes."""
     return Library.of(name, tuple(generate_scene(name, index, seed) for index in range(count)))
 
@@ -28,16 +28,16 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--check", action="store_true", help="make the frozen libraries again")
-    given = parser.parse_args()
-    if given.check:
-        for name, asked in FROZEN_SEEDS.items():
-            same = made(name, *asked).content_hash == load_library(name).content_hash
+    options = parser.parse_args()
+    if options.check:
+        for name, size in FROZEN_SEEDS.items():
+            same = draw_library(name, *size).content_hash == load_library(name).content_hash
             print(name, "is the same" if same else "DIFFERS")
         return
-    if given.file is None or given.file.exists() or given.file.stem in FROZEN:
+    if options.file is None or options.file.exists() or options.file.stem in FROZEN:
         sys.exit("name a file that does not exist, by another name than the frozen libraries")
-    given.file.write_text(as_text(made(given.file.stem, given.seed, given.count)))
-    load_library(given.file)  # what cannot be flown is refused now
+    options.file.write_text(as_text(draw_library(options.file.stem, options.seed, options.count)))
+    load_library(options.file)  # what cannot be flown is refused now
 
 
 if __name__ == "__main__":

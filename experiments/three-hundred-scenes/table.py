@@ -16,13 +16,13 @@ PATHS = {"correct": "Correct", "reconstruction": "Reconstruction only", "shared"
 
 def success(file):
     """Return success [scenes, seeds] by variant and path."""
-    found = {}
+    arms = {}
     for row in parquet.read_table(file).to_pylist():
-        where = found.setdefault((row["variant"], row["path"]), {})
+        where = arms.setdefault((row["variant"], row["path"]), {})
         where.setdefault(row["scene"], {})[row["seed"]] = row["status"] == "success"
     return {
         at: np.array([[ended[s] for s in sorted(ended)] for _, ended in sorted(scenes.items())])
-        for at, scenes in found.items()
+        for at, scenes in arms.items()
     }
 
 

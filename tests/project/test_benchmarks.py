@@ -1,10 +1,12 @@
 """The page on performance says what was measured, and what was measured is complete."""
 
+import json
+import re
 from pathlib import Path
 
-from benchmarks import page, planning
-from benchmarks.peers import rows
-from benchmarks.results import Target, load, record
+from benchmarks import page, physics, planning
+from benchmarks.peers import batched
+from benchmarks.results import DEVICE, Target, load, record
 from benchmarks.rows import ROWS, SIDES
 
 ROOT = Path(__file__).parents[2]
@@ -22,6 +24,27 @@ def test_every_row_was_measured_or_says_why_not_and_is_shown():
         else:
             assert (each.peer is None) == (each.ratio is None)
             assert (each.target is None) == (each.met is None)
+
+
+def test_sizes_in_the_text_are_those_that_are_measured():
+    text = (ROOT / "docs" / "performance.md").read_text("utf-8")
+    words = re.sub(r"<!-- begin:(\S+) -->.*?<!-- end:\1 -->", "", text, flags=re.DOTALL).split()
+    scenes, seeds = physics.outcomes()[0].shape
+    for sizes in (
+        f"{planning.CANDIDATES} candidates, {planning.HORIZON} steps",
+        f"{physics.VEHICLES} vehicles",
+        f"{physics.SCENES} selection scenes",
+        f"{scenes} scenes and {seeds} seeds with {physics.RESAMPLES:,} resamples",
+    ):
+        assert sizes in " ".join(words)
+
+
+def test_every_figure_of_a_gpu_names_its_command_or_says_that_it_was_entered_by_hand():
+    text = page.gpu()
+    for figures in json.loads(DEVICE.read_text("utf-8")).values():
+        for part in (figures, figures.get("audits"), figures.get("paper")):
+            if part is not None:
+                assert (part.get("command") or part["by_hand"]) in text
 
 
 def test_the_plants_have_times_and_no_ratio():
@@ -44,6 +67,6 @@ def test_a_ratio_is_formed_within_each_round():
 
 
 def test_the_model_that_peers_are_given_is_ours():
-    theirs = rows.positions(rows.RowsModel())
+    theirs = batched.positions(batched.BatchModel())
     pairs = zip(planning.positions(), theirs, strict=True)
     assert max(abs(ours - peer) for ours, peer in pairs) < 1e-3

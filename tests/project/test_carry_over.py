@@ -1,5 +1,6 @@
 """The study of where verdicts carry over: what is said comes from decisions, and it resumes."""
 
+import blocks
 import carry_blocks
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from carry_verdicts import lead, moves, overall, sentences, settled, sign
 from faultpath.api.display import Display
 from faultpath.core.errors import Stopped, UserError
 
-ROOT = carry_blocks.ROOT
+ROOT = blocks.ROOT
 WINDS, SIGNS = ("L2", "L3"), ("+", "-")
 ALL, NONE, TIE = ("0", "1"), ("1", "0"), ("01", "10")
 """What baseline and repair are made of: the repair ahead in all scenes, in none, in every other."""
@@ -135,9 +136,8 @@ def test_what_is_stopped_resumes_and_an_arm_of_two_questions_flies_once(tmp_path
     assert resumed.cells == whole.cells
     assert sum(each.trials for each in resumed.rounds) < whole.trials
 
-    monkeypatch.setattr(carry_blocks, "REFERENCE", tmp_path)
-    shown = {part: fill("whole") for part, fill in carry_blocks.KIND.items()}
-    assert "4 cells" in shown["cost"]
-    assert "Left out: planner rrt" in shown["cost"]
-    assert shown["matrix"].count("torch, mppi, exact") == 4
-    assert "not decided in the only cell" in shown["said"]
+    monkeypatch.setattr(blocks, "REFERENCE", tmp_path)
+    assert "4 cells" in carry_blocks.cost("whole")
+    assert "Left out: planner rrt" in carry_blocks.cost("whole")
+    assert carry_blocks.matrix("whole").count("torch, mppi, exact") == 4
+    assert "not decided in the only cell" in carry_blocks.verdicts("whole")

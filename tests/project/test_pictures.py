@@ -1,9 +1,9 @@
 """Pictures of documents: light or dark as their reader has it, and no label reaches out of them."""
 
-import re
 from pathlib import Path
 from xml.etree import ElementTree
 
+import paper_blocks
 import pictures
 
 from faultpath import open_run
@@ -37,25 +37,15 @@ def test_labels_fit_and_colours_follow_the_reader() -> None:
             assert at + (1 - share) * long <= left + width + 1, f"{name}: {words}"
 
 
-def test_a_drawing_of_a_page_stands_alone_under_its_title() -> None:
-    page = (ROOT / "docs" / "reference" / "toy" / "report.html").read_text("utf-8")
-    drawing = re.search(r"<svg.*?</svg>", page, re.DOTALL)
-    assert drawing is not None
-
-    def heads(text: str) -> list[str | None]:
-        root = ElementTree.fromstring(text)
-        return [each.text for each in root.iter(f"{SVG}text") if each.get("class") == "head"]
-
-    own = heads(drawing[0])
-    assert len(own) == 1
-    text = pictures.standing(drawing[0])
-    assert heads(text) == own  # another one above it would say the same again
-    without = drawing[0].replace('class="head"', 'class="bold"')
-    title = ElementTree.fromstring(without).findtext(f"{SVG}title")
-    assert heads(pictures.standing(without)) == [title]
+def test_a_figure_of_the_paper_stands_alone_under_its_title() -> None:
+    _, text = paper_blocks.drawing("figure-3")
+    root = ElementTree.fromstring(text)
+    heads = [label.text for label in root.iter(f"{SVG}text") if label.get("class") == "head"]
+    assert heads == [root.findtext(f"{SVG}title")]
     assert DARK in text
+
+
+def test_a_picture_of_a_report_has_a_light_and_a_dark_side() -> None:
     both = pictures.twice((20.0, 10.0), "data:light", "data:dark")
-    assert [each.get("href") for each in ElementTree.fromstring(both).iter(f"{SVG}image")] == [
-        "data:light",
-        "data:dark",
-    ]
+    images = ElementTree.fromstring(both).iter(f"{SVG}image")
+    assert [image.get("href") for image in images] == ["data:light", "data:dark"]

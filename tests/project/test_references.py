@@ -9,11 +9,12 @@ def test_every_stored_audit_and_map_is_flown_again_and_the_quickest_first() -> N
     runs = references.by_time()
     stored = {path.parent.name for path in references.REFERENCE.glob("*/record.json")}
     assert stored - {*references.APART} <= {*runs}
-    times = [run.wall_s for run in runs.values()]
+    times = [run.provenance.wall_s for run in runs.values()]
     assert times == sorted(times)
     for run in runs.values():
-        assert run.command[:2] in (("faultpath", "audit"), ("faultpath", "map"))
-        assert "--out" in run.command
+        command = run.provenance.command
+        assert command[:2] in (("faultpath", "audit"), ("faultpath", "map"))
+        assert "--out" in command
 
 
 def test_an_example_of_another_package_runs_where_that_is_installed() -> None:

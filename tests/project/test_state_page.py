@@ -24,33 +24,33 @@ def audit(scenes: int, alone: int, shared: int) -> dict:
 
 @pytest.mark.parametrize("scenes", [1, 2, 4])
 def test_few_scenes_are_inconclusive(scenes):
-    first, last = blocks.reading([audit(scenes, 1, -1), audit(scenes, 0, 0)])
+    first, last = blocks.sentences([audit(scenes, 1, -1), audit(scenes, 0, 0)])
     assert "more often than the baseline in none and less often in none." in first
     assert last.startswith("No reversal was found, which does not show that there is none")
     assert "2 (filter under bias and filter under bias)" in last
 
 
 def test_no_audit_is_no_sentence_about_repairs():
-    first, last = blocks.reading([])
+    first, last = blocks.sentences([])
     assert first.startswith("Of 0 audits ")
     assert last.endswith("at the sensor: none.")
 
 
 def test_many_scenes_say_which_side_and_what_an_isolated_test_detects():
-    first, alone, last = blocks.reading([audit(40, 1, -1)])
+    first, alone, last = blocks.sentences([audit(40, 1, -1)])
     assert first.endswith("in none and less often in 1 (filter under bias).")
     assert "detects none (significantly different from the shared effect: 1)" in alone
     assert last.startswith("A reversal was found in 1;")
-    first, alone, last = blocks.reading([audit(40, 0, 1)])
+    first, alone, last = blocks.sentences([audit(40, 0, 1)])
     assert "in 1 (filter under bias) and less often in none." in first
     assert "detects none (significantly different from the shared effect: 1)" in alone
     assert last.startswith("No reversal was found")
-    _, alone, _ = blocks.reading([audit(40, 1, 1)])
+    _, alone, _ = blocks.sentences([audit(40, 1, 1)])
     assert "detects 1 (significantly different from the shared effect: none)" in alone
 
 
 def test_every_audit_is_shown_once_and_a_repair_has_no_name_of_a_sensor():
-    tables = [blocks.KIND["effects"](), *map(blocks.KIND["rest"], blocks.SOURCES)]
+    tables = [blocks.effects(), *map(blocks.rest, blocks.SOURCES)]
     rows = [row for table in tables for row in table.splitlines()[2:]]
     audits = [audit for library in blocks.SOURCES for audit in blocks.audits_of(library)]
     assert len(rows) == len(audits)

@@ -2,10 +2,14 @@
 
 A state is position 3, velocity 3, rotation 9 (by rows), body rate 3 and latent 32. The inputs'
 standardisation is folded into the first layers, so that no time goes into it.
+
+python -m benchmarks.peers.batched FILE.npz   writes the problem for a peer without torch
 """
 
 import math
+import sys
 
+import numpy as np
 import torch
 from faultpath_quadrotor.planners import CostWeights, SamplerSettings
 from faultpath_quadrotor.predictors import anchored
@@ -41,7 +45,7 @@ def linear(layer: Affine, *, over: tuple[Tensor, Tensor] | None = None, at: int 
     return folded
 
 
-class RowsModel(nn.Module):
+class BatchModel(nn.Module):
     """One step of WM-A, for one scene."""
 
     constant: Tensor
@@ -114,7 +118,7 @@ def initial() -> Tensor:
 
 
 @torch.inference_mode()
-def positions(step: RowsModel) -> list[float]:
+def positions(step: BatchModel) -> list[float]:
     """Return the positions `[3, H, 32]` under the problem's candidates, m."""
     state = initial().expand(planning.CHECKED, -1)
     path = []
@@ -143,3 +147,30 @@ def cost(state: Tensor) -> Tensor:
     away = torch.linalg.vector_norm(state[..., POSITION] - _GOAL, dim=-1)
     speed = torch.linalg.vector_norm(state[..., VELOCITY], dim=-1)
     return away + WEIGHTS.speed * (speed - WEIGHTS.v_max_mps).clamp_min(0).square()
+
+
+def write_problem(path: str) -> None:
+    """Write weights, constants, state, actions, and the positions of some candidates."""
+    model = BatchModel()
+    arrays = {name: weight.numpy() for name, weight in model.state_dict().items()}
+    bounds = dict(zip(("centre", "sigma", "low", "high"), actions(), strict=True))
+    arrays |= {name: bound.numpy() for name, bound in bounds.items()}
+    candidates = planning.commands()[:, :, 0, : planning.CHECKED].permute(0, 2, 1)
+    shape = (3, planning.HORIZON, planning.CHECKED)
+    np.savez(
+        path,
+        initial=initial().numpy(),
+        candidates=candidates.numpy(),
+        positions=np.reshape(planning.positions(), shape),
+        sizes=(planning.CANDIDATES, planning.HORIZON),
+        motion=(model.gain, model.weight_n, KEEP, MEAN, CONTROL_DT_S),
+        bounds=(anchored.LINEAR_BOUND_MPS2, anchored.ANGULAR_BOUND_RADPS2),
+        goal=planning.GOAL_M,
+        speed=(WEIGHTS.speed, WEIGHTS.v_max_mps),
+        **arrays,
+    )
+
+
+if __name__ == "__main__":
+    with torch.inference_mode():
+        write_problem(sys.argv[1])

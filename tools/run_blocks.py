@@ -1,0 +1,201 @@
+"""Blocks about reference runs of `faultpath audit` and `faultpath map`, and about example files."""
+
+import re
+import shlex
+from pathlib import Path
+from typing import Any
+
+from blocks import ROOT, Run, Wrong, difference, fence, load, printed
+
+from faultpath.decisions import wording
+from faultpath.decisions.tables import Table, line
+from faultpath.decisions.tables.markdown import grid
+from faultpath.report import map as map_report
+from faultpath.report.map_pictures import correlation_picture, map_picture
+from faultpath.report.tables import DIFFERENCE, by_quantity
+from faultpath.report.terminal import decision
+
+MAP_PICTURES = {"map": map_picture, "correlation": correlation_picture}
+PARTS: dict[str, tuple[str, str]] = {
+    "verdict": ("Verdict", ".masthead, #verdict > *"),
+    "interface": ("Who gets the fault", "#interface > *"),
+    "readers": ("Who gets the fault", ".forks .panels"),
+    "effects": ("Effects of the repair", "#effects"),
+    "flights": ("Some flights", "#flights > *"),
+}
+"""Parts of a report that may be pictured: name in words, and selector in the page."""
+
+
+def table(name: str) -> str:
+    """Return success of both variants and their difference, one path a column."""
+    run = load(name)
+    record, question = run.record, run.record.question
+    table = by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm", "break-even"))
+    tests = f" Tests: {question.tests}." if question.tests else ""
+    return "\n\n".join(
+        [
+            grid(table),
+            f"{question.n_scenes} scenes of `{question.library}`, {wording.seeds(question.seeds)}, "
+            f"fault `{question.fault}`. Bold: significant (interval and test agree after Holm's "
+            f"correction for {record.hypotheses} contrasts). Floor, ceiling: both below 10 % or "
+            f"above 90 %, no headline. Break-even: the fault frequency at which neither is ahead, "
+            f"estimated, and those at which neither is significantly ahead. Intervals are for "
+            f"{record.estimand}. Void pairs: "
+            f"{sum(effect.void_pairs for effect in record.effects)}.{tests} {run.flown}",
+        ]
+    )
+
+
+def headline(name: str) -> str:
+    """Return the record's headline as a quotation."""
+    return f"> **{load(name).record.headline}**"
+
+
+def contrast(name: str) -> str:
+    """Return the two decided effects that point opposite ways: one module alone, and shared."""
+    run = load(name)
+    question, effects = run.record.question, {e.path: e for e in run.record.effects}
+    shared = effects["shared"]
+    opposed = [
+        effect
+        for effect in run.record.effects
+        if effect.detected
+        and effect.path not in ("correct", "shared")
+        and effect.success.value * shared.success.value < 0
+    ]
+    if not shared.detected or len(opposed) != 1:
+        raise Wrong(f"{run.name} has not decided one reversal: the block has nothing to say")
+
+    def row(reach: str, success: Any) -> str:
+        ahead = question.repair if success.value > 0 else question.baseline
+        shown = difference(success.value, *success.interval, bold=True)
+        return f"| {reach} | {shown} | `{ahead}` |"
+
+    return "\n".join(
+        [
+            f"| The fault reaches | success of `{question.repair}` minus "
+            f"`{question.baseline}`, pp | ahead |",
+            "| :-- | --: | :-- |",
+            row(f"the {opposed[0].path} alone, as in a test of one module", opposed[0].success),
+            row("every module that reads the estimate, as in deployment", shared.success),
+            "",
+            f"{run.record.scenes} scenes, {wording.seeds(question.seeds)}; bold: significant at "
+            f"5 % after Holm's correction. Flown by commit `{run.provenance.commit[:12]}`.",
+        ]
+    )
+
+
+def terminal(name: str) -> str:
+    """Return an audit as the command line prints it, and by which code it was flown."""
+    run = load(name)
+    return f"{printed(decision(run.record))}\n\n{run.flown}"
+
+
+def command(name: str, *words: str) -> str:
+    """Return the command that made the run, where it goes left out; `words` follow the fence."""
+    arguments = list(load(name).provenance.command)
+    if "--out" in arguments:
+        at = arguments.index("--out")
+        del arguments[at : at + 2]
+    text = shlex.join([Path(arguments[0]).name, *arguments[1:]])
+    return fence(" ".join(["console", *words]), "$ " + text.replace(" --", " \\\n    --"))
+
+
+def picture(name: str, part: str) -> str:
+    """Return the picture of a part of the run's report."""
+    about = load(name).record.headline
+    return f"![{PARTS[part][0]} of {name}: {about}]({{images}}/{name}-{part}.svg)"
+
+
+def times(*names: str) -> str:
+    """Return how long runs took, one a row."""
+    runs = [load(name) for name in names]
+    lines = tuple(
+        line(
+            str(run.record.question.n_scenes),
+            str(len(run.record.question.seeds)),
+            str(trials(run)),
+            duration(run),
+            run.provenance.processor.replace("(R)", ""),
+            str(run.provenance.workers),
+        )
+        for run in runs
+    )
+    heads = ("Seeds", "Trials", "Time", "Processor", "Workers")
+    table = Table(corner="Scenes", columns=heads, words=("Processor",), lines=lines)
+    return "\n\n".join([grid(table), " ".join(dict.fromkeys(run.flown for run in runs))])
+
+
+def trials(run: Run) -> int:
+    """Return the trials flown: an arm that a fault cannot reach is that under correct inputs."""
+    paths, question = run.record.paths, run.record.question
+    arms = {("repair", path.consumers) for path in paths}
+    arms |= {("baseline", path.baseline_consumers) for path in paths}
+    return len(arms) * question.n_scenes * len(question.seeds)
+
+
+def duration(run: Run) -> str:
+    """Return the wall time of a run; `Wrong` for one that resumed and did not do it all."""
+    if run.provenance.blocks_kept:
+        raise Wrong(
+            f"docs/reference/{run.name} kept {run.provenance.blocks_kept} blocks of an earlier "
+            "invocation, so its wall time is not that of the run; run it in a new folder"
+        )
+    minutes, seconds = divmod(round(run.provenance.wall_s), 60)
+    return f"{minutes} min {seconds:02d} s" if minutes else f"{seconds} s"
+
+
+def map_sentences(name: str) -> str:
+    """Return headline and sentences of a map as a quotation, and by which code it was flown."""
+    run = load(name)
+    lines = [f"> **{run.record.headline}**", *(f"> {text}" for text in run.record.sentences)]
+    return "\n>\n".join(lines) + f"\n\n{run.flown}"
+
+
+def map_turns(name: str) -> str:
+    """Return where the ranking of a map reverses."""
+    flips = next(table for table in map_report.tables(load(name).record) if table.name == "flips")
+    return "\n\n".join([grid(flips), *flips.notes])
+
+
+def map_terminal(name: str) -> str:
+    """Return a map as the command line prints it."""
+    return printed(map_report.shown(load(name).record))
+
+
+def map_picture_of(name: str, part: str) -> str:
+    """Return the picture of a map, or of its success by correlation."""
+    return f"![{load(name).record.headline}]({{images}}/{name}-{part}.svg)"
+
+
+def map_drawing(name: str, part: str) -> tuple[str, str]:
+    """Return file name and content of that picture."""
+    drawing = MAP_PICTURES[part](load(name).record)
+    return f"{name}-{part}.svg", drawing.render(standalone=True) + "\n"
+
+
+def code(place: str, part: str, *words: str) -> str:
+    """Return a file's part below the line `# --- PART ---`; `words` follow the fence."""
+    pieces = re.split(r"^ *# --- (.+) ---\n", (ROOT / place).read_text("utf-8"), flags=re.MULTILINE)
+    parts = dict(zip(pieces[1::2], pieces[2::2], strict=True))
+    if part not in parts:
+        raise Wrong(f"{place} has no part '{part}'; it has {', '.join(parts)}")
+    return fence(" ".join(["python", *words]), parts[part].rstrip().strip("\n"))
+
+
+def template(kind: str, name: str, *parts: str) -> str:
+    """Return the file that `faultpath init NAME --with KIND` writes, or parts of it.
+
+    A part is a function, by its name; `imports` is what stands above the first one.
+    """
+    folder = ROOT / "src" / "faultpath" / "systems" / "templates"
+    text = (folder / f"{kind}.py.txt").read_text("utf-8").replace("NAME", name).rstrip()
+    if not parts:
+        return fence("python", text)
+    head, *functions = text.split("\n\n\n")
+    pieces = {"imports": head} | {
+        re.findall(r"^def (\w+)", function, re.MULTILINE)[0]: function for function in functions
+    }
+    if unknown := [part for part in parts if part not in pieces]:
+        raise Wrong(f"template {kind} has no part '{unknown[0]}'; it has {', '.join(pieces)}")
+    return fence("python", "\n\n\n".join(pieces[part] for part in parts))
