@@ -51,6 +51,7 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
     "template": run_blocks.template,
     "found": found_blocks.table,
     "audits": found_blocks.audits,
+    "counts": found_blocks.counts,
     "models": model_blocks.table,
     "central:answer": paper_blocks.central_answer,
     "central:table": paper_blocks.central_table,

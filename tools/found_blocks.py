@@ -94,7 +94,7 @@ def verdict(alone: Effect, shared: Effect, turn: str) -> str:
 
 
 def table() -> str:
-    """Return every audit: without a fault, at the module that tells most, and shared."""
+    """Return all audits: without a fault, at the module that tells most, and shared."""
     return "\n".join(
         [
             "| system, repair | no fault | fault at one module | fault shared | isolated test |",
@@ -102,6 +102,20 @@ def table() -> str:
             *map(_row, grouped()),
         ]
     )
+
+
+def counts() -> str:
+    """Return how many audits of each system came to what."""
+    words: dict[str, list[str]] = {}
+    for audit in (*_of_references(), *_of_studies()):
+        system = f"[{audit.title.partition(', ')[0]}]({{docs}}/{audit.page}.md)"
+        words.setdefault(system, []).append(audit.word)
+    words["**all**"] = [word for those in words.values() for word in those]
+    lines = [f"| system | audits | {' | '.join(WORDS)} |", f"| :-- |{' --: |' * (1 + len(WORDS))}"]
+    for system, those in words.items():
+        numbers = [str(those.count(word) or "") for word in WORDS]
+        lines.append(f"| {system} | {len(those)} | {' | '.join(numbers)} |")
+    return "\n".join(lines)
 
 
 def grouped() -> list[list[Audit]]:

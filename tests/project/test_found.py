@@ -40,3 +40,11 @@ def test_the_table_has_every_audit_and_the_module_that_says_least() -> None:
 def test_audits_of_opposite_signs_never_share_a_row() -> None:
     for group in found_blocks.grouped():
         assert len({(audit.word, audit.effects["shared"].sign) for audit in group}) == 1
+
+
+def test_the_counts_are_those_of_all_audits() -> None:
+    *systems, total = (row.split("|")[2:-1] for row in found_blocks.counts().splitlines()[2:])
+    numbers = [[int(cell.strip() or 0) for cell in row] for row in (*systems, total)]
+    assert all(row[0] == sum(row[1:]) for row in numbers)
+    assert [sum(column) for column in zip(*numbers[:-1], strict=True)] == numbers[-1]
+    assert numbers[-1][0] == sum(map(len, found_blocks.grouped()))
