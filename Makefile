@@ -75,8 +75,10 @@ test-pythons: ## Run the engine's tests under the other Pythons that are found h
 	done; \
 	[ -z "$$failed" ] || { echo "The engine's tests fail under Python$$failed."; exit 1; }
 
-test-foreign: .venv-foreign/ready ## Run the examples' tests on packages of other people
+test-foreign: .venv-foreign/ready .venv-lerobot/ready ## Run the examples' tests on packages of other people
 	OMP_NUM_THREADS=1 .venv-foreign/bin/python -m pytest -n $(JOBS) --dist worksteal tests/foreign \
+	  -p no:cacheprovider $(ARGS)
+	OMP_NUM_THREADS=1 .venv-lerobot/bin/python -m pytest tests/foreign/test_lerobot.py \
 	  -p no:cacheprovider $(ARGS)
 
 fuzz: $(STAMPS)/dev ## Try the laws and the command line with random inputs; SEED=7 repeats
@@ -212,4 +214,18 @@ $(BENCH_JAX)/ready: benchmarks/requirements-jax.txt
 	@.venv-foreign/bin/python -m pip install --disable-pip-version-check --quiet \
 	  -e '.[rotorpy,do-mpc,basilisk,gymnasium,inspect,policies,stable-worldmodel]' "$$(grep '^torch==' constraints.txt)" \
 	  hypothesis pytest pytest-xdist
+	@touch $@
+
+# LeRobot asks for Python 3.12 and a torch below 2.12. This takes the Python and the torch of the other
+# tests, and of what LeRobot asks for only what its processor imports, in the versions that it names.
+.venv-lerobot/ready: pyproject.toml constraints.txt
+	@$(CHECK_PYTHON)
+	@echo "Installing LeRobot into .venv-lerobot"
+	@rm -rf .venv-lerobot && $(PYTHON) -m venv .venv-lerobot
+	@.venv-lerobot/bin/python -m pip install --disable-pip-version-check --quiet \
+	  -e . "$$(grep '^torch==' constraints.txt)" 'numpy>=2,<2.3' 'safetensors>=0.4.3,<1' \
+	  'draccus>=0.11.6,<0.12' 'einops>=0.8,<0.9' 'huggingface-hub>=1.6,<2' 'pillow>=10,<13' \
+	  hypothesis pytest pytest-xdist
+	@.venv-lerobot/bin/python -m pip install --disable-pip-version-check --quiet \
+	  --no-deps --ignore-requires-python lerobot==0.6.1 torchvision==0.28.0
 	@touch $@

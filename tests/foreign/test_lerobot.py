@@ -1,6 +1,12 @@
 """LeRobot's relative actions: an error of the joints cancels where both readers have it."""
 
+import sys
+from base64 import urlsafe_b64encode
+from functools import partial
+from hashlib import sha256
 from importlib import import_module
+from importlib.metadata import files
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -8,50 +14,82 @@ import pytest
 pytest.importorskip("torch")
 
 import torch
+from pyarrow.parquet import read_table
 
 from faultpath import audit
 
 ROOT = Path(__file__).resolve().parents[2]
 FAULT = "joints:offset=0.1/0.1/0.1"
 STATE = "observation.state"
+NAMES = ["shoulder.pos", "elbow.pos", "Gripper", "wrist.pos"]
 
 
 @pytest.fixture(scope="module")
-def example():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(ROOT / "examples"))
-        yield import_module(Path("lerobot_relative_actions.py").stem)
+def lerobot():
+    """LeRobot's own classes: the package `lerobot.processor`."""
+    if find_spec("lerobot") is None:  # importing it takes what the module below knows
+        pytest.skip("LeRobot is not installed: make test-foreign runs this in .venv-lerobot")
+    return import_module("lerobot_processor").processor()
+
+
+def imported(patch, classes):
+    """Return the example, imported anew with these classes; without any it takes the copy."""
+    patch.syspath_prepend(str(ROOT / "examples"))
+    patch.setitem(sys.modules, "lerobot.processor", classes)
+    patch.delitem(sys.modules, "lerobot_relative_actions", raising=False)
+    return import_module(Path("lerobot_relative_actions.py").stem)
 
 
 @pytest.fixture
-def copy(example):
+def copy(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "examples"))
     return import_module(Path("lerobot_steps.py").stem)
 
 
-def relative_and_absolute(package, **settings):
+def flown(example, **settings):
+    return audit(
+        example.create(), baseline="encoders", repair="camera", fault=FAULT, workers=0, **settings
+    )
+
+
+def relative_and_absolute(package, state, actions, **settings):
     """Return relative actions and those that come back, of the steps of a package."""
-    draws = torch.Generator().manual_seed(0)
-    state, actions = torch.randn(2, 3, generator=draws), torch.randn(2, 4, 3, generator=draws)
     relative = package.RelativeActionsProcessorStep(enabled=True, **settings)
     absolute = package.AbsoluteActionsProcessorStep(enabled=True, relative_step=relative)
     moved = relative({"observation": {STATE: state}, "action": actions})["action"]
-    return state, actions, moved, absolute({"action": moved})["action"]
+    return moved, absolute({"action": moved})["action"]
 
 
 def test_what_is_taken_off_is_added_back(copy):
-    state, actions, moved, back = relative_and_absolute(copy)
+    draws = torch.Generator().manual_seed(0)
+    state, actions = torch.randn(2, 3, generator=draws), torch.randn(2, 4, 3, generator=draws)
+    moved, back = relative_and_absolute(copy, state, actions)
     assert torch.equal(moved, actions - state[:, None])
     assert torch.allclose(back, actions)
 
 
-@pytest.mark.parametrize("excluded", [[], ["gripper"], ["Shoulder", "grip"]])
-def test_the_copy_computes_what_lerobot_does(copy, excluded):
-    lerobot = pytest.importorskip("lerobot.processor")
-    names = {"exclude_joints": excluded, "action_names": ["shoulder.pos", "elbow.pos", "gripper"]}
-    for ours, theirs in zip(
-        relative_and_absolute(copy, **names), relative_and_absolute(lerobot, **names), strict=True
-    ):
-        assert torch.equal(ours, theirs)
+def test_the_file_of_the_two_classes_is_that_of_the_release(lerobot):
+    name = "lerobot/processor/relative_action_processor.py"
+    (file,) = (file for file in files("lerobot") or () if str(file) == name)
+    path = Path(sys.modules[lerobot.RelativeActionsProcessorStep.__module__].__file__ or "")
+    assert path == Path(file.locate())
+    digest = urlsafe_b64encode(sha256(path.read_bytes()).digest()).decode().rstrip("=")
+    assert file.hash
+    assert digest == file.hash.value
+
+
+@pytest.mark.parametrize("excluded", [[], ["gripper"], ["Shoulder", "grip", ""]])
+@pytest.mark.parametrize("names", [None, NAMES[:2], NAMES])
+@pytest.mark.parametrize("shape", [(8, 4), (8, 16, 4), (1, 1, 4)])
+def test_the_copy_computes_what_lerobot_does(lerobot, copy, shape, names, excluded):
+    settings = {"exclude_joints": excluded, "action_names": names}
+    draws = torch.Generator().manual_seed(0)
+    for dtype in (torch.float32, torch.float64) * 20:
+        state = torch.randn(shape[0], 4, generator=draws, dtype=dtype)
+        actions = torch.randn(shape, generator=draws)
+        ours = relative_and_absolute(copy, state, actions, **settings)
+        theirs = relative_and_absolute(lerobot, state, actions, **settings)
+        assert all(map(torch.equal, ours, theirs))
 
 
 def test_a_state_that_was_not_kept_is_told(copy):
@@ -60,19 +98,29 @@ def test_a_state_that_was_not_kept_is_told(copy):
         absolute({"action": torch.zeros(1, 3)})
 
 
-def test_a_shared_offset_cancels_and_the_repair_loses_that(example):
-    run = audit(
-        example.create(),
-        baseline="encoders",
-        repair="camera",
-        fault=FAULT,
-        library="training",
-        scenes=20,
-        workers=0,
-    )
-    effects = {effect.path: effect for effect in run.record.effects}
+def test_an_audit_on_lerobots_classes_has_the_bits_of_one_on_the_copy(lerobot, tmp_path):
+    weights = None
+    for name, classes in (("copy", None), ("lerobot", lerobot)):
+        with pytest.MonkeyPatch.context() as patch:
+            example = imported(patch, classes)
+            theirs = example.RelativeActionsProcessorStep is lerobot.RelativeActionsProcessorStep
+            assert theirs == (name == "lerobot")
+            # The last bits of a fit depend on where its arrays lie in memory: both take one.
+            weights = example.fitted() if weights is None else weights
+            patch.setattr(example, "fitted", partial(torch.clone, weights))
+            flown(example, folder=tmp_path / name, scenes=20)
+    for name in ("outcomes.parquet", "signals.parquet"):
+        ours, theirs = (read_table(tmp_path / folder / name) for folder in ("copy", "lerobot"))
+        assert ours.num_rows
+        assert ours.equals(theirs), name
+
+
+def test_a_shared_offset_cancels_and_the_repair_loses_that(monkeypatch):
+    example = imported(monkeypatch, None)
+    record = flown(example, library="training", scenes=20).record
+    effects = {effect.path: effect for effect in record.effects}
     assert set(effects) == {"correct", "conversion", "policy", "shared"}
     assert effects["policy"].success.value == 100
     assert effects["shared"].success.value == -100
-    turns = {change.isolated: change.turn for change in run.record.changes}
+    turns = {change.isolated: change.turn for change in record.changes}
     assert turns["policy"] == "reversal"
