@@ -46,11 +46,11 @@ def demonstrated(rng):
 
 @cache
 def fitted():
-    """Return a policy `[n, 7] -> [n, 12]`, fitted to relative actions by least squares."""
+    """Return a policy `[n, 7] -> [n, 12]`, fitted by least squares; rounding hides its varying last bits."""
     states, targets, actions = demonstrated(np.random.default_rng(0))
     relative = steps()[0]({"observation": {STATE: states}, "action": actions})["action"]
-    inputs = torch.cat([states, targets, torch.ones(len(states), 1)], dim=1)
-    return torch.linalg.lstsq(inputs, relative.flatten(1)).solution
+    inputs = torch.cat([states, targets, torch.ones(len(states), 1)], dim=1).double()
+    return torch.linalg.lstsq(inputs, relative.flatten(1).double()).solution.float()
 
 
 # --- modules ---
