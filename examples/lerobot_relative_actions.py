@@ -46,7 +46,7 @@ def demonstrated(rng):
 
 @cache
 def fitted():
-    """Return a policy `[n, 7] -> [n, 12]`, fitted by least squares; rounding hides its varying last bits."""
+    """Return a policy `[n, 7] -> [n, 12]`, by least squares; rounded, since last bits vary."""
     states, targets, actions = demonstrated(np.random.default_rng(0))
     relative = steps()[0]({"observation": {STATE: states}, "action": actions})["action"]
     inputs = torch.cat([states, targets, torch.ones(len(states), 1)], dim=1).double()
