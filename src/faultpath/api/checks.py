@@ -17,7 +17,7 @@ from faultpath.decisions.plan.plan import Plan, make_plan, sentences
 from faultpath.decisions.plan.study import StudyFile, check_arms
 from faultpath.decisions.planning import plan_audit
 from faultpath.trials import System, library_of
-from faultpath.trials.question import CheckQuestion, PlanQuestion, Question, TraceQuestion
+from faultpath.trials.question import CheckQuestion, PlanQuestion, RepairQuestion, TraceQuestion
 from faultpath.trials.store.atomic import check_output, write_text
 from faultpath.trials.trust import Received
 from faultpath.trials.work.executor import Progress
@@ -115,7 +115,7 @@ def audit_study(
     for planned in study.audits:
         laid = plan_audit(chosen.system, chosen.spec, study.audit_of(planned.fault), library)
         check_arms(study, planned, laid)
-    same = {name: getattr(study, name) for name in Question.model_fields}
+    same = {name: getattr(study, name) for name in RepairQuestion.model_fields}
     return tuple(
         audit(
             study.system,

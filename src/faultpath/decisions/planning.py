@@ -25,8 +25,7 @@ from faultpath.trials import (
     SystemSpec,
     Variant,
 )
-from faultpath.trials import question as questions
-from faultpath.trials.question import AuditQuestion
+from faultpath.trials.question import AuditQuestion, RepairQuestion
 
 LOOK = 5
 """Scenes from one look to the next of a sequential audit, where the system runs as many at once:
@@ -131,23 +130,16 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
             look=study.look,
             trials=len(study.arms()),
         )
-    question = Question(
-        system=spec.name,
-        options=spec.options,
-        baseline=request.baseline,
-        repair=request.repair,
-        fault=request.fault,
+    question = Question.of(
+        request,
+        spec,
+        library,
         faults=fault.resolved(system.interface),
-        library=library.name,
-        library_hash=library.content_hash,
         n_scenes=len(chosen),
-        seeds=request.seeds,
         primary=primary_path(request.primary or "", paths),
-        generalise=request.generalise,
         trained=system.trained,
         ends={status.value: words for status, words in system.ends.items()},
         metrics=dict(system.metrics),
-        metric=request.metric,
         thresholds=tuple(sorted(set(request.thresholds))),
         stop=stop,
         rule=RULE,
@@ -223,7 +215,7 @@ def _check(system: System, question: AuditQuestion) -> None:
         )
 
 
-def two_variants(system: System, question: questions.Question) -> tuple[Variant, Variant]:
+def two_variants(system: System, question: RepairQuestion) -> tuple[Variant, Variant]:
     """Return baseline and repair; `UserError` for an unknown one, and where both are one."""
     for name in (question.baseline, question.repair):
         if name not in system.variants:

@@ -124,7 +124,7 @@ class Placed(Asked):
     )
 
 
-class Question(Request):
+class RepairQuestion(Request):
     """Two variants of a system, compared in scenes."""
 
     panel: ClassVar[str] = "What is compared"
@@ -141,11 +141,11 @@ class Question(Request):
 
     def audit_of(self, fault: str) -> "AuditQuestion":
         """Return the audit of the same variants and scenes under a fault."""
-        same = {name: getattr(self, name) for name in Question.model_fields}
+        same = {name: getattr(self, name) for name in RepairQuestion.model_fields}
         return AuditQuestion(fault=fault, **same)
 
 
-class Running(Placed, Question):
+class Running(Placed, RepairQuestion):
     """The same, with where and how it runs."""
 
 
@@ -154,7 +154,7 @@ class AuditQuestion(Running):
 
     panel: ClassVar[str] = "How it is decided"
 
-    fault: Annotated[str, Flag(panel=Question.panel)] = Field(
+    fault: Annotated[str, Flag(panel=RepairQuestion.panel)] = Field(
         description="`gain:scale=0.6`, `gain:delay=5@observer`, `gain:scale=2,onset=20`, ...; "
         "several sizes, `gain:scale=0.9,1.1` or `gain:offset=-0.2..0.2/9`, are an audit each."
     )
@@ -190,7 +190,7 @@ class MapQuestion(Running):
 
     panel: ClassVar[str] = "What is mapped"
 
-    fault: Annotated[str, Flag(panel=Question.panel)] = Field(
+    fault: Annotated[str, Flag(panel=RepairQuestion.panel)] = Field(
         description="Without its size: `gain`, `gain:offset`, `gain,onset=9`."
     )
     against: Annotated[tuple[str, ...], BeforeValidator(read_names)] = Field(
@@ -234,13 +234,13 @@ class SearchQuestion(Running):
     )
 
 
-class PlanQuestion(Question):
+class PlanQuestion(RepairQuestion):
     """Question that a plan answers."""
 
     panel: ClassVar[str] = "What is planned"
 
     fault: Annotated[
-        tuple[str, ...], BeforeValidator(several), Flag(several=True, panel=Question.panel)
+        tuple[str, ...], BeforeValidator(several), Flag(several=True, panel=RepairQuestion.panel)
     ] = Field(
         default=(),
         description="Expected error of a source that declares none, or another one: "

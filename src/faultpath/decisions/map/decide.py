@@ -16,7 +16,7 @@ from faultpath.decisions.map.lattice import (
     sizes,
     surface_weights,
 )
-from faultpath.decisions.map.model import Flip, MapPoint, MapQuestion, MapRecord, MapSurface
+from faultpath.decisions.map.model import Flip, MapPoint, MapRecord, MapSurface, ResolvedMap
 from faultpath.decisions.map.study import MapPlan
 from faultpath.decisions.map.surface import Combined, Differences, sign_of, simultaneous
 from faultpath.statistics.estimate import Sign
@@ -39,7 +39,7 @@ def conclude(
 
 
 def decided(
-    question: MapQuestion, differences: Differences, failed: int = 0, findings: Sequence[str] = ()
+    question: ResolvedMap, differences: Differences, failed: int = 0, findings: Sequence[str] = ()
 ) -> MapRecord:
     """Return the record of differences, which may be simulated ones."""
     ways = rays(question.against)
@@ -79,7 +79,7 @@ def decided(
 
 
 def _points(
-    question: MapQuestion, differences: Differences, at: Combined, z: float
+    question: ResolvedMap, differences: Differences, at: Combined, z: float
 ) -> tuple[MapPoint, ...]:
     low, high = at.ends(z)
     signs, means = at.signs(z), at.means

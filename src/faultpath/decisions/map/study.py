@@ -9,15 +9,15 @@ import numpy as np
 from faultpath.core.errors import UserError
 from faultpath.decisions.family import compared
 from faultpath.decisions.map.lattice import COARSE, Point, lattice
-from faultpath.decisions.map.model import MapQuestion
+from faultpath.decisions.map.model import ResolvedMap
 from faultpath.decisions.map.surface import Differences
 from faultpath.decisions.model import CORRECT
 from faultpath.decisions.planning import scenes_of, two_variants
 from faultpath.faults import AnyFault, FaultText
 from faultpath.interface import module_of
 from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, SystemSpec, Variant
-from faultpath.trials import question as questions
 from faultpath.trials.pairing import mismatch_words
+from faultpath.trials.question import MapQuestion
 
 _LEAST, _LARGEST = 1e-6, 1e12
 """Bounds of the largest error: sizes keep twelve digits after the point, and no system has more."""
@@ -29,7 +29,7 @@ _MOST_POINTS = 10_000
 class MapPlan:
     """A question about two errors, and the trials that answer it at any points."""
 
-    question: MapQuestion
+    question: ResolvedMap
     system: System
     spec: SystemSpec
     scenes: tuple[str, ...] = field(repr=False)
@@ -89,9 +89,7 @@ class MapPlan:
         return Differences(tuple(points), repair, baseline), mismatch_words(comparison.mismatches)
 
 
-def plan_map(
-    system: System, spec: SystemSpec, request: questions.MapQuestion, library: Library
-) -> MapPlan:
+def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Library) -> MapPlan:
     """Lay out a map. `UserError` for anything that cannot be run or means nothing."""
     variants = two_variants(system, request)
     kind = _kind(system, request.fault)
@@ -137,12 +135,10 @@ def plan_map(
         raise UserError(f"--mean lies beyond the map, which ends at {largest:g}: see --up-to.")
     if request.correlation is not None and not -1.0 <= request.correlation <= 1.0:
         raise UserError(f"--correlation {request.correlation:g} does not lie between -1 and 1.")
-    question = MapQuestion(
-        system=spec.name,
-        options=spec.options,
-        baseline=request.baseline,
-        repair=request.repair,
-        fault=request.fault,
+    question = ResolvedMap.of(
+        request,
+        spec,
+        library,
         against=modules,
         others=others,
         up_to=largest,
@@ -150,12 +146,7 @@ def plan_map(
         unit=sources[0].unit,
         means=middle,
         spreads=spread,
-        correlation=request.correlation,
-        points=request.points,
-        library=library.name,
-        library_hash=library.content_hash,
         n_scenes=len(chosen),
-        seeds=request.seeds,
         trained=system.trained,
     )
     return MapPlan(question, system, spec, chosen)

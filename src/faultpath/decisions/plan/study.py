@@ -13,7 +13,7 @@ from faultpath.core.files.plain import Misread, read_yaml, yaml_text
 from faultpath.core.results import Frozen
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.planning import Audit
-from faultpath.trials.question import Question
+from faultpath.trials.question import RepairQuestion
 
 _MOST = 200
 """Audits of a file. Each is a finding of its own, and a file of more asks no one question."""
@@ -46,7 +46,7 @@ class StudyAudit(Frozen):
         return self
 
 
-class StudyFile(Question, strict=False):
+class StudyFile(RepairQuestion, strict=False):
     """Study that `faultpath plan` writes and `faultpath audit --study` carries out.
 
     One that was written by hand may leave out arms and hash: they follow from the system as it is.

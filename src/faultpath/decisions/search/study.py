@@ -12,21 +12,21 @@ from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.planning import Audit, faults_by_path, plan_audit, scenes_of, two_variants
 from faultpath.decisions.search.bounds import read_bounds
-from faultpath.decisions.search.model import SearchQuestion, Tried
+from faultpath.decisions.search.model import ResolvedSearch, Tried
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.inputs import Floats
 from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, SystemSpec
-from faultpath.trials import question as questions
 from faultpath.trials.pairing import Side, pair
+from faultpath.trials.question import SearchQuestion
 
 
 @dataclass(frozen=True)
 class SearchPlan:
     """A question, and the trials of any fault within its bounds."""
 
-    question: SearchQuestion
-    request: questions.SearchQuestion
+    question: ResolvedSearch
+    request: SearchQuestion
     system: System
     spec: SystemSpec
     library: Library = field(repr=False)
@@ -112,7 +112,7 @@ def halves(library: Library, count: int | None) -> tuple[tuple[str, ...], tuple[
 
 
 def plan_search(
-    system: System, spec: SystemSpec, request: questions.SearchQuestion, library: Library
+    system: System, spec: SystemSpec, request: SearchQuestion, library: Library
 ) -> SearchPlan:
     """Lay out a search. `UserError` for anything that cannot be run or means nothing."""
     variants = two_variants(system, request)
@@ -132,18 +132,12 @@ def plan_search(
                 f"fault: name one of {listed(alone)}."
             )
     finding, confirming = halves(library, request.scenes)
-    question = SearchQuestion(
-        system=spec.name,
-        options=spec.options,
-        baseline=request.baseline,
-        repair=request.repair,
+    question = ResolvedSearch.of(
+        request,
+        spec,
+        library,
         bounds=bounds,
-        candidates=request.candidates,
-        search_seed=request.search_seed,
-        library=library.name,
-        library_hash=library.content_hash,
         finding=len(finding),
         confirming=len(confirming),
-        seeds=request.seeds,
     )
     return SearchPlan(question, request, system, spec, library, finding, confirming)

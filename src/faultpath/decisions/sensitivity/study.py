@@ -10,7 +10,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.decisions.plan.sources import bound
 from faultpath.decisions.planning import scenes_of
-from faultpath.decisions.sensitivity.model import Part, SensitivityQuestion, Uncertain
+from faultpath.decisions.sensitivity.model import Part, ResolvedSensitivity, Uncertain
 from faultpath.faults import Fault, FaultText
 from faultpath.faults.values import Offset, Scale
 from faultpath.interface import Provenance, Source, Uncertainty
@@ -28,7 +28,7 @@ from faultpath.trials import (
     SystemSpec,
     Variant,
 )
-from faultpath.trials.sensitivity_question import SensitivityQuestion as Asked
+from faultpath.trials.sensitivity_question import SensitivityQuestion
 
 _MOST_COMPONENTS = 16
 """Most components of a vector whose components err each by itself."""
@@ -40,7 +40,7 @@ _EDGE = 1e-9
 class SensitivityPlan:
     """A question, and its trials."""
 
-    question: SensitivityQuestion
+    question: ResolvedSensitivity
     study: Study = field(repr=False)
 
     def values(self, table: OutcomeTable) -> tuple[Floats, int]:
@@ -74,7 +74,7 @@ def _value(outcome: Outcome, metric: str) -> float:
 
 
 def plan_sensitivity(
-    system: System, spec: SystemSpec, request: Asked, library: Library
+    system: System, spec: SystemSpec, request: SensitivityQuestion, library: Library
 ) -> SensitivityPlan:
     """Lay out the design. `UserError` for anything that cannot be run or means nothing."""
     if request.variant not in system.variants:
@@ -104,21 +104,15 @@ def plan_sensitivity(
         for seed in request.seeds
     ]
     metric = system.metrics[request.metric] if request.metric else None
-    question = SensitivityQuestion(
-        system=spec.name,
-        options=spec.options,
-        variant=request.variant,
+    question = ResolvedSensitivity.of(
+        request,
+        spec,
+        library,
         groups=groups,
         left_out=left_out,
-        metric=request.metric,
         said=metric.said(request.metric) if metric else "success",
         unit=metric.unit if metric else "%",
-        points=request.points,
-        design_seed=request.design_seed,
-        library=library.name,
-        library_hash=library.content_hash,
         n_scenes=len(scenes),
-        seeds=request.seeds,
     )
     study = Study(
         name=f"{spec.name}-sensitivity-{request.variant}",
