@@ -16,8 +16,9 @@ from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text, read_run
 from faultpath.api.job import asks
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
-from faultpath.decisions.decide import after_looks, decide
+from faultpath.decisions.decide import decide
 from faultpath.decisions.judging import LaidOut, lay_out
+from faultpath.decisions.stopping import after_looks
 from faultpath.interface import Interface
 from faultpath.trials.execution.provenance import amend, run_provenance
 from faultpath.trials.execution.runner import RunResult

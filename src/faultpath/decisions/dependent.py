@@ -6,15 +6,12 @@ failure, what reaches them through the output of another one a cascading failure
 claims that elements are independent, or free from interference.
 """
 
-import shlex
 from collections.abc import Collection, Iterable, Sequence
 
 from faultpath.core.results import Frozen
 from faultpath.decisions.fault_groups import JOINED
 from faultpath.decisions.model import SHARED, DecisionRecord, Effect
-from faultpath.decisions.plan.sources import Wired, bound, expected
-from faultpath.decisions.plan.study import StudyFile
-from faultpath.decisions.question import Question
+from faultpath.decisions.sources import Wired, bound, expected
 from faultpath.decisions.wording import reservation, with_interval
 from faultpath.interface import Interface, Provenance, Source, module_of
 
@@ -192,13 +189,3 @@ def _decision(record: DecisionRecord, effect: Effect | None) -> str:
     if effect.sign == 0:
         return f"flown, nothing decided{f' ({aside})' if aside else ''}"
     return f"{record.winner(effect.sign)} succeeds more often{f' ({aside})' if aside else ''}"
-
-
-def command(question: Question | StudyFile, fault: str) -> str:
-    """Return the command that flies the arms of a fault: each module alone, and shared."""
-    parts = ["faultpath", "audit", question.system, "--baseline", question.baseline]
-    parts += ["--repair", question.repair, "--fault", fault, "--library", question.library]
-    parts += [
-        part for key, value in question.options.items() for part in ("--set", f"{key}={value}")
-    ]
-    return shlex.join(parts)

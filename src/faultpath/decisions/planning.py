@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import unknown
-from faultpath.decisions.decide import decide, primary_path, stops
+from faultpath.decisions.decide import decide, primary_path
 from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, FaultedTap, Path
 from faultpath.decisions.question import Question, StopRule
+from faultpath.decisions.stopping import stops
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import module_of
 from faultpath.loop import TapCount

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from faultpath.core.errors import UserError
-from faultpath.decisions.family import compared
+from faultpath.decisions.compared import compared
 from faultpath.decisions.map.lattice import COARSE, Point, lattice
 from faultpath.decisions.map.model import ResolvedMap
 from faultpath.decisions.map.surface import Differences

@@ -8,9 +8,9 @@ from faultpath.core.results import Result
 from faultpath.decisions.dependent import Group, dependent_groups
 from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_modules
 from faultpath.decisions.plan.probing import command_responses
-from faultpath.decisions.plan.sources import Candidate, candidates
 from faultpath.decisions.plan.study import StudyAudit, StudyFile, arms_of
 from faultpath.decisions.planning import plan_audit, two_variants
+from faultpath.decisions.sources import Candidate, candidates
 from faultpath.decisions.wording import counted, series
 from faultpath.trials import Library, LoopSystem, System, SystemSpec
 from faultpath.trials.question import PlanQuestion

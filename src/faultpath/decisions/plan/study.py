@@ -1,5 +1,6 @@
 """A study file: audits of one repair, with their arms, to be carried out as they stand."""
 
+import shlex
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,6 +14,7 @@ from faultpath.core.files.plain import Misread, read_yaml, yaml_text
 from faultpath.core.results import Frozen
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.planning import Audit
+from faultpath.decisions.question import Question
 from faultpath.trials.question import RepairQuestion
 
 _MOST = 200
@@ -120,3 +122,13 @@ def check_arms(study: StudyFile, planned: StudyAudit, audit: Audit) -> None:
             f"audit '{planned.name}' of the study file has other arms than the system now has for "
             f"'{planned.fault}' ({', '.join(other)}): an audit runs all of its arms, so plan anew."
         )
+
+
+def command(question: Question | StudyFile, fault: str) -> str:
+    """Return the command that flies the arms of a fault: each module alone, and shared."""
+    parts = ["faultpath", "audit", question.system, "--baseline", question.baseline]
+    parts += ["--repair", question.repair, "--fault", fault, "--library", question.library]
+    parts += [
+        part for key, value in question.options.items() for part in ("--set", f"{key}={value}")
+    ]
+    return shlex.join(parts)

@@ -8,9 +8,9 @@ from scipy.special import ndtri
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
-from faultpath.decisions.plan.sources import bound
 from faultpath.decisions.planning import scenes_of
 from faultpath.decisions.sensitivity.model import Part, ResolvedSensitivity, Uncertain
+from faultpath.decisions.sources import bound
 from faultpath.faults import Fault, FaultText
 from faultpath.faults.values import Offset, Scale
 from faultpath.interface import Provenance, Source, Uncertainty
