@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import PurePath
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import unknown
+from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
 from faultpath.decisions.decide import decide, primary_path
 from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, FaultedTap, Path
@@ -15,17 +17,7 @@ from faultpath.faults import AnyFault, Fault
 from faultpath.interface import module_of
 from faultpath.loop import TapCount
 from faultpath.statistics.estimate import RULE
-from faultpath.trials import (
-    Arm,
-    Deliveries,
-    Library,
-    OutcomeTable,
-    Row,
-    Study,
-    System,
-    SystemSpec,
-    Variant,
-)
+from faultpath.trials import Deliveries, Library, OutcomeTable, Study, System, SystemSpec, Variant
 from faultpath.trials.question import AuditQuestion, RepairQuestion
 
 LOOK = 5
@@ -36,14 +28,31 @@ _ORDER_SEED = 0
 
 
 @dataclass(frozen=True)
-class Audit:
+class Audit(Analysis[None]):
     """A question and the study that answers it."""
 
+    request: AuditQuestion
     question: Question
     paths: tuple[Path, ...]
     study: Study
 
-    def conclude(self, table: OutcomeTable, deliveries: Deliveries) -> DecisionRecord:
+    @property
+    def named(self) -> tuple[str, ...]:
+        """Parts of the name of its folder."""
+        request = self.request
+        parts = (self.study.name, request.fault, PurePath(request.library).stem)
+        if request.stop_when is None:
+            return parts
+        small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
+        return (*parts, f"until-{request.stop_when}{small}")
+
+    def rounds(self) -> Rounds[None]:
+        """Yield the only round."""
+        yield Round(self.study)
+
+    def conclude(
+        self, table: OutcomeTable, deliveries: Deliveries, items: None = None
+    ) -> DecisionRecord:
         """Return the decision record of a run; raises as `faultpath.decisions.decide`."""
         question = self.question
         paths = [
@@ -104,14 +113,7 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         for name, of in faults.items()
     ]
     # Where the fault cannot reach a variant, that is the arm under correct inputs: it runs once.
-    rows = [
-        Row(
-            variant=variant, path=path, seed=seed, arm=Arm(variant=variant, faults=parts, seed=seed)
-        )
-        for path, of in faults.items()
-        for variant, parts in of.items()
-        for seed in request.seeds
-    ]
+    rows = [row for path, of in faults.items() for row in rows_of(path, of, request.seeds)]
     _check(system, request)
     study = Study(
         name=f"{spec.name}-{request.repair}-vs-{request.baseline}",
@@ -145,7 +147,7 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         stop=stop,
         rule=RULE,
     )
-    return Audit(question, tuple(paths), study)
+    return Audit(request, question, system, tuple(paths), study)
 
 
 def faults_by_path(

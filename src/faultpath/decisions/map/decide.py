@@ -1,4 +1,4 @@
-"""From the trials of a map to its record."""
+"""From the differences at the points of a map to its record."""
 
 from collections.abc import Sequence
 
@@ -17,25 +17,12 @@ from faultpath.decisions.map.lattice import (
     surface_weights,
 )
 from faultpath.decisions.map.model import Flip, MapPoint, MapRecord, MapSurface, ResolvedMap
-from faultpath.decisions.map.study import MapPlan
 from faultpath.decisions.map.surface import Combined, Differences, sign_of, simultaneous
 from faultpath.statistics.estimate import Sign
 from faultpath.statistics.inputs import Floats
-from faultpath.trials import OutcomeTable
 
 _BETWEEN = 4
 """Looks at a ray for each unit."""
-
-
-def conclude(
-    plan: MapPlan, points: Sequence[Point], table: OutcomeTable, findings: Sequence[str] = ()
-) -> MapRecord:
-    """Return the record of a map, to the bit the same in whatever order its points were run.
-
-    `UserError` where a point has no pair left.
-    """
-    differences, unlike = plan.differences(sorted(points), table)
-    return decided(plan.question, differences, len(table.failed()), (*unlike, *findings))
 
 
 def decided(

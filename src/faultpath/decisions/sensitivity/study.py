@@ -2,14 +2,22 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from pathlib import PurePath
 
 import numpy as np
 from scipy.special import ndtri
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
+from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
 from faultpath.decisions.planning import scenes_of
-from faultpath.decisions.sensitivity.model import Part, ResolvedSensitivity, Uncertain
+from faultpath.decisions.sensitivity.decide import conclude
+from faultpath.decisions.sensitivity.model import (
+    Part,
+    ResolvedSensitivity,
+    SensitivityRecord,
+    Uncertain,
+)
 from faultpath.decisions.sources import bound
 from faultpath.faults import Fault, FaultText
 from faultpath.faults.values import Offset, Scale
@@ -17,11 +25,10 @@ from faultpath.interface import Provenance, Source, Uncertainty
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.sobol import design
 from faultpath.trials import (
-    Arm,
+    Deliveries,
     Library,
     Outcome,
     OutcomeTable,
-    Row,
     Status,
     Study,
     System,
@@ -37,11 +44,38 @@ _EDGE = 1e-9
 
 
 @dataclass(frozen=True)
-class SensitivityPlan:
+class SensitivityPlan(Analysis[None]):
     """A question, and its trials."""
 
+    request: SensitivityQuestion
     question: ResolvedSensitivity
     study: Study = field(repr=False)
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """Parts of the name of its folder."""
+        request = self.request
+        return (
+            self.study.name,
+            request.metric or "success",
+            *request.fault,
+            f"{request.points}-points-seed-{request.design_seed}",
+            PurePath(request.library).stem,
+        )
+
+    def rounds(self) -> Rounds[None]:
+        """Yield the only round."""
+        points, groups = self.question.points, len(self.question.groups)
+        trials = len(self.study.arms()) * len(self.study.scenes)
+        notice = f"{points} points of {groups} groups of sources: {trials} trials at most."
+        yield Round(self.study, notice=notice)
+
+    def conclude(
+        self, table: OutcomeTable, deliveries: Deliveries, items: None = None
+    ) -> SensitivityRecord:
+        """Return the record. `UserError` where no scene is left."""
+        failed, findings = len(table.failed()), deliveries.findings
+        return conclude(self.question, *self.values(table), failed, findings)
 
     def values(self, table: OutcomeTable) -> tuple[Floats, int]:
         """Return the mean of what is explained at each row of the design, and how many scenes
@@ -93,15 +127,10 @@ def plan_sensitivity(
     scenes = scenes_of(library, request.scenes)
     rows = design([group.numbers for group in groups], request.points, request.design_seed)
     arms = [
-        Row(
-            variant=request.variant,
-            path=f"row {number}",
-            seed=seed,
-            arm=Arm(variant=request.variant, faults=faults, seed=seed),
-        )
+        row
         for number, drawn in enumerate(rows)
-        for faults in [tuple(faults_at(system, variant, groups, drawn))]
-        for seed in request.seeds
+        for faults in [{request.variant: tuple(faults_at(system, variant, groups, drawn))}]
+        for row in rows_of(f"row {number}", faults, request.seeds)
     ]
     metric = system.metrics[request.metric] if request.metric else None
     question = ResolvedSensitivity.of(
@@ -121,7 +150,7 @@ def plan_sensitivity(
         scenes=scenes,
         rows=tuple(arms),
     )
-    return SensitivityPlan(question, study)
+    return SensitivityPlan(request, question, system, study)
 
 
 def uncertain(
