@@ -14,11 +14,9 @@ if TYPE_CHECKING:
     from faultpath.api.audit import audit, audits
     from faultpath.api.checks import check, plan, trace
     from faultpath.api.comparing import compare
+    from faultpath.api.designs import reversal_map, search, sensitivity
     from faultpath.api.judging import judge
-    from faultpath.api.mapping import reversal_map
     from faultpath.api.runs import Run, open_run
-    from faultpath.api.searching import search
-    from faultpath.api.sensitivity import sensitivity
     from faultpath.api.systems import load_system
     from faultpath.core.errors import Stopped, UserError
     from faultpath.core.streams import generator
@@ -59,9 +57,9 @@ _HOMES = {
     "load_system": "faultpath.api.systems",
     "open_run": "faultpath.api.runs",
     "plan": "faultpath.api.checks",
-    "reversal_map": "faultpath.api.mapping",
-    "search": "faultpath.api.searching",
-    "sensitivity": "faultpath.api.sensitivity",
+    "reversal_map": "faultpath.api.designs",
+    "search": "faultpath.api.designs",
+    "sensitivity": "faultpath.api.designs",
     "trace": "faultpath.api.checks",
 }
 

@@ -11,11 +11,10 @@ from collections.abc import Collection, Iterable, Sequence
 from faultpath.core.results import Frozen
 from faultpath.decisions.fault_groups import JOINED
 from faultpath.decisions.model import SHARED, DecisionRecord, Effect
-from faultpath.decisions.sources import Wired, bound, expected
+from faultpath.decisions.sources import NOT_DEPLOYED, Wired, bound, expected, groups_of
 from faultpath.decisions.wording import reservation, with_interval
-from faultpath.interface import Interface, Provenance, Source, module_of
+from faultpath.interface import Interface, Source, module_of
 
-_NOT_DEPLOYED = (Provenance.PRIVILEGED, Provenance.INTERNAL)
 _SIZE = "SIZE"
 """Stands in a command for what no declaration gives."""
 
@@ -71,12 +70,9 @@ def dependent_groups(interface: Interface, variants: Sequence[Wired]) -> tuple[G
     Every source counts that exists at deployment, whatever error it declares; a consumer counts
     that reads it in one of the variants, directly or through reconstructions.
     """
-    members: dict[str, list[Source]] = {}
-    for source in interface.sources:
-        if source.provenance not in _NOT_DEPLOYED:
-            members.setdefault(source.correlation_group or source.name, []).append(source)
+    deployed = (source for source in interface.sources if source.provenance not in NOT_DEPLOYED)
     groups: list[Group] = []
-    for name, sources in members.items():
+    for name, sources in groups_of(deployed).items():
         taps = _readers(interface, variants, [source.name for source in sources])
         alone: dict[str, list[tuple[str, str]]] = {}
         for channel, consumer in taps:

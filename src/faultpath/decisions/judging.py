@@ -12,7 +12,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.decisions.decide import primary_path
 from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Path
-from faultpath.decisions.question import Judged, Question
+from faultpath.decisions.question import Judged, Question, resolve
 from faultpath.decisions.wording import capital, counted, where
 from faultpath.statistics.estimate import RULE
 from faultpath.trials import Library, SystemSpec
@@ -105,7 +105,8 @@ def lay_out(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
     keys = json.dumps({unit: sorted(members) for unit, members in labels.items()}, sort_keys=True)
     laid = tuple(_path(name) for name in paths)
     dull = not any(row.status is Status.CRASH for row in rows)
-    question = Question.of(
+    question = resolve(
+        Question,
         request,
         SystemSpec(name="results of other tools"),
         Library("results", (), hashlib.sha256(keys.encode()).hexdigest()[:16]),

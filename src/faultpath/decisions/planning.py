@@ -11,7 +11,7 @@ from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
 from faultpath.decisions.decide import decide, primary_path
 from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, FaultedTap, Path
-from faultpath.decisions.question import Question, StopRule
+from faultpath.decisions.question import Question, StopRule, resolve
 from faultpath.decisions.stopping import stops
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import module_of
@@ -133,7 +133,8 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
             look=study.look,
             trials=len(study.arms()),
         )
-    question = Question.of(
+    question = resolve(
+        Question,
         request,
         spec,
         library,

@@ -1,15 +1,17 @@
 """Questions as records keep them, and the rule by which an audit is answered."""
 
-from typing import Literal, Self
+from typing import Literal, TypeVar
 
 from pydantic import Field
 
-from faultpath.core.results import Result
+from faultpath.core.results import Frozen, Result
 from faultpath.faults import Fault
 from faultpath.statistics.estimate import RULES, RuleName
 from faultpath.trials import Library, SystemSpec
 from faultpath.trials.outcome import VEHICLE, Metric, MetricName
 from faultpath.trials.question import Asked, Generalise, StopWhen
+
+_Model = TypeVar("_Model", bound=Frozen)
 
 
 class Resolved(Result):
@@ -18,20 +20,21 @@ class Resolved(Result):
     system: str
     options: dict[str, str]
 
-    @classmethod
-    def of(cls, question: Asked, system: SystemSpec, library: Library, **resolved: object) -> Self:
-        """Return a question with what is `resolved`, which takes the place of what is asked."""
-        fields = {
-            **vars(question),
-            "system": system.name,
-            "options": system.options,
-            "library": library.name,
-            "library_hash": library.content_hash,
-            **resolved,
-        }
-        return cls.model_validate(
-            {name: fields[name] for name in cls.model_fields if name in fields}
-        )
+
+def resolve(
+    model: type[_Model], question: Asked, system: SystemSpec, library: Library, **more: object
+) -> _Model:
+    """Return a question as `model` keeps it; `more` adds to what is asked or takes its place."""
+    fields = {
+        **vars(question),
+        "system": system.name,
+        "options": system.options,
+        "library": library.name,
+        "library_hash": library.content_hash,
+        **more,
+    }
+    kept = model.model_fields
+    return model.model_validate({name: fields[name] for name in fields if name in kept})
 
 
 class StopRule(Result):

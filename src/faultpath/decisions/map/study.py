@@ -16,6 +16,7 @@ from faultpath.decisions.map.model import MapRecord, ResolvedMap
 from faultpath.decisions.map.surface import Differences, next_points
 from faultpath.decisions.model import CORRECT
 from faultpath.decisions.planning import scenes_of, two_variants
+from faultpath.decisions.question import resolve
 from faultpath.faults import AnyFault, FaultText
 from faultpath.interface import module_of
 from faultpath.trials import (
@@ -188,7 +189,8 @@ def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Li
         raise UserError(f"--mean lies beyond the map, which ends at {largest:g}: see --up-to.")
     if request.correlation is not None and not -1.0 <= request.correlation <= 1.0:
         raise UserError(f"--correlation {request.correlation:g} does not lie between -1 and 1.")
-    question = ResolvedMap.of(
+    question = resolve(
+        ResolvedMap,
         request,
         spec,
         library,

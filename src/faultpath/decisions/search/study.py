@@ -14,6 +14,7 @@ from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
 from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
 from faultpath.decisions.planning import Audit, faults_by_path, plan_audit, scenes_of, two_variants
+from faultpath.decisions.question import resolve
 from faultpath.decisions.search.bounds import read_bounds
 from faultpath.decisions.search.decide import conclude
 from faultpath.decisions.search.model import ResolvedSearch, SearchRecord, Tried
@@ -189,7 +190,8 @@ def plan_search(
                 f"fault: name one of {listed(alone)}."
             )
     finding, confirming = halves(library, request.scenes)
-    question = ResolvedSearch.of(
+    question = resolve(
+        ResolvedSearch,
         request,
         spec,
         library,

@@ -11,6 +11,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
 from faultpath.decisions.planning import scenes_of
+from faultpath.decisions.question import resolve
 from faultpath.decisions.sensitivity.decide import conclude
 from faultpath.decisions.sensitivity.model import (
     Part,
@@ -18,10 +19,10 @@ from faultpath.decisions.sensitivity.model import (
     SensitivityRecord,
     Uncertain,
 )
-from faultpath.decisions.sources import bound
+from faultpath.decisions.sources import NOT_DEPLOYED, channels_of, groups_of
 from faultpath.faults import Fault, FaultText
 from faultpath.faults.values import Offset, Scale
-from faultpath.interface import Provenance, Source, Uncertainty
+from faultpath.interface import Uncertainty
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.sobol import design
 from faultpath.trials import (
@@ -133,7 +134,8 @@ def plan_sensitivity(
         for row in rows_of(f"row {number}", faults, request.seeds)
     ]
     metric = system.metrics[request.metric] if request.metric else None
-    question = ResolvedSensitivity.of(
+    question = resolve(
+        ResolvedSensitivity,
         request,
         spec,
         library,
@@ -162,23 +164,16 @@ def uncertain(
     size is the largest error, of either sign. `UserError` for one that says something else.
     """
     interface = system.interface
-    members: dict[str, list[tuple[Source, tuple[str, ...]]]] = {}
-    for source in interface.sources:
-        channels = tuple(
-            channel.name
-            for channel in interface.channels
-            if bound(variant, interface, channel.name) == source.name
-            and variant.consumers.intersection(channel.consumers)
-        )
-        if channels and source.provenance not in (Provenance.INTERNAL, Provenance.PRIVILEGED):
-            name = source.correlation_group or source.name
-            members.setdefault(name, []).append((source, channels))
+    deployed = [source for source in interface.sources if source.provenance not in NOT_DEPLOYED]
+    feeds = {s.name: channels_of(interface, (variant,), s.name) for s in deployed}
+    members = groups_of(source for source in deployed if feeds[source.name])
     sizes = dict(_given(text) for text in texts)
     unread = {*sizes}
     groups, left_out = list[Uncertain](), list[str]()
     for name, sources in members.items():
         parts: list[Part] = []
-        for source, channels in sources:
+        for source in sources:
+            channels = feeds[source.name]
             named = [key for key in (*channels, source.name, name) if key in sizes]
             unread -= {*named}
             error = sizes[named[0]] if named else source.uncertainty
@@ -187,18 +182,14 @@ def uncertain(
             elif error is None:
                 left_out.append(source.name)
         if parts:
-            shape = sources[0][0].shape
+            shape = sources[0].shape
             alone = len(sources) == 1 and len(shape) == 1 and shape[0] <= _MOST_COMPONENTS
             groups.append(
                 Uncertain(name=name, parts=tuple(parts), numbers=shape[0] if alone else 1)
             )
     if unread:
-        known = [
-            channel
-            for sources in members.values()
-            for _, channels in sources
-            for channel in channels
-        ]
+        grouped = (source for sources in members.values() for source in sources)
+        known = [channel for source in grouped for channel in feeds[source.name]]
         raise UserError(f"--fault: {unknown('channel', min(unread), [*known, *members])}")
     return tuple(groups), tuple(left_out)
 

@@ -1,4 +1,4 @@
-"""`faultpath.search`: try faults in half of the scenes, and audit the best in the others."""
+"""`faultpath.reversal_map`, `search` and `sensitivity`: many faults of one system."""
 
 from os import PathLike
 from typing import Any
@@ -8,11 +8,34 @@ from faultpath.api.display import Display
 from faultpath.api.folders import read_run
 from faultpath.api.job import Job, asks
 from faultpath.api.running import run
-from faultpath.api.runs import Run, SearchRun
+from faultpath.api.runs import MapRun, Run, SearchRun, SensitivityRun
+from faultpath.decisions.map.study import plan_map
 from faultpath.decisions.search.decide import best
 from faultpath.decisions.search.study import SearchPlan, digest, plan_search
+from faultpath.decisions.sensitivity.study import plan_sensitivity
 from faultpath.trials import System
-from faultpath.trials.question import SearchQuestion
+from faultpath.trials.question import MapQuestion, SearchQuestion
+from faultpath.trials.sensitivity_question import SensitivityQuestion
+
+
+@asks(MapQuestion)
+def reversal_map(
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
+) -> MapRun:
+    """Map who is ahead over the error at one module and that at another, of the same source.
+
+    Args:
+        system: As for `audit`.
+        progress: As for `audit`.
+        **arguments: ...
+
+    The same folder serves another spread or number of points, and keeps what was run.
+
+    Raises:
+        UserError: What was asked cannot be done; the sentence says why, and what to do.
+        Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
+    """
+    return run("reversal_map", MapQuestion, plan_map, MapRun, system, arguments, progress)
 
 
 @asks(SearchQuestion)
@@ -57,3 +80,33 @@ def _carry_out(plan: SearchPlan, job: Job) -> None:
         confirmed, failed = confirming.record, confirming.failed
     record = plan.conclude(result.outcomes, result.deliveries, tried, confirmed, folder, failed)
     job.keep(record, result, plan.system, SearchRun.files)
+
+
+@asks(SensitivityQuestion)
+def sensitivity(
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
+) -> SensitivityRun:
+    """Tell which declared uncertainty moves what a variant achieves: Sobol indices of groups.
+
+    One arm is one draw of all errors, each at all who read its source.
+
+    Args:
+        system: As for `audit`.
+        progress: As for `audit`.
+        **arguments: ...
+
+    The same call resumes, and ends with the same bytes.
+
+    Raises:
+        UserError: What was asked cannot be done; the sentence says why, and what to do.
+        Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
+    """
+    return run(
+        "sensitivity",
+        SensitivityQuestion,
+        plan_sensitivity,
+        SensitivityRun,
+        system,
+        arguments,
+        progress,
+    )
