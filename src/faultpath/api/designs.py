@@ -14,8 +14,7 @@ from faultpath.decisions.search.decide import best
 from faultpath.decisions.search.study import SearchPlan, digest, plan_search
 from faultpath.decisions.sensitivity.study import plan_sensitivity
 from faultpath.trials import System
-from faultpath.trials.question import MapQuestion, SearchQuestion
-from faultpath.trials.sensitivity_question import SensitivityQuestion
+from faultpath.trials.question import MapQuestion, SearchQuestion, SensitivityQuestion
 
 
 @asks(MapQuestion)

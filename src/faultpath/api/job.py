@@ -130,7 +130,7 @@ class Job:
             run = partial(self.run, system=system, show=note, notice=notice, shared=True)
             several = bool(analysis.noun)
             if not several:
-                run = partial(self.run, system=system, show=show, stop=analysis.stops)
+                run = partial(self.run, system=system, show=show, stop=part.stop)
             while True:
                 result = run(part.study, recheck=not several)
                 noticed.add("Kept ")  # what later rounds keep, this call has run itself

@@ -16,8 +16,7 @@ from faultpath.core.errors import UserError
 from faultpath.decisions.analysis import Analysis
 from faultpath.trials import Library, System, SystemSpec
 from faultpath.trials.code import system_code
-from faultpath.trials.question import Running
-from faultpath.trials.sensitivity_question import SensitivityQuestion
+from faultpath.trials.question import Running, SensitivityQuestion
 from faultpath.trials.store.folder import keyed
 
 _LONGEST_NAME = 180

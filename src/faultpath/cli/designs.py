@@ -7,8 +7,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import FOUND, Json, SystemName, display
-from faultpath.trials.question import MapQuestion, SearchQuestion
-from faultpath.trials.sensitivity_question import SensitivityQuestion
+from faultpath.trials.question import MapQuestion, SearchQuestion, SensitivityQuestion
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

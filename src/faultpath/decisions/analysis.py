@@ -8,8 +8,8 @@ from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
 from faultpath.decisions.question import Resolved
 from faultpath.faults import Fault
 from faultpath.trials import Arm, Deliveries, OutcomeTable, Row, Study, System
-from faultpath.trials.question import Running
-from faultpath.trials.sensitivity_question import SensitivityQuestion
+from faultpath.trials.execution.state import Stop
+from faultpath.trials.question import Running, SensitivityQuestion
 
 Items = TypeVar("Items")
 
@@ -25,6 +25,8 @@ class Round:
     """So many are expected in the end."""
     notice: str = ""
     """Sentence to be shown before the round."""
+    stop: Stop | None = None
+    """Asked at each look of a sequential study."""
 
 
 Rounds: TypeAlias = Generator[Round, OutcomeTable, Items]
@@ -41,20 +43,12 @@ class Analysis(ABC, Generic[Items]):
     request: Running | SensitivityQuestion
     question: Resolved
     system: System
-
-    @property
-    @abstractmethod
-    def named(self) -> tuple[str, ...]:
-        """Parts of the name of its folder; system options, scenes and seeds follow."""
+    named: tuple[str, ...]
+    """Parts of the name of its folder; system options, scenes and seeds follow."""
 
     @abstractmethod
     def rounds(self) -> Rounds[Items]:
         """Yield the rounds. `UserError` where trials leave nothing to go on."""
-
-    def stops(self, table: OutcomeTable) -> bool:
-        """Return whether these trials are enough, at a look of a sequential study."""
-        del table
-        return False
 
     @abstractmethod
     def conclude(self, table: OutcomeTable, deliveries: Deliveries, items: Items) -> Any:

@@ -36,19 +36,9 @@ class Audit(Analysis[None]):
     paths: tuple[Path, ...]
     study: Study
 
-    @property
-    def named(self) -> tuple[str, ...]:
-        """Parts of the name of its folder."""
-        request = self.request
-        parts = (self.study.name, request.fault, PurePath(request.library).stem)
-        if request.stop_when is None:
-            return parts
-        small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
-        return (*parts, f"until-{request.stop_when}{small}")
-
     def rounds(self) -> Rounds[None]:
         """Yield the only round."""
-        yield Round(self.study)
+        yield Round(self.study, stop=self.stops)
 
     def conclude(
         self, table: OutcomeTable, deliveries: Deliveries, items: None = None
@@ -148,7 +138,11 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         stop=stop,
         rule=RULE,
     )
-    return Audit(request, question, system, tuple(paths), study)
+    named = [study.name, request.fault, PurePath(request.library).stem]
+    if request.stop_when is not None:
+        small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
+        named.append(f"until-{request.stop_when}{small}")
+    return Audit(request, question, system, tuple(named), tuple(paths), study)
 
 
 def faults_by_path(

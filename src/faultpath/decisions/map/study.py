@@ -51,14 +51,6 @@ class MapPlan(Analysis[list[Point]]):
     spec: SystemSpec
     scenes: tuple[str, ...] = field(repr=False)
 
-    @property
-    def named(self) -> tuple[str, ...]:
-        """Parts of the name of its folder, which serves any spread and number of points."""
-        question = self.question
-        modules, largest = question.against, f"{question.up_to:g}"
-        name, library = self.study(()).name, PurePath(self.request.library).stem
-        return (name, question.fault, *modules, largest, library)
-
     def rounds(self) -> Rounds[list[Point]]:
         """Yield the coarse lattice, then with it the points where the sign is not decided."""
         question, points = self.question, list(lattice(COARSE))
@@ -118,7 +110,7 @@ class MapPlan(Analysis[list[Point]]):
                 ]
                 rows += rows_of(self.path(point), {name: parts}, question.seeds)
         return Study(
-            name=f"{self.spec.name}-map-{question.repair}-vs-{question.baseline}",
+            name=self.named[0],
             system=self.spec,
             library=question.library,
             scenes=self.scenes,
@@ -204,7 +196,9 @@ def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Li
         n_scenes=len(chosen),
         trained=system.trained,
     )
-    return MapPlan(request, question, system, spec, chosen)
+    name = f"{spec.name}-map-{request.repair}-vs-{request.baseline}"
+    named = (name, request.fault, *modules, f"{largest:g}", PurePath(request.library).stem)
+    return MapPlan(request, question, system, named, spec, chosen)
 
 
 def _kind(system: System, text: str) -> str | None:

@@ -40,17 +40,6 @@ class SearchPlan(Analysis[list[Tried]]):
     finding: tuple[str, ...] = field(repr=False)
     confirming: tuple[str, ...] = field(repr=False)
 
-    @property
-    def named(self) -> tuple[str, ...]:
-        """Parts of the name of its folder."""
-        request, bounds = self.request, digest(self.question.bounds.model_dump_json())
-        return (
-            self.study(()).name,
-            f"{request.within.stem}-{bounds}",
-            f"{request.candidates}-faults-seed-{request.search_seed}",
-            PurePath(request.library).stem,
-        )
-
     def rounds(self) -> Rounds[list[Tried]]:
         """Yield the faults that are spread evenly, then those which what was seen leads to."""
         question, bounds, tried = self.question, self.question.bounds, dict[str, Tried]()
@@ -100,7 +89,7 @@ class SearchPlan(Analysis[list[Tried]]):
             for path in (question.bounds.isolated, SHARED):
                 rows += rows_of(f"{path}: {text}", paths[path], question.seeds)
         return Study(
-            name=f"{self.spec.name}-search-{question.repair}-vs-{question.baseline}",
+            name=self.named[0],
             system=self.spec,
             library=question.library,
             scenes=self.finding,
@@ -199,4 +188,10 @@ def plan_search(
         finding=len(finding),
         confirming=len(confirming),
     )
-    return SearchPlan(request, question, system, spec, library, finding, confirming)
+    named = (
+        f"{spec.name}-search-{request.repair}-vs-{request.baseline}",
+        f"{request.within.stem}-{digest(bounds.model_dump_json())}",
+        f"{request.candidates}-faults-seed-{request.search_seed}",
+        PurePath(request.library).stem,
+    )
+    return SearchPlan(request, question, system, named, spec, library, finding, confirming)

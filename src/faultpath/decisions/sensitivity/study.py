@@ -36,7 +36,7 @@ from faultpath.trials import (
     SystemSpec,
     Variant,
 )
-from faultpath.trials.sensitivity_question import SensitivityQuestion
+from faultpath.trials.question import SensitivityQuestion
 
 _MOST_COMPONENTS = 16
 """Most components of a vector whose components err each by itself."""
@@ -51,18 +51,6 @@ class SensitivityPlan(Analysis[None]):
     request: SensitivityQuestion
     question: ResolvedSensitivity
     study: Study = field(repr=False)
-
-    @property
-    def named(self) -> tuple[str, ...]:
-        """Parts of the name of its folder."""
-        request = self.request
-        return (
-            self.study.name,
-            request.metric or "success",
-            *request.fault,
-            f"{request.points}-points-seed-{request.design_seed}",
-            PurePath(request.library).stem,
-        )
 
     def rounds(self) -> Rounds[None]:
         """Yield the only round."""
@@ -152,7 +140,14 @@ def plan_sensitivity(
         scenes=scenes,
         rows=tuple(arms),
     )
-    return SensitivityPlan(request, question, system, study)
+    named = (
+        study.name,
+        request.metric or "success",
+        *request.fault,
+        f"{request.points}-points-seed-{request.design_seed}",
+        PurePath(request.library).stem,
+    )
+    return SensitivityPlan(request, question, system, named, study)
 
 
 def uncertain(
