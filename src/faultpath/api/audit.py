@@ -1,6 +1,6 @@
 """`faultpath.audit`: run the arms of one question, decide, and write the run folder."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from os import PathLike
@@ -26,6 +26,7 @@ from faultpath.decisions.fault_groups import JOINED
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.phrases import counted
 from faultpath.decisions.planning import Audit, plan_audit
+from faultpath.decisions.question import Question
 from faultpath.decisions.stopping import after_looks
 from faultpath.faults import each_size
 from faultpath.report.inputs import Traces
@@ -106,20 +107,19 @@ def audits(
 def carry_out(audit: Audit, job: Job) -> None:
     """Run, decide and write what the run folder's pages are made from.
 
-    What was concluded before in the folder stands in the record: see `after_looks`. Raises
-    `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing can be compared.
+    Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing can be
+    compared.
     """
-    folder, system = job.folder, audit.system
-    earlier, before = None, concluded_before(folder)
-    if before is not None:
-        audit = replace(audit, question=audit.question.by_the_rule_of(before.question))
-    question = audit.question
+    folder, system, question, earlier = job.folder, audit.system, audit.question, None
     with suppress(UserError):  # nothing sound stands there: it is made anew
         earlier = read_provenance(folder)
     shown = system_shown(system, (question.baseline, question.repair), audit.study.scenes)
     _, result = job.trials(audit)
-    record = audit.conclude(result.outcomes, result.deliveries)
-    record = after_looks(record, () if before is None else (before,))
+
+    def conclude(question: Question) -> DecisionRecord:
+        return replace(audit, question=question).conclude(result.outcomes, result.deliveries)
+
+    record = concluded(folder, question, conclude)
     recorded: _Signals = {}
     if earlier is not None and SIGNALS in earlier.files:
         same = (earlier.system_fingerprint, earlier.outcomes_sha256)
@@ -140,12 +140,18 @@ def carry_out(audit: Audit, job: Job) -> None:
     job.finish(result, system, (*MADE_FROM, *([SIGNALS] if recorded else ())))
 
 
-def concluded_before(folder: Path) -> DecisionRecord | None:
-    """Return the record that a folder holds, if any."""
+def concluded(
+    folder: Path, question: Question, conclude: Callable[[Question], DecisionRecord]
+) -> DecisionRecord:
+    """Return what is concluded of a question, by the rule of the record that the folder holds of
+    these trials, if any, which stands in the new one: see `after_looks`."""
     try:
-        return parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
+        before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
     except UserError:
-        return None
+        return conclude(question)
+    if before.question.library_hash != question.library_hash:  # other results
+        return conclude(question)
+    return after_looks(conclude(question.by_the_rule_of(before.question)), (before,))
 
 
 def _recorded(

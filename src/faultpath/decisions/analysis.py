@@ -30,7 +30,7 @@ class Round:
 
 
 Rounds: TypeAlias = Generator[Round, OutcomeTable, Items]
-"""Rounds, each from the trials of those before; what they amount to is returned at the end."""
+"""Rounds, each from the trials of those before; they return all that they added."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Analysis(ABC, Generic[Items]):
     """A question, the rounds of trials that answer it, and the record that is made of them."""
 
     noun: ClassVar[str] = ""
-    """What rounds add, in the plural; empty for an analysis of one round."""
+    """Plural of that which rounds add; empty for an analysis of one round."""
 
     request: Running | SensitivityQuestion
     question: Resolved
