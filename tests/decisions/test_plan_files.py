@@ -22,7 +22,7 @@ ASKED = {"baseline": "calibrated", "repair": "blind", "library": "carts", "scene
 
 
 def plan(system=DECLARED, **changes) -> Planned:
-    return faultpath.plan(system, **(ASKED | {"progress": False} | changes))
+    return faultpath.api.plan(system, **(ASKED | {"progress": False} | changes))
 
 
 @pytest.fixture(scope="module")

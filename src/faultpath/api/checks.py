@@ -1,4 +1,4 @@
-"""`faultpath.check`, `trace` and `plan`: what comes before an audit; and carrying a plan out."""
+"""Calls before an audit, `faultpath.check`, `api.trace` and `api.plan`; carrying plans out."""
 
 from dataclasses import dataclass
 from os import PathLike
@@ -80,7 +80,9 @@ def plan(
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
     """
-    question, chosen, library, display = begin("plan", PlanQuestion, system, arguments, progress)
+    question, chosen, library, display = begin(
+        "api.plan", PlanQuestion, system, arguments, progress
+    )
     if chosen.own:
         raise UserError(
             "a study file cannot hold an object: put what builds the system into a file and name "
@@ -176,7 +178,7 @@ def trace(
         UserError: There is no such system, variant, library or scene, the fault reaches no
             consumer, or the run fails.
     """
-    question, chosen, _, _ = begin("trace", TraceQuestion, system, arguments, progress)
+    question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, progress)
     return traced(question, chosen)
 
 

@@ -1,4 +1,4 @@
-"""`faultpath.reversal_map`, `search` and `sensitivity`: many faults of one system."""
+"""`faultpath.map`, `faultpath.api.search` and `sensitivity`: many faults of one system."""
 
 from os import PathLike
 from typing import Any
@@ -18,7 +18,7 @@ from faultpath.trials.question import MapQuestion, SearchQuestion, SensitivityQu
 
 
 @asks(MapQuestion)
-def reversal_map(
+def map(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> MapRun:
     """Map who is ahead over the error at one module and that at another, of the same source.
@@ -34,7 +34,7 @@ def reversal_map(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    return run("reversal_map", MapQuestion, plan_map, MapRun, system, arguments, progress)
+    return run("map", MapQuestion, plan_map, MapRun, system, arguments, progress)
 
 
 @asks(SearchQuestion)
@@ -58,7 +58,14 @@ def search(
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
     return run(
-        "search", SearchQuestion, plan_search, SearchRun, system, arguments, progress, _carry_out
+        "api.search",
+        SearchQuestion,
+        plan_search,
+        SearchRun,
+        system,
+        arguments,
+        progress,
+        _carry_out,
     )
 
 
@@ -101,7 +108,7 @@ def sensitivity(
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
     return run(
-        "sensitivity",
+        "api.sensitivity",
         SensitivityQuestion,
         plan_sensitivity,
         SensitivityRun,

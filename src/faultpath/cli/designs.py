@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Map the success difference over the error at one module and that at another: where repair
     or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
-    from faultpath.api.designs import reversal_map
+    from faultpath.api.designs import map
 
-    run = reversal_map(system, **arguments, progress=display(as_json))
+    run = map(system, **arguments, progress=display(as_json))
 
     from faultpath.report.map import shown
 

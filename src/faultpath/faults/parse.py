@@ -159,7 +159,7 @@ def parse_fault(
     parts = FaultText.read(text)
     try:
         if len(parts.sizes) > 1:
-            raise UserError("it has several sizes: use faultpath.audits")
+            raise UserError("it has several sizes: use faultpath.api.audits")
         update, options = _timing(parts.options, dt_s)
         if parts.consumers:
             update["consumers"] = parts.consumers
