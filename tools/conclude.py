@@ -15,7 +15,6 @@ from paper_blocks import PLACE, RUN
 from faultpath.api.folders import MAP, RECORD, as_text
 from faultpath.api.runs import open_run
 from faultpath.decisions.decide import decide
-from faultpath.decisions.map.decide import conclude as map_decided
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.study import plan_map
@@ -24,7 +23,7 @@ from faultpath.decisions.model import Path as FaultPath
 from faultpath.decisions.question import Question
 from faultpath.decisions.tables import Table
 from faultpath.report.map import table_markdown
-from faultpath.trials import SystemSpec, library_of, load_system
+from faultpath.trials import Deliveries, SystemSpec, library_of, load_system
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import MapQuestion
 from faultpath.trials.store.folder import OUTCOMES, read_outcomes, seal
@@ -80,9 +79,9 @@ def reversal_map(folder: Path) -> MapRecord:
         (round(x / question.up_to * UNITS), round(y / question.up_to * UNITS))
         for x, y in (point.errors for point in before.points)
     ]
-    record = map_decided(
-        replace(plan, question=question), points, read_outcomes(folder / OUTCOMES), before.findings
-    )
+    findings = Deliveries(rows=(), findings=before.findings)
+    plan = replace(plan, question=question)
+    record = plan.conclude(read_outcomes(folder / OUTCOMES), findings, points)
     (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     (folder / "table.md").write_text(table_markdown(record), "utf-8")
     _reseal(folder)

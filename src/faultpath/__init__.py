@@ -1,84 +1,61 @@
 """Audit whether a repair still helps when a fault reaches every module that shares its source.
 
-The names below are public, and so are those with which a user's system is written (see
-`docs/audit-your-own-system.md`) and those of `faultpath.plugin`. All other modules and names are
-private: they may change in any version. Each name loads what it needs when it is first used, so
-importing this is quick.
+The names below are public, and so are those of `faultpath.api`, those with which a user's system is
+written (see `docs/audit-your-own-system.md`) and those of `faultpath.plugin`. All other modules and
+names are private: they may change in any version. Each name loads what it needs when it is first
+used, so importing this is quick.
 """
 
-from importlib import import_module
 from typing import TYPE_CHECKING
 
+from faultpath import api as api
+from faultpath.core.lazy import load
 from faultpath.core.version import __version__
 
 if TYPE_CHECKING:
-    from faultpath.api.audit import audit, audits
-    from faultpath.api.checks import check, plan, trace
+    from faultpath.api.audit import audit
+    from faultpath.api.checks import check
     from faultpath.api.comparing import compare
+    from faultpath.api.designs import map
     from faultpath.api.judging import judge
-    from faultpath.api.mapping import reversal_map
     from faultpath.api.runs import Run, open_run
-    from faultpath.api.searching import search
-    from faultpath.api.sensitivity import sensitivity
     from faultpath.api.systems import load_system
-    from faultpath.core.errors import Stopped, UserError
+    from faultpath.core.errors import UserError
     from faultpath.core.streams import generator
     from faultpath.trials.system import System
 
 __all__ = [
     "Run",
-    "Stopped",
     "System",
     "UserError",
     "__version__",
     "audit",
-    "audits",
     "check",
     "compare",
     "generator",
     "judge",
     "load_system",
+    "map",
     "open_run",
-    "plan",
-    "reversal_map",
-    "search",
-    "sensitivity",
-    "trace",
 ]
 
 _HOMES = {
     "Run": "faultpath.api.runs",
-    "Stopped": "faultpath.core.errors",
     "System": "faultpath.trials.system",
     "UserError": "faultpath.core.errors",
     "audit": "faultpath.api.audit",
-    "audits": "faultpath.api.audit",
     "check": "faultpath.api.checks",
     "compare": "faultpath.api.comparing",
     "generator": "faultpath.core.streams",
     "judge": "faultpath.api.judging",
     "load_system": "faultpath.api.systems",
+    "map": "faultpath.api.designs",
     "open_run": "faultpath.api.runs",
-    "plan": "faultpath.api.checks",
-    "reversal_map": "faultpath.api.mapping",
-    "search": "faultpath.api.searching",
-    "sensitivity": "faultpath.api.sensitivity",
-    "trace": "faultpath.api.checks",
 }
 
 
 def __getattr__(name: str) -> object:
-    if name not in _HOMES:
-        raise AttributeError(f"module 'faultpath' has no attribute {name!r}")
-    import random
-
-    drawn = random.getstate()
-    try:
-        found = getattr(import_module(_HOMES[name]), name)
-    finally:
-        random.setstate(drawn)  # some libraries draw from it when they are imported
-    globals()[name] = found
-    return found
+    return load(__name__, _HOMES, name)
 
 
 def __dir__() -> list[str]:

@@ -16,21 +16,26 @@ DOCS = Path(__file__).resolve().parents[2] / "docs" / "python.md"
 
 def test_few_names_are_public_and_all_are_listed():
     listed = re.findall(r"^\| `(\w+)[`(]", DOCS.read_text(), re.MULTILINE)
-    assert listed == [name for name in faultpath.__all__ if name != "__version__"]
-    assert len(listed) <= 17
+    top = [name for name in faultpath.__all__ if name != "__version__"]
+    assert listed == [*top, *faultpath.api.__all__]
+    assert len(faultpath.__all__) <= 12
 
 
-@pytest.mark.parametrize("name", faultpath.__all__)
-def test_every_name_is_there_and_says_what_it_is(name):
-    found = getattr(faultpath, name)
-    assert name in dir(faultpath)
+@pytest.mark.parametrize(
+    ("package", "name"),
+    [(package, name) for package in (faultpath, faultpath.api) for name in package.__all__],
+)
+def test_every_name_is_there_and_says_what_it_is(package, name):
+    found = getattr(package, name)
+    assert name in dir(package)
     assert name == "__version__" or (found.__doc__ or "").strip()
 
 
-@pytest.mark.parametrize("name", ["audit", "audits", "plan", "reversal_map"])
-def test_every_call_shows_its_fields(name):
+@pytest.mark.parametrize(
+    "function", [faultpath.audit, faultpath.map, faultpath.api.audits, faultpath.api.plan]
+)
+def test_every_call_shows_its_fields(function):
     """They are declared once, in a question; help and signature follow from it."""
-    function = getattr(faultpath, name)
     shown = inspect.signature(function).parameters
     assert {"system", "baseline", "repair", "fault", "seeds", "progress"} <= set(shown)
     assert all(f"{each}: " in function.__doc__ for each in shown)
@@ -39,6 +44,8 @@ def test_every_call_shows_its_fields(name):
 def test_a_name_that_there_is_none_of():
     with pytest.raises(AttributeError, match="no attribute 'octopus'"):
         faultpath.octopus  # noqa: B018 - the look itself raises
+    with pytest.raises(AttributeError, match=r"'faultpath\.api' has no attribute 'octopus'"):
+        faultpath.api.octopus  # noqa: B018
 
 
 def test_importing_loads_nothing_heavy():

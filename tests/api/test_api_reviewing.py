@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 import faultpath
-from faultpath import check, trace
+from faultpath import check
+from faultpath.api import trace
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))
 from cli_runs import faultpath as command

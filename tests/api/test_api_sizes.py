@@ -65,12 +65,12 @@ def test_lists_that_are_none(text, said):
 
 
 def test_each_size_is_an_audit_as_if_alone(tmp_path):
-    _, strong = faultpath.audits(TOY, fault="gain:scale=0.6,0.8", folder=tmp_path, **ASKED)
+    _, strong = faultpath.api.audits(TOY, fault="gain:scale=0.6,0.8", folder=tmp_path, **ASKED)
     alone = faultpath.audit(TOY, fault="gain:scale=0.8", folder=tmp_path / "alone", **ASKED)
     assert strong.record == alone.record
     assert strong.table() == alone.table()
 
 
 def test_one_audit_takes_one_size():
-    with pytest.raises(UserError, match=r"several sizes: use faultpath\.audits"):
+    with pytest.raises(UserError, match=r"several sizes: use faultpath\.api\.audits"):
         faultpath.audit(TOY, fault="gain:scale=0.6..0.8/3", **ASKED)

@@ -6,7 +6,7 @@ import numpy as np
 
 from faultpath.decisions.map.decide import decided
 from faultpath.decisions.map.lattice import COARSE, UNITS, Point, lattice
-from faultpath.decisions.map.model import MapQuestion, MapRecord
+from faultpath.decisions.map.model import MapRecord, ResolvedMap
 from faultpath.decisions.map.surface import Differences, next_points
 
 MODULES = ("observer", "predictor")
@@ -14,8 +14,8 @@ Seen = Callable[[float, float], tuple[np.ndarray, np.ndarray]]
 """From two errors to success of the repair and of the baseline, `[scenes]`."""
 
 
-def question(**given: object) -> MapQuestion:
-    return MapQuestion.model_validate(
+def question(**given: object) -> ResolvedMap:
+    return ResolvedMap.model_validate(
         {
             "system": "toy",
             "options": {},

@@ -5,11 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.decisions.map.decide import conclude
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.study import plan_map
-from faultpath.trials import SystemSpec, library_of, load_system
+from faultpath.trials import Deliveries, SystemSpec, library_of, load_system
 from faultpath.trials.question import MapQuestion
 from faultpath.trials.store.folder import read_outcomes
 
@@ -53,9 +52,10 @@ def test_a_reference_map_follows_from_its_outcomes(
         for x, y in (point.errors for point in record.points)
     ]
     table = read_outcomes(folder / "outcomes.parquet")
-    again = conclude(plan, points, table, record.findings)
+    noted = Deliveries(rows=(), findings=record.findings)
+    again = plan.conclude(table, noted, points)
     if folder.name == "map-toy":
-        turned = conclude(plan, points[::-1], table, record.findings)
+        turned = plan.conclude(table, noted, points[::-1])
         assert turned == again, "the order in which points were flown is in the record"
     assert again.sentences == record.sentences
     assert again.headline == record.headline

@@ -10,7 +10,7 @@ from faultpath.api.checks import Planned
 from faultpath.core.errors import UserError
 from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_modules
 from faultpath.decisions.plan.plan import sentences
-from faultpath.decisions.plan.sources import Candidate, candidates
+from faultpath.decisions.sources import Candidate, candidates
 from faultpath.faults import Coupled, Fault, Scale
 from faultpath.interface import read_interface
 from faultpath.trials import Library, SceneRef, System, Variant
@@ -22,7 +22,7 @@ ASKED = {"baseline": "calibrated", "repair": "blind", "library": "carts", "scene
 
 
 def plan(system=DECLARED, **changes) -> Planned:
-    return faultpath.plan(system, **(ASKED | {"progress": False} | changes))
+    return faultpath.api.plan(system, **(ASKED | {"progress": False} | changes))
 
 
 @pytest.fixture(scope="module")

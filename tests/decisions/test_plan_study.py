@@ -16,7 +16,7 @@ SYSTEMS = Path(__file__).resolve().parent / "declared_toy.py"
 
 @pytest.fixture(scope="module")
 def planned() -> Planned:
-    return faultpath.plan(
+    return faultpath.api.plan(
         f"{SYSTEMS}:logged",
         baseline="calibrated",
         repair="logged",

@@ -13,13 +13,12 @@ from faultpath.core.errors import UserError
 from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.search.bounds import BoundedFault, Bounds
 from faultpath.decisions.search.decide import conclude
-from faultpath.decisions.search.model import SearchQuestion, SearchRecord, Tried
+from faultpath.decisions.search.model import ResolvedSearch, SearchRecord, Tried
 from faultpath.decisions.search.propose import proposals
 from faultpath.decisions.search.study import SearchPlan, halves, plan_search, regret
 from faultpath.decisions.summary import MOST_WORDS
 from faultpath.trials import SystemSpec, library_of, load_system
-from faultpath.trials.question import SearchQuestion as Asked
-from faultpath.trials.question import ask
+from faultpath.trials.question import SearchQuestion, ask
 
 SPEC = SystemSpec(name=f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create")
 TOY = load_system(SPEC)
@@ -30,7 +29,7 @@ GAIN = "isolated: observer\nfaults:\n- {fault: gain, size: [0.6, 1.4]}\n"
 def plan(tmp_path: Path, bounds: str, **given: Any) -> SearchPlan:
     (tmp_path / "bounds.yaml").write_text(bounds)
     asked = {"baseline": "calibrated", "repair": "blind", "within": tmp_path / "bounds.yaml"}
-    return plan_search(TOY, SPEC, ask(Asked, asked | given), LIBRARY)
+    return plan_search(TOY, SPEC, ask(SearchQuestion, asked | given), LIBRARY)
 
 
 @pytest.mark.parametrize(
@@ -150,7 +149,7 @@ def test_regret_is_what_the_isolated_choice_loses() -> None:
 def record(*counts: Any, regret_pp: float = 40.0) -> SearchRecord:
     confirmed = three(*counts) if counts else None
     fault = confirmed.question.fault if confirmed else "gain:scale=0.7"
-    asked = SearchQuestion(
+    asked = ResolvedSearch(
         system="toy",
         options={},
         baseline="old",

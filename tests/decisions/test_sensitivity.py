@@ -6,7 +6,7 @@ from declared_toy import Declared
 
 from faultpath.core.errors import UserError
 from faultpath.decisions.sensitivity.decide import conclude
-from faultpath.decisions.sensitivity.model import SensitivityQuestion, SensitivityRecord, Uncertain
+from faultpath.decisions.sensitivity.model import ResolvedSensitivity, SensitivityRecord, Uncertain
 from faultpath.decisions.sensitivity.study import faults_at, uncertain
 from faultpath.interface import read_interface
 from faultpath.statistics.sobol import design
@@ -85,7 +85,7 @@ NAMES = ("a", "b", "c")
 def record(weights: tuple[float, ...], scenes: int = 4, together: float = 0.0) -> SensitivityRecord:
     """Return the record of a weighted sum of three errors, and of the product of the first two."""
     drawn = design([1, 1, 1], 256, 3) - 0.5
-    asked = SensitivityQuestion(
+    asked = ResolvedSensitivity(
         system="toy",
         options={},
         variant="v",

@@ -1,5 +1,35 @@
 """The front door: what `import faultpath` offers, and what the command line calls.
 
-A call runs, decides, writes a run folder and returns what came out. It leaves threads, environment
-and random state of its caller as they were.
+Calls that fewer scripts make have their public names here. A call runs, decides, writes a run
+folder and returns what came out. It leaves threads, environment and random state of its caller as
+they were.
 """
+
+from typing import TYPE_CHECKING
+
+from faultpath.core.lazy import load
+
+if TYPE_CHECKING:
+    from faultpath.api.audit import audits
+    from faultpath.api.checks import plan, trace
+    from faultpath.api.designs import search, sensitivity
+    from faultpath.core.errors import Stopped
+
+__all__ = ["Stopped", "audits", "plan", "search", "sensitivity", "trace"]
+
+_HOMES = {
+    "Stopped": "faultpath.core.errors",
+    "audits": "faultpath.api.audit",
+    "plan": "faultpath.api.checks",
+    "search": "faultpath.api.designs",
+    "sensitivity": "faultpath.api.designs",
+    "trace": "faultpath.api.checks",
+}
+
+
+def __getattr__(name: str) -> object:
+    return load(__name__, _HOMES, name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,4 +1,4 @@
-"""`faultpath.check`, `trace` and `plan`: what comes before an audit; and carrying a plan out."""
+"""Calls before an audit, `faultpath.check`, `api.trace` and `api.plan`; carrying plans out."""
 
 from dataclasses import dataclass
 from os import PathLike
@@ -17,7 +17,7 @@ from faultpath.decisions.plan.plan import Plan, make_plan, sentences
 from faultpath.decisions.plan.study import StudyFile, check_arms
 from faultpath.decisions.planning import plan_audit
 from faultpath.trials import System, library_of
-from faultpath.trials.question import CheckQuestion, PlanQuestion, Question, TraceQuestion
+from faultpath.trials.question import CheckQuestion, PlanQuestion, RepairQuestion, TraceQuestion
 from faultpath.trials.store.atomic import check_output, write_text
 from faultpath.trials.trust import Received
 from faultpath.trials.work.executor import Progress
@@ -80,7 +80,9 @@ def plan(
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
     """
-    question, chosen, library, display = begin("plan", PlanQuestion, system, arguments, progress)
+    question, chosen, library, display = begin(
+        "api.plan", PlanQuestion, system, arguments, progress
+    )
     if chosen.own:
         raise UserError(
             "a study file cannot hold an object: put what builds the system into a file and name "
@@ -115,7 +117,7 @@ def audit_study(
     for planned in study.audits:
         laid = plan_audit(chosen.system, chosen.spec, study.audit_of(planned.fault), library)
         check_arms(study, planned, laid)
-    same = {name: getattr(study, name) for name in Question.model_fields}
+    same = {name: getattr(study, name) for name in RepairQuestion.model_fields}
     return tuple(
         audit(
             study.system,
@@ -176,7 +178,7 @@ def trace(
         UserError: There is no such system, variant, library or scene, the fault reaches no
             consumer, or the run fails.
     """
-    question, chosen, _, _ = begin("trace", TraceQuestion, system, arguments, progress)
+    question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, progress)
     return traced(question, chosen)
 
 

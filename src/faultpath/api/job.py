@@ -12,16 +12,18 @@ from typing import Any, TypeVar
 
 from faultpath.api.display import Display, Show, display
 from faultpath.api.systems import Chosen, choose
-from faultpath.trials import Library, OutcomeTable, Study, System, library_of
+from faultpath.core.results import Result
+from faultpath.decisions.analysis import Analysis, Items
+from faultpath.trials import Library, Study, System, library_of
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import Failure, RunResult, run_study
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import Asked, Request, ask
+from faultpath.trials.store.atomic import write_text
 from faultpath.trials.work.executor import Executor, Progress
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
 _Asked = TypeVar("_Asked", bound=Request)
-_Item = TypeVar("_Item")
 
 _ERRORS_SHOWN = 5
 
@@ -101,48 +103,55 @@ class Job:
         place, executor = folder or self.folder, self.executor
         return run_study(study, place, progress=show, system=system, executor=executor, **every)
 
-    def rounds(
-        self,
-        system: System,
-        items: Sequence[_Item],
-        study: Callable[[Sequence[_Item]], Study],
-        more: Callable[[Sequence[_Item], OutcomeTable], Iterable[_Item]],
-        most: int,
-        noun: str,
-    ) -> tuple[list[_Item], RunResult]:
-        """Run the `study` of some items, then with `more` of them from what those before have
-        shown, until none come; the folder serves studies of other items too.
-
-        About `most` items are expected, each a `noun`. Raises as `run`.
+    def trials(self, analysis: Analysis[Items]) -> tuple[Items, RunResult]:
+        """Run the rounds of an analysis, and return what they amount to beside all trials; the
+        folder of one with several rounds serves other ones too. Raises as `run`.
         """
-        every, computed, noticed = [*items], 0, set[str]()
+        system, rounds, say = analysis.system, analysis.rounds(), self.display.say
+        part, computed, noticed = next(rounds), 0, set[str]()
+        if system.backend:
+            say(f"Computing with {system.backend}.")
+        if part.notice:
+            say(part.notice)
 
         def notice(text: str) -> None:
             key = "Kept " if text.startswith("Kept ") else text
             if key not in noticed:
                 noticed.add(key)
-                self.display.say(text)
+                say(text)
 
         with self.display.progress("Running") as show:
 
             def note(state: Progress) -> None:
-                whole = (state.total or 0.0) * max(1.0, most / len(every))
-                show(state.within(max(state.done, whole), remark=f"{len(every)} {noun}"))
+                whole = (state.total or 0.0) * max(1.0, part.most / part.items)
+                remark = f"{part.items} {analysis.noun}"
+                show(state.within(max(state.done, whole), remark=remark))
 
             run = partial(self.run, system=system, show=note, notice=notice, shared=True)
+            several = bool(analysis.noun)
+            if not several:
+                run = partial(self.run, system=system, show=show, stop=part.stop)
             while True:
-                result = run(study(every), recheck=False)
+                result = run(part.study, recheck=not several)
                 noticed.add("Kept ")  # what later rounds keep, this call has run itself
                 computed += result.blocks_computed
-                new = list(more(every, result.outcomes))
-                if not new:
+                try:
+                    part = rounds.send(result.outcomes)
+                except StopIteration as end:
+                    items = end.value
                     break
-                every += new
-            result = run(study(every), recheck=True)
-            trials = len(result.outcomes.rows)
-            show(Progress(trials, trials, f"{len(every)} {noun}"))
+            if several:
+                result = run(part.study)
+                trials = len(result.outcomes.rows)
+                show(Progress(trials, trials, f"{part.items} {analysis.noun}"))
         blocks = result.blocks_kept + result.blocks_computed
-        return every, replace(result, blocks_computed=computed, blocks_kept=blocks - computed)
+        return items, replace(result, blocks_computed=computed, blocks_kept=blocks - computed)
+
+    def keep(self, record: Result, result: RunResult, system: System, names: Sequence[str]) -> None:
+        """Write a record, the first of the files that pages are made from, and how it was made."""
+        text = record.model_dump_json(indent=1) + "\n"
+        write_text(self.folder / names[0], text, self.folder)
+        self.finish(result, system, names)
 
     def finish(
         self, result: RunResult, system: System, names: Iterable[str], folder: Path | None = None

@@ -4,20 +4,21 @@ import hashlib
 import json
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from datetime import UTC, datetime
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from faultpath.api.audit import concluded_before
+from faultpath.api.audit import concluded
 from faultpath.api.display import Display, display
 from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text, read_run
 from faultpath.api.job import asks
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
-from faultpath.decisions.decide import after_looks, decide
+from faultpath.decisions.decide import decide
 from faultpath.decisions.judging import LaidOut, lay_out
+from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.question import Question
 from faultpath.interface import Interface
 from faultpath.trials.execution.provenance import amend, run_provenance
 from faultpath.trials.execution.runner import RunResult
@@ -63,14 +64,11 @@ def judge(
     folder = question.folder or _folder(laid, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
-    before = concluded_before(folder)
-    if before is not None and before.question.library_hash != laid.question.library_hash:
-        before = None  # other results
-    if before is not None:
-        laid = replace(laid, question=laid.question.by_the_rule_of(before.question))
-    record = decide(laid.question, laid.paths, laid.table, laid.findings)
-    if before is not None:
-        record = after_looks(record, (before,))
+
+    def conclude(question: Question) -> DecisionRecord:
+        return decide(question, laid.paths, laid.table, laid.findings)
+
+    record = concluded(folder, laid.question, conclude)
     begin(folder)
     with locked(folder, shown.say):
         result = _stored(folder, laid)

@@ -3,17 +3,15 @@
 from importlib.metadata import entry_points
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import pyarrow as pa
 
 from faultpath.api.folders import (
-    MAP,
+    MADE_FROM,
     MAP_MADE_FROM,
     RECORD,
-    SEARCH,
     SEARCH_MADE_FROM,
-    SENSITIVITY,
     SENSITIVITY_MADE_FROM,
     parsed,
     read_provenance,
@@ -38,6 +36,9 @@ if TYPE_CHECKING:
 class FinishedRun:
     """A finished run: what was decided, how it was made, and where its files are."""
 
+    files: ClassVar[tuple[str, ...]]
+    """Those that its pages are made from, its record first."""
+
     def __init__(self, folder: Path, record: Any, provenance: RunProvenance) -> None:
         self.folder = folder
         self.record = record
@@ -60,6 +61,7 @@ class Run(FinishedRun):
     A notebook shows it as the table of its effects, with the verdict below.
     """
 
+    files = MADE_FROM
     record: DecisionRecord
     """Decisions of the audit: `headline` in a sentence, `effects` in numbers."""
 
@@ -112,6 +114,7 @@ class Run(FinishedRun):
 class MapRun(FinishedRun):
     """A finished reversal map: what was decided, and where its files are."""
 
+    files = MAP_MADE_FROM
     record: "MapRecord"
     """`headline` and `sentences` in words; `points`, `surface`, `flips`, `joint` in numbers."""
 
@@ -126,6 +129,7 @@ class MapRun(FinishedRun):
 class SearchRun(FinishedRun):
     """A finished search: what was confirmed, and where its files are."""
 
+    files = SEARCH_MADE_FROM
     record: "SearchRecord"
     """`headline` and `sentences` in words; `tried`, and `confirmed`, the record of the audit."""
 
@@ -140,6 +144,7 @@ class SearchRun(FinishedRun):
 class SensitivityRun(FinishedRun):
     """A finished sensitivity analysis: what was decided, and where its files are."""
 
+    files = SENSITIVITY_MADE_FROM
     record: "SensitivityRecord"
     """`headline` and `sentences` in words; `indices` in numbers, a group each."""
 
@@ -162,18 +167,15 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | SearchRun | Sensiti
     """
     place = Path(folder)
     provenance = read_provenance(place)
-    for name, made_from, kind in (
-        (MAP, MAP_MADE_FROM, MapRun),
-        (SEARCH, SEARCH_MADE_FROM, SearchRun),
-        (SENSITIVITY, SENSITIVITY_MADE_FROM, SensitivityRun),
-    ):
+    for kind in (MapRun, SearchRun, SensitivityRun):
+        name = kind.files[0]
         if name not in provenance.files:
             continue
         from faultpath.decisions.map.model import MapRecord
         from faultpath.decisions.search.model import SearchRecord
         from faultpath.decisions.sensitivity.model import SensitivityRecord
 
-        contents = unseal(place, provenance.files, made_from)
+        contents = unseal(place, provenance.files, kind.files)
         models = {MapRun: MapRecord, SearchRun: SearchRecord, SensitivityRun: SensitivityRecord}
         record = parsed(contents[name], place / name, models[kind])
         if (provenance.files[OUTCOMES], provenance.library_hash) != (

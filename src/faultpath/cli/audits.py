@@ -14,7 +14,7 @@ from faultpath.cli.options import Json, SystemName, Trust, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
-from faultpath.trials.question import AuditQuestion, PlanQuestion, Question, Running
+from faultpath.trials.question import AuditQuestion, PlanQuestion, RepairQuestion, Running
 from faultpath.trials.received.question import JudgeQuestion
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def audit(
     return status
 
 
-@takes(Running, *Question.model_fields)
+@takes(Running, *RepairQuestion.model_fields)
 def study(
     study: Annotated[Path, StudyFile],
     trust: Trust = False,

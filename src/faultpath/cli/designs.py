@@ -7,8 +7,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import FOUND, Json, SystemName, display
-from faultpath.trials.question import MapQuestion, SearchQuestion
-from faultpath.trials.sensitivity_question import SensitivityQuestion
+from faultpath.trials.question import MapQuestion, SearchQuestion, SensitivityQuestion
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -20,9 +19,9 @@ if TYPE_CHECKING:
 def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Map the success difference over the error at one module and that at another: where repair
     or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
-    from faultpath.api.mapping import reversal_map
+    from faultpath.api.designs import map
 
-    run = reversal_map(system, **arguments, progress=display(as_json))
+    run = map(system, **arguments, progress=display(as_json))
 
     from faultpath.report.map import shown
 
@@ -33,7 +32,7 @@ def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) ->
 def search(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Look within bounds for the fault that hurts those most who choose the repair by an isolated
     audit: half of the scenes find it, and an audit of it in the other half decides."""
-    from faultpath.api.searching import search
+    from faultpath.api.designs import search
 
     run = search(system, **arguments, progress=display(as_json))
 
@@ -46,7 +45,7 @@ def search(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
 def sensitivity(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Tell which source is worth improving: Sobol indices of a metric over errors that are drawn
     as the interface declares them, with sources of one correlation group moved together."""
-    from faultpath.api.sensitivity import sensitivity
+    from faultpath.api.designs import sensitivity
 
     run = sensitivity(system, **arguments, progress=display(as_json))
 

@@ -42,7 +42,7 @@ def trace(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     from faultpath.decisions.tables.terminal import STYLES, Parted
     from faultpath.report.terminal import interface_table, trace_table
 
-    question, chosen, _, _ = begin("trace", TraceQuestion, system, arguments, display())
+    question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, display())
     trace = traced(question, chosen)
     if as_json:
         typer.echo(trace.model_dump_json(indent=2))

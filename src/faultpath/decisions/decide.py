@@ -1,11 +1,12 @@
 """From the outcome table to the decision record."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from faultpath.core.errors import UserError
 from faultpath.decisions import phrases, wording
+from faultpath.decisions.compared import Compared
 from faultpath.decisions.descriptive import cells_of, percent, secondary, untested_paths
-from faultpath.decisions.family import Compared, Family, alpha_shares, compared, decide_paths, led
+from faultpath.decisions.family import Family, family_of, led
 from faultpath.decisions.model import (
     AS_RUN,
     CORRECT,
@@ -17,9 +18,9 @@ from faultpath.decisions.model import (
     FailedTrials,
     Path,
     PathBreakEven,
-    Stopped,
 )
-from faultpath.decisions.question import EarlierLook, Question
+from faultpath.decisions.question import Question
+from faultpath.decisions.stopping import stopped
 from faultpath.decisions.summary import in_words
 from faultpath.statistics.breakeven import break_even, mixture_curve, only
 from faultpath.statistics.distributions import sign_p_value
@@ -51,7 +52,7 @@ def decide(
     # Only times and metrics rest on resamples, and of very many scenes these take gigabytes.
     timed = any(cell.median_time_s is not None for cell in cells)
     none = question.judged is not None and not (timed or question.metrics)
-    trials, resamples, family = _family(question, paths, table, untested, 1 if none else 10_000)
+    trials, resamples, family = family_of(question, paths, table, untested, 1 if none else 10_000)
     effects = {
         path: _effect(question, path, trials, family, resamples, path not in untested)
         for path in trials.arms
@@ -77,7 +78,7 @@ def decide(
         scenes_needed=family.scenes_needed,
         hypotheses=family.hypotheses,
         estimand=phrases.estimand(question),
-        stopped=_stopped(question, family, table),
+        stopped=stopped(question, family, table),
     )
     noted = (
         *(f"{phrases.no_pair(path)}: the table shows what failed." for path in trials.void),
@@ -87,18 +88,6 @@ def decide(
         *findings,  # of a record that is decided anew, with some of the above among them
     )
     return record.model_copy(update={**in_words(record), "findings": tuple(dict.fromkeys(noted))})
-
-
-def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> bool:
-    """Return whether a sequential audit stops with these trials; their order does not matter."""
-    untested = untested_paths(paths, cells_of(question, paths, table))
-    try:
-        # What is decided of a sequential audit rests on no resamples.
-        _, _, family = _family(question, paths, table, untested, n_resamples=1)
-    except UserError:  # no pair is sound so far
-        return False
-    stopped = _stopped(question, family, table)
-    return stopped is not None and stopped.reached
 
 
 def primary_path(named: str, paths: Sequence[Path]) -> str:
@@ -113,95 +102,6 @@ def primary_path(named: str, paths: Sequence[Path]) -> str:
             f"{', '.join(names)}."
         )
     return led(named, names)
-
-
-def after_looks(record: DecisionRecord, earlier: Iterable[DecisionRecord]) -> DecisionRecord:
-    """Return a record that tells of other conclusions from its trials, and what they cost.
-
-    `earlier` are records of the same arms by the same code, with the looks that they tell of. The
-    same question asked again is no look, and one with too few scenes to announce anything is none.
-    A sequential audit allows for all looks with the same primary contrast.
-    """
-
-    def look(question: Question) -> EarlierLook:
-        return EarlierLook(
-            scenes=None if question.stop else question.n_scenes,
-            primary=question.primary,
-            generalise="scenes" if question.stop else question.generalise,
-            rule="exact" if question.stop else question.rule,
-        )
-
-    known: list[EarlierLook] = []
-    for other in earlier:
-        known += other.earlier if other.few else (*other.earlier, look(other.question))
-    looks = tuple(one for one in dict.fromkeys(known) if one != look(record.question))
-    if not looks:
-        return record
-    record = record.model_copy(update={"earlier": looks})
-    return record.model_copy(update={"findings": (*record.findings, phrases.looks(record))})
-
-
-def _family(
-    question: Question,
-    paths: Sequence[Path],
-    table: OutcomeTable,
-    untested: Sequence[str],
-    n_resamples: int = 10_000,
-) -> tuple[Compared, Resamples, Family]:
-    names = [path.name for path in paths]
-    sequential = question.stop is not None
-    # The trials of a task are no seeds: those that came out alike are no repetition.
-    tasks = question.judged is not None and question.judged.unit == "task"
-    trials = compared(
-        question.repair,
-        question.baseline,
-        names,
-        table,
-        distinct=not (sequential or tasks),
-        judged=question.judged is not None,
-    )
-    if question.generalise == "models" and next(iter(trials.arms.values()))[0].shape[1] < 2:
-        raise UserError(
-            "all seeds gave the same outcome in every trial, so they say nothing of newly trained "
-            "models: leave --generalise models out."
-        )
-    resamples = Resamples.draw(question.library_hash, trials.scenes, n_resamples=n_resamples)
-    family = decide_paths(
-        trials.arms,
-        rule=question.rule,
-        primary=question.primary,
-        resamples=resamples,
-        models=question.generalise == "models",
-        untested=untested,
-        shares=alpha_shares(names, question.primary) if sequential else None,
-        voids=trials.voids,
-    )
-    return trials, resamples, family
-
-
-def _stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped | None:
-    """Return how a sequential audit stands with these trials; `None` of one that is not.
-
-    Every claim on a contrast, of who is ahead or of how little, follows from its one interval, at
-    the level of its share.
-    """
-    rule = question.stop
-    if rule is None:
-        return None
-    small: list[str] = []
-    for path, effect in family.effects.items():
-        if effect.decision is None or effect.n_scenes < family.scenes_needed:
-            continue
-        level, margin = 1.0 - effect.decision.critical_p, rule.margin_pp or 0.0
-        # Whatever failed trials would have been.
-        filled = (effect, *family.fills.get(path, ()))
-        ends = [contrast.ends(level) or (-100.0, 100.0) for contrast in filled]
-        if all(-margin < low and high < margin for low, high in ends):
-            small.append(path)
-    settled = {path for path, effect in family.effects.items() if effect.sign or path in small}
-    required = set(family.effects) if rule.when == "all-decided" else {question.primary}
-    scenes = len({row.outcome.scene for row in table.rows})
-    return Stopped(scenes=scenes, reached=required <= settled, small=tuple(small))
 
 
 def _effect(

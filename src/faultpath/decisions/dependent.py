@@ -6,19 +6,15 @@ failure, what reaches them through the output of another one a cascading failure
 claims that elements are independent, or free from interference.
 """
 
-import shlex
 from collections.abc import Collection, Iterable, Sequence
 
 from faultpath.core.results import Frozen
 from faultpath.decisions.fault_groups import JOINED
 from faultpath.decisions.model import SHARED, DecisionRecord, Effect
-from faultpath.decisions.plan.sources import Wired, bound, expected
-from faultpath.decisions.plan.study import StudyFile
-from faultpath.decisions.question import Question
+from faultpath.decisions.sources import NOT_DEPLOYED, Wired, bound, expected, groups_of
 from faultpath.decisions.wording import reservation, with_interval
-from faultpath.interface import Interface, Provenance, Source, module_of
+from faultpath.interface import Interface, Source, module_of
 
-_NOT_DEPLOYED = (Provenance.PRIVILEGED, Provenance.INTERNAL)
 _SIZE = "SIZE"
 """Stands in a command for what no declaration gives."""
 
@@ -74,12 +70,9 @@ def dependent_groups(interface: Interface, variants: Sequence[Wired]) -> tuple[G
     Every source counts that exists at deployment, whatever error it declares; a consumer counts
     that reads it in one of the variants, directly or through reconstructions.
     """
-    members: dict[str, list[Source]] = {}
-    for source in interface.sources:
-        if source.provenance not in _NOT_DEPLOYED:
-            members.setdefault(source.correlation_group or source.name, []).append(source)
+    deployed = (source for source in interface.sources if source.provenance not in NOT_DEPLOYED)
     groups: list[Group] = []
-    for name, sources in members.items():
+    for name, sources in groups_of(deployed).items():
         taps = _readers(interface, variants, [source.name for source in sources])
         alone: dict[str, list[tuple[str, str]]] = {}
         for channel, consumer in taps:
@@ -192,13 +185,3 @@ def _decision(record: DecisionRecord, effect: Effect | None) -> str:
     if effect.sign == 0:
         return f"flown, nothing decided{f' ({aside})' if aside else ''}"
     return f"{record.winner(effect.sign)} succeeds more often{f' ({aside})' if aside else ''}"
-
-
-def command(question: Question | StudyFile, fault: str) -> str:
-    """Return the command that flies the arms of a fault: each module alone, and shared."""
-    parts = ["faultpath", "audit", question.system, "--baseline", question.baseline]
-    parts += ["--repair", question.repair, "--fault", fault, "--library", question.library]
-    parts += [
-        part for key, value in question.options.items() for part in ("--set", f"{key}={value}")
-    ]
-    return shlex.join(parts)

@@ -12,9 +12,10 @@ from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.decisions.decide import primary_path
 from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Path
-from faultpath.decisions.question import Judged, Question
+from faultpath.decisions.question import Judged, Question, resolve
 from faultpath.decisions.wording import capital, counted, where
 from faultpath.statistics.estimate import RULE
+from faultpath.trials import Library, SystemSpec
 from faultpath.trials.outcome import Metric, Outcome, Status, failed_outcome
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import NO_OUTCOME, Received
@@ -104,18 +105,14 @@ def lay_out(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
     keys = json.dumps({unit: sorted(members) for unit, members in labels.items()}, sort_keys=True)
     laid = tuple(_path(name) for name in paths)
     dull = not any(row.status is Status.CRASH for row in rows)
-    question = Question(
-        system="results of other tools",
-        options={},
-        baseline=request.baseline,
-        repair=request.repair,
-        fault=request.fault,
-        library="results",
-        library_hash=hashlib.sha256(keys.encode()).hexdigest()[:16],
+    question = resolve(
+        Question,
+        request,
+        SystemSpec(name="results of other tools"),
+        Library("results", (), hashlib.sha256(keys.encode()).hexdigest()[:16]),
         n_scenes=len(labels),
         seeds=seeds,
         primary=primary_path(request.primary or "", laid),
-        generalise=request.generalise,
         trained=request.generalise == "models",
         ends={Status.TIMEOUT.value: "no success"} if dull else {},
         metrics=_metrics(request),

@@ -2,31 +2,23 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import PurePath
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import unknown
-from faultpath.decisions.decide import decide, primary_path, stops
+from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
+from faultpath.decisions.decide import decide, primary_path
 from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, FaultedTap, Path
-from faultpath.decisions.question import Question, StopRule
+from faultpath.decisions.question import Question, StopRule, resolve
+from faultpath.decisions.stopping import stops
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import module_of
 from faultpath.loop import TapCount
 from faultpath.statistics.estimate import RULE
-from faultpath.trials import (
-    Arm,
-    Deliveries,
-    Library,
-    OutcomeTable,
-    Row,
-    Study,
-    System,
-    SystemSpec,
-    Variant,
-)
-from faultpath.trials import question as questions
-from faultpath.trials.question import AuditQuestion
+from faultpath.trials import Deliveries, Library, OutcomeTable, Study, System, SystemSpec, Variant
+from faultpath.trials.question import AuditQuestion, RepairQuestion
 
 LOOK = 5
 """Scenes from one look to the next of a sequential audit, where the system runs as many at once:
@@ -36,14 +28,21 @@ _ORDER_SEED = 0
 
 
 @dataclass(frozen=True)
-class Audit:
+class Audit(Analysis[None]):
     """A question and the study that answers it."""
 
+    request: AuditQuestion
     question: Question
     paths: tuple[Path, ...]
     study: Study
 
-    def conclude(self, table: OutcomeTable, deliveries: Deliveries) -> DecisionRecord:
+    def rounds(self) -> Rounds[None]:
+        """Yield the only round."""
+        yield Round(self.study, stop=self.stops)
+
+    def conclude(
+        self, table: OutcomeTable, deliveries: Deliveries, items: None = None
+    ) -> DecisionRecord:
         """Return the decision record of a run; raises as `faultpath.decisions.decide`."""
         question = self.question
         paths = [
@@ -104,14 +103,7 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         for name, of in faults.items()
     ]
     # Where the fault cannot reach a variant, that is the arm under correct inputs: it runs once.
-    rows = [
-        Row(
-            variant=variant, path=path, seed=seed, arm=Arm(variant=variant, faults=parts, seed=seed)
-        )
-        for path, of in faults.items()
-        for variant, parts in of.items()
-        for seed in request.seeds
-    ]
+    rows = [row for path, of in faults.items() for row in rows_of(path, of, request.seeds)]
     _check(system, request)
     study = Study(
         name=f"{spec.name}-{request.repair}-vs-{request.baseline}",
@@ -131,28 +123,26 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
             look=study.look,
             trials=len(study.arms()),
         )
-    question = Question(
-        system=spec.name,
-        options=spec.options,
-        baseline=request.baseline,
-        repair=request.repair,
-        fault=request.fault,
+    question = resolve(
+        Question,
+        request,
+        spec,
+        library,
         faults=fault.resolved(system.interface),
-        library=library.name,
-        library_hash=library.content_hash,
         n_scenes=len(chosen),
-        seeds=request.seeds,
         primary=primary_path(request.primary or "", paths),
-        generalise=request.generalise,
         trained=system.trained,
         ends={status.value: words for status, words in system.ends.items()},
         metrics=dict(system.metrics),
-        metric=request.metric,
         thresholds=tuple(sorted(set(request.thresholds))),
         stop=stop,
         rule=RULE,
     )
-    return Audit(question, tuple(paths), study)
+    named = [study.name, request.fault, PurePath(request.library).stem]
+    if request.stop_when is not None:
+        small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
+        named.append(f"until-{request.stop_when}{small}")
+    return Audit(request, question, system, tuple(named), tuple(paths), study)
 
 
 def faults_by_path(
@@ -223,7 +213,7 @@ def _check(system: System, question: AuditQuestion) -> None:
         )
 
 
-def two_variants(system: System, question: questions.Question) -> tuple[Variant, Variant]:
+def two_variants(system: System, question: RepairQuestion) -> tuple[Variant, Variant]:
     """Return baseline and repair; `UserError` for an unknown one, and where both are one."""
     for name in (question.baseline, question.repair):
         if name not in system.variants:

@@ -1,14 +1,40 @@
-"""Question of an audit, and the rule by which it is answered."""
+"""Questions as records keep them, and the rule by which an audit is answered."""
 
-from typing import Literal
+from typing import Literal, TypeVar
 
 from pydantic import Field
 
-from faultpath.core.results import Result
+from faultpath.core.results import Frozen, Result
 from faultpath.faults import Fault
 from faultpath.statistics.estimate import RULES, RuleName
+from faultpath.trials import Library, SystemSpec
 from faultpath.trials.outcome import VEHICLE, Metric, MetricName
-from faultpath.trials.question import Generalise, StopWhen
+from faultpath.trials.question import Asked, Generalise, StopWhen
+
+_Model = TypeVar("_Model", bound=Frozen)
+
+
+class Resolved(Result):
+    """A question as its record keeps it: as asked, with what system and library say of it."""
+
+    system: str
+    options: dict[str, str]
+
+
+def resolve(
+    model: type[_Model], question: Asked, system: SystemSpec, library: Library, **more: object
+) -> _Model:
+    """Return a question as `model` keeps it; `more` adds to what is asked or takes its place."""
+    fields = {
+        **vars(question),
+        "system": system.name,
+        "options": system.options,
+        "library": library.name,
+        "library_hash": library.content_hash,
+        **more,
+    }
+    kept = model.model_fields
+    return model.model_validate({name: fields[name] for name in fields if name in kept})
 
 
 class StopRule(Result):
@@ -37,11 +63,9 @@ class Judged(Result):
     """Unit that counts as one scene: a scene, or a task with all of its scenes."""
 
 
-class Question(Result):
+class Question(Resolved):
     """Question of an audit, as its record keeps it."""
 
-    system: str
-    options: dict[str, str]
     baseline: str
     repair: str
     fault: str

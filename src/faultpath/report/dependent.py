@@ -7,13 +7,12 @@ from faultpath.decisions.dependent import (
     Group,
     Taps,
     Way,
-    command,
     dependent_groups,
     with_evidence,
 )
 from faultpath.decisions.model import SHARED
 from faultpath.decisions.plan.plan import Plan
-from faultpath.decisions.plan.study import StudyFile
+from faultpath.decisions.plan.study import StudyFile, command
 from faultpath.decisions.question import Question
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.report.inputs import ReportInput

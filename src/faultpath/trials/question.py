@@ -10,12 +10,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
-from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, ValidationError
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.validation_messages import misfit_of
-from faultpath.trials.texts import LARGEST, read_names, read_seeds, read_sizes, several
+from faultpath.trials.texts import (
+    LARGEST,
+    power_of_two,
+    read_names,
+    read_seeds,
+    read_sizes,
+    several,
+)
 
 Generalise = Literal["scenes", "models"]
 StopWhen = Literal["decided", "all-decided"]
@@ -34,13 +41,13 @@ class Flag:
 
 ADVANCED = "Advanced"
 """Heading of what few ask for; it stands last in a help."""
+Several = Annotated[tuple[str, ...], BeforeValidator(several)]
 Sizes = Annotated[tuple[float, ...], BeforeValidator(read_sizes)]
-Place = Annotated[
-    Path | None,
-    BeforeValidator(lambda place: Path(place) if isinstance(place, str) else place),
-    PlainSerializer(lambda path: path and str(path)),
-]
+_path = BeforeValidator(lambda place: Path(place) if isinstance(place, str) else place)
+Place = Annotated[Path | None, _path, PlainSerializer(lambda path: path and str(path))]
 Scenes = Annotated[str, Field(description="Library of scenes, by name or file.")]
+_SEEDS = "Seeds of the noise, and of trained models where there are any."
+Seeds = Annotated[tuple[int, ...], BeforeValidator(read_seeds), Field(description=_SEEDS)]
 
 
 class Asked(Frozen, strict=True, allow_inf_nan=False):
@@ -124,7 +131,7 @@ class Placed(Asked):
     )
 
 
-class Question(Request):
+class RepairQuestion(Request):
     """Two variants of a system, compared in scenes."""
 
     panel: ClassVar[str] = "What is compared"
@@ -135,17 +142,15 @@ class Question(Request):
     repair: str = Field(description="Variant that is meant to help, named likewise.")
     library: Scenes = "held-out"
     scenes: int | None = Field(default=None, description="Run only the first N scenes.")
-    seeds: Annotated[tuple[int, ...], BeforeValidator(read_seeds)] = Field(
-        default=(0,), description="Seeds of the noise, and of trained models where there are any."
-    )
+    seeds: Seeds = (0,)
 
     def audit_of(self, fault: str) -> "AuditQuestion":
         """Return the audit of the same variants and scenes under a fault."""
-        same = {name: getattr(self, name) for name in Question.model_fields}
+        same = {name: getattr(self, name) for name in RepairQuestion.model_fields}
         return AuditQuestion(fault=fault, **same)
 
 
-class Running(Placed, Question):
+class Running(Placed, RepairQuestion):
     """The same, with where and how it runs."""
 
 
@@ -154,7 +159,7 @@ class AuditQuestion(Running):
 
     panel: ClassVar[str] = "How it is decided"
 
-    fault: Annotated[str, Flag(panel=Question.panel)] = Field(
+    fault: Annotated[str, Flag(panel=RepairQuestion.panel)] = Field(
         description="`gain:scale=0.6`, `gain:delay=5@observer`, `gain:scale=2,onset=20`, ...; "
         "several sizes, `gain:scale=0.9,1.1` or `gain:offset=-0.2..0.2/9`, are an audit each."
     )
@@ -190,7 +195,7 @@ class MapQuestion(Running):
 
     panel: ClassVar[str] = "What is mapped"
 
-    fault: Annotated[str, Flag(panel=Question.panel)] = Field(
+    fault: Annotated[str, Flag(panel=RepairQuestion.panel)] = Field(
         description="Without its size: `gain`, `gain:offset`, `gain,onset=9`."
     )
     against: Annotated[tuple[str, ...], BeforeValidator(read_names)] = Field(
@@ -218,11 +223,7 @@ class SearchQuestion(Running):
 
     panel: ClassVar[str] = "What is searched"
 
-    within: Annotated[
-        Path,
-        BeforeValidator(lambda path: Path(path) if isinstance(path, str) else path),
-        PlainSerializer(str),
-    ] = Field(
+    within: Annotated[Path, _path, PlainSerializer(str)] = Field(
         description="File of bounds: the faults with their sizes, and the module that an isolated "
         "audit strikes."
     )
@@ -234,19 +235,43 @@ class SearchQuestion(Running):
     )
 
 
-class PlanQuestion(Question):
+class SensitivityQuestion(Placed, Request):
+    """Question that a sensitivity analysis answers."""
+
+    panel: ClassVar[str] = "What is varied"
+
+    variant: str = Field(description="Variant whose inputs err.")
+    fault: Annotated[Several, Flag(several=True)] = Field(
+        default=(),
+        description="Largest error of a source that declares none, or another one, of either sign: "
+        "`gain:scale=1.1`; repeat the option for more.",
+    )
+    metric: str = Field(default="", description="Metric to explain; default success.")
+    scenes: int | None = Field(default=8, description="Run the first N scenes.")
+    seeds: Seeds = (0,)
+    points: Annotated[int, AfterValidator(power_of_two)] = Field(
+        default=64,
+        ge=64,
+        le=65_536,
+        description="Points of the design, a power of two; each takes as many runs of every scene "
+        "as there are groups of sources, and two.",
+    )
+    design_seed: int = Field(
+        default=0, ge=0, le=LARGEST, description="Seed of the design; not that of the trials."
+    )
+
+
+class PlanQuestion(RepairQuestion):
     """Question that a plan answers."""
 
     panel: ClassVar[str] = "What is planned"
 
-    fault: Annotated[
-        tuple[str, ...], BeforeValidator(several), Flag(several=True, panel=Question.panel)
-    ] = Field(
+    fault: Annotated[Several, Flag(several=True, panel=RepairQuestion.panel)] = Field(
         default=(),
         description="Expected error of a source that declares none, or another one: "
         "`gain:scale=1.1`; repeat the option for more.",
     )
-    module: Annotated[tuple[str, ...], BeforeValidator(several), Flag(several=True)] = Field(
+    module: Annotated[Several, Flag(several=True)] = Field(
         default=(), description="Module that the repair changes, where its reads do not show it."
     )
 

@@ -51,3 +51,11 @@ def read_names(value: object) -> object:
     if twice := [name for place, name in enumerate(names) if name in names[:place]]:
         raise ValueError(f"'{value}' names '{twice[0]}' twice: name each once")
     return names
+
+
+def power_of_two(points: int) -> int:
+    """Return a number of points; `ValueError` unless it is a power of two."""
+    if points & (points - 1):
+        below = 1 << (points.bit_length() - 1)
+        raise ValueError(f"is {points}: a design takes a power of two, as {below} or {2 * below}")
+    return points

@@ -1,4 +1,4 @@
-"""From the trials of a map to its record."""
+"""From the differences at the points of a map to its record."""
 
 from collections.abc import Sequence
 
@@ -16,30 +16,17 @@ from faultpath.decisions.map.lattice import (
     sizes,
     surface_weights,
 )
-from faultpath.decisions.map.model import Flip, MapPoint, MapQuestion, MapRecord, MapSurface
-from faultpath.decisions.map.study import MapPlan
+from faultpath.decisions.map.model import Flip, MapPoint, MapRecord, MapSurface, ResolvedMap
 from faultpath.decisions.map.surface import Combined, Differences, sign_of, simultaneous
 from faultpath.statistics.estimate import Sign
 from faultpath.statistics.inputs import Floats
-from faultpath.trials import OutcomeTable
 
 _BETWEEN = 4
 """Looks at a ray for each unit."""
 
 
-def conclude(
-    plan: MapPlan, points: Sequence[Point], table: OutcomeTable, findings: Sequence[str] = ()
-) -> MapRecord:
-    """Return the record of a map, to the bit the same in whatever order its points were run.
-
-    `UserError` where a point has no pair left.
-    """
-    differences, unlike = plan.differences(sorted(points), table)
-    return decided(plan.question, differences, len(table.failed()), (*unlike, *findings))
-
-
 def decided(
-    question: MapQuestion, differences: Differences, failed: int = 0, findings: Sequence[str] = ()
+    question: ResolvedMap, differences: Differences, failed: int = 0, findings: Sequence[str] = ()
 ) -> MapRecord:
     """Return the record of differences, which may be simulated ones."""
     ways = rays(question.against)
@@ -79,7 +66,7 @@ def decided(
 
 
 def _points(
-    question: MapQuestion, differences: Differences, at: Combined, z: float
+    question: ResolvedMap, differences: Differences, at: Combined, z: float
 ) -> tuple[MapPoint, ...]:
     low, high = at.ends(z)
     signs, means = at.signs(z), at.means

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from faultpath.decisions.map.lattice import SHOWN, UNITS, surface_weights
-from faultpath.decisions.map.model import CorrelationRegion, Expectation, JointErrors, MapQuestion
+from faultpath.decisions.map.model import CorrelationRegion, Expectation, JointErrors, ResolvedMap
 from faultpath.decisions.map.surface import Combined, Differences, sign_of, simultaneous
 from faultpath.statistics.breakeven import pieces_of
 from faultpath.statistics.distributions import normal_quantile
@@ -84,7 +84,7 @@ def lattice_weights(errors: Errors, correlation: float) -> Floats:
     return totals
 
 
-def joint(question: MapQuestion, differences: Differences) -> JointErrors:
+def joint(question: ResolvedMap, differences: Differences) -> JointErrors:
     """Return the expected difference over all correlations, and where it is decided."""
     (m1, m2), (s1, s2), largest = question.means, question.spreads, question.up_to
     errors = Errors((m1 / largest, m2 / largest), (s1 / largest, s2 / largest))

@@ -4,17 +4,16 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from faultpath.core.results import Frozen, Result
+from faultpath.core.results import Result
 from faultpath.decisions.map.lattice import UNITS
+from faultpath.decisions.question import Resolved
 from faultpath.decisions.wording import MINUS
 from faultpath.statistics.estimate import Sign
 
 
-class MapQuestion(Frozen, allow_inf_nan=False):
+class ResolvedMap(Resolved, allow_inf_nan=False):
     """The question of a map, as its record keeps it."""
 
-    system: str
-    options: dict[str, str]
     baseline: str
     repair: str
     fault: str
@@ -144,7 +143,7 @@ class MapRecord(Result, allow_inf_nan=False):
     """A map, decided."""
 
     format: Literal[1] = 1
-    question: MapQuestion
+    question: ResolvedMap
     scenes: int
     """Compared: those without a void pair at any point."""
     points: tuple[MapPoint, ...]

@@ -3,36 +3,84 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import PurePath
 
 import numpy as np
 
 from faultpath.core.errors import UserError
-from faultpath.decisions.family import compared
+from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
+from faultpath.decisions.compared import compared
+from faultpath.decisions.map.decide import decided
 from faultpath.decisions.map.lattice import COARSE, Point, lattice
-from faultpath.decisions.map.model import MapQuestion
-from faultpath.decisions.map.surface import Differences
+from faultpath.decisions.map.model import MapRecord, ResolvedMap
+from faultpath.decisions.map.surface import Differences, next_points
 from faultpath.decisions.model import CORRECT
 from faultpath.decisions.planning import scenes_of, two_variants
+from faultpath.decisions.question import resolve
 from faultpath.faults import AnyFault, FaultText
 from faultpath.interface import module_of
-from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, SystemSpec, Variant
-from faultpath.trials import question as questions
+from faultpath.trials import (
+    Deliveries,
+    Library,
+    OutcomeTable,
+    Row,
+    Study,
+    System,
+    SystemSpec,
+    Variant,
+)
 from faultpath.trials.pairing import mismatch_words
+from faultpath.trials.question import MapQuestion
 
 _LEAST, _LARGEST = 1e-6, 1e12
 """Bounds of the largest error: sizes keep twelve digits after the point, and no system has more."""
 _MOST_POINTS = 10_000
 """A hundred errors of each module."""
+_BISECTING = 18
+"""Points that are typically added to bisect the paths of the fault."""
 
 
 @dataclass(frozen=True)
-class MapPlan:
+class MapPlan(Analysis[list[Point]]):
     """A question about two errors, and the trials that answer it at any points."""
 
-    question: MapQuestion
-    system: System
+    noun = "pairs of errors"
+
+    request: MapQuestion
+    question: ResolvedMap
     spec: SystemSpec
     scenes: tuple[str, ...] = field(repr=False)
+
+    def rounds(self) -> Rounds[list[Point]]:
+        """Yield the coarse lattice, then with it the points where the sign is not decided."""
+        question, points = self.question, list(lattice(COARSE))
+        expected = question.points + _BISECTING
+        study = self.study(points)
+        first = len(study.rows) * len(self.scenes)
+        notice = (
+            f"{len(points)} pairs of errors first, {first} trials; then more where the sign is not "
+            f"decided, about {round(first * max(1.0, expected / len(points)))} trials at most."
+        )
+        while True:
+            table = yield Round(study, len(points), expected, notice)
+            differences, _ = self.differences(points, table)
+            modules, most, drawn = question.against, question.points, question.library_hash
+            new = next_points(differences, modules, most, drawn)
+            if not new:
+                return points
+            points += new
+            study, notice = self.study(points), ""
+
+    def conclude(
+        self, table: OutcomeTable, deliveries: Deliveries, items: Sequence[Point]
+    ) -> MapRecord:
+        """Return the record of a map, to the bit the same in whatever order its points were run.
+
+        `UserError` where a point has no pair left.
+        """
+        differences, unlike = self.differences(sorted(items), table)
+        findings = (*unlike, *deliveries.findings)
+        return decided(self.question, differences, len(table.failed()), findings)
 
     def path(self, point: Point) -> str:
         """Return what rows of a point are called in the outcome table."""
@@ -60,11 +108,9 @@ class MapPlan:
                 parts = [
                     p for fault in faults for p in fault.resolved(self.system.interface, consumers)
                 ]
-                for seed in question.seeds:
-                    arm = Arm(variant=name, faults=tuple(parts), seed=seed)
-                    rows.append(Row(variant=name, path=self.path(point), seed=seed, arm=arm))
+                rows += rows_of(self.path(point), {name: parts}, question.seeds)
         return Study(
-            name=f"{self.spec.name}-map-{question.repair}-vs-{question.baseline}",
+            name=self.named[0],
             system=self.spec,
             library=question.library,
             scenes=self.scenes,
@@ -89,9 +135,7 @@ class MapPlan:
         return Differences(tuple(points), repair, baseline), mismatch_words(comparison.mismatches)
 
 
-def plan_map(
-    system: System, spec: SystemSpec, request: questions.MapQuestion, library: Library
-) -> MapPlan:
+def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Library) -> MapPlan:
     """Lay out a map. `UserError` for anything that cannot be run or means nothing."""
     variants = two_variants(system, request)
     kind = _kind(system, request.fault)
@@ -137,12 +181,11 @@ def plan_map(
         raise UserError(f"--mean lies beyond the map, which ends at {largest:g}: see --up-to.")
     if request.correlation is not None and not -1.0 <= request.correlation <= 1.0:
         raise UserError(f"--correlation {request.correlation:g} does not lie between -1 and 1.")
-    question = MapQuestion(
-        system=spec.name,
-        options=spec.options,
-        baseline=request.baseline,
-        repair=request.repair,
-        fault=request.fault,
+    question = resolve(
+        ResolvedMap,
+        request,
+        spec,
+        library,
         against=modules,
         others=others,
         up_to=largest,
@@ -150,15 +193,12 @@ def plan_map(
         unit=sources[0].unit,
         means=middle,
         spreads=spread,
-        correlation=request.correlation,
-        points=request.points,
-        library=library.name,
-        library_hash=library.content_hash,
         n_scenes=len(chosen),
-        seeds=request.seeds,
         trained=system.trained,
     )
-    return MapPlan(question, system, spec, chosen)
+    name = f"{spec.name}-map-{request.repair}-vs-{request.baseline}"
+    named = (name, request.fault, *modules, f"{largest:g}", PurePath(request.library).stem)
+    return MapPlan(request, question, system, named, spec, chosen)
 
 
 def _kind(system: System, text: str) -> str | None:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from faultpath.decisions.map.lattice import SHARED
-from faultpath.decisions.map.model import CorrelationRegion, Flip, MapPoint, MapQuestion, MapRecord
+from faultpath.decisions.map.model import CorrelationRegion, Flip, MapPoint, MapRecord, ResolvedMap
 from faultpath.decisions.wording import MINUS, plain, series, signed
 from faultpath.statistics.contrast import MIN_SCENES
 
@@ -12,7 +12,7 @@ _DIGITS = 3
 """Digits of sizes in words."""
 
 
-def estimand(question: MapQuestion) -> str:
+def estimand(question: ResolvedMap) -> str:
     """Return what everything speaks of."""
     return "new scenes like these" + (", for these trained models" if question.trained else "")
 
@@ -116,7 +116,7 @@ def _reversals(record: MapRecord) -> Iterator[str]:
                 )
 
 
-def _flipped(question: MapQuestion, flip: Flip) -> str:
+def _flipped(question: ResolvedMap, flip: Flip) -> str:
     where = "With both wrong alike" if flip.path == SHARED else f"With the {flip.path} alone wrong"
     where += ", error above 0" if flip.direction > 0 else ", error below 0"
     clauses: list[str] = []
@@ -146,7 +146,7 @@ def cut(size: float, out: bool) -> float:
     return math.copysign(whole * digit, size)
 
 
-def at_point(question: MapQuestion, point: MapPoint) -> str:
+def at_point(question: ResolvedMap, point: MapPoint) -> str:
     """Return a pair of errors and what was seen there, for the tip of a picture."""
     sizes = zip(question.against, map(question.said, point.errors), strict=True)
     pair = ", ".join(f"{module} {size}" for module, size in sizes)

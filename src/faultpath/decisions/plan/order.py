@@ -9,7 +9,7 @@ import numpy as np
 from faultpath.core.arrays import is_array, to_numpy
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
-from faultpath.decisions.plan.sources import Candidate, bound
+from faultpath.decisions.sources import Candidate, bound
 from faultpath.interface import Interface, module_of, modules
 from faultpath.trials import LoopSystem, System, Variant
 

@@ -8,9 +8,10 @@ from faultpath.core.results import Result
 from faultpath.decisions.dependent import Group, dependent_groups
 from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_modules
 from faultpath.decisions.plan.probing import command_responses
-from faultpath.decisions.plan.sources import Candidate, candidates
 from faultpath.decisions.plan.study import StudyAudit, StudyFile, arms_of
 from faultpath.decisions.planning import plan_audit, two_variants
+from faultpath.decisions.question import resolve
+from faultpath.decisions.sources import Candidate, candidates
 from faultpath.decisions.wording import counted, series
 from faultpath.trials import Library, LoopSystem, System, SystemSpec
 from faultpath.trials.question import PlanQuestion
@@ -99,15 +100,12 @@ def make_plan(
     named.sort(key=lambda candidate: candidate is not first)
     sized = {candidate.name: candidate.fault for candidate in order if candidate.fault}
     return Plan(
-        study=StudyFile(
-            system=spec.name,
-            options=spec.options,
-            baseline=question.baseline,
-            repair=question.repair,
-            library=library.name,
-            library_hash=library.content_hash,
+        study=resolve(
+            StudyFile,
+            question,
+            spec,
+            library,
             scenes=len(scenes),
-            seeds=question.seeds,
             audits=tuple(
                 StudyAudit(
                     name=candidate.name,

@@ -1,5 +1,6 @@
 """A study file: audits of one repair, with their arms, to be carried out as they stand."""
 
+import shlex
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +14,8 @@ from faultpath.core.files.plain import Misread, read_yaml, yaml_text
 from faultpath.core.results import Frozen
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.planning import Audit
-from faultpath.trials.question import Question
+from faultpath.decisions.question import Question
+from faultpath.trials.question import RepairQuestion
 
 _MOST = 200
 """Audits of a file. Each is a finding of its own, and a file of more asks no one question."""
@@ -46,7 +48,7 @@ class StudyAudit(Frozen):
         return self
 
 
-class StudyFile(Question, strict=False):
+class StudyFile(RepairQuestion, strict=False):
     """Study that `faultpath plan` writes and `faultpath audit --study` carries out.
 
     One that was written by hand may leave out arms and hash: they follow from the system as it is.
@@ -120,3 +122,13 @@ def check_arms(study: StudyFile, planned: StudyAudit, audit: Audit) -> None:
             f"audit '{planned.name}' of the study file has other arms than the system now has for "
             f"'{planned.fault}' ({', '.join(other)}): an audit runs all of its arms, so plan anew."
         )
+
+
+def command(question: Question | StudyFile, fault: str) -> str:
+    """Return the command that flies the arms of a fault: each module alone, and shared."""
+    parts = ["faultpath", "audit", question.system, "--baseline", question.baseline]
+    parts += ["--repair", question.repair, "--fault", fault, "--library", question.library]
+    parts += [
+        part for key, value in question.options.items() for part in ("--set", f"{key}={value}")
+    ]
+    return shlex.join(parts)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from faultpath.decisions import phrases
 from faultpath.decisions.model import DecisionRecord, Effect
-from faultpath.decisions.search.model import SearchQuestion, SearchRecord, Tried
+from faultpath.decisions.search.model import ResolvedSearch, SearchRecord, Tried
 from faultpath.decisions.summary import MOST_WORDS, reversed_at
 from faultpath.decisions.wording import counted, where
 
@@ -20,7 +20,7 @@ def best(tried: Sequence[Tried]) -> str:
 
 
 def conclude(
-    question: SearchQuestion,
+    question: ResolvedSearch,
     tried: Sequence[Tried],
     confirmed: DecisionRecord | None,
     confirmation: str = "",
@@ -42,7 +42,7 @@ def conclude(
     )
 
 
-def _headline(question: SearchQuestion, confirmed: DecisionRecord | None) -> str:
+def _headline(question: ResolvedSearch, confirmed: DecisionRecord | None) -> str:
     alone = where(question.bounds.isolated)
     if confirmed is None:
         return f"No reversal was confirmed: no fault that was tried showed one {alone}."
@@ -64,7 +64,7 @@ def _headline(question: SearchQuestion, confirmed: DecisionRecord | None) -> str
 
 
 def _sentences(
-    question: SearchQuestion, tried: Sequence[Tried], confirmed: DecisionRecord | None
+    question: ResolvedSearch, tried: Sequence[Tried], confirmed: DecisionRecord | None
 ) -> Iterator[str]:
     isolated = question.bounds.isolated
     yield (
@@ -93,7 +93,7 @@ def _sentences(
     yield _WORSE if _turned(question, confirmed) else _OPEN
 
 
-def _turned(question: SearchQuestion, confirmed: DecisionRecord) -> Effect | None:
+def _turned(question: ResolvedSearch, confirmed: DecisionRecord) -> Effect | None:
     """Return the isolated effect that sharing reverses, where that is decided."""
     effects = (
         effect for effect in reversed_at(confirmed) if effect.path == question.bounds.isolated

@@ -2,16 +2,15 @@
 
 from typing import Literal
 
-from faultpath.core.results import Frozen, Result
+from faultpath.core.results import Result
 from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.question import Resolved
 from faultpath.decisions.search.bounds import Bounds
 
 
-class SearchQuestion(Frozen, allow_inf_nan=False):
-    """Question of a search, as the record keeps it."""
+class ResolvedSearch(Resolved, allow_inf_nan=False):
+    """Question of a search, as its record keeps it."""
 
-    system: str
-    options: dict[str, str]
     baseline: str
     repair: str
     bounds: Bounds
@@ -43,7 +42,7 @@ class SearchRecord(Result, allow_inf_nan=False):
     """A search, with what was confirmed."""
 
     format: Literal[1] = 1
-    question: SearchQuestion
+    question: ResolvedSearch
     tried: tuple[Tried, ...]
     """In the order in which they were proposed."""
     best: str

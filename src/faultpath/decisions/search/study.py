@@ -1,37 +1,83 @@
 """Question of a search, and the trials in which a fault is tried, or put to the test."""
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import PurePath
 
 import numpy as np
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import listed
+from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
 from faultpath.decisions.fault_groups import fault_of
-from faultpath.decisions.model import CORRECT, SHARED
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
 from faultpath.decisions.planning import Audit, faults_by_path, plan_audit, scenes_of, two_variants
+from faultpath.decisions.question import resolve
 from faultpath.decisions.search.bounds import read_bounds
-from faultpath.decisions.search.model import SearchQuestion, Tried
+from faultpath.decisions.search.decide import conclude
+from faultpath.decisions.search.model import ResolvedSearch, SearchRecord, Tried
+from faultpath.decisions.search.propose import proposals
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.inputs import Floats
-from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, SystemSpec
-from faultpath.trials import question as questions
+from faultpath.trials import Deliveries, Library, OutcomeTable, Row, Study, System, SystemSpec
 from faultpath.trials.pairing import Side, pair
+from faultpath.trials.question import SearchQuestion
 
 
 @dataclass(frozen=True)
-class SearchPlan:
+class SearchPlan(Analysis[list[Tried]]):
     """A question, and the trials of any fault within its bounds."""
 
-    question: SearchQuestion
-    request: questions.SearchQuestion
-    system: System
+    noun = "faults"
+
+    request: SearchQuestion
+    question: ResolvedSearch
     spec: SystemSpec
     library: Library = field(repr=False)
     finding: tuple[str, ...] = field(repr=False)
     confirming: tuple[str, ...] = field(repr=False)
+
+    def rounds(self) -> Rounds[list[Tried]]:
+        """Yield the faults that are spread evenly, then those which what was seen leads to."""
+        question, bounds, tried = self.question, self.question.bounds, dict[str, Tried]()
+        source = proposals(len(bounds.ranges()), question.search_seed, question.candidates)
+        batch = [bounds.fault(point) for point in next(source)]
+        per_fault = len(self.study(batch[:1]).rows) * question.finding
+        notice = (
+            f"{question.candidates} faults are tried in {question.finding} scenes, {per_fault} "
+            f"trials each at most; then one is put to the test in {question.confirming} other "
+            "scenes."
+        )
+        faults = list(dict.fromkeys(batch))
+        while True:
+            table = yield Round(self.study(faults), len(faults), question.candidates, notice)
+            new, notice = list[str](), ""
+            while not new:
+                tried.update({f: self.tried(f, table) for f in batch if f not in tried})
+                try:
+                    points = source.send([tried[fault].regret_pp for fault in batch])
+                except StopIteration:
+                    return list(tried.values())
+                batch = [bounds.fault(point) for point in points]
+                new = [fault for fault in dict.fromkeys(batch) if fault not in tried]
+            faults += new
+
+    def conclude(
+        self,
+        table: OutcomeTable,
+        deliveries: Deliveries,
+        items: Sequence[Tried],
+        confirmed: DecisionRecord | None = None,
+        confirmation: str = "",
+        failed: int = 0,
+    ) -> SearchRecord:
+        """Return the record, with the audit that confirms, its folder and its failed trials."""
+        failed += len(table.failed())
+        findings = deliveries.findings
+        return conclude(self.question, items, confirmed, confirmation, failed, findings)
 
     def study(self, faults: Sequence[str]) -> Study:
         """Return the study of faults in the scenes that find: both variants, with each at the
@@ -41,13 +87,9 @@ class SearchPlan:
         for text in faults:
             paths = faults_by_path(self.system, fault_of(self.system, text), variants)
             for path in (question.bounds.isolated, SHARED):
-                for name, parts in paths[path].items():
-                    for seed in question.seeds:
-                        arm = Arm(variant=name, faults=parts, seed=seed)
-                        at = f"{path}: {text}"
-                        rows.append(Row(variant=name, path=at, seed=seed, arm=arm))
+                rows += rows_of(f"{path}: {text}", paths[path], question.seeds)
         return Study(
-            name=f"{self.spec.name}-search-{question.repair}-vs-{question.baseline}",
+            name=self.named[0],
             system=self.spec,
             library=question.library,
             scenes=self.finding,
@@ -75,6 +117,11 @@ class SearchPlan:
         scenes = tuple(scene for scene in self.library.scenes if scene.id in self.confirming)
         question = self.request.audit_of(fault).model_copy(update={"scenes": None})
         return plan_audit(self.system, self.spec, question, replace(self.library, scenes=scenes))
+
+
+def digest(text: str) -> str:
+    """Return a few letters that stand for a text."""
+    return hashlib.sha256(text.encode()).hexdigest()[:8]
 
 
 def regret(isolated: Floats, shared: Floats) -> float:
@@ -112,7 +159,7 @@ def halves(library: Library, count: int | None) -> tuple[tuple[str, ...], tuple[
 
 
 def plan_search(
-    system: System, spec: SystemSpec, request: questions.SearchQuestion, library: Library
+    system: System, spec: SystemSpec, request: SearchQuestion, library: Library
 ) -> SearchPlan:
     """Lay out a search. `UserError` for anything that cannot be run or means nothing."""
     variants = two_variants(system, request)
@@ -132,18 +179,19 @@ def plan_search(
                 f"fault: name one of {listed(alone)}."
             )
     finding, confirming = halves(library, request.scenes)
-    question = SearchQuestion(
-        system=spec.name,
-        options=spec.options,
-        baseline=request.baseline,
-        repair=request.repair,
+    question = resolve(
+        ResolvedSearch,
+        request,
+        spec,
+        library,
         bounds=bounds,
-        candidates=request.candidates,
-        search_seed=request.search_seed,
-        library=library.name,
-        library_hash=library.content_hash,
         finding=len(finding),
         confirming=len(confirming),
-        seeds=request.seeds,
     )
-    return SearchPlan(question, request, system, spec, library, finding, confirming)
+    named = (
+        f"{spec.name}-search-{request.repair}-vs-{request.baseline}",
+        f"{request.within.stem}-{digest(bounds.model_dump_json())}",
+        f"{request.candidates}-faults-seed-{request.search_seed}",
+        PurePath(request.library).stem,
+    )
+    return SearchPlan(request, question, system, named, spec, library, finding, confirming)

@@ -7,7 +7,7 @@ import numpy as np
 from faultpath.decisions.sensitivity.model import (
     Index,
     Indices,
-    SensitivityQuestion,
+    ResolvedSensitivity,
     SensitivityRecord,
 )
 from faultpath.decisions.wording import capital, counted, plain, series
@@ -17,7 +17,7 @@ from faultpath.statistics.sobol import indices
 
 
 def conclude(
-    question: SensitivityQuestion,
+    question: ResolvedSensitivity,
     values: Floats,
     scenes: int,
     failed: int = 0,

@@ -3,6 +3,7 @@
 from typing import Literal
 
 from faultpath.core.results import Frozen, Result
+from faultpath.decisions.question import Resolved
 from faultpath.interface import Uncertainty
 
 _NOTHING = 0.005
@@ -27,11 +28,9 @@ class Uncertain(Frozen):
     """Drawn for an error: 1 where all have one cause, or one for each component of a vector."""
 
 
-class SensitivityQuestion(Frozen, allow_inf_nan=False):
-    """Question of a sensitivity analysis, as the record keeps it."""
+class ResolvedSensitivity(Resolved, allow_inf_nan=False):
+    """Question of a sensitivity analysis, as its record keeps it."""
 
-    system: str
-    options: dict[str, str]
     variant: str
     groups: tuple[Uncertain, ...]
     left_out: tuple[str, ...]
@@ -76,7 +75,7 @@ class SensitivityRecord(Result, allow_inf_nan=False):
     """A sensitivity analysis; written as `sensitivity.json`."""
 
     format: Literal[1] = 1
-    question: SensitivityQuestion
+    question: ResolvedSensitivity
     values: tuple[float, ...]
     """Outcome at each row of the design: the mean over scenes and seeds."""
     scenes: int

@@ -2,33 +2,41 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from pathlib import PurePath
 
 import numpy as np
 from scipy.special import ndtri
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
-from faultpath.decisions.plan.sources import bound
+from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
 from faultpath.decisions.planning import scenes_of
-from faultpath.decisions.sensitivity.model import Part, SensitivityQuestion, Uncertain
+from faultpath.decisions.question import resolve
+from faultpath.decisions.sensitivity.decide import conclude
+from faultpath.decisions.sensitivity.model import (
+    Part,
+    ResolvedSensitivity,
+    SensitivityRecord,
+    Uncertain,
+)
+from faultpath.decisions.sources import NOT_DEPLOYED, channels_of, groups_of
 from faultpath.faults import Fault, FaultText
 from faultpath.faults.values import Offset, Scale
-from faultpath.interface import Provenance, Source, Uncertainty
+from faultpath.interface import Uncertainty
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.sobol import design
 from faultpath.trials import (
-    Arm,
+    Deliveries,
     Library,
     Outcome,
     OutcomeTable,
-    Row,
     Status,
     Study,
     System,
     SystemSpec,
     Variant,
 )
-from faultpath.trials.sensitivity_question import SensitivityQuestion as Asked
+from faultpath.trials.question import SensitivityQuestion
 
 _MOST_COMPONENTS = 16
 """Most components of a vector whose components err each by itself."""
@@ -37,11 +45,26 @@ _EDGE = 1e-9
 
 
 @dataclass(frozen=True)
-class SensitivityPlan:
+class SensitivityPlan(Analysis[None]):
     """A question, and its trials."""
 
-    question: SensitivityQuestion
+    request: SensitivityQuestion
+    question: ResolvedSensitivity
     study: Study = field(repr=False)
+
+    def rounds(self) -> Rounds[None]:
+        """Yield the only round."""
+        points, groups = self.question.points, len(self.question.groups)
+        trials = len(self.study.arms()) * len(self.study.scenes)
+        notice = f"{points} points of {groups} groups of sources: {trials} trials at most."
+        yield Round(self.study, notice=notice)
+
+    def conclude(
+        self, table: OutcomeTable, deliveries: Deliveries, items: None = None
+    ) -> SensitivityRecord:
+        """Return the record. `UserError` where no scene is left."""
+        failed, findings = len(table.failed()), deliveries.findings
+        return conclude(self.question, *self.values(table), failed, findings)
 
     def values(self, table: OutcomeTable) -> tuple[Floats, int]:
         """Return the mean of what is explained at each row of the design, and how many scenes
@@ -74,7 +97,7 @@ def _value(outcome: Outcome, metric: str) -> float:
 
 
 def plan_sensitivity(
-    system: System, spec: SystemSpec, request: Asked, library: Library
+    system: System, spec: SystemSpec, request: SensitivityQuestion, library: Library
 ) -> SensitivityPlan:
     """Lay out the design. `UserError` for anything that cannot be run or means nothing."""
     if request.variant not in system.variants:
@@ -93,32 +116,22 @@ def plan_sensitivity(
     scenes = scenes_of(library, request.scenes)
     rows = design([group.numbers for group in groups], request.points, request.design_seed)
     arms = [
-        Row(
-            variant=request.variant,
-            path=f"row {number}",
-            seed=seed,
-            arm=Arm(variant=request.variant, faults=faults, seed=seed),
-        )
+        row
         for number, drawn in enumerate(rows)
-        for faults in [tuple(faults_at(system, variant, groups, drawn))]
-        for seed in request.seeds
+        for faults in [{request.variant: tuple(faults_at(system, variant, groups, drawn))}]
+        for row in rows_of(f"row {number}", faults, request.seeds)
     ]
     metric = system.metrics[request.metric] if request.metric else None
-    question = SensitivityQuestion(
-        system=spec.name,
-        options=spec.options,
-        variant=request.variant,
+    question = resolve(
+        ResolvedSensitivity,
+        request,
+        spec,
+        library,
         groups=groups,
         left_out=left_out,
-        metric=request.metric,
         said=metric.said(request.metric) if metric else "success",
         unit=metric.unit if metric else "%",
-        points=request.points,
-        design_seed=request.design_seed,
-        library=library.name,
-        library_hash=library.content_hash,
         n_scenes=len(scenes),
-        seeds=request.seeds,
     )
     study = Study(
         name=f"{spec.name}-sensitivity-{request.variant}",
@@ -127,7 +140,14 @@ def plan_sensitivity(
         scenes=scenes,
         rows=tuple(arms),
     )
-    return SensitivityPlan(question, study)
+    named = (
+        study.name,
+        request.metric or "success",
+        *request.fault,
+        f"{request.points}-points-seed-{request.design_seed}",
+        PurePath(request.library).stem,
+    )
+    return SensitivityPlan(request, question, system, named, study)
 
 
 def uncertain(
@@ -139,23 +159,16 @@ def uncertain(
     size is the largest error, of either sign. `UserError` for one that says something else.
     """
     interface = system.interface
-    members: dict[str, list[tuple[Source, tuple[str, ...]]]] = {}
-    for source in interface.sources:
-        channels = tuple(
-            channel.name
-            for channel in interface.channels
-            if bound(variant, interface, channel.name) == source.name
-            and variant.consumers.intersection(channel.consumers)
-        )
-        if channels and source.provenance not in (Provenance.INTERNAL, Provenance.PRIVILEGED):
-            name = source.correlation_group or source.name
-            members.setdefault(name, []).append((source, channels))
+    deployed = [source for source in interface.sources if source.provenance not in NOT_DEPLOYED]
+    feeds = {s.name: channels_of(interface, (variant,), s.name) for s in deployed}
+    members = groups_of(source for source in deployed if feeds[source.name])
     sizes = dict(_given(text) for text in texts)
     unread = {*sizes}
     groups, left_out = list[Uncertain](), list[str]()
     for name, sources in members.items():
         parts: list[Part] = []
-        for source, channels in sources:
+        for source in sources:
+            channels = feeds[source.name]
             named = [key for key in (*channels, source.name, name) if key in sizes]
             unread -= {*named}
             error = sizes[named[0]] if named else source.uncertainty
@@ -164,18 +177,14 @@ def uncertain(
             elif error is None:
                 left_out.append(source.name)
         if parts:
-            shape = sources[0][0].shape
+            shape = sources[0].shape
             alone = len(sources) == 1 and len(shape) == 1 and shape[0] <= _MOST_COMPONENTS
             groups.append(
                 Uncertain(name=name, parts=tuple(parts), numbers=shape[0] if alone else 1)
             )
     if unread:
-        known = [
-            channel
-            for sources in members.values()
-            for _, channels in sources
-            for channel in channels
-        ]
+        grouped = (source for sources in members.values() for source in sources)
+        known = [channel for source in grouped for channel in feeds[source.name]]
         raise UserError(f"--fault: {unknown('channel', min(unread), [*known, *members])}")
     return tuple(groups), tuple(left_out)
 

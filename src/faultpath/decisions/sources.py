@@ -1,6 +1,6 @@
 """Uncertain sources, who reads them in the variants compared, and how large their errors are."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Protocol
 
 from faultpath.core.errors import UserError
@@ -9,6 +9,7 @@ from faultpath.faults import FaultText
 from faultpath.interface import Interface, Provenance, Source
 from faultpath.trials import System, Variant
 
+NOT_DEPLOYED = (Provenance.PRIVILEGED, Provenance.INTERNAL)
 _UNCERTAIN = (Provenance.MEASURED, Provenance.ESTIMATED, Provenance.RECONSTRUCTED)
 
 
@@ -57,16 +58,12 @@ def candidates(
     `faults` take the place of declared sizes. `UserError` for one that reaches no consumer,
     and for two of one source.
     """
-    members: dict[str, list[Source]] = {}
-    for source in system.interface.sources:
-        uncertain = source.provenance in _UNCERTAIN or source.uncertainty is not None
-        if uncertain and _channels(system.interface, variants, source.name):
-            members.setdefault(source.correlation_group or source.name, []).append(source)
+    interface = system.interface
+    uncertain = (s for s in interface.sources if s.provenance in _UNCERTAIN or s.uncertainty)
+    members = groups_of(s for s in uncertain if channels_of(interface, variants, s.name))
     listed: list[Candidate] = []
     for name, sources in members.items():
-        every = [
-            c for source in sources for c in _channels(system.interface, variants, source.name)
-        ]
+        every = [c for source in sources for c in channels_of(interface, variants, source.name)]
         channels = tuple(dict.fromkeys(every))
         fault, unsized = expected(system.fault_presets, name, sources, channels)
         names = tuple(source.name for source in sources)
@@ -84,19 +81,29 @@ def candidates(
     return tuple(listed)
 
 
+def groups_of(sources: Iterable[Source]) -> dict[str, list[Source]]:
+    """Return sources that err together by the name of their group, others by their own."""
+    groups: dict[str, list[Source]] = {}
+    for source in sources:
+        groups.setdefault(source.correlation_group or source.name, []).append(source)
+    return groups
+
+
 def bound(variant: Wired, interface: Interface, channel: str) -> str:
     """Return the source that feeds a channel in a variant."""
     return variant.bindings.get(channel, interface.channel(channel).sources[0])
 
 
-def _channels(interface: Interface, variants: Sequence[Variant], source: str) -> dict[str, None]:
-    return {
+def channels_of(interface: Interface, variants: Sequence[Variant], source: str) -> tuple[str, ...]:
+    """Return the channels that a source feeds in one of the variants, where one reads them."""
+    fed = {
         channel.name: None
         for variant in variants
         for channel in interface.channels
         if bound(variant, interface, channel.name) == source
         and variant.consumers.intersection(channel.consumers)
     }
+    return tuple(fed)
 
 
 def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:

@@ -1,0 +1,65 @@
+"""Parts that audit, map, search and sensitivity analysis share: rounds of trials, and a record."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
+
+from faultpath.decisions.question import Resolved
+from faultpath.faults import Fault
+from faultpath.trials import Arm, Deliveries, OutcomeTable, Row, Study, System
+from faultpath.trials.execution.state import Stop
+from faultpath.trials.question import Running, SensitivityQuestion
+
+Items = TypeVar("Items")
+
+
+@dataclass(frozen=True)
+class Round:
+    """Trials of one round, those of earlier rounds included."""
+
+    study: Study
+    items: int = 1
+    """So many of what the analysis adds from round to round."""
+    most: int = 1
+    """So many are expected in the end."""
+    notice: str = ""
+    """Sentence to be shown before the round."""
+    stop: Stop | None = None
+    """Asked at each look of a sequential study."""
+
+
+Rounds: TypeAlias = Generator[Round, OutcomeTable, Items]
+"""Rounds, each from the trials of those before; they return all that they added."""
+
+
+@dataclass(frozen=True)
+class Analysis(ABC, Generic[Items]):
+    """A question, the rounds of trials that answer it, and the record that is made of them."""
+
+    noun: ClassVar[str] = ""
+    """Plural of that which rounds add; empty for an analysis of one round."""
+
+    request: Running | SensitivityQuestion
+    question: Resolved
+    system: System
+    named: tuple[str, ...]
+    """Parts of the name of its folder; system options, scenes and seeds follow."""
+
+    @abstractmethod
+    def rounds(self) -> Rounds[Items]:
+        """Yield the rounds. `UserError` where trials leave nothing to go on."""
+
+    @abstractmethod
+    def conclude(self, table: OutcomeTable, deliveries: Deliveries, items: Items) -> Any:
+        """Return the record. `UserError` where nothing is left to compare."""
+
+
+def rows_of(
+    path: str, faults: Mapping[str, Sequence[Fault]], seeds: Sequence[int]
+) -> Iterator[Row]:
+    """Yield the rows of a path: each variant under its faults, once with each seed."""
+    for variant, parts in faults.items():
+        for seed in seeds:
+            arm = Arm(variant=variant, faults=tuple(parts), seed=seed)
+            yield Row(variant=variant, path=path, seed=seed, arm=arm)

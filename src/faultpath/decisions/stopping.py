@@ -1,0 +1,74 @@
+"""Where a sequential audit stops, and what several looks at the same trials cost."""
+
+from collections.abc import Iterable, Sequence
+
+from faultpath.core.errors import UserError
+from faultpath.decisions import phrases
+from faultpath.decisions.descriptive import cells_of, untested_paths
+from faultpath.decisions.family import Family, family_of
+from faultpath.decisions.model import DecisionRecord, Path, Stopped
+from faultpath.decisions.question import EarlierLook, Question
+from faultpath.trials.table import OutcomeTable
+
+
+def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> bool:
+    """Return whether a sequential audit stops with these trials; their order does not matter."""
+    untested = untested_paths(paths, cells_of(question, paths, table))
+    try:
+        # What is decided of a sequential audit rests on no resamples.
+        _, _, family = family_of(question, paths, table, untested, n_resamples=1)
+    except UserError:  # no pair is sound so far
+        return False
+    state = stopped(question, family, table)
+    return state is not None and state.reached
+
+
+def stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped | None:
+    """Return how a sequential audit stands with these trials; `None` of one that is not.
+
+    Every claim on a contrast, of who is ahead or of how little, follows from its one interval, at
+    the level of its share.
+    """
+    rule = question.stop
+    if rule is None:
+        return None
+    small: list[str] = []
+    for path, effect in family.effects.items():
+        if effect.decision is None or effect.n_scenes < family.scenes_needed:
+            continue
+        level, margin = 1.0 - effect.decision.critical_p, rule.margin_pp or 0.0
+        # Whatever failed trials would have been.
+        filled = (effect, *family.fills.get(path, ()))
+        ends = [contrast.ends(level) or (-100.0, 100.0) for contrast in filled]
+        if all(-margin < low and high < margin for low, high in ends):
+            small.append(path)
+    settled = {path for path, effect in family.effects.items() if effect.sign or path in small}
+    required = set(family.effects) if rule.when == "all-decided" else {question.primary}
+    scenes = len({row.outcome.scene for row in table.rows})
+    return Stopped(scenes=scenes, reached=required <= settled, small=tuple(small))
+
+
+def after_looks(record: DecisionRecord, earlier: Iterable[DecisionRecord]) -> DecisionRecord:
+    """Return a record that tells of other conclusions from its trials, and what they cost.
+
+    `earlier` are records of the same arms by the same code, with the looks that they tell of. The
+    same question asked again is no look, and one with too few scenes to announce anything is none.
+    A sequential audit allows for all looks with the same primary contrast.
+    """
+
+    def look(question: Question) -> EarlierLook:
+        return EarlierLook(
+            scenes=None if question.stop else question.n_scenes,
+            primary=question.primary,
+            generalise="scenes" if question.stop else question.generalise,
+            rule="exact" if question.stop else question.rule,
+        )
+
+    known: list[EarlierLook] = []
+    for other in earlier:
+        known += other.earlier if other.few else (*other.earlier, look(other.question))
+    looks = tuple(one for one in dict.fromkeys(known) if one != look(record.question))
+    if not looks:
+        return record
+    record = record.model_copy(update={"earlier": looks})
+    return record.model_copy(update={"findings": (*record.findings, phrases.looks(record))})
