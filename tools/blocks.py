@@ -14,8 +14,8 @@ from flown_code import ROOT, flown_by
 from pydantic import BaseModel, ValidationError
 from rich.console import Console, RenderableType
 
-from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.markdown import grid
 from faultpath.report.tables import DIFFERENCE, by_quantity

@@ -8,8 +8,8 @@ from pathlib import Path
 from blocks import REFERENCE, ROOT, TAKE_AGAIN, about, copied, parsed
 from flown_code import flown_by
 
-from faultpath.decisions import wording
-from faultpath.decisions.phrases import counted
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
 from faultpath.trials.provenance import RunProvenance

@@ -7,7 +7,7 @@ from blocks import Wrong
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.training.catalogue import ALL
 
-from faultpath.decisions import wording
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Line, Table, line
 from faultpath.decisions.tables.markdown import grid
 

@@ -28,8 +28,8 @@ from faultpath_paper.report.words import NON_DETECTION, headline
 from flown_code import flown_by
 from pictures import IMAGES, standing
 
-from faultpath.decisions import wording
 from faultpath.decisions.model import CORRECT, SHARED
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables.escapes import markdown
 from faultpath.decisions.tables.markdown import block, grid
 from faultpath.trials.provenance import RunProvenance

@@ -8,8 +8,8 @@ from typing import Any
 from blocks import ROOT, Wrong
 from pictures import IMAGES
 
-from faultpath.decisions import wording
-from faultpath.decisions.phrases import counted
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
 from faultpath.report.svg import Svg, covering, tick_label

@@ -29,8 +29,8 @@ from faultpath.core.files.parquet import Unreadable
 from faultpath.decisions.decide import after_looks
 from faultpath.decisions.fault_groups import JOINED
 from faultpath.decisions.model import DecisionRecord
-from faultpath.decisions.phrases import counted
 from faultpath.decisions.planning import Audit, plan_audit
+from faultpath.decisions.sentences.wording import counted
 from faultpath.faults import each_size
 from faultpath.report.inputs import Traces
 from faultpath.trials import System, system_shown

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Sequence
 
 from faultpath.core.errors import UserError
-from faultpath.decisions import phrases, wording
 from faultpath.decisions.descriptive import cells_of, percent, secondary, untested_paths
 from faultpath.decisions.family import Compared, Family, alpha_shares, compared, decide_paths, led
 from faultpath.decisions.model import (
@@ -20,7 +19,8 @@ from faultpath.decisions.model import (
     Stopped,
 )
 from faultpath.decisions.question import EarlierLook, Question
-from faultpath.decisions.summary import in_words
+from faultpath.decisions.sentences import phrases, wording
+from faultpath.decisions.sentences.answers import in_words
 from faultpath.statistics.breakeven import break_even, mixture_curve, only
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import EM, Region

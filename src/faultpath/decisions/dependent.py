@@ -15,7 +15,7 @@ from faultpath.decisions.model import SHARED, DecisionRecord, Effect
 from faultpath.decisions.plan.sources import Wired, bound, expected
 from faultpath.decisions.plan.study import StudyFile
 from faultpath.decisions.question import Question
-from faultpath.decisions.wording import reservation, with_interval
+from faultpath.decisions.sentences.wording import reservation, with_interval
 from faultpath.interface import Interface, Provenance, Source, module_of
 
 _NOT_DEPLOYED = (Provenance.PRIVILEGED, Provenance.INTERNAL)

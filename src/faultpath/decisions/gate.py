@@ -6,10 +6,10 @@ from typing import Literal, get_args
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
-from faultpath.decisions import phrases
 from faultpath.decisions.model import SHARED, DecisionRecord
-from faultpath.decisions.summary import in_short, places
-from faultpath.decisions.wording import capital, counted, sentence, where
+from faultpath.decisions.sentences import phrases
+from faultpath.decisions.sentences.phrases import in_short, places
+from faultpath.decisions.sentences.wording import capital, counted, sentence, where
 
 Ask = Literal["reversal", "repair-behind", "undecided", "void"]
 ASKS: tuple[Ask, ...] = get_args(Ask)

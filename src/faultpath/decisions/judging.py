@@ -13,7 +13,7 @@ from faultpath.core.text import listed, unknown
 from faultpath.decisions.decide import primary_path
 from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Path
 from faultpath.decisions.question import Judged, Question
-from faultpath.decisions.wording import capital, counted, where
+from faultpath.decisions.sentences.wording import capital, counted, where
 from faultpath.statistics.estimate import RULE
 from faultpath.trials.outcome import Metric, Outcome, Status, failed_outcome
 from faultpath.trials.received.question import JudgeQuestion

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.decisions import wording
 from faultpath.decisions.model import CORRECT
-from faultpath.decisions.wording import where
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.wording import where
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes

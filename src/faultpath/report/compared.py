@@ -8,10 +8,10 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from faultpath.decisions import wording
 from faultpath.decisions.family import ALPHA, CORRECT, SHARED, alpha_shares
 from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.decisions.question import Question
+from faultpath.decisions.sentences import wording
 from faultpath.report.inputs import ReportInput
 from faultpath.statistics.decisions import holm
 from faultpath.statistics.estimate import RULES, Sign

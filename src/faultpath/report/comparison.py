@@ -9,13 +9,13 @@ from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.core.text import shortened
-from faultpath.decisions import wording
 from faultpath.decisions.family import ALPHA
 from faultpath.decisions.model import SHARED
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.wording import series, where
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.terminal import Parted, drawn
-from faultpath.decisions.wording import series, where
 from faultpath.report.compared import (
     Compared,
     Facts,

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord, Effect
-from faultpath.decisions.summary import in_short
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.phrases import in_short
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, shortened, text_width, tick_label
 
 _PITCH, _TOP, _NUMBERS = 48.0, 44.0, 146.0

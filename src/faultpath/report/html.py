@@ -4,10 +4,10 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord, Effect
-from faultpath.decisions.phrases import change
-from faultpath.decisions.summary import answers
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.answers import answers
+from faultpath.decisions.sentences.phrases import change
 from faultpath.decisions.tables.html import html
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels

@@ -6,10 +6,10 @@ from markupsafe import Markup
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from faultpath.decisions import wording
 from faultpath.decisions.map.lattice import SHARED
 from faultpath.decisions.map.model import MapRecord
-from faultpath.decisions.map.words import cut
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.maps import cut
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block

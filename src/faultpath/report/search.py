@@ -6,8 +6,8 @@ from markupsafe import Markup
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from faultpath.decisions import wording
 from faultpath.decisions.search.model import SearchRecord
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block

@@ -6,8 +6,8 @@ from markupsafe import Markup
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from faultpath.decisions import wording
 from faultpath.decisions.sensitivity.model import Index, SensitivityRecord, Uncertain
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import MISSING, Entry, Table, line
 from faultpath.decisions.tables.csv import csv_text
 from faultpath.decisions.tables.html import html

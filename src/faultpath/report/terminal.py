@@ -5,7 +5,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.decisions.model import DecisionRecord
-from faultpath.decisions.summary import not_standing
+from faultpath.decisions.sentences.phrases import not_standing
 from faultpath.decisions.tables import Line, Table, line
 from faultpath.decisions.tables.terminal import Parted, drawn
 from faultpath.interface import Gap, Interface, rank, transitive_consumers

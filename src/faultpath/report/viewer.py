@@ -10,8 +10,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.decisions import wording
 from faultpath.decisions.model import SHARED
+from faultpath.decisions.sentences import wording
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.viewer_choice import captions, choose

@@ -2,8 +2,8 @@
 
 from math import exp
 
+from faultpath.decisions.sentences.wording import counted, interval, plain
 from faultpath.decisions.tables import MISSING, Table, line
-from faultpath.decisions.wording import counted, interval, plain
 from faultpath.statistics.estimate import Estimate
 from faultpath_quadrotor.flightlog.compensation import Combination, Compensation
 

@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from faultpath.core.results import Frozen, Result
 from faultpath.decisions.map.lattice import UNITS
-from faultpath.decisions.wording import MINUS
+from faultpath.decisions.sentences.wording import MINUS
 from faultpath.statistics.estimate import Sign
 
 
