@@ -4,7 +4,14 @@ from collections.abc import Iterable, Sequence
 
 from faultpath.core.errors import UserError
 from faultpath.decisions.descriptive import cells_of, percent, secondary, untested_paths
-from faultpath.decisions.family import Compared, Family, alpha_shares, compared, decide_paths, led
+from faultpath.decisions.family import (
+    ComparedTrials,
+    Family,
+    alpha_shares,
+    compared,
+    decide_paths,
+    led,
+)
 from faultpath.decisions.model import (
     AS_RUN,
     CORRECT,
@@ -147,7 +154,7 @@ def _family(
     table: OutcomeTable,
     untested: Sequence[str],
     n_resamples: int = 10_000,
-) -> tuple[Compared, Resamples, Family]:
+) -> tuple[ComparedTrials, Resamples, Family]:
     names = [path.name for path in paths]
     sequential = question.stop is not None
     # The trials of a task are no seeds: those that came out alike are no repetition.
@@ -207,7 +214,7 @@ def _stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped
 def _effect(
     question: Question,
     path: str,
-    trials: Compared,
+    trials: ComparedTrials,
     family: Family,
     resamples: Resamples,
     acted: bool,

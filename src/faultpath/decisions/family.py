@@ -49,7 +49,7 @@ class Voids:
 
 
 @dataclass(frozen=True)
-class Compared:
+class ComparedTrials:
     """Trials that are compared, path by path, and paths that are not."""
 
     pairs: Mapping[str, Pairs]
@@ -75,7 +75,7 @@ def compared(
     table: OutcomeTable,
     distinct: bool = True,
     judged: bool = False,
-) -> Compared:
+) -> ComparedTrials:
     """Return the trials of two variants that are compared; `UserError` when no scene is left.
 
     Of seeds that repeat others one is kept, unless not only those that are `distinct` are asked
@@ -123,7 +123,7 @@ def compared(
                 against=(won, lost | could[1][keep][:, seeds]),
                 favour=(won | could[0][keep][:, seeds], lost),
             )
-    return Compared(
+    return ComparedTrials(
         pairs=cut,
         arms={name: (one[:, seeds], two[:, seeds]) for name, (one, two) in success.items()},
         void=tuple(name for name in pairs if name not in left),

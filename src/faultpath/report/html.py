@@ -5,6 +5,7 @@ from pathlib import Path
 from markupsafe import Markup
 
 from faultpath.decisions.model import DecisionRecord, Effect
+from faultpath.decisions.pairs import PairKind, read_pairs
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.sentences.phrases import change
@@ -13,7 +14,7 @@ from faultpath.report.adding import adding, adding_panels
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels
 from faultpath.report.frame import render, write_pages
 from faultpath.report.inputs import ReportInput
-from faultpath.report.pairing import Kind, pair_grid, pair_key, read_pairs
+from faultpath.report.pair_grid import pair_grid, pair_key
 from faultpath.report.tables import SHOWN, by_path, by_threshold, ended, markdown_table, secondary
 from faultpath.report.taps import fork_panel, forks
 from faultpath.report.viewer import viewer_data
@@ -46,7 +47,7 @@ def report_page(source: ReportInput) -> str:
         changes=[(moved.turn, change(record, moved)) for moved in record.changes],
         adding=why,
         adding_panels=list(map(Markup, adding_panels(why))) if why else (),
-        void=[pair for pair in pairs if pair.kind is Kind.VOID],
+        void=[pair for pair in pairs if pair.kind is PairKind.VOID],
         pairs=pairs,
         effects=effect_rows(record),
         axis=effect_axis(record),

@@ -10,11 +10,11 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from faultpath.decisions.examples import captions, choose
 from faultpath.decisions.model import SHARED
+from faultpath.decisions.pairs import Pair, by_scene
 from faultpath.decisions.sentences import wording
 from faultpath.report.inputs import ReportInput
-from faultpath.report.pairing import Pair, by_scene
-from faultpath.report.viewer_choice import captions, choose
 from faultpath.trials import Outcome
 from faultpath.trials.store.signals import DRAWN, IN_FORCE, Signal, Signals
 from faultpath.trials.store.tables import TrialAddress
