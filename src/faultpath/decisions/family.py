@@ -99,36 +99,48 @@ def compared(
             )
         del left[min(faulty, key=lambda name: len(left[name].scenes))]
     cut = {name: paired.only(tuple(kept)) for name, paired in left.items()}
-    success = {name: (paired.first.success, paired.second.success) for name, paired in cut.items()}
     unlike = {mismatch.scene for paired in left.values() for mismatch in paired.mismatches}
-    keep = np.array([scene not in unlike for scene in next(iter(left.values())).all_scenes])
-    # Seeds repeat each other where their trials failed alike, too: what is missing of one is open.
-    ended = [side for paired in left.values() for side in paired.ended]
-    every = np.concatenate([part[keep] for side in ended for part in (side.success, side.failed)])
-    seeds = list(range(every.shape[1]))
-    if distinct:
-        first = {column.tobytes(): seed for seed, column in reversed(list(enumerate(every.T)))}
-        seeds = sorted(first.values())
-    voids: dict[str, Voids] = {}
-    if any(side.failed.any() for side in ended):
-        for name, paired in left.items():
-            ours, theirs = (side.failed for side in paired.ended)
-            won, lost = (side.success[keep][:, seeds] for side in paired.ended)
-            alone = ours & ~theirs, theirs & ~ours
-            could = (ours, theirs) if judged else alone
-            voids[name] = Voids(
-                failed=(int(ours.sum()), int(theirs.sum())),
-                alone=(int(alone[0].sum()), int(alone[1].sum())),
-                open=int((could[0] | could[1]).sum()),
-                against=(won, lost | could[1][keep][:, seeds]),
-                favour=(won | could[0][keep][:, seeds], lost),
-            )
+    alike = np.array([scene not in unlike for scene in next(iter(left.values())).all_scenes])
+    seeds = _seeds(left, alike, distinct)
+    failed = any(side.failed.any() for paired in left.values() for side in paired.ended)
     return ComparedTrials(
         pairs=cut,
-        arms={name: (one[:, seeds], two[:, seeds]) for name, (one, two) in success.items()},
+        arms={
+            name: (paired.first.success[:, seeds], paired.second.success[:, seeds])
+            for name, paired in cut.items()
+        },
         void=tuple(name for name in pairs if name not in left),
         mismatches=mismatches,
-        voids=voids,
+        voids={name: _void(paired, alike, seeds, judged) for name, paired in left.items()}
+        if failed
+        else {},
+    )
+
+
+def _seeds(left: Mapping[str, Pairs], alike: Bools, distinct: bool) -> list[int]:
+    """Return the seeds that count: all, or the first of those that gave the same.
+
+    Seeds repeat each other where their trials failed alike, too: what is missing of one is open.
+    """
+    ended = [side for paired in left.values() for side in paired.ended]
+    every = np.concatenate([part[alike] for side in ended for part in (side.success, side.failed)])
+    if not distinct:
+        return list(range(every.shape[1]))
+    first = {column.tobytes(): seed for seed, column in reversed(list(enumerate(every.T)))}
+    return sorted(first.values())
+
+
+def _void(paired: Pairs, alike: Bools, seeds: list[int], judged: bool) -> Voids:
+    ours, theirs = (side.failed for side in paired.ended)
+    won, lost = (side.success[alike][:, seeds] for side in paired.ended)
+    alone = ours & ~theirs, theirs & ~ours
+    could = (ours, theirs) if judged else alone
+    return Voids(
+        failed=(int(ours.sum()), int(theirs.sum())),
+        alone=(int(alone[0].sum()), int(alone[1].sum())),
+        open=int((could[0] | could[1]).sum()),
+        against=(won, lost | could[1][alike][:, seeds]),
+        favour=(won | could[0][alike][:, seeds], lost),
     )
 
 
@@ -176,7 +188,7 @@ def decide_paths(
     failed, what is decided has to be so too with all open outcomes against it.
     """
 
-    def shown(arms: Mapping[str, Arms], drawn: Resamples | None = None) -> dict[str, Contrast]:
+    def effects_of(arms: Mapping[str, Arms], drawn: Resamples | None = None) -> dict[str, Contrast]:
         sequential, scenes = shares is not None, len(next(iter(arms.values()))[0])
         drawn = drawn or Resamples.draw("family", scenes, n_resamples=1)  # nothing rests on them
         return {
@@ -184,26 +196,21 @@ def decide_paths(
             for path, pair in arms.items()
         }
 
-    effects, tested = shown(success, resamples), [path for path in success if path not in untested]
-    isolated = _isolated(tested)
-    family = {_effect(path): with_test(effects[path], rule) for path in tested}
-    family |= {_change(p): with_test(change(effects[p], effects[SHARED]), rule) for p in isolated}
+    effects = effects_of(success, resamples)
+    tested = [path for path in success if path not in untested]
+    family = {name: with_test(c, rule) for name, c in _named(effects, effects, tested).items()}
     parts = alpha_shares(tested, led(primary, success))
     weights = {name: parts[name] for name in family} if RULES[rule].weighted else None
     decided = decide_family(family, alpha, shares, weights)
-    fills, unsettled = dict[str, tuple[Contrast, Contrast]](), list[str]()
+    fills, unsettled, voids = dict[str, tuple[Contrast, Contrast]](), list[str](), voids or {}
     if voids:
-        low = shown({path: void.against for path, void in voids.items()})
-        high = shown({path: void.favour for path, void in voids.items()})
+        low = effects_of({path: void.against for path, void in voids.items()})
+        high = effects_of({path: void.favour for path, void in voids.items()})
         fills = {path: (low[path], high[path]) for path in voids}
-        # What is open is taken each time as it is nearest to showing nothing, or the contrary.
-        ends = {_effect(path): (low[path], high[path]) for path in tested}
-        ends |= {
-            _change(path): (change(high[path], low[SHARED]), change(low[path], high[SHARED]))
-            for path in isolated
-        }
         if any(void.open for void in voids.values()):
-            least = {name: _nearest(*pair, rule) for name, pair in ends.items()}
+            # What is open is taken each time as it is nearest to showing nothing.
+            ends = _named(low, high, tested), _named(high, low, tested)
+            least = {name: _nearest(ends[0][name], ends[1][name], rule) for name in family}
             stands = decide_family(least, alpha, shares, weights)
             unsettled = [
                 name for name in decided if decided[name].sign not in (0, stands[name].sign)
@@ -212,14 +219,13 @@ def decide_paths(
         decision = decided[name].decision
         decided[name] = replace(decided[name], decision=decision and decision._replace(sign=0))
     effects = {path: decided.get(_effect(path), with_test(e, rule)) for path, e in effects.items()}
-    changes = {path: decided[_change(path)] for path in isolated}
-    uneven = {path for path, void in (voids or {}).items() if void.uneven}
-
-    def turn_of(path: str, moved: Contrast) -> Turn:
+    changes = {path: decided[_change(path)] for path in _isolated(tested)}
+    uneven = {path for path, void in voids.items() if void.uneven}
+    turns: dict[str, Turn] = {}
+    for path, moved in changes.items():
+        turns[path] = turn(effects[path], effects[SHARED], moved)
         if uneven & {path, SHARED}:  # no reversal rests on it
-            return "interaction" if moved.sign else "none"
-        return turn(effects[path], effects[SHARED], moved)
-
+            turns[path] = "interaction" if moved.sign else "none"
     largest = max(weights.values()) / sum(weights.values()) if weights else 1.0 / len(family)
     needed = fewest_scenes(alpha * largest)
     if shares is not None:
@@ -227,12 +233,20 @@ def decide_paths(
     return Family(
         effects=effects,
         changes=changes,
-        turns={path: turn_of(path, moved) for path, moved in changes.items()},
+        turns=turns,
         hypotheses=len(family if shares is None else shares),
         scenes_needed=needed,
         fills=fills,
         unsettled=tuple(unsettled),
     )
+
+
+def _named(
+    effects: Mapping[str, Contrast], alone: Mapping[str, Contrast], tested: Collection[str]
+) -> dict[str, Contrast]:
+    """Return the effects, and their changes from those `alone` to the shared one, by name."""
+    changes = {_change(path): change(alone[path], effects[SHARED]) for path in _isolated(tested)}
+    return {_effect(path): effects[path] for path in tested} | changes
 
 
 def _nearest(against: Contrast, favour: Contrast, rule: RuleName) -> Contrast:
