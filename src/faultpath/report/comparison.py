@@ -218,8 +218,6 @@ def page(runs: Sequence[Compared]) -> str:
     axis = shared_axis(list(panels.values()))
     return render(
         "comparison.html.j2",
-        ("tokens.css", "svg.css", "page.css"),
-        (),
         headline=headline(runs),
         sentences=sentences(runs),
         runs=runs,
@@ -228,5 +226,4 @@ def page(runs: Sequence[Compared]) -> str:
         facts=Markup(html(facts_table(runs, facts))) if facts else "",
         same=same(runs),
         sizes=swept(runs),
-        w=wording,
     )

@@ -12,14 +12,12 @@ from faultpath.decisions.sentences.phrases import change
 from faultpath.decisions.tables.html import html
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels
-from faultpath.report.frame import render, write_pages
+from faultpath.report.frame import STYLES, render, write_pages
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pair_grid import pair_grid, pair_key
 from faultpath.report.tables import SHOWN, by_path, by_threshold, ended, markdown_table, secondary
 from faultpath.report.taps import fork_panel, forks
 from faultpath.report.viewer import viewer_data
-
-_STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
 
 
 def report_page(source: ReportInput) -> str:
@@ -33,7 +31,7 @@ def report_page(source: ReportInput) -> str:
     tables = (ended(record), secondary(record), by_threshold(record))
     return render(
         "report.html.j2",
-        _STYLES,
+        (*STYLES, "viewer.css"),
         ("viewer.js",),
         record=record,
         asked=question,
@@ -72,7 +70,6 @@ def report_page(source: ReportInput) -> str:
         pair_key=[(Markup(sign), words) for sign, words in pair_key(pairs)],
         outcomes=[(table.title, Markup(html(table))) for table in filter(None, tables)],
         viewer=viewer,
-        w=wording,
     )
 
 
