@@ -48,7 +48,7 @@ def tables(record: SearchRecord) -> tuple[Table, ...]:
     )
     if record.confirmed is None:
         return (tried,)
-    return by_path(record.confirmed, _EFFECTS, "Confirming audit; bold is decided"), tried
+    return by_path(record.confirmed, _EFFECTS, "Confirming audit; bold is significant"), tried
 
 
 def picture(record: SearchRecord) -> Svg:
