@@ -109,7 +109,7 @@ def reach(record: DecisionRecord) -> Iterator[str]:
     if question.judged:
         yield _PAIRED[question.judged.pairing]
         yield (
-            "Of two equal arms at most 5 % of such judgements would find a difference, if the "
+            "Of two equal arms at most 5 % of such comparisons would find a difference, if the "
             "number of scenes was fixed before anybody looked: other tools do not tell."
         )
     run = len(question.seeds)
