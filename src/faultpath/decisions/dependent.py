@@ -187,10 +187,10 @@ def _evidence(way: Way, run: str, record: DecisionRecord) -> Evidence | None:
 
 def _decision(record: DecisionRecord, effect: Effect | None) -> str:
     if effect is None:
-        return "flown, no pair of trials left"
+        return "run, no pair of trials left"
     aside = reservation(effect)
     if effect.sign == 0:
-        return f"flown, nothing decided{f' ({aside})' if aside else ''}"
+        return f"run, nothing significant{f' ({aside})' if aside else ''}"
     return f"{record.winner(effect.sign)} succeeds more often{f' ({aside})' if aside else ''}"
 
 
