@@ -116,8 +116,8 @@ def test_decided_in_opposite_directions(two: Given) -> None:
         "2 audits side by side: significant in opposite directions on Shared fault (primary)"
     )
     assert sentences(turned)[0] == (
-        "Shared fault (primary): significant for gru (baseline) in 1, for gru-dcc (repair) in 2 (at "
-        "the ceiling)."
+        "Shared fault (primary): significant for gru (baseline) in 1, for gru-dcc (repair) in 2 "
+        "(at the ceiling)."
     )
 
 

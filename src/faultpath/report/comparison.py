@@ -93,8 +93,8 @@ def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
     if same_correct_trials(runs):
         yield "Correct inputs are the same trials at every size, and count once."
     yield (
-        f"All {len(runs)} sizes are one family here: what is called significant, and what is bold, is "
-        f"wrong in at most {100 * ALPHA:g} % of such sweeps, all sizes together (Holm)."
+        f"All {len(runs)} sizes are one family here: what is called significant, and what is bold, "
+        f"is wrong in at most {100 * ALPHA:g} % of such sweeps, all sizes together (Holm)."
     )
 
 

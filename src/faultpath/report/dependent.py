@@ -28,9 +28,9 @@ _NOTES = (
     "This is evidence for an analysis of dependent failures: which faults of sources that the "
     "interface declares were run in simulation, and what they show about these two variants. "
     "It is no such analysis itself, and shows neither independence nor freedom from interference: "
-    "an effect that is not significant is not absent, and coupling that no interface declares (power, "
-    "clocks, buses, shared code, the environment) is not seen. No compliance with ISO 26262 or "
-    "IEC 61508 follows.",
+    "an effect that is not significant is not absent, and coupling that no interface declares "
+    "(power, clocks, buses, shared code, the environment) is not seen. No compliance with ISO "
+    "26262 or IEC 61508 follows.",
     "An audit counts for a group where its fault acts on that group alone. No evidence: none that "
     "is shown here has this arm.",
 )
