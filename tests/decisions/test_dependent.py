@@ -78,7 +78,7 @@ def test_an_audit_is_evidence_for_the_arms_that_it_flew_and_no_others(runs) -> N
     for line in gain.values():
         assert line.entries[3].text.startswith("1: run, nothing significant")
         assert line.entries[-1].text == "–"  # nothing is left to fly
-    assert speed["controller alone"].entries[3].text.startswith("2: flown")
+    assert speed["controller alone"].entries[3].text.startswith("2: run, ")
     assert speed["observer alone"].entries[3].text == "no evidence"
     assert speed["all of them (shared)"].entries[3].text == "no evidence"
     assert "--fault velocity:offset=0.1 --library carts" in speed["observer alone"].entries[-1].text
