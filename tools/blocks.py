@@ -15,9 +15,9 @@ from pydantic import BaseModel, ValidationError
 from rich.console import Console, RenderableType
 
 from faultpath.api.folders import MADE_FROM, MAP, MAP_MADE_FROM, RECORD
-from faultpath.decisions import wording
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Entry, Line, Table
 from faultpath.decisions.tables.markdown import grid
 from faultpath.trials.provenance import RunProvenance

@@ -6,8 +6,8 @@ from blocks import load
 from carry_design import Cell, Flown
 from carry_verdicts import Mean, hours, lead, moves, overall, questions, reason, sentences, title
 
-from faultpath.decisions import wording
-from faultpath.decisions.phrases import counted
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
 

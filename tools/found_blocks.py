@@ -8,7 +8,8 @@ from latent_blocks import FAULTS
 from latent_blocks import audits_of as audits_of_rooms
 from state_blocks import PLACES, audits_of
 
-from faultpath.decisions import model, wording
+from faultpath.decisions import model
+from faultpath.decisions.sentences import wording
 
 WORLD_MODEL = "stable-worldmodel"
 PAGES = {

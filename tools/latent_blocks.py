@@ -6,8 +6,8 @@ from typing import Any
 
 from blocks import ROOT, Wrong
 
-from faultpath.decisions import wording
-from faultpath.decisions.phrases import counted
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
 

@@ -7,7 +7,7 @@ from blocks import Wrong, words_grid
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.training.catalogue import ALL
 
-from faultpath.decisions import wording
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Line, line
 
 MEASURES = {

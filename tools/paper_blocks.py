@@ -27,8 +27,8 @@ from faultpath_paper.report.page import sweep_plot
 from faultpath_paper.report.short import apart, by_kind, by_subject
 from faultpath_paper.report.words import NON_DETECTION, headline
 
-from faultpath.decisions import wording
 from faultpath.decisions.model import CORRECT, SHARED
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables.escapes import markdown
 from faultpath.decisions.tables.markdown import block, grid
 from faultpath.report.svg import template

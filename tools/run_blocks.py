@@ -7,7 +7,7 @@ from typing import Any
 
 from blocks import ROOT, Run, Wrong, difference, fence, load, printed
 
-from faultpath.decisions import wording
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.markdown import grid
 from faultpath.report import map as map_report

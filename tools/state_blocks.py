@@ -5,8 +5,8 @@ from typing import Any
 
 from blocks import effect_entry, figures_of, words_grid
 
-from faultpath.decisions import wording
-from faultpath.decisions.phrases import counted
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.tables import Line, line
 from faultpath.report.svg import Svg, covering, tick_label
 

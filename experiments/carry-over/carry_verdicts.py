@@ -10,7 +10,7 @@ import numpy as np
 from carry_design import Cell, Design, Flown, Question, Reach
 from numpy.typing import NDArray
 
-from faultpath.decisions.phrases import counted
+from faultpath.decisions.sentences.wording import counted
 from faultpath.statistics.betting import log_capital
 from faultpath.statistics.distributions import t_interval
 from faultpath.statistics.power import fewest_scenes

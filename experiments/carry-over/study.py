@@ -21,8 +21,8 @@ from carry_verdicts import sentences, settled
 from faultpath.api.display import Display, SafeConsole
 from faultpath.api.systems import executor_of
 from faultpath.core.errors import Stopped, UserError
-from faultpath.decisions.phrases import counted
 from faultpath.decisions.planning import plan_audit
+from faultpath.decisions.sentences.wording import counted
 from faultpath.trials import Row, Side, Study, SystemSpec, library_of, load_system, pair
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import RunResult, run_study

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import faultpath
-from faultpath.decisions.summary import answers
+from faultpath.decisions.sentences.answers import answers
 
 AUDIT_MODULE = import_module("faultpath.api.audit")
 TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"

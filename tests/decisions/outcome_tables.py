@@ -10,6 +10,8 @@ from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
 
 BASELINE, REPAIR = "old", "new"
 SCENES = 100
+MOST_WORDS = 20
+"""Most words of a headline; names of modules and variants are one word each."""
 
 Counts = tuple[int, int, int]
 """Scenes that both win, that only the repair wins, and that only the baseline wins."""

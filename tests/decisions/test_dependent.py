@@ -76,9 +76,9 @@ def test_an_audit_is_evidence_for_the_arms_that_it_flew_and_no_others(runs) -> N
     gain, speed = (next(of for n, of in told.items() if n.startswith(s)) for s in ("gain", "speed"))
     assert [*gain] == ["controller alone", "logger alone", "all of them (shared)"]
     for line in gain.values():
-        assert line.entries[3].text.startswith("1: flown, nothing decided")
+        assert line.entries[3].text.startswith("1: run, nothing significant")
         assert line.entries[-1].text == "–"  # nothing is left to fly
-    assert speed["controller alone"].entries[3].text.startswith("2: flown")
+    assert speed["controller alone"].entries[3].text.startswith("2: run, ")
     assert speed["observer alone"].entries[3].text == "no evidence"
     assert speed["all of them (shared)"].entries[3].text == "no evidence"
     assert "--fault velocity:offset=0.1 --library carts" in speed["observer alone"].entries[-1].text
@@ -96,10 +96,10 @@ def test_only_what_is_decided_is_called_evidence_for_an_arm(runs) -> None:
     )
     held = replace(first, record=first.record.model_copy(update={"effects": effects}))
     alone, _, shared = [line.entries[3].text for line in of_runs([held]).lines if line.entries][:3]
-    assert (alone, shared) == ("logged succeeds more often", "flown, nothing decided")
+    assert (alone, shared) == ("logged succeeds more often", "run, nothing significant")
     lost = replace(first, record=first.record.model_copy(update={"effects": ()}))
     entries = next(line.entries for line in of_runs([lost]).lines if line.entries)
-    assert entries[3].text == "flown, no pair of trials left"
+    assert entries[3].text == "run, no pair of trials left"
 
 
 def test_a_plan_has_no_evidence_and_the_command_to_get_it() -> None:

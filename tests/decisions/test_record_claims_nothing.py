@@ -4,15 +4,16 @@ import re
 from collections.abc import Callable, Iterator
 
 import pytest
-from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
+from outcome_tables import BASELINE, MOST_WORDS, REPAIR, arms, paths, question, rows
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
-from faultpath.decisions import phrases, wording
 from faultpath.decisions.decide import decide
 from faultpath.decisions.model import CORRECT, SHARED, Change, DecisionRecord, Effect
 from faultpath.decisions.question import StopRule
-from faultpath.decisions.summary import MOST_WORDS, answers, in_short
+from faultpath.decisions.sentences import phrases, wording
+from faultpath.decisions.sentences.answers import answers
+from faultpath.decisions.sentences.phrases import in_short
 from faultpath.trials import OutcomeTable, Status
 from faultpath.trials.question import StopWhen
 

@@ -5,12 +5,14 @@ from collections.abc import Iterator
 from itertools import product
 
 import pytest
-from outcome_tables import BASELINE, REPAIR, record
+from outcome_tables import BASELINE, MOST_WORDS, REPAIR, record
 
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
 from faultpath.decisions.question import StopRule
-from faultpath.decisions.summary import MOST_WORDS, answers, headline, in_short, not_standing
-from faultpath.decisions.wording import where
+from faultpath.decisions.sentences.answers import answers
+from faultpath.decisions.sentences.headline import headline
+from faultpath.decisions.sentences.phrases import in_short, not_standing
+from faultpath.decisions.sentences.wording import where
 
 State = tuple[int, str]
 """Who is decided to be ahead, and what is special: `floor`, `idle`, `small`."""

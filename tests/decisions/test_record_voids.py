@@ -6,7 +6,8 @@ from outcome_tables import BASELINE, REPAIR, SCENES, paths, question, rows
 
 from faultpath.decisions.decide import decide
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
-from faultpath.decisions.summary import answers, in_short
+from faultpath.decisions.sentences.answers import answers
+from faultpath.decisions.sentences.phrases import in_short
 from faultpath.trials import OutcomeTable, Status
 
 YES, NO, FAILED = Status.SUCCESS, Status.CRASH, Status.FAILED
@@ -74,7 +75,7 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     assert effect.p_value < 0.05
     said = in_short(open_, effect)
     assert "failed" in said
-    assert "failed" in open_.headline
+    assert "failed" in open_.headline.lower()
     assert "no difference" not in " ".join((open_.headline, said)).lower()
     assert "depends on trials that failed" in answers(open_)["Left open"]
     safe = audit((lost, [*[NO] * 20, *rest[15:], YES]))

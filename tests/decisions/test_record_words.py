@@ -5,10 +5,10 @@ import re
 import pytest
 from outcome_tables import BASELINE, REPAIR, arms, paths, question, record, rows, seeded, three
 
-from faultpath.decisions import phrases
 from faultpath.decisions.decide import decide
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
-from faultpath.decisions.summary import in_short
+from faultpath.decisions.sentences import phrases
+from faultpath.decisions.sentences.phrases import in_short
 from faultpath.trials import OutcomeTable
 
 LEVEL = (50, 5, 5)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from outcome_tables import SCENES, three
+from outcome_tables import MOST_WORDS, SCENES, three
 from outcome_tables import record as audit
 
 from faultpath.core.errors import UserError
@@ -16,7 +16,6 @@ from faultpath.decisions.search.decide import conclude
 from faultpath.decisions.search.model import ResolvedSearch, SearchRecord, Tried
 from faultpath.decisions.search.propose import proposals
 from faultpath.decisions.search.study import SearchPlan, halves, plan_search, regret
-from faultpath.decisions.summary import MOST_WORDS
 from faultpath.trials import SystemSpec, library_of, load_system
 from faultpath.trials.question import SearchQuestion, ask
 

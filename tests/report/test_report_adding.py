@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
 
+from faultpath.decisions.examples import choose
+from faultpath.decisions.pairs import read_pairs
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
-from faultpath.report.pairing import read_pairs
-from faultpath.report.viewer_choice import choose
 from faultpath.systems.checks.recording import added
 from faultpath.trials.store.tables import TrialAddress
 

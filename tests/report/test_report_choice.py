@@ -6,11 +6,11 @@ from dataclasses import replace
 import pytest
 from page_reader import unpack
 
+from faultpath.decisions.examples import captions, choose
 from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.pairs import Pair, read_pairs
 from faultpath.report.inputs import ReportInput
-from faultpath.report.pairing import Pair, read_pairs
 from faultpath.report.viewer import viewer_data
-from faultpath.report.viewer_choice import captions, choose
 from faultpath.trials import Status
 
 PATHS = ("correct", "predictor", "reconstruction", "shared")

@@ -50,7 +50,7 @@ def test_detected_here_and_not_there_is_no_difference(two: Given) -> None:
     quiet = (first, signed(second, "shared", 0))
     assert headline(quiet) == "2 audits side by side"
     said = sentences(quiet)
-    assert said[0] == "No two audits of the same arms are decided in opposite directions."
+    assert said[0] == "No two audits of the same arms are significant in opposite directions."
     assert "no test between the audits" in said[1]
     assert "not shown to differ" in said[1]
 
@@ -102,7 +102,7 @@ def test_long_names_leave_the_numbers_whole_on_the_terminal(
     runs = tuple(run(one_seed, number, f"{long}{number}") for number in (1, 2))
     printed = StringIO()
     Console(width=width, file=printed).print(shown(runs))
-    table = printed.getvalue().partition("bold is decided")[2]
+    table = printed.getvalue().partition("bold is significant")[2]
     assert "1  mine.py_create-" in table
     for row in effects(runs).lines:
         for entry in row.entries[:2]:
@@ -113,11 +113,11 @@ def test_decided_in_opposite_directions(two: Given) -> None:
     first, second = two
     turned = (first, signed(second, "shared", 1, extreme="ceiling"))
     assert headline(turned) == (
-        "2 audits side by side: decided in opposite directions on Shared fault (primary)"
+        "2 audits side by side: significant in opposite directions on Shared fault (primary)"
     )
     assert sentences(turned)[0] == (
-        "Shared fault (primary): decided for gru (baseline) in 1, for gru-dcc (repair) in 2 (at "
-        "the ceiling)."
+        "Shared fault (primary): significant for gru (baseline) in 1, for gru-dcc (repair) in 2 "
+        "(at the ceiling)."
     )
 
 

@@ -4,9 +4,10 @@ import re
 from xml.etree import ElementTree
 
 from faultpath.decisions.model import DecisionRecord, PathBreakEven
+from faultpath.decisions.pairs import read_pairs
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, panel, shared_axis
 from faultpath.report.inputs import ReportInput
-from faultpath.report.pairing import pair_grid, pair_key, read_pairs
+from faultpath.report.pair_grid import pair_grid, pair_key
 from faultpath.report.svg import Svg, covering, shortened, text_width
 from faultpath.report.taps import fork_panel, forks
 from faultpath.statistics.estimate import BreakEven, Region

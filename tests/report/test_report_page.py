@@ -9,9 +9,9 @@ from itertools import pairwise
 import pytest
 from page_reader import Page, unpack
 
+from faultpath.decisions.pairs import PairKind, read_pairs
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput, Traces
-from faultpath.report.pairing import Kind, read_pairs
 
 FIGURE_NAMESPACE = "http://www.w3.org/2000/svg"
 
@@ -86,11 +86,11 @@ def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
             source.record.question.seeds, effect.wins, effect.losses, strict=True
         ):
             kinds = [p.kind for p in pairs if (p.path, p.seed) == (effect.path, seed)]
-            assert kinds.count(Kind.REPAIR_ONLY) == won
-            assert kinds.count(Kind.BASELINE_ONLY) == lost
+            assert kinds.count(PairKind.REPAIR_ONLY) == won
+            assert kinds.count(PairKind.BASELINE_ONLY) == lost
         kinds = [p.kind for p in pairs if p.path == effect.path]
-        assert kinds.count(Kind.VOID) == effect.void_pairs
-        assert len(kinds) - kinds.count(Kind.VOID) - kinds.count(Kind.LEFT_OUT) == (
+        assert kinds.count(PairKind.VOID) == effect.void_pairs
+        assert len(kinds) - kinds.count(PairKind.VOID) - kinds.count(PairKind.LEFT_OUT) == (
             effect.scenes * len(source.record.question.seeds)
         )
 
@@ -106,7 +106,7 @@ def test_a_path_of_which_every_trial_failed_costs_the_others_nothing(
     assert page.text.count("no pair of trials is left to compare") == 2  # headline and finding
     assert {
         p.kind for p in read_pairs(source.outcomes, source.record) if p.path != lost
-    }.isdisjoint({Kind.VOID, Kind.LEFT_OUT})
+    }.isdisjoint({PairKind.VOID, PairKind.LEFT_OUT})
 
 
 def test_viewer_data_cannot_close_its_element(html: str) -> None:

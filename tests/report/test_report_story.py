@@ -8,6 +8,7 @@ from pathlib import Path as FilePath
 import pytest
 
 from faultpath.decisions.model import Path
+from faultpath.faults import Fault, Scale
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.taps import Fork, fork_panel, forks
@@ -42,6 +43,35 @@ def test_each_path_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
     assert states(told["Shared fault"]) == [both, both]
     assert [fork.everywhere for fork in told.values()] == [False, False, True]
     assert "wrong for all" in fork_panel(told["Shared fault"])
+
+
+def test_a_source_with_one_reader_names_it(one_seed: ReportInput) -> None:
+    record, fault = one_seed.record, Fault(channel="mass", intervention=Scale(factor=0.6))
+    question = record.question.model_copy(update={"faults": (fault,)})
+
+    def told(*names: str) -> str:
+        paths = tuple(path for path in record.paths if path.name in names)
+        effects = tuple(effect for effect in record.effects if effect.path in names)
+        cells = tuple(cell for cell in record.cells if cell.path in names)
+        update = {"question": question, "paths": paths, "effects": effects, "cells": cells}
+        shares = tuple(share for share in record.break_even if share.path in names)
+        update |= {"changes": (), "break_even": shares, "break_even_beta": ()}
+        return screen(replace(one_seed, record=record.model_copy(update=update)))
+
+    assert "mass scaled by 0.6 at every consumer" in told("correct", "predictor", "shared")
+    assert "mass scaled by 0.6 at predictor" in told("correct", "predictor")
+
+
+def test_the_legend_names_the_grey_box_where_there_is_one(one_seed: ReportInput) -> None:
+    open_ = [effect for effect in one_seed.record.effects if not effect.sign]
+    assert open_
+    assert "A grey box reaches" in screen(one_seed)
+    effects = tuple(
+        effect.model_copy(update={"minimum_detectable_pp": None})
+        for effect in one_seed.record.effects
+    )
+    record = one_seed.record.model_copy(update={"effects": effects})
+    assert "A grey box reaches" not in screen(replace(one_seed, record=record))
 
 
 def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> None:

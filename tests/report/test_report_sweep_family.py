@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from faultpath.decisions.family import CORRECT
-from faultpath.report.compared import Compared, contrasts, together
+from faultpath.decisions.sweep import contrasts
+from faultpath.report.compared import Compared, together
 from faultpath.report.inputs import ReportInput
 
 

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from page_reader import unpack
 
+from faultpath.decisions.pairs import read_pairs
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput, Traces
-from faultpath.report.pairing import read_pairs
 from faultpath.report.viewer import pack, viewer_data
 from faultpath.trials.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
 from faultpath.trials.store.tables import TrialAddress

@@ -10,7 +10,7 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from faultpath.core.results import Frozen
-from faultpath.decisions import wording
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Entry, Table, line
 from faultpath.statistics.estimate import Sign
 from faultpath_paper.answers import Reproduction

@@ -5,7 +5,7 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 
-from faultpath.decisions import wording
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import MISSING, Entry
 from faultpath.statistics.contrast import Contrast
 from faultpath.trials import Status

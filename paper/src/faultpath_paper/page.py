@@ -5,7 +5,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from faultpath.decisions import wording
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Line, Table
 from faultpath_paper.answers import Sweep
 from faultpath_paper.cells import Cell

@@ -24,9 +24,9 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
 from faultpath.decisions.fault_groups import JOINED
 from faultpath.decisions.model import DecisionRecord
-from faultpath.decisions.phrases import counted
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.decisions.question import Question
+from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.stopping import after_looks
 from faultpath.faults import each_size
 from faultpath.report.inputs import Traces

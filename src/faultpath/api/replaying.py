@@ -8,12 +8,12 @@ from faultpath.api.folders import RECORD, read_run
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
+from faultpath.decisions.examples import choose as picked
 from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.pairs import by_scene, read_pairs
 from faultpath.decisions.planning import plan_audit
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
-from faultpath.report.pairing import by_scene, read_pairs
-from faultpath.report.viewer_choice import choose as picked
 from faultpath.systems.checks.blocks import BlockSpec, RecordedBlock, run_blocks
 from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
 from faultpath.trials.attempt import Done

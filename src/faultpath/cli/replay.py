@@ -32,8 +32,8 @@ def replay(
     from faultpath.api.display import SafeConsole
     from faultpath.api.folders import RECORD, read_provenance, read_run
     from faultpath.api.replaying import chosen_scenes, keep_signals, replay
+    from faultpath.decisions.sentences.wording import counted
     from faultpath.decisions.tables.terminal import STYLES
-    from faultpath.decisions.wording import counted
 
     if RECORD not in read_provenance(folder).files:
         raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")

@@ -69,8 +69,8 @@ def check(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
 
     from faultpath.api.checks import check
     from faultpath.api.display import SafeConsole
+    from faultpath.decisions.sentences.wording import counted
     from faultpath.decisions.tables.terminal import STYLES
-    from faultpath.decisions.wording import counted
 
     report = check(system, **arguments, progress=display())
     if as_json:

@@ -43,7 +43,7 @@ class Voids:
 
 
 @dataclass(frozen=True)
-class Compared:
+class ComparedTrials:
     """Trials that are compared, path by path, and paths that are not."""
 
     pairs: Mapping[str, Pairs]
@@ -69,7 +69,7 @@ def compared(
     table: OutcomeTable,
     distinct: bool = True,
     judged: bool = False,
-) -> Compared:
+) -> ComparedTrials:
     """Return the trials of two variants that are compared; `UserError` when no scene is left.
 
     Of seeds that repeat others one is kept, unless not only those that are `distinct` are asked
@@ -93,34 +93,46 @@ def compared(
             )
         del left[min(faulty, key=lambda name: len(left[name].scenes))]
     cut = {name: paired.only(tuple(kept)) for name, paired in left.items()}
-    success = {name: (paired.first.success, paired.second.success) for name, paired in cut.items()}
     unlike = {mismatch.scene for paired in left.values() for mismatch in paired.mismatches}
-    keep = np.array([scene not in unlike for scene in next(iter(left.values())).all_scenes])
-    # Seeds repeat each other where their trials failed alike, too: what is missing of one is open.
-    ended = [side for paired in left.values() for side in paired.ended]
-    every = np.concatenate([part[keep] for side in ended for part in (side.success, side.failed)])
-    seeds = list(range(every.shape[1]))
-    if distinct:
-        first = {column.tobytes(): seed for seed, column in reversed(list(enumerate(every.T)))}
-        seeds = sorted(first.values())
-    voids: dict[str, Voids] = {}
-    if any(side.failed.any() for side in ended):
-        for name, paired in left.items():
-            ours, theirs = (side.failed for side in paired.ended)
-            won, lost = (side.success[keep][:, seeds] for side in paired.ended)
-            alone = ours & ~theirs, theirs & ~ours
-            could = (ours, theirs) if judged else alone
-            voids[name] = Voids(
-                failed=(int(ours.sum()), int(theirs.sum())),
-                alone=(int(alone[0].sum()), int(alone[1].sum())),
-                open=int((could[0] | could[1]).sum()),
-                against=(won, lost | could[1][keep][:, seeds]),
-                favour=(won | could[0][keep][:, seeds], lost),
-            )
-    return Compared(
+    alike = np.array([scene not in unlike for scene in next(iter(left.values())).all_scenes])
+    seeds = _seeds(left, alike, distinct)
+    failed = any(side.failed.any() for paired in left.values() for side in paired.ended)
+    return ComparedTrials(
         pairs=cut,
-        arms={name: (one[:, seeds], two[:, seeds]) for name, (one, two) in success.items()},
+        arms={
+            name: (paired.first.success[:, seeds], paired.second.success[:, seeds])
+            for name, paired in cut.items()
+        },
         void=tuple(name for name in pairs if name not in left),
         mismatches=mismatches,
-        voids=voids,
+        voids={name: _void(paired, alike, seeds, judged) for name, paired in left.items()}
+        if failed
+        else {},
+    )
+
+
+def _seeds(left: Mapping[str, Pairs], alike: Bools, distinct: bool) -> list[int]:
+    """Return the seeds that count: all, or the first of those that gave the same.
+
+    Seeds repeat each other where their trials failed alike, too: what is missing of one is open.
+    """
+    ended = [side for paired in left.values() for side in paired.ended]
+    every = np.concatenate([part[alike] for side in ended for part in (side.success, side.failed)])
+    if not distinct:
+        return list(range(every.shape[1]))
+    first = {column.tobytes(): seed for seed, column in reversed(list(enumerate(every.T)))}
+    return sorted(first.values())
+
+
+def _void(paired: Pairs, alike: Bools, seeds: list[int], judged: bool) -> Voids:
+    ours, theirs = (side.failed for side in paired.ended)
+    won, lost = (side.success[alike][:, seeds] for side in paired.ended)
+    alone = ours & ~theirs, theirs & ~ours
+    could = (ours, theirs) if judged else alone
+    return Voids(
+        failed=(int(ours.sum()), int(theirs.sum())),
+        alone=(int(alone[0].sum()), int(alone[1].sum())),
+        open=int((could[0] | could[1]).sum()),
+        against=(won, lost | could[1][alike][:, seeds]),
+        favour=(won | could[0][alike][:, seeds], lost),
     )

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 
 from faultpath.core.errors import UserError
-from faultpath.decisions import phrases, wording
-from faultpath.decisions.compared import Compared
+from faultpath.decisions.compared import ComparedTrials
 from faultpath.decisions.descriptive import cells_of, percent, secondary, untested_paths
 from faultpath.decisions.family import Family, family_of, led
 from faultpath.decisions.model import (
@@ -20,8 +19,9 @@ from faultpath.decisions.model import (
     PathBreakEven,
 )
 from faultpath.decisions.question import Question
+from faultpath.decisions.sentences import phrases, wording
+from faultpath.decisions.sentences.answers import in_words
 from faultpath.decisions.stopping import stopped
-from faultpath.decisions.summary import in_words
 from faultpath.statistics.breakeven import break_even, mixture_curve, only
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import EM, Region
@@ -107,7 +107,7 @@ def primary_path(named: str, paths: Sequence[Path]) -> str:
 def _effect(
     question: Question,
     path: str,
-    trials: Compared,
+    trials: ComparedTrials,
     family: Family,
     resamples: Resamples,
     acted: bool,

@@ -11,8 +11,8 @@ from collections.abc import Collection, Iterable, Sequence
 from faultpath.core.results import Frozen
 from faultpath.decisions.fault_groups import JOINED
 from faultpath.decisions.model import SHARED, DecisionRecord, Effect
+from faultpath.decisions.sentences.wording import reservation, with_interval
 from faultpath.decisions.sources import NOT_DEPLOYED, Wired, bound, expected, groups_of
-from faultpath.decisions.wording import reservation, with_interval
 from faultpath.interface import Interface, Source, module_of
 
 _SIZE = "SIZE"
@@ -180,8 +180,8 @@ def _evidence(way: Way, run: str, record: DecisionRecord) -> Evidence | None:
 
 def _decision(record: DecisionRecord, effect: Effect | None) -> str:
     if effect is None:
-        return "flown, no pair of trials left"
+        return "run, no pair of trials left"
     aside = reservation(effect)
     if effect.sign == 0:
-        return f"flown, nothing decided{f' ({aside})' if aside else ''}"
+        return f"run, nothing significant{f' ({aside})' if aside else ''}"
     return f"{record.winner(effect.sign)} succeeds more often{f' ({aside})' if aside else ''}"

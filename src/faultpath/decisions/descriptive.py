@@ -14,7 +14,7 @@ from faultpath.statistics.effects import mean_effect, median_effect, success_eff
 from faultpath.statistics.estimate import Estimate
 from faultpath.statistics.resamples import Resamples
 from faultpath.trials.outcome import Status
-from faultpath.trials.pairing import Bools, Pairs
+from faultpath.trials.pairing import Bools, Pairs, Trials
 from faultpath.trials.table import OutcomeTable
 
 
@@ -58,66 +58,70 @@ def untested_paths(paths: Sequence[Path], cells: Sequence[Cell]) -> tuple[str, .
 
 
 def secondary(pairs: Pairs, resamples: Resamples, question: Question) -> dict[str, Any]:
-    """Return the fields of an `Effect` on time and metrics, for new scenes and the seeds run.
-
-    Of a sequential audit time and metrics have no interval: theirs need a fixed number of scenes.
-    """
-
-    def honest(estimate: Estimate, what: str) -> Estimate:
-        if question.stop is not None:
-            why = f"{what} of the scenes until the audit stopped: no interval"
-        elif estimate.n_scenes < MIN_SCENES:
-            why = f"{what} of {estimate.n_scenes} scenes, too few for an interval"
-        elif estimate.low == estimate.high:
-            why = f"{what} of {estimate.n_scenes} scenes that hardly differ: no interval"
-        else:
-            return estimate
-        return estimate.model_copy(update={"low": None, "high": None, "method": why})
-
+    """Return the fields of an `Effect` on time and metrics, for new scenes and the seeds run."""
     first, second = pairs.first, pairs.second
     joint = first.success & second.success
     joint &= np.isfinite(first.time_s) & np.isfinite(second.time_s)  # no times, in some results
     time_s = None
     if joint.any():
         time_s = median_effect(first.time_s, second.time_s, joint, resamples).estimate()
+        time_s = _honest(time_s, "median", question)
     metrics: dict[str, Estimate] = {}
     means, thresholds = None, list[AtThreshold]()
-    for name in question.metrics:
+    for name, metric in question.metrics.items():
         if name not in first.metrics or name not in second.metrics:
             continue
         full = np.asarray(np.isfinite(first.metrics[name] + second.metrics[name]).all(axis=1))
         if not (n_scenes := int(full.sum())):
             continue
-        arms, drawn = (second.only(full), first.only(full)), resamples
+        baseline, repair, drawn = second.only(full), first.only(full), resamples
         if n_scenes < len(full):  # of a scene in which a trial has no value nothing is told
             drawn = Resamples.draw(drawn.label, n_scenes, n_resamples=drawn.n_resamples)
-        values = arms[0].metrics[name], arms[1].metrics[name]
-        difference = mean_effect(values[1], values[0], drawn, question.metrics[name].unit)
-        metrics[name] = honest(difference.estimate(), "mean")
-        if name != question.metric:
-            continue
-        means = float(values[0].mean()), float(values[1].mean())
-        for threshold in question.thresholds:
-            less = question.metrics[question.metric].better == "less"
-            baseline, repair = (
-                ~side.crash & (value <= threshold if less else value >= threshold)
-                for side, value in zip(arms, values, strict=True)
-            )
-            difference = success_effect(
-                repair, baseline, drawn, sequential=question.stop is not None, rule=question.rule
-            )
-            thresholds.append(
-                AtThreshold(
-                    threshold=threshold,
-                    baseline_percent=percent(baseline),
-                    repair_percent=percent(repair),
-                    difference=difference.estimate(),
-                )
-            )
+        values = baseline.metrics[name], repair.metrics[name]
+        difference = mean_effect(values[1], values[0], drawn, metric.unit)
+        metrics[name] = _honest(difference.estimate(), "mean", question)
+        if name == question.metric:
+            means = float(values[0].mean()), float(values[1].mean())
+            thresholds = [
+                _at_threshold(at, baseline, repair, drawn, question) for at in question.thresholds
+            ]
     return {
-        "time_s": time_s and honest(time_s, "median"),
+        "time_s": time_s,
         "joint_successes": int(joint.sum()),
         "metrics": metrics,
         "metric_means": means,
         "thresholds": tuple(thresholds),
     }
+
+
+def _honest(estimate: Estimate, what: str, question: Question) -> Estimate:
+    """Return an estimate without the interval that it cannot have: those of a sequential audit need
+    a fixed number of scenes."""
+    if question.stop is not None:
+        why = f"{what} of the scenes until the audit stopped: no interval"
+    elif estimate.n_scenes < MIN_SCENES:
+        why = f"{what} of {estimate.n_scenes} scenes, too few for an interval"
+    elif estimate.low == estimate.high:
+        why = f"{what} of {estimate.n_scenes} scenes that hardly differ: no interval"
+    else:
+        return estimate
+    return estimate.model_copy(update={"low": None, "high": None, "method": why})
+
+
+def _at_threshold(
+    threshold: float, baseline: Trials, repair: Trials, resamples: Resamples, question: Question
+) -> AtThreshold:
+    less = question.metrics[question.metric].better == "less"
+    old, new = (
+        ~arm.crash & (values <= threshold if less else values >= threshold)
+        for arm in (baseline, repair)
+        for values in [arm.metrics[question.metric]]
+    )
+    sequential = question.stop is not None
+    difference = success_effect(new, old, resamples, sequential=sequential, rule=question.rule)
+    return AtThreshold(
+        threshold=threshold,
+        baseline_percent=percent(old),
+        repair_percent=percent(new),
+        difference=difference.estimate(),
+    )

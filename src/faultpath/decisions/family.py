@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from faultpath.core.errors import UserError
-from faultpath.decisions.compared import Arms, Compared, Voids, compared
+from faultpath.decisions.compared import Arms, ComparedTrials, Voids, compared
 from faultpath.decisions.model import CORRECT, SHARED, Path
 from faultpath.decisions.question import Question
 from faultpath.statistics import betting
@@ -42,7 +42,7 @@ def family_of(
     table: OutcomeTable,
     untested: Sequence[str],
     n_resamples: int = 10_000,
-) -> tuple[Compared, Resamples, Family]:
+) -> tuple[ComparedTrials, Resamples, Family]:
     """Return the trials of an audit that are compared, their resamples, and what is decided.
 
     `UserError` when no scene is left, and where newly trained models are asked for and all seeds
@@ -104,7 +104,7 @@ def decide_paths(
     failed, what is decided has to be so too with all open outcomes against it.
     """
 
-    def shown(arms: Mapping[str, Arms], drawn: Resamples | None = None) -> dict[str, Contrast]:
+    def effects_of(arms: Mapping[str, Arms], drawn: Resamples | None = None) -> dict[str, Contrast]:
         sequential, scenes = shares is not None, len(next(iter(arms.values()))[0])
         drawn = drawn or Resamples.draw("family", scenes, n_resamples=1)  # nothing rests on them
         return {
@@ -112,26 +112,21 @@ def decide_paths(
             for path, pair in arms.items()
         }
 
-    effects, tested = shown(success, resamples), [path for path in success if path not in untested]
-    isolated = _isolated(tested)
-    family = {_effect(path): with_test(effects[path], rule) for path in tested}
-    family |= {_change(p): with_test(change(effects[p], effects[SHARED]), rule) for p in isolated}
+    effects = effects_of(success, resamples)
+    tested = [path for path in success if path not in untested]
+    family = {name: with_test(c, rule) for name, c in _named(effects, effects, tested).items()}
     parts = alpha_shares(tested, led(primary, success))
     weights = {name: parts[name] for name in family} if RULES[rule].weighted else None
     decided = decide_family(family, alpha, shares, weights)
-    fills, unsettled = dict[str, tuple[Contrast, Contrast]](), list[str]()
+    fills, unsettled, voids = dict[str, tuple[Contrast, Contrast]](), list[str](), voids or {}
     if voids:
-        low = shown({path: void.against for path, void in voids.items()})
-        high = shown({path: void.favour for path, void in voids.items()})
+        low = effects_of({path: void.against for path, void in voids.items()})
+        high = effects_of({path: void.favour for path, void in voids.items()})
         fills = {path: (low[path], high[path]) for path in voids}
-        # What is open is taken each time as it is nearest to showing nothing, or the contrary.
-        ends = {_effect(path): (low[path], high[path]) for path in tested}
-        ends |= {
-            _change(path): (change(high[path], low[SHARED]), change(low[path], high[SHARED]))
-            for path in isolated
-        }
         if any(void.open for void in voids.values()):
-            least = {name: _nearest(*pair, rule) for name, pair in ends.items()}
+            # What is open is taken each time as it is nearest to showing nothing.
+            ends = _named(low, high, tested), _named(high, low, tested)
+            least = {name: _nearest(ends[0][name], ends[1][name], rule) for name in family}
             stands = decide_family(least, alpha, shares, weights)
             unsettled = [
                 name for name in decided if decided[name].sign not in (0, stands[name].sign)
@@ -140,14 +135,13 @@ def decide_paths(
         decision = decided[name].decision
         decided[name] = replace(decided[name], decision=decision and decision._replace(sign=0))
     effects = {path: decided.get(_effect(path), with_test(e, rule)) for path, e in effects.items()}
-    changes = {path: decided[_change(path)] for path in isolated}
-    uneven = {path for path, void in (voids or {}).items() if void.uneven}
-
-    def turn_of(path: str, moved: Contrast) -> Turn:
+    changes = {path: decided[_change(path)] for path in _isolated(tested)}
+    uneven = {path for path, void in voids.items() if void.uneven}
+    turns: dict[str, Turn] = {}
+    for path, moved in changes.items():
+        turns[path] = turn(effects[path], effects[SHARED], moved)
         if uneven & {path, SHARED}:  # no reversal rests on it
-            return "interaction" if moved.sign else "none"
-        return turn(effects[path], effects[SHARED], moved)
-
+            turns[path] = "interaction" if moved.sign else "none"
     largest = max(weights.values()) / sum(weights.values()) if weights else 1.0 / len(family)
     needed = fewest_scenes(alpha * largest)
     if shares is not None:
@@ -155,12 +149,20 @@ def decide_paths(
     return Family(
         effects=effects,
         changes=changes,
-        turns={path: turn_of(path, moved) for path, moved in changes.items()},
+        turns=turns,
         hypotheses=len(family if shares is None else shares),
         scenes_needed=needed,
         fills=fills,
         unsettled=tuple(unsettled),
     )
+
+
+def _named(
+    effects: Mapping[str, Contrast], alone: Mapping[str, Contrast], tested: Collection[str]
+) -> dict[str, Contrast]:
+    """Return the effects, and their changes from those `alone` to the shared one, by name."""
+    changes = {_change(path): change(alone[path], effects[SHARED]) for path in _isolated(tested)}
+    return {_effect(path): effects[path] for path in tested} | changes
 
 
 def _nearest(against: Contrast, favour: Contrast, rule: RuleName) -> Contrast:

@@ -6,10 +6,10 @@ from typing import Literal, get_args
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
-from faultpath.decisions import phrases
 from faultpath.decisions.model import SHARED, DecisionRecord
-from faultpath.decisions.summary import in_short, places
-from faultpath.decisions.wording import capital, counted, sentence, where
+from faultpath.decisions.sentences import phrases
+from faultpath.decisions.sentences.phrases import in_short, places
+from faultpath.decisions.sentences.wording import capital, counted, sentence, where
 
 Ask = Literal["reversal", "repair-behind", "undecided", "void"]
 ASKS: tuple[Ask, ...] = get_args(Ask)
@@ -41,11 +41,11 @@ def found(record: DecisionRecord, what: str) -> Answer:
         case "reversal":
             turned = [change for change in record.changes if change.turn == "reversal"]
             text = " ".join(phrases.change(record, change) for change in turned)
-            return Answer(bool(turned), text or "no reversal is decided.")
+            return Answer(bool(turned), text or "no reversal is significant.")
         case "repair-behind":
             behind = [effect for effect in record.effects if effect.sign < 0]
             if not behind:
-                return Answer(False, "on no path is the baseline decided to be ahead.")
+                return Answer(False, "on no path is the baseline significantly ahead.")
             ahead = f"{record.question.baseline} succeeds more often."
             return Answer(True, f"{capital(places(behind))}, {ahead}")
         case "undecided":
@@ -61,7 +61,7 @@ def found(record: DecisionRecord, what: str) -> Answer:
             sentences += [f"{phrases.no_pair(name)}." for name in lost]
             return Answer(bool(void or lost), " ".join(sentences))
         case _:
-            raise UserError(f"a record cannot be asked for that: {unknown('name', what, ASKS)}.")
+            raise UserError(f"a result cannot be asked for that: {unknown('name', what, ASKS)}.")
 
 
 def holds_when_shared(record: DecisionRecord) -> Answer:
@@ -71,7 +71,7 @@ def holds_when_shared(record: DecisionRecord) -> Answer:
     record without a shared fault.
     """
     if SHARED not in {path.name for path in record.paths}:
-        raise UserError("the record has no shared fault, so nothing says whether the repair holds.")
+        raise UserError("the result has no shared fault, so nothing says whether the repair holds.")
     effect = next((effect for effect in record.effects if effect.path == SHARED), None)
     text = sentence(f"{where(SHARED)}, {in_short(record, effect)}")
     return Answer(effect is not None and effect.leads and effect.sign > 0, text)

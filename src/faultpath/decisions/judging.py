@@ -3,35 +3,30 @@
 import hashlib
 import json
 import re
-from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.decisions.decide import primary_path
+from faultpath.decisions.judging_table import Address, Key, table_of, units_of
 from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Path
 from faultpath.decisions.question import Judged, Question, resolve
-from faultpath.decisions.wording import capital, counted, where
+from faultpath.decisions.sentences.wording import capital, counted, where
 from faultpath.statistics.estimate import RULE
 from faultpath.trials import Library, SystemSpec
-from faultpath.trials.outcome import Metric, Outcome, Status, failed_outcome
+from faultpath.trials.outcome import Metric, Status
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import NO_OUTCOME, Received
 from faultpath.trials.store.tables import FIXED
-from faultpath.trials.table import OutcomeTable, TrialRow, unproven
+from faultpath.trials.table import OutcomeTable, unproven
 
 _ONE = "one module"
 """The path of a condition that is called isolated, and says no module."""
-_NONE = "none"
 _MOST = 15_000
 """Scenes that the rule takes, since the memory of its test grows with their square; more are tested
 exactly."""
 _FIRST = {CORRECT: 0, SHARED: 2}
-
-_Key = tuple[str, str]
-"""Key of a trial within its arm and path: its scene or task, and which of its trials it is."""
 
 
 @dataclass(frozen=True)
@@ -64,62 +59,32 @@ def lay_out(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
     paths = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
     _check_paired(trials, paths, request)
 
-    labels: dict[str, dict[str, None]] = {}
-    for _, _, (unit, label) in trials:
-        labels.setdefault(unit, {})[label] = None
-    often = Counter(label for members in labels.values() for label in members)
-    sizes = [len(members) for members in labels.values()]
-    # As many trials of each as leave the most of all, and first those that most scenes have.
-    most = max(sorted(sizes), key=lambda size: size * sum(other >= size for other in sizes))
-    units = {
-        unit: sorted(sorted(members, key=lambda x: (-often[x], _in_order(x)))[:most], key=_in_order)
-        for unit, members in labels.items()
-    }
-    seen = set(map(frozenset, units.values()))
-    # Seeds that are the same everywhere are seeds; others only number the trials of a scene.
-    alike = len(seen) == 1
-    if request.generalise == "models" and (not alike or len(min(seen)) < 2):
-        raise UserError(
-            "newly trained models need several seeds, the same ones in every scene: leave "
-            "--generalise models out."
-        )
-    seeds = tuple(range(most))
-    if alike and all(label.isdecimal() and len(label) < 19 for label in min(seen)):
-        seeds = tuple(sorted(map(int, min(seen))))
+    units = units_of(trials, request)
     hashed = _hashed(rows)
-    trial_rows: list[TrialRow] = []
-    missing: dict[tuple[str, str], list[_Key]] = {}
     tasks = {address[2][0]: row.task for address, row in trials.items()}
-    for path, arm in product(paths, (request.baseline, request.repair)):
-        for place, at in product(range(most), enumerate(sorted(labels, key=_in_order))):
-            index, unit = at
-            ordered = units[unit][place:]
-            row = trials.get((arm, path, (unit, ordered[0]))) if ordered else None
-            if row is None:
-                missing.setdefault((arm, path), []).append((unit, "".join(ordered[:1])))
-            topology = tasks[unit] if request.cluster == "scene" else ""
-            outcome = _outcome(unit, row, hashed)
-            trial_rows.append(TrialRow(arm, path, seeds[place], index, topology, outcome))
-    trial_rows.sort(key=lambda row: (paths.index(row.path), row.variant, row.seed, row.scene_index))
-    table = OutcomeTable(tuple(trial_rows))
-    keys = json.dumps({unit: sorted(members) for unit, members in labels.items()}, sort_keys=True)
+    table, missing = table_of(trials, paths, units, request, hashed)
+    keys = {unit: sorted(members) for unit, members in units.labels.items()}
     laid = tuple(_path(name) for name in paths)
     dull = not any(row.status is Status.CRASH for row in rows)
     question = resolve(
         Question,
         request,
         SystemSpec(name="results of other tools"),
-        Library("results", (), hashlib.sha256(keys.encode()).hexdigest()[:16]),
-        n_scenes=len(labels),
-        seeds=seeds,
+        Library(
+            "results",
+            (),
+            hashlib.sha256(json.dumps(keys, sort_keys=True).encode()).hexdigest()[:16],
+        ),
+        n_scenes=len(units.labels),
+        seeds=units.seeds,
         primary=primary_path(request.primary or "", laid),
         trained=request.generalise == "models",
         ends={Status.TIMEOUT.value: "no success"} if dull else {},
         metrics=_metrics(request),
-        rule=RULE if len(labels) <= _MOST else "exact",
+        rule=RULE if len(units.labels) <= _MOST else "exact",
         judged=Judged(pairing="hashes" if hashed else "keys", unit=request.cluster),
     )
-    longer = [unit for unit, members in labels.items() if len(members) > most]
+    longer = [unit for unit, members in units.labels.items() if len(members) > len(units.seeds)]
     findings = _findings(table, missing, longer, tasks, request, hashed)
     return LaidOut(question, laid, table, tuple(findings))
 
@@ -160,8 +125,8 @@ def _path_names(conditions: Collection[str], question: JudgeQuestion) -> dict[st
 
 def _by_address(
     rows: Iterable[Received], names: Mapping[str, str], question: JudgeQuestion
-) -> dict[tuple[str, str, _Key], Received]:
-    trials: dict[tuple[str, str, _Key], Received] = {}
+) -> dict[Address, Received]:
+    trials: dict[Address, Received] = {}
     for row in rows:
         scene = f"{row.task}/{row.scene}" if row.task else row.scene
         key = (scene, row.seed)
@@ -179,7 +144,7 @@ def _by_address(
 
 
 def _check_paired(
-    trials: Collection[tuple[str, str, _Key]], paths: Sequence[str], question: JudgeQuestion
+    trials: Collection[Address], paths: Sequence[str], question: JudgeQuestion
 ) -> None:
     """Raise `UserError` for a path on which no trial of one arm has its pair in the other."""
     for path in paths:
@@ -213,13 +178,6 @@ def _hashed(rows: Sequence[Received]) -> bool:
     return bool(ended) and not bare
 
 
-def _outcome(scene: str, row: Received | None, hashed: bool) -> Outcome:
-    if row is None or row.status is Status.FAILED:
-        return failed_outcome(scene, "it is not among the results" if row is None else row.error)
-    initial = row.initial if hashed else _NONE
-    return Outcome(scene, row.status, row.time_s, initial, _NONE, _NONE, row.metrics)
-
-
 def _path(name: str) -> Path:
     titles = {CORRECT: "Correct inputs", SHARED: "Shared fault", AS_RUN: "The results"}
     title = titles.get(name, f"{capital(name.replace('_', ' '))} only")
@@ -242,7 +200,7 @@ def _metrics(question: JudgeQuestion) -> dict[str, Metric]:
 
 def _findings(
     table: OutcomeTable,
-    missing: Mapping[tuple[str, str], Sequence[_Key]],
+    missing: Mapping[tuple[str, str], Sequence[Key]],
     longer: Sequence[str],
     tasks: Mapping[str, str],
     question: JudgeQuestion,
@@ -276,7 +234,3 @@ def _findings(
             "No trial ended without success, and some say nothing: where `failed` or an empty cell "
             "means no success, write 0."
         )
-
-
-def _in_order(label: str) -> tuple[bool, int, str]:
-    return (not label.isdecimal(), int(label) if label.isdecimal() else 0, label)

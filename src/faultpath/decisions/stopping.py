@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Sequence
 
 from faultpath.core.errors import UserError
-from faultpath.decisions import phrases
 from faultpath.decisions.descriptive import cells_of, untested_paths
 from faultpath.decisions.family import Family, family_of
 from faultpath.decisions.model import DecisionRecord, Path, Stopped
 from faultpath.decisions.question import EarlierLook, Question
+from faultpath.decisions.sentences import phrases
 from faultpath.trials.table import OutcomeTable
 
 

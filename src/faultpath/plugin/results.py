@@ -1,9 +1,9 @@
 """For a verb that shows results: estimates with intervals, tables, and numbers as all pages do."""
 
 from faultpath.api.display import SafeConsole
+from faultpath.decisions.sentences.wording import counted, interval, plain
 from faultpath.decisions.tables import MISSING, Line, Table, line
 from faultpath.decisions.tables.terminal import drawn
-from faultpath.decisions.wording import counted, interval, plain
 from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.distributions import t_quantile
 from faultpath.statistics.effects import N_RESAMPLES, WindowQuantiles

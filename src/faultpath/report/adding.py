@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.decisions import wording
+from faultpath.decisions.examples import choose
 from faultpath.decisions.model import CORRECT
-from faultpath.decisions.wording import where
+from faultpath.decisions.pairs import Pair, by_scene
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.wording import where
 from faultpath.report.inputs import ReportInput
-from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes
-from faultpath.report.viewer_choice import choose
 from faultpath.trials import Outcome, Status
 from faultpath.trials.store.signals import TOGETHER, Signal
 from faultpath.trials.store.tables import TrialAddress

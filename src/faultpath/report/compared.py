@@ -1,20 +1,19 @@
-"""Finished audits side by side: what differs between them, and what several sizes decide together.
+"""Finished audits side by side, and what differs between them.
 
 Every audit keeps its own verdict. Only sizes of one fault are decided anew, as one family.
 """
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from faultpath.decisions import wording
-from faultpath.decisions.family import ALPHA, CORRECT, SHARED, alpha_shares
-from faultpath.decisions.model import DecisionRecord, Effect
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
 from faultpath.decisions.question import Question
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sweep import decide_sizes
 from faultpath.report.inputs import ReportInput
-from faultpath.statistics.decisions import holm
-from faultpath.statistics.estimate import RULES, Sign
+from faultpath.statistics.estimate import Sign
 from faultpath.trials.provenance import RunProvenance
 
 _SIZED = re.compile(r"([^=,@]+)=([^=,@/]+)(.*)", re.DOTALL)
@@ -162,44 +161,13 @@ def same_correct_trials(runs: Sequence[Compared]) -> bool:
     return None not in effects and len(same) == len(code) == 1
 
 
-def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
-    """Return p and weight of every contrast that a record tested, by its name."""
-    tested = [effect for effect in record.effects if effect.adjusted_p_value is not None]
-    p_values = {f"effect/{effect.path}": effect.p_value for effect in tested}
-    p_values |= {f"change/{change.isolated}": change.p_value for change in record.changes}
-    question = record.question
-    parts = alpha_shares([effect.path for effect in tested], question.primary)
-    weighted = RULES[question.rule].weighted or question.stop is not None
-    return {name: (p, parts[name] if weighted else 1.0) for name, p in p_values.items()}
-
-
 def together(runs: Sequence[Compared]) -> tuple[Compared, ...]:
     """Return runs of which sizes of one fault are decided as one family; others as they are.
 
-    Holm's procedure over every contrast of every size, weighted as each audit by itself: whatever
-    is decided then holds with an error of at most 5 % for all sizes together. Correct inputs that
-    are the same trials at every size are one contrast. A size decides no more than by itself.
+    Correct inputs that are the same trials at every size are one contrast.
     """
     if swept(runs) is None:
         return tuple(runs)
-    once: Collection[str] = (f"effect/{CORRECT}",) if same_correct_trials(runs) else ()
-
-    def key(run: Compared, name: str) -> str:
-        return name if name in once else f"{run.number}/{name}"
-
-    tested = {
-        key(run, name): contrast for run in runs for name, contrast in contrasts(run.record).items()
-    }
-    adjusted = holm(
-        {name: p for name, (p, _) in tested.items()},
-        {name: weight for name, (_, weight) in tested.items()},
-    )
-    decided: list[Compared] = []
-    for run in runs:
-        family: dict[str, tuple[Sign, float]] = {}
-        for effect in run.record.effects:
-            if effect.adjusted_p_value is not None:
-                p = adjusted[key(run, f"effect/{effect.path}")]
-                family[effect.path] = effect.sign if p <= ALPHA else 0, p
-        decided.append(replace(run, family=family))
-    return tuple(decided)
+    once = (f"effect/{CORRECT}",) if same_correct_trials(runs) else ()
+    families = decide_sizes([run.record for run in runs], once)
+    return tuple(replace(run, family=of) for run, of in zip(runs, families, strict=True))

@@ -9,13 +9,13 @@ from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.core.text import shortened
-from faultpath.decisions import wording
 from faultpath.decisions.family import ALPHA
 from faultpath.decisions.model import SHARED
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.wording import series, where
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.terminal import Parted, drawn
-from faultpath.decisions.wording import series, where
 from faultpath.report.compared import (
     Compared,
     Facts,
@@ -44,7 +44,7 @@ def headline(runs: Sequence[Compared]) -> str:
         return f"{len(runs)} sizes of {sweep[0]}, {where(primary)}: {answer}"
     opposed = [title for path, title in titles(runs).items() if list(_opposite(runs, path))]
     count = f"{len(runs)} audits side by side"
-    return f"{count}: decided in opposite directions on {series(opposed)}" if opposed else count
+    return f"{count}: significant in opposite directions on {series(opposed)}" if opposed else count
 
 
 def same(runs: Sequence[Compared]) -> str:
@@ -61,7 +61,7 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
     Audits of other arms ask something else, and are not held against each other.
     """
     conclusions = [
-        f"{title}: decided {sides}."
+        f"{title}: significant {sides}."
         for path, title in titles(runs).items()
         for sides in _opposite(runs, path)
     ]
@@ -70,7 +70,7 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
             "No two of these audits compare the same arms, so none can contradict another."
         ]
     conclusions = conclusions or [
-        "No two audits of the same arms are decided in opposite directions."
+        "No two audits of the same arms are significant in opposite directions."
     ]
     if len({run.asked.system for run in runs}) > 1:
         conclusions += [
@@ -93,8 +93,8 @@ def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
     if same_correct_trials(runs):
         yield "Correct inputs are the same trials at every size, and count once."
     yield (
-        f"All {len(runs)} sizes are one family here: what is called decided, and what is bold, is "
-        f"wrong in at most {100 * ALPHA:g} % of such sweeps, all sizes together (Holm)."
+        f"All {len(runs)} sizes are one family here: what is called significant, and what is bold, "
+        f"is wrong in at most {100 * ALPHA:g} % of such sweeps, all sizes together (Holm)."
     )
 
 
@@ -149,7 +149,7 @@ def facts_table(runs: Sequence[Compared], facts: Facts) -> Table:
 
 
 def effects(runs: Sequence[Compared]) -> Table:
-    """Return the effect of every run on every path; bold is decided, by its own audit."""
+    """Return the effect of every run on every path; bold is significant, by its own audit."""
     levels = {f"{100 * e.success.level:g} % interval" for run in runs for e in run.record.effects}
     interval = levels.pop() if len(levels) == 1 else "interval"
     lines: list[Line] = []
@@ -164,7 +164,7 @@ def effects(runs: Sequence[Compared]) -> Table:
             decided = decided_for(run.record, effect)
             lines.append(line(label, " → ".join(rates), difference, decided))
     return Table(
-        title=f"{'All sizes' if swept(runs) else 'Each run by itself'}; bold is decided",
+        title=f"{'All sizes' if swept(runs) else 'Each run by itself'}; bold is significant",
         corner="Run",
         columns=("Baseline → repair, %", f"Difference, pp [{interval}]", "Decided for"),
         lines=tuple(lines),
@@ -218,8 +218,6 @@ def page(runs: Sequence[Compared]) -> str:
     axis = shared_axis(list(panels.values()))
     return render(
         "comparison.html.j2",
-        ("tokens.css", "svg.css", "page.css"),
-        (),
         headline=headline(runs),
         sentences=sentences(runs),
         runs=runs,
@@ -228,5 +226,4 @@ def page(runs: Sequence[Compared]) -> str:
         facts=Markup(html(facts_table(runs, facts))) if facts else "",
         same=same(runs),
         sizes=swept(runs),
-        w=wording,
     )

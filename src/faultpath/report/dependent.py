@@ -19,17 +19,17 @@ from faultpath.report.inputs import ReportInput
 
 DEPENDENT_MARK = b"Read at,Reaches further,Kind,Evidence"
 NO_EVIDENCE = "no evidence"
-_COLUMNS = ("Read at", "Reaches further", "Kind", "Evidence", "Difference, pp", "To fly")
+_COLUMNS = ("Read at", "Reaches further", "Kind", "Evidence", "Difference, pp", "To run")
 _NOTES = (
     "Terms of ISO 26262-1 and -9: the dependent failure initiator is an error of the source, the "
     "coupling factor why it reaches several places. What a source brings about at several modules "
     "is a common cause failure; what goes on through the output of a module, a cascading one.",
     "This is evidence for an analysis of dependent failures: which faults of sources that the "
-    "interface declares were flown in simulation, and what they decide about these two variants. "
+    "interface declares were run in simulation, and what they show about these two variants. "
     "It is no such analysis itself, and shows neither independence nor freedom from interference: "
-    "an effect that is not decided is not absent, and coupling that no interface declares (power, "
-    "clocks, buses, shared code, the environment) is not seen. No compliance with ISO 26262 or "
-    "IEC 61508 follows.",
+    "an effect that is not significant is not absent, and coupling that no interface declares "
+    "(power, clocks, buses, shared code, the environment) is not seen. No compliance with ISO "
+    "26262 or IEC 61508 follows.",
     "An audit counts for a group where its fault acts on that group alone. No evidence: none that "
     "is shown here has this arm.",
 )

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord, Effect
-from faultpath.decisions.summary import in_short
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.phrases import in_short
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, shortened, text_width, tick_label
 
 _PITCH, _TOP, _NUMBERS = 48.0, 44.0, 146.0
@@ -32,6 +32,8 @@ class EffectRow:
     """The arm that is significantly ahead, or `open`."""
     words: str
     picture: str
+    boxed: bool
+    """Whether a grey box shows which differences could be missed."""
 
 
 def effect_rows(record: DecisionRecord) -> list[EffectRow]:
@@ -45,7 +47,7 @@ def effect_rows(record: DecisionRecord) -> list[EffectRow]:
         svg = Svg(_WIDE, _HIGH, f"{path.title}: repair minus baseline, pp")
         _grid(svg, plot, 0, _HIGH)
         if effect is None:
-            rows.append(EffectRow(path.title, primary, "", "", "open", words, svg.render()))
+            rows.append(EffectRow(path.title, primary, "", "", "open", words, svg.render(), False))
             continue
         _mark(svg, plot, effect, _HIGH / 2)
         rates = (effect.baseline_percent, effect.repair_percent)
@@ -58,6 +60,7 @@ def effect_rows(record: DecisionRecord) -> list[EffectRow]:
                 side={1: "repair", -1: "baseline", 0: "open"}[effect.sign],
                 words=words,
                 picture=svg.render(),
+                boxed=bool(_band(effect)),
             )
         )
     return rows

@@ -17,25 +17,28 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from faultpath.core.version import __version__
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables.escapes import visible
 from faultpath.trials.store.atomic import begin, check_mark, write_text
 
 PAGE = b'<meta name="generator" content="faultpath '
 """Text in the head of every page."""
+STYLES = ("tokens.css", "svg.css", "page.css")
 _SHORT = 24
 """Letters of a name that still fit into a line of a telephone."""
 
 
 def render(
     page: str,
-    styles: Sequence[str],
-    scripts: Sequence[str],
+    styles: Sequence[str] = STYLES,
+    scripts: Sequence[str] = (),
     package: str = "faultpath.report",
     **content: object,
 ) -> str:
     """Return the template `page` with its styles and scripts inside, and the policy on them.
 
-    All are looked for in the folder `templates` of `package`, and then in ours.
+    All are looked for in the folder `templates` of `package`, and then in ours. Every template has
+    `wording` as `w`.
     """
     environment, sources = _environment(package)
     texts = [
@@ -51,7 +54,8 @@ def render(
         "img-src data:; base-uri 'none'; form-action 'none'"
     )
     inside = {"policy": policy, "styles": Markup(texts[0]), "scripts": Markup(texts[1])}
-    return environment.get_template(page).render(**inside, version=__version__, **content)
+    named = {"version": __version__, "w": wording, **content}
+    return environment.get_template(page).render(**inside, **named)
 
 
 def write_pages(files: Mapping[str, str], folder: Path) -> list[Path]:

@@ -4,21 +4,20 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.decisions import wording
-from faultpath.decisions.model import DecisionRecord, Effect
-from faultpath.decisions.phrases import change
-from faultpath.decisions.summary import answers
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
+from faultpath.decisions.pairs import PairKind, read_pairs
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.answers import answers
+from faultpath.decisions.sentences.phrases import change
 from faultpath.decisions.tables.html import html
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels
-from faultpath.report.frame import render, write_pages
+from faultpath.report.frame import STYLES, render, write_pages
 from faultpath.report.inputs import ReportInput
-from faultpath.report.pairing import Kind, pair_grid, pair_key, read_pairs
+from faultpath.report.pair_grid import pair_grid, pair_key
 from faultpath.report.tables import SHOWN, by_path, by_threshold, ended, markdown_table, secondary
 from faultpath.report.taps import fork_panel, forks
 from faultpath.report.viewer import viewer_data
-
-_STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
 
 
 def report_page(source: ReportInput) -> str:
@@ -30,9 +29,11 @@ def report_page(source: ReportInput) -> str:
     decided = any(effect.sign for effect in record.effects)
     why = adding(source, pairs) if decided else None
     tables = (ended(record), secondary(record), by_threshold(record))
+    # A source that one module reads has no shared fault.
+    readers = ["*"] if SHARED in titles else [name for name in titles if name != CORRECT]
     return render(
         "report.html.j2",
-        _STYLES,
+        (*STYLES, "viewer.css"),
         ("viewer.js",),
         record=record,
         asked=question,
@@ -46,12 +47,12 @@ def report_page(source: ReportInput) -> str:
         changes=[(moved.turn, change(record, moved)) for moved in record.changes],
         adding=why,
         adding_panels=list(map(Markup, adding_panels(why))) if why else (),
-        void=[pair for pair in pairs if pair.kind is Kind.VOID],
+        void=[pair for pair in pairs if pair.kind is PairKind.VOID],
         pairs=pairs,
         effects=effect_rows(record),
         axis=effect_axis(record),
         numbers=Markup(html(by_path(record, SHOWN, "Effects; bold is significant"))),
-        fault="; ".join(fault.aimed_at("*").describe() for fault in question.faults)
+        fault="; ".join(fault.aimed_at(*readers).describe() for fault in question.faults)
         or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.variants, strict=True)),
         forks=[Markup(fork_panel(fork)) for fork in forks(source)],
@@ -71,7 +72,6 @@ def report_page(source: ReportInput) -> str:
         pair_key=[(Markup(sign), words) for sign, words in pair_key(pairs)],
         outcomes=[(table.title, Markup(html(table))) for table in filter(None, tables)],
         viewer=viewer,
-        w=wording,
     )
 
 

@@ -3,19 +3,18 @@
 from pathlib import Path
 
 from markupsafe import Markup
-from rich.console import Group, RenderableType
-from rich.text import Text
+from rich.console import RenderableType
 
-from faultpath.decisions import wording
 from faultpath.decisions.map.lattice import SHARED
 from faultpath.decisions.map.model import MapRecord
-from faultpath.decisions.map.words import cut
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.maps import cut
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
-from faultpath.decisions.tables.terminal import drawn
 from faultpath.report.frame import render, write_pages
 from faultpath.report.map_pictures import correlation_picture, map_picture
+from faultpath.report.terminal import conclusion
 from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.trials.provenance import RunProvenance
 
@@ -90,12 +89,7 @@ def _flips(record: MapRecord) -> Table:
 
 def shown(record: MapRecord) -> RenderableType:
     """Return the record for a terminal."""
-    parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
-    parts += map(Text, record.sentences)
-    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in record.findings]
-    for table in tables(record):
-        parts += [Text(""), drawn(table, one_line=True), *map(Text, table.notes)]
-    return Group(*parts)
+    return conclusion(record, tables(record))
 
 
 def page(record: MapRecord, provenance: RunProvenance) -> str:
@@ -103,8 +97,6 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
     *turns, paths = tables(record)
     return render(
         "map.html.j2",
-        ("tokens.css", "svg.css", "page.css"),
-        (),
         record=record,
         asked=record.question,
         provenance=provenance,
@@ -116,7 +108,6 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
         flips_notes=turns[0].notes if turns else (),
         paths=Markup(html(paths)),
         paths_notes=paths.notes,
-        w=wording,
     )
 
 

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from itertools import pairwise, product
 
-from faultpath.decisions import wording
 from faultpath.decisions.map.model import MapRecord
-from faultpath.decisions.map.words import at_point
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.maps import at_point
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, number, tick_label
 
 _SIDE = 340.0

@@ -3,19 +3,18 @@
 from pathlib import Path
 
 from markupsafe import Markup
-from rich.console import Group, RenderableType
-from rich.text import Text
+from rich.console import RenderableType
 
-from faultpath.decisions import wording
 from faultpath.decisions.search.model import SearchRecord
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
-from faultpath.decisions.tables.terminal import Parted
 from faultpath.report.effects import effect_axis, effect_rows
 from faultpath.report.frame import render, write_pages
 from faultpath.report.svg import Axis, Svg, tick_label
 from faultpath.report.tables import DIFFERENCE, by_path
+from faultpath.report.terminal import conclusion
 from faultpath.trials.provenance import RunProvenance
 
 _ROWS = 8
@@ -49,7 +48,7 @@ def tables(record: SearchRecord) -> tuple[Table, ...]:
     )
     if record.confirmed is None:
         return (tried,)
-    return by_path(record.confirmed, _EFFECTS, "Confirming audit; bold is decided"), tried
+    return by_path(record.confirmed, _EFFECTS, "Confirming audit; bold is significant"), tried
 
 
 def picture(record: SearchRecord) -> Svg:
@@ -85,12 +84,7 @@ def picture(record: SearchRecord) -> Svg:
 
 def shown(record: SearchRecord) -> RenderableType:
     """Return the record for a terminal."""
-    parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
-    parts += map(Text, record.sentences)
-    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in record.findings]
-    for table in tables(record):
-        parts += [Text(""), Parted(table), *map(Text, table.notes)]
-    return Group(*parts)
+    return conclusion(record, tables(record))
 
 
 def write_search(record: SearchRecord, provenance: RunProvenance, folder: Path) -> list[Path]:
@@ -98,8 +92,6 @@ def write_search(record: SearchRecord, provenance: RunProvenance, folder: Path) 
     *effects, tried = tables(record)
     page = render(
         "search.html.j2",
-        ("tokens.css", "svg.css", "page.css"),
-        (),
         record=record,
         asked=record.question,
         provenance=provenance,
@@ -109,7 +101,6 @@ def write_search(record: SearchRecord, provenance: RunProvenance, folder: Path) 
         effects=effect_rows(record.confirmed) if record.confirmed else [],
         axis=effect_axis(record.confirmed) if record.confirmed else "",
         numbers=Markup(html(effects[0])) if effects else "",
-        w=wording,
     )
     pages = {
         "report.html": page,

@@ -3,18 +3,17 @@
 from pathlib import Path
 
 from markupsafe import Markup
-from rich.console import Group, RenderableType
-from rich.text import Text
+from rich.console import RenderableType
 
-from faultpath.decisions import wording
 from faultpath.decisions.sensitivity.model import Index, SensitivityRecord, Uncertain
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import MISSING, Entry, Table, line
 from faultpath.decisions.tables.csv import csv_text
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
-from faultpath.decisions.tables.terminal import Parted
 from faultpath.report.frame import render, write_pages
 from faultpath.report.svg import Svg, covering, tick_label
+from faultpath.report.terminal import conclusion
 from faultpath.trials.provenance import RunProvenance
 
 _PITCH, _TOP, _LEFT, _WIDTH = 34.0, 40.0, 150.0, 560.0
@@ -90,11 +89,7 @@ def picture(record: SensitivityRecord) -> Svg:
 
 def shown(record: SensitivityRecord) -> RenderableType:
     """Return the record for a terminal."""
-    shares = table(record)
-    parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
-    parts += map(Text, record.sentences)
-    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in record.findings]
-    return Group(*parts, Text(""), Parted(shares), *map(Text, shares.notes))
+    return conclusion(record, [table(record)])
 
 
 def write_sensitivity(
@@ -105,15 +100,12 @@ def write_sensitivity(
     shares = table(record)
     page = render(
         "sensitivity.html.j2",
-        ("tokens.css", "svg.css", "page.css"),
-        (),
         record=record,
         asked=record.question,
         provenance=provenance,
         picture=Markup(picture(record).render()) if record.indices else "",
         table=Markup(html(shares)),
         notes=shares.notes,
-        w=wording,
     )
     files = {
         "report.html": page,

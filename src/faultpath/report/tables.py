@@ -2,10 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord, Effect
-from faultpath.decisions.phrases import adjusted, only_alone
-from faultpath.decisions.summary import not_standing
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.phrases import adjusted, not_standing, only_alone
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import block
 from faultpath.statistics.estimate import Estimate

@@ -1,11 +1,16 @@
 """Terminal output for a decision record, an interface and a trace."""
 
+from collections.abc import Iterable
+
 from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.model import DecisionRecord
-from faultpath.decisions.summary import not_standing
+from faultpath.decisions.search.model import SearchRecord
+from faultpath.decisions.sensitivity.model import SensitivityRecord
+from faultpath.decisions.sentences.phrases import not_standing
 from faultpath.decisions.tables import Line, Table, line
 from faultpath.decisions.tables.terminal import Parted, drawn
 from faultpath.interface import Gap, Interface, rank, transitive_consumers
@@ -13,6 +18,7 @@ from faultpath.report.tables import DIFFERENCE, by_path, by_quantity, by_thresho
 from faultpath.systems.checks.recording import Read
 from faultpath.systems.checks.tracing import TraceReport
 
+Concluded = MapRecord | SearchRecord | SensitivityRecord
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 
 
@@ -44,6 +50,16 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
             parts += [Text(""), Parted(by_path(record, ("p", "mcnemar", "holm")))]
         parts += [Text(""), *map(Text, record.sentences)]
         parts += _list("What would change this", record.would_change, "bold")
+    return Group(*parts)
+
+
+def conclusion(record: Concluded, tables: Iterable[Table]) -> RenderableType:
+    """Return headline, sentences, findings and tables of a map, a search or an analysis."""
+    parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
+    parts += map(Text, record.sentences)
+    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in record.findings]
+    for table in tables:
+        parts += [Text(""), Parted(table), *map(Text, table.notes)]
     return Group(*parts)
 
 

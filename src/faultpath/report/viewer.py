@@ -4,17 +4,17 @@ import json
 import zlib
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.decisions import wording
-from faultpath.decisions.model import SHARED
+from faultpath.decisions.examples import captions, choose
+from faultpath.decisions.model import SHARED, DecisionRecord
+from faultpath.decisions.pairs import Pair, by_scene
+from faultpath.decisions.sentences import wording
 from faultpath.report.inputs import ReportInput
-from faultpath.report.pairing import Pair, by_scene
-from faultpath.report.viewer_choice import captions, choose
 from faultpath.trials import Outcome
 from faultpath.trials.store.signals import DRAWN, IN_FORCE, Signal, Signals
 from faultpath.trials.store.tables import TrialAddress
@@ -50,60 +50,37 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
 
     Left out are scenes without any track and, where no trial has one, those without signals.
     """
-    question, plans, positions = source.record.question, source.plans, source.traces.positions
-    tracked = {(at.scene, at.seed) for at, track in positions.items() if len(track)}
-    flat = not any(plan.prisms or plan.pillars for plan in plans.values()) and all(
-        not track[:, 1:].any() for track in positions.values()
-    )
-    space = "line" if tracked and flat else "space" if tracked else "none"
-    if flat and any(signal.name == DRAWN for named in source.signals.values() for signal in named):
-        space = "picture"
+    question, plans, space = source.record.question, source.plans, _space(source)
     recorded = {(at.scene, at.seed) for at in source.signals}
-    playable = tracked or recorded
-    groups = {at: group for at, group in by_scene(pairs).items() if at in playable}
+    tracked = {(at.scene, at.seed) for at, track in source.traces.positions.items() if len(track)}
+    groups = {at: of for at, of in by_scene(pairs).items() if at in (tracked or recorded)}
     if not groups:
         return None
     chosen = [at for at in choose(source.record, pairs) if at in groups]
-    order = dict.fromkeys((*chosen, *groups))
-    few = [at for at in order if at in recorded][:_MOST_WITH_SIGNALS]
+    few = [at for at in dict.fromkeys((*chosen, *groups)) if at in recorded][:_MOST_WITH_SIGNALS]
     signals = {at: s for at, s in source.signals.items() if (at.scene, at.seed) in few}
-    if tracked and flat:
-        signals = _with_positions(signals, positions)
-    plots, series, why = _plots(signals), list[NDArray[np.int32]](), captions(pairs)
-
-    def packed(variant: str, pair: Pair, trial: Outcome | None) -> dict[str, Any] | None:
-        if trial is None:
-            return None
-        address = TrialAddress(variant, pair.path, pair.seed, pair.scene)
-        named = {signal.name: signal for signal in signals.get(address, ())}
-        place, track = None, positions.get(address, np.empty((0, 3), np.float32))
-        if len(track):
-            place = len(series)
-            series.extend(_centimetres(np.nan_to_num(track[:, :2])).T)
-        picture = None
-        if DRAWN in named:
-            picture = [len(series), named[DRAWN].values.shape[1]]
-            series.extend(_centimetres(named[DRAWN].values).T)
-        faulted: list[list[int]] = []
-        if IN_FORCE in named:
-            on = named[IN_FORCE].values[:, 0] > 0
-            edges = np.flatnonzero(np.diff(on, prepend=False, append=False))
-            faulted = edges.reshape(-1, 2).tolist()
-        return {
-            "status": trial.status.value,
-            "ended": wording.ended(question, trial.status),
-            "time_s": trial.time_s,
-            "track": place,
-            "drawn": picture,
-            "lines": _levels(named, plots, series),
-            "faulted": faulted,
+    if tracked and _flat(source):
+        signals = _with_positions(signals, source.traces.positions)
+    trials, why = _Trials(source, signals, _plots(signals)), captions(pairs)
+    scenes = [
+        {
+            "scene": scene,
+            "seed": seed,
+            "title": plans[scene].title if scene in plans else "",
+            "why": why.get((scene, seed), ""),
+            "pairs": [
+                {
+                    "path": pair.path,
+                    "kind": pair.kind.value,
+                    "void": pair.void_reason,
+                    "baseline": trials.packed(question.baseline, pair, pair.baseline),
+                    "repair": trials.packed(question.repair, pair, pair.repair),
+                }
+                for pair in group.values()
+            ],
         }
-
-    # First marked is a path on which the first scene shows what was decided.
-    first = groups[next(iter(order))]
-    signs = {effect.path: effect.sign for effect in source.record.effects if effect.leads}
-    apart = [path for path, pair in first.items() if pair.sign and signs.get(path) == pair.sign]
-    primary = question.primary or SHARED
+        for (scene, seed), group in groups.items()
+    ]
     drawn = {scene: asdict(plans[scene]) for scene, _ in groups if scene in plans}
     for prism in (prism for plan in drawn.values() for prism in plan["prisms"]):
         prism["corners"] = [[round(v, 3) for v in corner] for corner in prism["corners"]]
@@ -112,7 +89,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
         "space": space,
         "paths": [{"name": path.name, "title": path.title} for path in source.record.paths],
         "picked": [list(groups).index(at) for at in chosen],
-        "path": apart[0] if apart and primary not in apart else primary,
+        "path": _first_path(source.record, groups[(*chosen, *groups)[0]]),
         "plots": [
             {
                 "title": plot.title,
@@ -120,35 +97,95 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
                 "lines": [name for _, name in plot.lines],
                 "zero": plot.of_errors,
             }
-            for plot in plots
+            for plot in trials.plots
         ],
         "plans": drawn,
-        "scenes": [
-            {
-                "scene": scene,
-                "seed": seed,
-                "title": plans[scene].title if scene in plans else "",
-                "why": why.get((scene, seed), ""),
-                "pairs": [
-                    {
-                        "path": pair.path,
-                        "kind": pair.kind.value,
-                        "void": pair.void_reason,
-                        "baseline": packed(question.baseline, pair, pair.baseline),
-                        "repair": packed(question.repair, pair, pair.repair),
-                    }
-                    for pair in group.values()
-                ],
-            }
-            for (scene, seed), group in groups.items()
-        ],
+        "scenes": scenes,
     }
-    return Viewer(space, frozenset(groups), pack(content, series))
+    return Viewer(space, frozenset(groups), pack(content, trials.series))
 
 
-def _centimetres(metres: NDArray[np.float32]) -> NDArray[np.int32]:
-    centimetres = 100.0 * np.clip(metres.astype(np.float64), -_FARTHEST_M, _FARTHEST_M)
-    return np.where(np.isfinite(centimetres), np.rint(centimetres), _LIFTED).astype(np.int32)
+def _flat(source: ReportInput) -> bool:
+    """Return whether all positions lie on one axis, among no obstacles."""
+    return not any(plan.prisms or plan.pillars for plan in source.plans.values()) and all(
+        not track[:, 1:].any() for track in source.traces.positions.values()
+    )
+
+
+def _space(source: ReportInput) -> str:
+    flat, named = _flat(source), source.signals.values()
+    if flat and any(signal.name == DRAWN for signals in named for signal in signals):
+        return "picture"
+    tracked = any(len(track) for track in source.traces.positions.values())
+    return "none" if not tracked else "line" if flat else "space"
+
+
+def _first_path(record: DecisionRecord, pairs: Mapping[str, Pair]) -> str:
+    """Return the path marked first: one on which the first scene shows what was decided."""
+    signs = {effect.path: effect.sign for effect in record.effects if effect.leads}
+    apart = [path for path, pair in pairs.items() if pair.sign and signs.get(path) == pair.sign]
+    primary = record.question.primary or SHARED
+    return apart[0] if apart and primary not in apart else primary
+
+
+@dataclass
+class _Trials:
+    """Trials as the script reads them, with their numbers in `series`."""
+
+    source: ReportInput
+    signals: Signals
+    plots: "Sequence[_Plot]"
+    series: list[NDArray[np.int32]] = field(default_factory=list[NDArray[np.int32]])
+
+    def packed(self, variant: str, pair: Pair, trial: Outcome | None) -> dict[str, Any] | None:
+        """Return a trial, of which what is long stands in `series`; `None` where it never ran."""
+        if trial is None:
+            return None
+        address = TrialAddress(variant, pair.path, pair.seed, pair.scene)
+        named = {signal.name: signal for signal in self.signals.get(address, ())}
+        track = self.source.traces.positions.get(address, np.empty((0, 3), np.float32))
+        faulted: list[list[int]] = []
+        if IN_FORCE in named:
+            on = named[IN_FORCE].values[:, 0] > 0
+            edges = np.flatnonzero(np.diff(on, prepend=False, append=False))
+            faulted = edges.reshape(-1, 2).tolist()
+        return {
+            "status": trial.status.value,
+            "ended": wording.ended(self.source.record.question, trial.status),
+            "time_s": trial.time_s,
+            "track": self._put(np.nan_to_num(track[:, :2])) if len(track) else None,
+            "drawn": [self._put(named[DRAWN].values), named[DRAWN].values.shape[1]]
+            if DRAWN in named
+            else None,
+            "lines": self._lines(named),
+            "faulted": faulted,
+        }
+
+    def _put(self, metres: NDArray[np.float32]) -> int:
+        """Put coordinates into `series` as whole centimetres, and return where they begin."""
+        centimetres = 100.0 * np.clip(metres.astype(np.float64), -_FARTHEST_M, _FARTHEST_M)
+        whole = np.where(np.isfinite(centimetres), np.rint(centimetres), _LIFTED).astype(np.int32)
+        self.series.extend(whole.T)
+        return len(self.series) - whole.shape[1]
+
+    def _lines(self, named: Mapping[str, Signal]) -> list[list[float | int]]:
+        """Return `[plot, line, place in series, lowest value, value of a level]` of each line."""
+        lines: list[list[float | int]] = []
+        for number, plot in enumerate(self.plots):
+            for place, ((name, part), _) in enumerate(plot.lines):
+                if name not in named:
+                    continue
+                values = named[name].values[:, part].astype(np.float64)
+                finite = values[np.isfinite(values)]
+                if not finite.size:
+                    continue
+                low = float(finite.min())
+                level = float(finite.max() - low) / _LEVELS or 1.0
+                whole = np.where(np.isfinite(values), np.rint((values - low) / level), _GAP)
+                ends = float(f"{low:.7g}"), float(f"{level:.7g}")
+                lines.append([number, place, len(self.series), *ends])
+                self.series.append(whole.astype(np.int32))
+        return lines
 
 
 def pack(content: Mapping[str, Any], series: Sequence[NDArray[np.int32]]) -> str:
@@ -180,7 +217,7 @@ def _with_positions(
 
 _Line: TypeAlias = tuple[str, int]
 """A signal and its component."""
-_Trials: TypeAlias = dict[TrialAddress, NDArray[Any]]
+_ByTrial: TypeAlias = dict[TrialAddress, NDArray[Any]]
 
 
 @dataclass(frozen=True)
@@ -206,7 +243,7 @@ def _plots(signals: Signals) -> list[_Plot]:
     changes or differs is left out, unless it is an error, which exists only where a fault made it;
     one that is zero throughout is left out too.
     """
-    topics: dict[tuple[str, str, int], dict[_Line, _Trials]] = {}
+    topics: dict[tuple[str, str, int], dict[_Line, _ByTrial]] = {}
     words: dict[tuple[str, str], tuple[str, ...]] = {}
     for address, named in signals.items():
         for signal in named:
@@ -241,30 +278,9 @@ def _plots(signals: Signals) -> list[_Plot]:
     return sorted(plots, key=lambda plot: (not plot.of_errors, len(plot.lines) < 2))
 
 
-def _alike(one: _Trials, other: _Trials) -> bool:
+def _alike(one: _ByTrial, other: _ByTrial) -> bool:
     # What the loop ends with may be missing in one of two signals.
     return one.keys() == other.keys() and all(
         abs(len(a) - len(b)) < 2 and np.array_equal(a[: len(b)], b[: len(a)], equal_nan=True)
         for a, b in ((one[at], other[at]) for at in one)
     )
-
-
-def _levels(
-    named: Mapping[str, Signal], plots: Sequence[_Plot], series: list[NDArray[np.int32]]
-) -> list[list[float | int]]:
-    """Return a trial's lines as `[plot, line, place in series, lowest value, value of a level]`."""
-    levels: list[list[float | int]] = []
-    for number, plot in enumerate(plots):
-        for place, ((name, part), _) in enumerate(plot.lines):
-            if name not in named:
-                continue
-            values = named[name].values[:, part].astype(np.float64)
-            finite = values[np.isfinite(values)]
-            if not finite.size:
-                continue
-            low = float(finite.min())
-            level = float(finite.max() - low) / _LEVELS or 1.0
-            whole = np.where(np.isfinite(values), np.rint((values - low) / level), _GAP)
-            levels.append([number, place, len(series), float(f"{low:.7g}"), float(f"{level:.7g}")])
-            series.append(whole.astype(np.int32))
-    return levels

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from faultpath.decisions import wording
+from faultpath.decisions.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, Printed, Setting, calibration, published
 from faultpath_paper.entries import Group, bracket, of_quantity, published_contrasts
 from faultpath_paper.page import (

@@ -1,6 +1,6 @@
 """Table V: from which fault frequency on each repair pays."""
 
-from faultpath.decisions import wording
+from faultpath.decisions.sentences import wording
 from faultpath.statistics.breakeven import break_even
 from faultpath_paper.cells import published
 from faultpath_paper.entries import Group, Made, decided

@@ -7,7 +7,7 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from faultpath.decisions import wording
+from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import MISSING, Entry, Table, line
 from faultpath.decisions.tables.escapes import markdown
 from faultpath.decisions.tables.markdown import grid

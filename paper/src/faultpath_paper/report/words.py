@@ -2,7 +2,7 @@
 
 import re
 
-from faultpath.decisions import wording
+from faultpath.decisions.sentences import wording
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Part, Size
 
 QUICK = "quick"

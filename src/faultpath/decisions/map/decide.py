@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from faultpath.decisions.map import words
 from faultpath.decisions.map.joint import joint
 from faultpath.decisions.map.lattice import (
     SHOWN,
@@ -18,6 +17,7 @@ from faultpath.decisions.map.lattice import (
 )
 from faultpath.decisions.map.model import Flip, MapPoint, MapRecord, MapSurface, ResolvedMap
 from faultpath.decisions.map.surface import Combined, Differences, sign_of, simultaneous
+from faultpath.decisions.sentences import maps
 from faultpath.statistics.estimate import Sign
 from faultpath.statistics.inputs import Floats
 
@@ -56,12 +56,12 @@ def decided(
         joint=joint(question, differences),
         critical=z,
         failed=failed,
-        estimand=words.estimand(question),
+        estimand=maps.estimand(question),
         headline="",
         sentences=(),
         findings=tuple(findings),
     )
-    texts = {"headline": words.headline(record), "sentences": words.sentences(record)}
+    texts = {"headline": maps.headline(record), "sentences": maps.sentences(record)}
     return record.model_copy(update=texts)
 
 

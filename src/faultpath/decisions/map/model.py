@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 from faultpath.core.results import Result
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.question import Resolved
-from faultpath.decisions.wording import MINUS
+from faultpath.decisions.sentences.wording import MINUS
 from faultpath.statistics.estimate import Sign
 
 

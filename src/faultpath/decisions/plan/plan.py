@@ -11,8 +11,8 @@ from faultpath.decisions.plan.probing import command_responses
 from faultpath.decisions.plan.study import StudyAudit, StudyFile, arms_of
 from faultpath.decisions.planning import plan_audit, two_variants
 from faultpath.decisions.question import resolve
+from faultpath.decisions.sentences.wording import counted, series
 from faultpath.decisions.sources import Candidate, candidates
-from faultpath.decisions.wording import counted, series
 from faultpath.trials import Library, LoopSystem, System, SystemSpec
 from faultpath.trials.question import PlanQuestion
 

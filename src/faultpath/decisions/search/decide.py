@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 
-from faultpath.decisions import phrases
+from faultpath.decisions.fault_groups import JOINED
 from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.decisions.search.model import ResolvedSearch, SearchRecord, Tried
-from faultpath.decisions.summary import MOST_WORDS, reversed_at
-from faultpath.decisions.wording import counted, where
+from faultpath.decisions.sentences.answers import reach
+from faultpath.decisions.sentences.headline import reversed_at
+from faultpath.decisions.sentences.phrases import change
+from faultpath.decisions.sentences.wording import counted, where
 
 _OPEN = "Not confirmed is not absent: other faults within the bounds may reverse the ranking."
 _WORSE = "Another fault within the bounds may be worse: none but this one was put to the test."
@@ -52,15 +54,13 @@ def _headline(question: ResolvedSearch, confirmed: DecisionRecord | None) -> str
             f"{confirmed.scenes_needed} are the least."
         )
     turned, fault = _turned(question, confirmed), confirmed.question.fault
+    one = JOINED not in fault  # several do not fit into a headline
     if turned is None:
-        text, short = f"No reversal was confirmed {alone}, at {fault}.", "No reversal was confirmed"
-        return text if len(text.split()) <= MOST_WORDS else f"{short} {alone}."
-    sides = (
-        f"{confirmed.winner(turned.sign)} is ahead {alone}, {confirmed.winner(-turned.sign)} with "
-        "the fault shared."
+        return f"No reversal was confirmed {alone}{f', at {fault}' if one else ''}."
+    return (
+        f"A reversal was confirmed{f' at {fault}' if one else ''}: {confirmed.winner(turned.sign)} "
+        f"is ahead {alone}, {confirmed.winner(-turned.sign)} with the fault shared."
     )
-    text = f"A reversal was confirmed at {fault}: {sides}"
-    return text if len(text.split()) <= MOST_WORDS else f"A reversal was confirmed: {sides}"
 
 
 def _sentences(
@@ -87,9 +87,9 @@ def _sentences(
         "No other was audited, so nothing has to be corrected for the search; within the audit "
         "all contrasts are, as in any."
     )
-    yield from (phrases.change(confirmed, e) for e in confirmed.changes if e.isolated == isolated)
+    yield from (change(confirmed, e) for e in confirmed.changes if e.isolated == isolated)
     yield f"The audit says: {confirmed.headline}"
-    yield from phrases.reach(confirmed)
+    yield from reach(confirmed)
     yield _WORSE if _turned(question, confirmed) else _OPEN
 
 

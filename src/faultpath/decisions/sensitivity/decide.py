@@ -10,7 +10,7 @@ from faultpath.decisions.sensitivity.model import (
     ResolvedSensitivity,
     SensitivityRecord,
 )
-from faultpath.decisions.wording import capital, counted, plain, series
+from faultpath.decisions.sentences.wording import capital, counted, plain, series
 from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.sobol import indices

@@ -1,11 +1,11 @@
-"""Sentences on a record, from what was decided and nothing else."""
+"""Contrasts, paths and shares in words, from what was decided of them and nothing else."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from faultpath.decisions.model import Change, DecisionRecord, Effect
+from faultpath.decisions.model import CORRECT, SHARED, Change, DecisionRecord, Effect
 from faultpath.decisions.question import Question
-from faultpath.decisions.wording import (
+from faultpath.decisions.sentences.wording import (
     capital,
     counted,
     first,
@@ -18,16 +18,6 @@ from faultpath.decisions.wording import (
 )
 from faultpath.statistics.estimate import Region
 
-FEW_TRAININGS = 10
-"""With fewer, an interval for newly trained models rests on how trainings are distributed."""
-
-
-_PAIRED = {
-    "keys": "Trials are paired by their keys alone: nothing shows that both arms began alike.",
-    "hashes": "Pairs share their keys and a hash of what they began with; nothing shows that later "
-    "noise was the same.",
-}
-
 
 def estimand(question: Question) -> str:
     """Return what intervals and tests speak of."""
@@ -36,68 +26,6 @@ def estimand(question: Question) -> str:
     if question.judged and question.judged.unit == "task":
         return "new tasks like these"
     return "new scenes like these" + (", for these trained models" if question.trained else "")
-
-
-def reach(record: DecisionRecord) -> Iterator[str]:
-    """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
-    question = record.question
-    holds = "The intervals hold" if record.few else "What is significant holds"
-    conditional = question.trained and question.generalise == "scenes"
-    anew = "; models trained anew may differ" if conditional else ""
-    yield f"{holds} for {record.estimand}{anew}."
-    if question.judged:
-        yield _PAIRED[question.judged.pairing]
-        yield (
-            "Of two equal arms at most 5 % of such judgements would find a difference, if the "
-            "number of scenes was fixed before anybody looked: other tools do not tell."
-        )
-    run = len(question.seeds)
-    if question.generalise == "models" and run < FEW_TRAININGS:
-        yield (
-            f"Caution: {run} trainings say little about new ones. With fewer than "
-            f"{FEW_TRAININGS}, intervals hold only as far as trainings spread evenly around their "
-            "mean."
-        )
-    differ = len(record.effects[0].wins) if record.effects else run
-    if differ < run:
-        same = "All" if differ == 1 else "Some of the"
-        once = "together they count as one" if differ == 1 else f"they count as {differ}"
-        yield f"{same} {run} seeds gave the same outcome in every trial: {once}."
-    stopped, rule, most = record.stopped, question.stop, question.n_scenes
-    if stopped is None or rule is None:
-        return
-    whole = stopped.scenes == most
-    because = "but" if not stopped.reached else "and" if whole else "because"
-    why = f"the primary contrast was {'' if stopped.reached else 'not '}decided"
-    if rule.when == "all-decided":
-        also = f" or smaller than {margin(record)}" if rule.margin_pp else ""
-        why = f"{'every' if stopped.reached else 'not every'} effect was decided{also}"
-    elif question.primary in stopped.small:
-        why = f"the primary contrast was shown to be smaller than {margin(record)}"
-    took = f"it {'stopped after' if stopped.reached else 'took'} {counted(stopped.scenes, 'scene')}"
-    took += f" of at most {most}"
-    if whole:
-        took = f"it took all that it was allowed, {counted(stopped.scenes, 'scene')}"
-    trials = counted(stopped.scenes * rule.trials, "trial")
-    yield f"This audit was sequential: {took} ({trials}), {because} {why}."
-    yield (
-        "Its scenes came in a random order fixed beforehand. Intervals and p-values hold wherever "
-        "an audit stops, and are wider for that."
-    )
-    if stopped.reached:
-        yield "A difference with which an audit stops is on average further from 0 than the truth."
-
-
-def looks(record: DecisionRecord) -> str:
-    """Say what was concluded before, and what that does to what is announced now."""
-    counts = sorted({look.scenes for look in record.earlier if look.scenes is not None})
-    with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
-    led = series([f"'{name}'" for name in dict.fromkeys(look.primary for look in record.earlier)])
-    return (
-        f"This audit was concluded before{with_scenes}, led by {led}: after such a look, what it "
-        "announces now is wrong more often than in 5 % of audits. Ask again of scenes that no "
-        "audit has looked at, or with --stop-when, which allows for looks."
-    )
 
 
 def margin(record: DecisionRecord) -> str:
@@ -120,29 +48,57 @@ def only_alone(of: Effect | Change) -> bool:
     return tested and (low > 0 or high < 0)
 
 
+def places(effects: Sequence[Effect]) -> str:
+    """Return where effects are, the first one's kind first, modules faulted alone together."""
+    alone = [effect.path for effect in effects if effect.path not in (CORRECT, SHARED)]
+    joined = where(" or the ".join(alone))
+    named = (joined if effect.path in alone else where(effect.path) for effect in effects)
+    return series(list(dict.fromkeys(named)))
+
+
+def in_short(record: DecisionRecord, effect: Effect | None) -> str:
+    """Say in a few words what is decided of one path."""
+    if effect is None:
+        return "no pair of trials to compare"
+    if not effect.acted:
+        return "the fault never acted: not tested"
+    if effect.sign:
+        at = f", but at the {effect.extreme}" if effect.extreme else ""
+        at = at or (", but trials failed unevenly" if effect.uneven else "")
+        return f"{record.winner(effect.sign)} succeeds more often{at}"
+    if effect.unsettled:
+        return "open: trials that failed could decide it"
+    if record.few:
+        return "too few scenes to decide"
+    p = f" ({adjusted(record, effect)})" if only_alone(effect) else ""
+    if record.is_small(effect):
+        return f"differ by less than {margin(record)}{p}"
+    return f"no difference detected{p}"
+
+
 def change(record: DecisionRecord, of: Change) -> str:
     """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
     effects = {effect.path: effect for effect in record.effects}
     ends = effects[of.isolated], effects[of.shared]
     values = " to ".join(f"{signed(end.success.value)} pp" for end in ends)
-    shown = f"{values}; change {signed(of.estimate.value)} pp {interval(of.estimate)}".rstrip()
-    shown += f", {adjusted(record, of)}"
-    shown += ": the interval alone decides nothing" if only_alone(of) else ""
+    numbers = f"{values}; change {signed(of.estimate.value)} pp {interval(of.estimate)}".rstrip()
+    numbers += f", {adjusted(record, of)}"
+    numbers += ": the interval alone decides nothing" if only_alone(of) else ""
     alone, shared = where(of.isolated), where(of.shared)
     if of.turn == "reversal":
         one, other = (record.winner(end.sign) for end in ends)
-        at_end = any(end.extreme for end in ends)
         aside = " One of the two lies at the floor or ceiling: this carries no headline."
         return (
             f"Sharing the fault reverses the ranking: {alone}, {one} succeeds more often; "
-            f"{shared}, {other} does ({shown}).{aside if at_end else ''}"
+            f"{shared}, {other} does ({numbers})."
+            f"{aside if any(end.extreme for end in ends) else ''}"
         )
     if of.turn == "interaction":
         return (
-            f"Interaction detected: the difference is not the same {alone} as {shared} ({shown}); "
-            "a reversal is not shown."
+            f"Interaction detected: the difference is not the same {alone} as {shared} ({numbers});"
+            " a reversal is not shown."
         )
-    between = f"between the effect {alone} and that {shared} ({shown})"
+    between = f"between the effect {alone} and that {shared} ({numbers})"
     if of.unsettled:
         return f"Nothing is decided {between}: trials that failed could undo it."
     return f"{'Nothing is decided' if record.few else 'No change is detected'} {between}."
@@ -198,6 +154,21 @@ def shares(
     return ", ".join(clauses)
 
 
+def no_pair(path: str) -> str:
+    """Say that a path has no pair of trials to compare."""
+    return f"{capital(where(path))}, no pair of trials is left to compare and nothing is decided"
+
+
+def not_standing(record: DecisionRecord) -> Iterator[str]:
+    """Say of each interval that leaves out 0 where nothing is detected why it does not count."""
+    for effect in filter(only_alone, record.effects):
+        yield (
+            f"{capital(where(effect.path))}, the interval by itself leaves out 0, but "
+            f"{adjusted(record, effect)} ({record.hypotheses} contrasts): no difference is "
+            "detected."
+        )
+
+
 def hardly_acted(record: DecisionRecord) -> Iterator[str]:
     """Name the arms in which the fault changed nothing in most of the trials."""
     acted = {effect.path for effect in record.effects if effect.acted}
@@ -209,42 +180,6 @@ def hardly_acted(record: DecisionRecord) -> Iterator[str]:
                 f"{capital(where(cell.path))}, the fault changed something in only "
                 f"{cell.altered_trials} of {cell.trials} trials of {cell.variant}."
             )
-
-
-def would_change(record: DecisionRecord) -> Iterator[str]:
-    """Say what would change the verdict."""
-    stopped, tested = record.stopped, [effect for effect in record.effects if effect.acted]
-    judged = record.question.judged is not None
-    if stopped and not all(effect.sign for effect in record.effects):
-        yield (
-            "More scenes: --stop-when all-decided goes on until every effect is decided."
-            if stopped.reached
-            else "More scenes: a larger --scenes goes on with those of the same order, and what is "
-            "said then holds as well."
-        )
-    if record.few:
-        yield f"More scenes: {record.scenes_needed} at least, and more for all but a clear winner."
-    if len(tested) < len(record.effects):
-        yield "A fault that acts: an onset before the trial ends, a size that changes what is read."
-    if any(effect.extreme == "floor" for effect in tested):
-        yield "Easier scenes or a smaller fault: where both fail, a difference can hardly show."
-    if any(effect.extreme == "ceiling" for effect in tested):
-        yield "Harder scenes or a larger fault: where both succeed, a difference can hardly show."
-    if not record.few and any(e.minimum_detectable_pp and not e.sign for e in tested):
-        instead = "" if judged else ", or --stop-when, which allows for looks"
-        yield (
-            f"Fresh scenes, which no audit has looked at, and more of them{instead}: they find "
-            "smaller differences. Adding scenes to this audit would break its 5 %."
-        )
-    if judged:
-        yield "Other scenes, other conditions: none of these is among the results."
-    else:
-        yield "Another size or sign of the fault, another library or wiring: none of these was run."
-
-
-def no_pair(path: str) -> str:
-    """Say that a path has no pair of trials to compare."""
-    return f"{capital(where(path))}, no pair of trials is left to compare and nothing is decided"
 
 
 def partly_measured(record: DecisionRecord) -> Iterator[str]:
@@ -274,3 +209,15 @@ def failed_trials(record: DecisionRecord) -> Iterator[str]:
             f"difference over all scenes lies anywhere from {signed(failed.against_pp)} to "
             f"{signed(failed.favour_pp)} pp."
         )
+
+
+def looks(record: DecisionRecord) -> str:
+    """Say what was concluded before, and what that does to what is announced now."""
+    counts = sorted({look.scenes for look in record.earlier if look.scenes is not None})
+    with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
+    led = series([f"'{name}'" for name in dict.fromkeys(look.primary for look in record.earlier)])
+    return (
+        f"This audit was concluded before{with_scenes}, led by {led}: after such a look, what it "
+        "announces now is wrong more often than in 5 % of audits. Ask again of scenes that no "
+        "audit has looked at, or with --stop-when, which allows for looks."
+    )

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from faultpath.decisions.map.lattice import SHARED
 from faultpath.decisions.map.model import CorrelationRegion, Flip, MapPoint, MapRecord, ResolvedMap
-from faultpath.decisions.wording import MINUS, plain, series, signed
+from faultpath.decisions.sentences.wording import MINUS, plain, series, signed
 from faultpath.statistics.contrast import MIN_SCENES
 
 _DIGITS = 3

@@ -1,4 +1,4 @@
-"""Which scenes the viewer begins with, and how many go like each.
+"""Which scenes stand as examples, and how many go like each.
 
 A scene with one seed shows who succeeded on each path: its pattern. Patterns come first that show
 the most detected reversals, then those that show the most decided effects, less what they
@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import TypeAlias
 
 from faultpath.decisions.model import DecisionRecord
-from faultpath.report.pairing import Kind, Pair, by_scene
+from faultpath.decisions.pairs import Pair, PairKind, by_scene
 
 At: TypeAlias = tuple[str, int]
 """A scene and a seed."""
@@ -25,7 +25,7 @@ def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
     patterns, index = _patterns(pairs), {(pair.scene, pair.seed): pair.index for pair in pairs}
     counts = Counter(patterns.values())
     signs = {effect.path: effect.sign for effect in record.effects if effect.leads}
-    arms = {Kind.REPAIR_ONLY: 1, Kind.BASELINE_ONLY: -1}
+    arms = {PairKind.REPAIR_ONLY: 1, PairKind.BASELINE_ONLY: -1}
 
     def order(at: At) -> tuple[int, ...]:
         pattern = patterns[at]
@@ -64,9 +64,9 @@ def captions(pairs: Sequence[Pair]) -> dict[At, str]:
     }
 
 
-def _patterns(pairs: Sequence[Pair]) -> dict[At, tuple[tuple[str, Kind], ...]]:
+def _patterns(pairs: Sequence[Pair]) -> dict[At, tuple[tuple[str, PairKind], ...]]:
     """Return who succeeded, path by path, in every scene and seed without a void pair."""
-    out = (Kind.VOID, Kind.LEFT_OUT)
+    out = (PairKind.VOID, PairKind.LEFT_OUT)
     return {
         at: tuple((path, pair.kind) for path, pair in group.items())
         for at, group in by_scene(pairs).items()

@@ -1,0 +1,93 @@
+"""Scenes or tasks of results that other tools wrote, and the table of their trials."""
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from faultpath.core.errors import UserError
+from faultpath.trials.outcome import Outcome, Status, failed_outcome
+from faultpath.trials.received.question import JudgeQuestion
+from faultpath.trials.received.trial import Received
+from faultpath.trials.table import OutcomeTable, TrialRow
+
+_NONE = "none"
+Key = tuple[str, str]
+"""Key of a trial within its arm and path: its scene or task, and which of its trials it is."""
+Address = tuple[str, str, Key]
+"""Arm, path and key."""
+
+
+@dataclass(frozen=True)
+class Units:
+    """Scenes or tasks, each with the labels of its trials."""
+
+    labels: Mapping[str, Collection[str]]
+    """All of them."""
+    compared: Mapping[str, Sequence[str]]
+    """Those that are compared, at most as many as seeds, in order."""
+    seeds: tuple[int, ...]
+
+
+def units_of(trials: Iterable[Address], request: JudgeQuestion) -> Units:
+    """Return what is compared of each scene or task; `UserError` where newly trained models are
+    asked for and trials have no seeds."""
+    labels: dict[str, dict[str, None]] = {}
+    for _, _, (unit, label) in trials:
+        labels.setdefault(unit, {})[label] = None
+    often = Counter(label for members in labels.values() for label in members)
+    sizes = [len(members) for members in labels.values()]
+    # As many trials of each as leave the most of all, and first those that most scenes have.
+    most = max(sorted(sizes), key=lambda size: size * sum(other >= size for other in sizes))
+    compared = {
+        unit: sorted(sorted(members, key=lambda x: (-often[x], _in_order(x)))[:most], key=_in_order)
+        for unit, members in labels.items()
+    }
+    different = set(map(frozenset, compared.values()))
+    # Seeds that are the same everywhere are seeds; others only number the trials of a scene.
+    alike = len(different) == 1
+    if request.generalise == "models" and (not alike or len(min(different)) < 2):
+        raise UserError(
+            "newly trained models need several seeds, the same ones in every scene: leave "
+            "--generalise models out."
+        )
+    seeds = tuple(range(most))
+    if alike and all(label.isdecimal() and len(label) < 19 for label in min(different)):
+        seeds = tuple(sorted(map(int, min(different))))
+    return Units(labels, compared, seeds)
+
+
+def table_of(
+    trials: Mapping[Address, Received],
+    paths: Sequence[str],
+    units: Units,
+    request: JudgeQuestion,
+    hashed: bool,
+) -> tuple[OutcomeTable, dict[tuple[str, str], list[Key]]]:
+    """Return a row for each trial that should be there, and by arm and path those that are not."""
+    rows: list[TrialRow] = []
+    missing: dict[tuple[str, str], list[Key]] = {}
+    tasks = {unit: row.task for (_, _, (unit, _)), row in trials.items()}
+    ordered = sorted(units.labels, key=_in_order)
+    for path, arm in product(paths, (request.baseline, request.repair)):
+        for (place, seed), (index, unit) in product(enumerate(units.seeds), enumerate(ordered)):
+            labels = units.compared[unit][place : place + 1]
+            row = trials.get((arm, path, (unit, labels[0]))) if labels else None
+            if row is None:
+                missing.setdefault((arm, path), []).append((unit, "".join(labels)))
+            topology = tasks[unit] if request.cluster == "scene" else ""
+            outcome = _outcome(unit, row, hashed)
+            rows.append(TrialRow(arm, path, seed, index, topology, outcome))
+    rows.sort(key=lambda row: (paths.index(row.path), row.variant, row.seed, row.scene_index))
+    return OutcomeTable(tuple(rows)), missing
+
+
+def _outcome(scene: str, row: Received | None, hashed: bool) -> Outcome:
+    if row is None or row.status is Status.FAILED:
+        return failed_outcome(scene, "it is not among the results" if row is None else row.error)
+    initial = row.initial if hashed else _NONE
+    return Outcome(scene, row.status, row.time_s, initial, _NONE, _NONE, row.metrics)
+
+
+def _in_order(label: str) -> tuple[bool, int, str]:
+    return (not label.isdecimal(), int(label) if label.isdecimal() else 0, label)

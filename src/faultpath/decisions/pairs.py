@@ -1,0 +1,119 @@
+"""Pairs of trials, both arms in the same scene, path and seed, as pages and examples show them."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+from faultpath.decisions.model import DecisionRecord
+from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
+
+
+class PairKind(StrEnum):
+    """How the two trials of a pair ended."""
+
+    BOTH = "both"
+    REPAIR_ONLY = "repair-only"
+    BASELINE_ONLY = "baseline-only"
+    NEITHER = "neither"
+    LEFT_OUT = "left-out"
+    VOID = "void"
+
+    @property
+    def short(self) -> str:
+        """In two words."""
+        return self.value.replace("-", " ")
+
+
+WORDS = {
+    PairKind.BOTH: "both succeed",
+    PairKind.REPAIR_ONLY: "only the repair succeeds",
+    PairKind.BASELINE_ONLY: "only the baseline succeeds",
+    PairKind.NEITHER: "neither succeeds",
+    PairKind.LEFT_OUT: "left out: a pair of this scene is void on another path or seed",
+    PairKind.VOID: "void: a trial failed to run, or the two are not the same trial",
+}
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Both arms in one scene on one path with one seed; an arm is `None` when it never ran."""
+
+    path: str
+    seed: int
+    scene: str
+    index: int
+    topology: str
+    baseline: Outcome | None
+    repair: Outcome | None
+    left_out: bool = False
+    """Another pair of the scene is void, so no effect counts the scene."""
+
+    @property
+    def void_reason(self) -> str | None:
+        """Why the pair says nothing, or `None` for a pair that counts."""
+        for arm, trial in (("baseline", self.baseline), ("repair", self.repair)):
+            if trial is None:
+                return f"the {arm} did not run"
+            if trial.failed:
+                return f"the {arm} failed: {trial.error or 'no message was kept'}"
+        if self.baseline and self.repair and _met(self.baseline) != _met(self.repair):
+            return "the two arms differ in initial state, disturbance or planner noise"
+        return None
+
+    @property
+    def kind(self) -> PairKind:
+        """Kind of the pair."""
+        if self.void_reason is not None or self.baseline is None or self.repair is None:
+            return PairKind.VOID
+        if self.left_out:
+            return PairKind.LEFT_OUT
+        one, two = (t.status is Status.SUCCESS for t in (self.baseline, self.repair))
+        if one is two:
+            return PairKind.BOTH if one else PairKind.NEITHER
+        return PairKind.REPAIR_ONLY if two else PairKind.BASELINE_ONLY
+
+    @property
+    def sign(self) -> int:
+        """+1 where only the repair succeeds, -1 where only the baseline does, else 0."""
+        return {PairKind.REPAIR_ONLY: 1, PairKind.BASELINE_ONLY: -1}.get(self.kind, 0)
+
+
+def read_pairs(outcomes: OutcomeTable, record: DecisionRecord) -> tuple[Pair, ...]:
+    """Return every pair of the record's arms, ordered by path, topology, scene index and seed."""
+    question, compared = record.question, {effect.path for effect in record.effects}
+    named = [path.name for path in record.paths]
+    trials: dict[tuple[str, str, int, str], Outcome] = {}
+    places: dict[tuple[str, int, str], TrialRow] = {}
+    for row in outcomes.rows:
+        if row.variant in (question.baseline, question.repair) and row.path in named:
+            place = (row.path, row.seed, row.outcome.scene)
+            trials[row.variant, *place] = row.outcome
+            places.setdefault(place, row)
+    paths = list(dict.fromkeys(path for path, _, _ in places))
+    pairs = [
+        Pair(
+            path=row.path,
+            seed=row.seed,
+            scene=row.outcome.scene,
+            index=row.scene_index,
+            topology=row.topology,
+            baseline=trials.get((question.baseline, *place)),
+            repair=trials.get((question.repair, *place)),
+        )
+        for place, row in places.items()
+    ]
+    void = {p.scene for p in pairs if p.kind is PairKind.VOID and p.path in compared}
+    pairs = [replace(pair, left_out=pair.scene in void) for pair in pairs]
+    return tuple(sorted(pairs, key=lambda p: (paths.index(p.path), p.topology, p.index, p.seed)))
+
+
+def by_scene(pairs: Iterable[Pair]) -> dict[tuple[str, int], dict[str, Pair]]:
+    """Return the pairs by scene and seed, in each by path."""
+    groups: dict[tuple[str, int], dict[str, Pair]] = {}
+    for pair in pairs:
+        groups.setdefault((pair.scene, pair.seed), {})[pair.path] = pair
+    return groups
+
+
+def _met(outcome: Outcome) -> tuple[str, str, str]:
+    return outcome.initial_hash, outcome.disturbance_hash, outcome.planner_noise_hash

@@ -1,0 +1,226 @@
+"""Three plain answers: what follows, how sure it is, what stays open.
+
+Whoever reads nothing else reads these, so what qualifies a decision is said here too.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
+from faultpath.decisions.sentences import phrases
+from faultpath.decisions.sentences.headline import headline, reversed_at
+from faultpath.decisions.sentences.phrases import margin, places
+from faultpath.decisions.sentences.wording import capital, counted, detectable, series, where
+from faultpath.decisions.tables import MISSING
+
+_FEW_TRAININGS = 10
+"""With fewer, an interval for newly trained models rests on how trainings are distributed."""
+_PAIRED = {
+    "keys": "Trials are paired by their keys alone: nothing shows that both arms began alike.",
+    "hashes": "Pairs share their keys and a hash of what they began with; nothing shows that later "
+    "noise was the same.",
+}
+
+
+def in_words(record: DecisionRecord) -> dict[str, Any]:
+    """Return the fields in which a record says what it decides."""
+    changes = [phrases.change(record, change) for change in record.changes]
+    return {
+        "headline": headline(record),
+        "sentences": (*changes, *sum(_answers(record).values(), list[str]())),
+        "would_change": tuple(_would_change(record)),
+    }
+
+
+def answers(record: DecisionRecord) -> dict[str, str]:
+    """Return `What follows`, `How sure` and `Left open`, each with a sentence or a few.
+
+    With too few scenes nothing follows, and only the other two are there.
+    """
+    return {label: " ".join(sentences) for label, sentences in _answers(record).items()}
+
+
+def _answers(record: DecisionRecord) -> dict[str, list[str]]:
+    question, significant = record.question, any(effect.sign for effect in record.effects)
+    sure = [*reach(record), *phrases.hardly_acted(record)]
+    if record.few:
+        few = (
+            f"Too few scenes to decide: {counted(record.scenes, 'scene')} compared, and this "
+            f"question needs at least {record.scenes_needed}. The numbers are theirs alone."
+        )
+        return {"Left open": [few], "How sure": sure}
+    if record.earlier:
+        sure.append(phrases.looks(record))
+    elif significant and not question.judged and question.generalise == "scenes":
+        # Of other tools' trials it is said with how they were paired.
+        sure.append("Of audits of two equal systems, at most 5 % would find any difference.")
+    follows = {"What follows": list(_follows(record)), "How sure": sure}
+    left_open = {"Left open": list(_left_open(record))}
+    # Where nothing is significant, what was not seen is the result.
+    return {**follows, **left_open} if significant else {**left_open, **follows}
+
+
+def _follows(record: DecisionRecord) -> Iterator[str]:
+    tested = [effect for effect in record.effects if effect.acted]
+    leading = [effect for effect in tested if effect.leads]
+    disagree = {effect.sign for effect in leading} == {1, -1}
+    if not leading:
+        if any(effect.sign and effect.uneven for effect in tested):
+            yield "No choice can rest on what is significant: one arm's trials failed more often."
+        elif any(effect.sign for effect in tested):
+            yield "What is significant lies at the floor or ceiling: no choice can rest on it."
+        else:
+            yield "Nothing that was tested gives a reason to prefer either."
+    turned = reversed_at(record)
+    if turned:
+        one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
+        yield (
+            f"Ask which fault your system will meet: {places(turned)}, {one} succeeds more often; "
+            f"where the modules share it, {other} succeeds more often."
+        )
+        leading = [effect for effect in leading if effect.path == CORRECT]
+    for sign in (1, -1):
+        if at := [effect for effect in leading if effect.sign == sign]:
+            yield f"{capital(places(at))}, {record.winner(sign)} succeeds more often."
+    alone = any(effect.path not in (CORRECT, SHARED) for effect in leading)
+    for effect in tested if alone else ():
+        if effect.path == SHARED and not (effect.sign or effect.extreme or effect.unsettled):
+            less = f", and it is smaller than {margin(record)}" if record.is_small(effect) else ""
+            yield f"When the fault is shared, no difference is seen{less}."
+    if modules := [change.isolated for change in record.changes if change.turn == "interaction"]:
+        yield (
+            f"A fault at the {' or the '.join(modules)} alone does not stand for the shared one: "
+            "the difference between the two arms changes."
+        )
+    if disagree and not turned:
+        yield "Which is better depends on which fault occurs, and how often."
+    for result in record.break_even if disagree else ():
+        if result.path == record.question.primary and result.words:
+            yield f"By the share of trials with the fault, {where(result.path)}: {result.words}."
+
+
+def reach(record: DecisionRecord) -> Iterator[str]:
+    """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
+    question = record.question
+    holds = "The intervals hold" if record.few else "What is significant holds"
+    conditional = question.trained and question.generalise == "scenes"
+    anew = "; models trained anew may differ" if conditional else ""
+    yield f"{holds} for {record.estimand}{anew}."
+    if question.judged:
+        yield _PAIRED[question.judged.pairing]
+        yield (
+            "Of two equal arms at most 5 % of such comparisons would find a difference, if the "
+            "number of scenes was fixed before anybody looked: other tools do not tell."
+        )
+    run = len(question.seeds)
+    if question.generalise == "models" and run < _FEW_TRAININGS:
+        yield (
+            f"Caution: {run} trainings say little about new ones. With fewer than "
+            f"{_FEW_TRAININGS}, intervals hold only as far as trainings spread evenly around their "
+            "mean."
+        )
+    differ = len(record.effects[0].wins) if record.effects else run
+    if differ < run:
+        same = "All" if differ == 1 else "Some of the"
+        once = "together they count as one" if differ == 1 else f"they count as {differ}"
+        yield f"{same} {run} seeds gave the same outcome in every trial: {once}."
+    yield from _stopped(record)
+
+
+def _stopped(record: DecisionRecord) -> Iterator[str]:
+    """Say when a sequential audit stopped, why, and what that means for its numbers."""
+    stopped, rule, most = record.stopped, record.question.stop, record.question.n_scenes
+    if stopped is None or rule is None:
+        return
+    whole = stopped.scenes == most
+    because = "but" if not stopped.reached else "and" if whole else "because"
+    why = f"the primary contrast was {'' if stopped.reached else 'not '}decided"
+    if rule.when == "all-decided":
+        also = f" or smaller than {margin(record)}" if rule.margin_pp else ""
+        why = f"{'every' if stopped.reached else 'not every'} effect was decided{also}"
+    elif record.question.primary in stopped.small:
+        why = f"the primary contrast was shown to be smaller than {margin(record)}"
+    took = f"it {'stopped after' if stopped.reached else 'took'} {counted(stopped.scenes, 'scene')}"
+    took += f" of at most {most}"
+    if whole:
+        took = f"it took all that it was allowed, {counted(stopped.scenes, 'scene')}"
+    trials = counted(stopped.scenes * rule.trials, "trial")
+    yield f"This audit was sequential: {took} ({trials}), {because} {why}."
+    yield (
+        "Its scenes came in a random order fixed beforehand. Intervals and p-values hold wherever "
+        "an audit stops, and are wider for that."
+    )
+    if stopped.reached:
+        yield "A difference with which an audit stops is on average further from 0 than the truth."
+
+
+def _left_open(record: DecisionRecord) -> Iterator[str]:
+    if idle := [where(effect.path) for effect in record.effects if not effect.acted]:
+        yield f"The fault never acted {series(idle)}: nothing was tested there."
+    if unsettled := [where(effect.path) for effect in record.effects if effect.unsettled]:
+        yield f"Who is ahead {series(unsettled)} depends on trials that failed."
+    yield from _undetected(record)
+    yield from phrases.not_standing(record)
+    if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
+        at = " or the ".join(same)
+        yield f"No change is detected from the fault at the {at} alone to the shared fault."
+    if record.question.judged:
+        yield "Other scenes and other conditions are not among the results."
+    else:
+        yield (
+            "Another size or sign of the fault, another library and another wiring were not tried."
+        )
+
+
+def _undetected(record: DecisionRecord) -> Iterator[str]:
+    """Say where no difference is detected, and how large a one 8 of 10 audits would find."""
+    sizes: dict[str, str] = {}
+    extreme: dict[str, list[str]] = {}
+    for effect in record.effects:
+        if not effect.acted or effect.sign or effect.unsettled or record.is_small(effect):
+            continue
+        if effect.extreme:
+            extreme.setdefault(effect.extreme, []).append(where(effect.path))
+        else:
+            sizes[where(effect.path)] = detectable(effect)
+    for end, at in extreme.items():
+        both = "fail" if end == "floor" else "succeed"
+        yield f"No difference is detected {series(at)}, where both nearly always {both}."
+    if not sizes:
+        return
+    true = f"true ones of {series(list(sizes.values()))} pp, in this order,"
+    if len(set(sizes.values())) == 1:
+        true = f"a true one of {next(iter(sizes.values()))} pp"
+    would = "" if MISSING in sizes.values() else f"; {true} would be found in 8 of 10 audits"
+    yield f"No difference is detected {series(list(sizes))}{would}."
+
+
+def _would_change(record: DecisionRecord) -> Iterator[str]:
+    """Say what would change the verdict."""
+    stopped, tested = record.stopped, [effect for effect in record.effects if effect.acted]
+    judged = record.question.judged is not None
+    if stopped and not all(effect.sign for effect in record.effects):
+        yield (
+            "More scenes: --stop-when all-decided goes on until every effect is decided."
+            if stopped.reached
+            else "More scenes: a larger --scenes goes on with those of the same order, and what is "
+            "said then holds as well."
+        )
+    if record.few:
+        yield f"More scenes: {record.scenes_needed} at least, and more for all but a clear winner."
+    if len(tested) < len(record.effects):
+        yield "A fault that acts: an onset before the trial ends, a size that changes what is read."
+    if any(effect.extreme == "floor" for effect in tested):
+        yield "Easier scenes or a smaller fault: where both fail, a difference can hardly show."
+    if any(effect.extreme == "ceiling" for effect in tested):
+        yield "Harder scenes or a larger fault: where both succeed, a difference can hardly show."
+    if not record.few and any(e.minimum_detectable_pp and not e.sign for e in tested):
+        instead = "" if judged else ", or --stop-when, which allows for looks"
+        yield (
+            f"Fresh scenes, which no audit has looked at, and more of them{instead}: they find "
+            "smaller differences. Adding scenes to this audit would break its 5 %."
+        )
+    if judged:
+        yield "Other scenes, other conditions: none of these is among the results."
+    else:
+        yield "Another size or sign of the fault, another library or wiring: none of these was run."

@@ -1,0 +1,129 @@
+"""The headline: one sentence of at most twenty words, by the kind of verdict.
+
+Names of modules and variants count as one word each.
+"""
+
+from collections.abc import Sequence
+
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
+from faultpath.decisions.sentences.phrases import margin, no_pair, places
+from faultpath.decisions.sentences.wording import capital, where
+
+
+def headline(record: DecisionRecord) -> str:
+    """Return a sentence that rests on decided things, led by the primary contrast."""
+    primary = record.question.primary
+    main = next((effect for effect in record.effects if effect.path == primary), None)
+    tested = [effect for effect in record.effects if effect.acted]
+    if main is None:
+        return f"{no_pair(primary)}."
+    if record.few:
+        return (
+            f"Too few scenes to decide: {record.scenes} compared, and this question needs at least "
+            f"{record.scenes_needed}."
+        )
+    if not main.acted and all(effect.path == CORRECT for effect in tested):
+        return "The fault never acted: nothing was tested."
+    if not main.acted:
+        return f"{capital(where(primary))}, the fault never acted: nothing was tested there."
+    ends = {rate for effect in tested for rate in (effect.baseline_percent, effect.repair_percent)}
+    if ends <= {0.0, 100.0} and not any(any((*e.wins, *e.losses)) for e in tested):
+        every = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
+        return f"No difference could show: in every scene both arms {' or '.join(every)}."
+    if turned := reversed_at(record):
+        return _reversal(record, main, turned)
+    return _ranking(record, main, [effect for effect in tested if effect is not main])
+
+
+def reversed_at(record: DecisionRecord) -> list[Effect]:
+    """Return the isolated effects that sharing reverses, where advice may rest on both."""
+    of = {effect.path: effect for effect in record.effects if effect.leads}
+    return [
+        of[change.isolated]
+        for change in record.changes
+        if change.turn == "reversal" and change.isolated in of and change.shared in of
+    ]
+
+
+def _reversal(record: DecisionRecord, main: Effect, turned: Sequence[Effect]) -> str:
+    """Advise against the isolated fault, unless correct inputs rank the arms as it does: then a
+    test with it shows no more than one without."""
+    one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
+    modules = " or ".join(effect.path for effect in turned)
+    alone = f"the {modules} alone" if len(turned) < 3 else "one module alone"
+    correct = [effect.sign for effect in record.effects if effect.path == CORRECT and effect.leads]
+    if turned[0].sign in correct:
+        at = f" and with it at {alone}" if main.path == SHARED or main in turned else ""
+        return f"{one} is ahead without the fault{at}, {other} with it shared."
+    advice = f"Do not choose by the fault at {alone}:"
+    if main.path == CORRECT and main.leads and len(turned) == 1:
+        ahead = f"{record.winner(main.sign)} is ahead {where(CORRECT)}."
+        return f"{ahead} {advice} sharing reverses the ranking."
+    return f"{advice} {one} is ahead there, {other} with it shared."
+
+
+def _ranking(record: DecisionRecord, main: Effect, others: Sequence[Effect]) -> str:
+    """Say who is ahead on the primary path, and one thing more.
+
+    That is the shared fault where it shows something else, so that no gain in isolation stands
+    without what came of it; or else who is ahead elsewhere, if that is one arm in a place or two.
+    """
+    state = _state(record, main)
+    alike = [effect for effect in others if _state(record, effect) == state]
+    alike.sort(key=lambda effect: effect.path != SHARED)
+    ahead = [effect for effect in others if effect.leads and effect not in alike]
+    shared = [effect for effect in others if effect.path == SHARED]
+    if len(alike) + 1 == len(record.effects) > 1:
+        place = "on every path" if main.leads else "on any path"
+        return _sentence(record, [main], place=place)
+    if shared and shared[0] not in alike:
+        return _sentence(record, [main], shared, both=main.leads)
+    if not ahead:
+        named = alike if len(alike) < 3 else shared
+        return _sentence(record, [main, *named], both=len(named) < 2)
+    named = [main, *shared]
+    count = len(named) + len(ahead)
+    most = 3 if main.leads or main.extreme or state == _OPEN else 2
+    one_arm = len({effect.sign for effect in ahead}) == 1
+    if one_arm and count <= most and main.path in (CORRECT, SHARED):
+        return _sentence(record, named, ahead, both=count == 2)
+    return _sentence(record, named, both=False)
+
+
+def _sentence(
+    record: DecisionRecord,
+    first: Sequence[Effect],
+    second: Sequence[Effect] = (),
+    *,
+    both: bool = True,
+    place: str = "",
+) -> str:
+    """Return a sentence with a clause for each of two groups of like effects.
+
+    `both` names both arms in the first one; `place` stands instead of where it holds.
+    """
+    question, state = record.question, _state(record, first[0])
+    if both and first[0].leads:
+        state += f" of {record.winner(-first[0].sign)}"
+    elif both and state == _OPEN:
+        state = f"no difference between {question.baseline} and {question.repair} is detected"
+    text = f"{state} {place or places(first)}"
+    if second:
+        text += f"; {_state(record, second[0])} {places(second)}"
+    return f"{text if first[0].leads else capital(text)}."
+
+
+_OPEN = "no difference is detected"
+
+
+def _state(record: DecisionRecord, effect: Effect) -> str:
+    """Return what is decided of a path, as a clause without its place."""
+    if effect.leads:
+        return f"{record.winner(effect.sign)} is ahead"
+    if effect.extreme:
+        return f"both nearly always {'fail' if effect.extreme == 'floor' else 'succeed'}"
+    if effect.uneven or effect.unsettled:
+        return "failed trials leave it open"
+    if record.is_small(effect):
+        return f"the difference is below {margin(record)}"
+    return _OPEN

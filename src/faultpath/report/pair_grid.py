@@ -1,0 +1,105 @@
+"""Grid of all pairs of a path, a picture of each, and its key."""
+
+from collections.abc import Collection, Mapping, Sequence
+from itertools import groupby
+from urllib.parse import quote
+
+from faultpath.decisions.pairs import WORDS, Pair, PairKind
+from faultpath.report.svg import Point, Svg, text_width
+
+_WIDTH, _SIDE, _GAP, _MOST_COLUMNS = 390.0, 15.0, 2.0, 25
+_ALWAYS = (PairKind.BOTH, PairKind.REPAIR_ONLY, PairKind.BASELINE_ONLY, PairKind.NEITHER)
+
+
+def pair_grid(
+    title: str,
+    pairs: Sequence[Pair],
+    names: Mapping[str, str],
+    shown: Collection[tuple[str, int]] = (),
+) -> str:
+    """Return the grid of one path: a block for each topology, a column for each scene.
+
+    With several seeds a scene is a stack of cells, one a seed. Triangles that point up are scenes
+    that only the repair solved, pointing down only the baseline; a large disc is both, a small ring
+    neither, a cross in a red box a void pair, a slash a scene left out because of one. `names` says
+    what the system calls its ends. A cell whose scene and seed are among `shown` is a link to them
+    in the viewer.
+    """
+    counts = {kind: sum(p.kind is kind for p in pairs) for kind in PairKind}
+    summary = ", ".join(f"{k.short} {n}" for k, n in counts.items() if n or k in _ALWAYS)
+    ordered = sorted(pairs, key=lambda p: (p.topology, p.index, p.scene, p.seed))
+    blocks = [
+        (name, [list(stack) for _, stack in groupby(block, key=lambda p: (p.index, p.scene))])
+        for name, block in groupby(ordered, key=lambda p: p.topology)
+    ]
+    n_seeds = max((len(stack) for _, stacks in blocks for stack in stacks), default=1)
+    left = min(110.0, max((text_width(name, 12) + 10 for name, _ in blocks if name), default=0.0))
+    columns = min(_MOST_COLUMNS, max((len(stacks) for _, stacks in blocks), default=1))
+    side = max(11.0, min(19.0, (_WIDTH - left) / columns - _GAP))
+    row_height = n_seeds * (side + 1) + (7 if n_seeds > 1 else 4)
+    rows = sum(-(-len(stacks) // columns) for _, stacks in blocks)
+    svg = Svg(
+        _WIDTH, 42 + rows * row_height + 4 * (len(blocks) - 1), f"{title}: pairs", summary, "group"
+    )
+    svg.text(0, 14, title, "head", room=_WIDTH)
+    svg.text(0, 31, summary, "small soft")
+    y = 42.0
+    for name, stacks in blocks:
+        svg.text(0, y + side / 2 + 4, name, "soft", room=left - 8)
+        for k, stack in enumerate(stacks):
+            x = left + (k % columns) * (side + _GAP)
+            at = y + (k // columns) * row_height
+            for j, pair in enumerate(stack):
+                link = address(pair) if (pair.scene, pair.seed) in shown else ""
+                _cell(svg, pair, (x, at + j * (side + 1)), side, names, link)
+        y += -(-len(stacks) // columns) * row_height + 4
+    return svg.render()
+
+
+def pair_key(pairs: Sequence[Pair]) -> list[tuple[str, str]]:
+    """Return the key of the grids: a small picture and its word, for each kind that occurs."""
+    entries: list[tuple[str, str]] = []
+    for kind in (k for k in PairKind if k in _ALWAYS or any(p.kind is k for p in pairs)):
+        svg = Svg(_SIDE, _SIDE, WORDS[kind])
+        _sign(svg, kind, 0.5, 0.5, _SIDE - 1)
+        entries.append((svg.render(), kind.short))
+    return entries
+
+
+def address(pair: Pair) -> str:
+    """Return the part of a page's address that shows a pair in the viewer."""
+    return f"#scene={quote(pair.scene, safe='')}&seed={pair.seed}&path={quote(pair.path, safe='')}"
+
+
+def _cell(
+    svg: Svg, pair: Pair, at: Point, side: float, names: Mapping[str, str], link: str
+) -> None:
+    ends = ", ".join(
+        f"{arm} {names.get(trial.status, trial.status) if trial else 'did not run'}"
+        for arm, trial in (("baseline", pair.baseline), ("repair", pair.repair))
+    )
+    note = f" ({WORDS[PairKind.LEFT_OUT]})" if pair.kind is PairKind.LEFT_OUT else ""
+    tip = f"{pair.scene}, seed {pair.seed}: {pair.void_reason or ends}{note}"
+    # By key, scenes are chosen from the viewer's list.
+    tab = {"tabindex": "-1"} if link else {}
+    with svg.group("pair", tip, link, data_scene=pair.scene, **tab):
+        _sign(svg, pair.kind, *at, side)
+
+
+def _sign(svg: Svg, kind: PairKind, left: float, top: float, side: float) -> None:
+    """Draw a cell with its sign."""
+    svg.rect(left, top, side, side, "void-cell" if kind is PairKind.VOID else "cell", 2)
+    x, y = left + side / 2, top + side / 2
+    match kind:
+        case PairKind.BOTH:
+            svg.circle((x, y), 3.4, "both")
+        case PairKind.REPAIR_ONLY:
+            svg.polygon([(x - 5.5, y + 4.5), (x + 5.5, y + 4.5), (x, y - 5.5)], "repair-only")
+        case PairKind.BASELINE_ONLY:
+            svg.polygon([(x - 5.5, y - 4.5), (x + 5.5, y - 4.5), (x, y + 5.5)], "baseline-only")
+        case PairKind.NEITHER:
+            svg.circle((x, y), 2.2, "neither")
+        case PairKind.LEFT_OUT:
+            svg.path(f"M{x - 3.5} {y + 3.5}l7 -7", "neither")
+        case PairKind.VOID:
+            svg.path(f"M{x - 4} {y - 4}L{x + 4} {y + 4}M{x - 4} {y + 4}L{x + 4} {y - 4}", "void")
