@@ -2,7 +2,7 @@
 
 A dot in two rooms with a door between them is to end at a goal. As with DINO-WM, LeWM, PLDM or
 V-JEPA 2-AC, the controller gets both as pictures, one encoder makes latent states of them, and the
-planner looks for actions that bring the one closest to the other (cross-entropy method). Three
+planner looks for actions that bring the one closest to the other (cross-entropy method). Four
 numbers say what the camera does to a picture, and two modules take pictures with it:
 
     observation   the live picture, at every step
@@ -38,7 +38,7 @@ REACH, STEPS, HORIZON, LATENT = 4.0, 12, 6, 32  # px a step; steps
 WINDOW, ROUNDS, SAMPLES, ELITES = 4, 8, 64, 6  # frames of a window; of the planner
 LEAST, MOST = 3.0, 29.0  # the ends of the rooms, px
 NEAR = 2.5  # px from the goal at the end that count as success
-CAMERA = ("exposure", "gamma", "shift")
+CAMERA = ("exposure", "gamma", "shift", "smear")
 
 
 # --- model ---
@@ -190,6 +190,8 @@ sources:
    uncertainty: {std: 0.15, relative: true}}
 - {name: shift, unit: px, shape: [2], provenance: measured, correlation_group: camera, scale: 1.0,
    uncertainty: {std: 1.0}}
+- {name: smear, unit: px, provenance: measured, correlation_group: camera, scale: 1.0,
+   uncertainty: {std: 3.0}}
 - {name: latent, unit: '1', shape: [32], provenance: reconstructed}
 - {name: goal_latent, unit: '1', shape: [32], provenance: reconstructed}
 - {name: action, unit: '1', shape: [2], provenance: commanded}
@@ -199,6 +201,7 @@ channels:
 - {name: exposure, sources: [exposure], gap: fidelity, erasure_default: 1.0}
 - {name: gamma, sources: [gamma], gap: fidelity, erasure_default: 1.0}
 - {name: shift, sources: [shift], gap: fidelity}
+- {name: smear, sources: [smear], gap: fidelity}
 - {name: latent, sources: [latent]}
 - {name: goal_latent, sources: [goal_latent]}
 - {name: action, sources: [action]}
@@ -243,7 +246,7 @@ class TwoRooms(Plant):
     def sense(self, state):
         _, goal, place, _ = state
         one, shift = np.ones(len(goal)), np.zeros((len(goal), 2))
-        return dict(zip(self.senses, (place, goal, one, one, shift), strict=True))
+        return dict(zip(self.senses, (place, goal, one, one, shift, 0 * one), strict=True))
 
     def advance(self, state, inputs):
         start, goal, place, step = state
@@ -342,7 +345,7 @@ def windows(interface, count):
         actions.append(np.clip(kept + rng.normal(0, 0.5, (count, 2)), -1, 1))
         places.append(moved(places[-1], actions[-1]))
     readings = {"live_view": np.stack(places, axis=1), "shift": np.zeros((count, 2))}
-    readings |= {"exposure": np.ones(count), "gamma": np.ones(count)}
+    readings |= {"exposure": np.ones(count), "gamma": np.ones(count), "smear": np.zeros(count)}
     return Windows(
         interface,
         reader="observation",

@@ -18,10 +18,11 @@ def between(value, low, high):
     return (value - low + 0.5).clamp(0, 1) * (high - value + 0.5).clamp(0, 1)
 
 
-def picture(place, exposure, gamma, shift, rooms):
+def picture(place, exposure, gamma, shift, smear, rooms):
     """Return `[n, 1, 32, 32]`: dots at `place` `[n, 2]`, as a camera with these numbers sees them.
 
     Without a place, the empty rooms. A pixel is where it is, to fractions: nothing is resampled.
+    A smear mixes each pixel with those left and right of it, along its length in pixels.
     """
     grid = torch.arange(SIDE) + 0.5
     x, y = grid - shift[:, 0, None, None], grid[:, None] - shift[:, 1, None, None]
@@ -34,6 +35,11 @@ def picture(place, exposure, gamma, shift, rooms):
         far = ((x - place[:, 0, None, None]) ** 2 + (y - place[:, 1, None, None]) ** 2).sqrt()
         dot = (RADIUS + 0.5 - far).clamp(0, 1)
         light = light * (1 - dot) + 0.85 * dot
+    if smear.any():
+        beside = torch.arange(-9, 10)  # pixels to the left and to the right
+        share = (1 + smear.abs()[:, None] / 2 - beside.abs()).clamp(0, 1)
+        rows = functional.pad(light, (9, 9), mode="replicate").unfold(2, 19, 1)
+        light = (rows * share[:, None, None]).sum(dim=3) / share.sum(dim=1)[:, None, None]
     light = (exposure[:, None, None] * light).clamp(1e-4, 1)
     return (light ** gamma[:, None, None])[:, None]
 
@@ -45,7 +51,7 @@ class Rectified:
         steps = torch.arange(-3, 3.01, 0.5)
         self.shifts = torch.cartesian_prod(steps, steps)
         one = torch.ones(len(self.shifts))
-        self.empty = picture(None, one, one, self.shifts, "marked").flatten(1).log()
+        self.empty = picture(None, one, one, self.shifts, 0 * one, "marked").flatten(1).log()
 
     def __call__(self, seen):
         light = seen.flatten().log()

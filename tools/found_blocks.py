@@ -33,6 +33,7 @@ PAGES = {
 CAMERAS = {
     "marked": "One camera",
     "drift": "One camera",
+    "smear": "One camera",
     "blank": "One camera, blank rooms",
 }
 """Names of the studies of one camera, by their file."""

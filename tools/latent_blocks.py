@@ -24,6 +24,7 @@ FAULTS = {
     "contrast": "gamma 1.3 times as large",
     "moved": "shifted by 2 px",
     "drifting": "drifting to 30 % darker",
+    "smeared": "smeared by 6 px",
 }
 MISSED = {
     "missed_correct_px": "nearest place misses, no error, px",

@@ -33,7 +33,7 @@ def measured(observation, goal, rooms: str, error: dict) -> dict[str, float]:
     apart = torch.cdist(torch.tensor(goals), torch.tensor(places))
 
     def latents(eye, where, wrong=None):
-        numbers = {"exposure": 1.0, "gamma": 1.0, "shift": (0.0, 0.0)} | (wrong or {})
+        numbers = {"exposure": 1.0, "gamma": 1.0, "shift": (0.0, 0.0), "smear": 0.0} | (wrong or {})
         numbers = (torch.tensor(each).expand(400, *np.shape(each)) for each in numbers.values())
         seen = camera.picture(torch.tensor(where).float(), *numbers, rooms)
         with torch.no_grad():

@@ -50,7 +50,7 @@ def flown(variant: str, where: str) -> list[tuple[np.ndarray, float]]:
 
 def png(place: np.ndarray, exposure: float) -> str:
     """Return what the camera sees as a PNG, base64."""
-    numbers = (torch.tensor([exposure]), torch.ones(1), torch.zeros(1, 2))
+    numbers = (torch.tensor([exposure]), torch.ones(1), torch.zeros(1, 2), torch.zeros(1))
     seen = camera.picture(torch.tensor(place).float(), *numbers, "marked")[0, 0].numpy()
     grey = np.clip(255 * seen, 0, 255).astype(np.uint8)
     rows = b"".join(b"\0" + row.tobytes() for row in grey)

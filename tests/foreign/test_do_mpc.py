@@ -15,7 +15,7 @@ from faultpath.trials.attempt import attempt
 do_mpc = pytest.importorskip("do_mpc")
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "do-mpc.md"
-STEPS, TURN, JUDGED = 14, 3, 8
+STEPS, TURN, JUDGED = 12, 3, 8
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +72,9 @@ def test_a_fault_at_one_reader_reaches_that_reader_alone(masses):
         assert done.outcomes[0].metrics["off_rad"] != clean
 
 
-def test_the_audit_strikes_mhe_and_mpc_alone_and_together(masses):
+def test_the_audit_strikes_mhe_and_mpc_alone_and_together(masses, monkeypatch):
+    monkeypatch.setattr(masses, "STEPS", 4)
+    monkeypatch.setattr(masses, "JUDGED", 2)
     found = audit(
         masses.create(),
         baseline="fixed",
@@ -80,6 +82,7 @@ def test_the_audit_strikes_mhe_and_mpc_alone_and_together(masses):
         fault="inertia:scale=1.1",
         library="training",
         scenes=2,
+        workers=0,
     )
     names = [path.name for path in found.record.paths]
     assert names == ["correct", "controller", "estimator", "shared"]

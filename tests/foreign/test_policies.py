@@ -50,11 +50,8 @@ def test_both_choose_the_same_for_each_observation(example) -> None:
     assert set(choices[0]["choice"]) == {0, 1}
 
 
-@pytest.mark.parametrize("runtime", RUNTIMES)
-def test_the_guard_helps_only_where_the_policy_alone_is_faulted(
-    example, runtime: str, tmp_path: Path
-) -> None:
-    run = audit(example.create(runtime), tmp_path / "run", scenes=12)
+def test_the_guard_helps_only_where_the_policy_alone_is_faulted(example, tmp_path: Path) -> None:
+    run = audit(example.create("onnx"), tmp_path / "run", scenes=12, workers=0)
     paths = {effect.path: effect for effect in run.record.effects}
     counts = {name: (effect.wins, effect.losses) for name, effect in paths.items()}
     assert counts == {
@@ -65,6 +62,18 @@ def test_the_guard_helps_only_where_the_policy_alone_is_faulted(
     }
     assert not run.record.findings
     assert run.record.headline in (ROOT / "docs" / "policies.md").read_text("utf-8")
+
+
+@pytest.mark.parametrize("variant", ["plain", "guarded"])
+def test_trials_end_alike_with_both(example, variant: str) -> None:
+    ends = []
+    for runtime in RUNTIMES:
+        system = example.create(runtime)
+        text = FREEZE.replace("freeze", "freeze@policy")
+        fault = parse_fault(text, system.interface, {}, system.control_dt_s)
+        arm = Arm(variant=variant, faults=fault.resolved(system.interface))
+        ends.append(attempt(system, arm, ("seed/3",)).outcomes)
+    assert ends[0] == ends[1]
 
 
 @pytest.mark.parametrize("module", ["policy", "guard"])

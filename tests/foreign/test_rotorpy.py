@@ -137,7 +137,8 @@ def test_a_fault_at_one_object_reaches_its_reads_alone(example):
         assert outcome.metrics != exact.metrics
 
 
-def test_it_is_audited(example):
+def test_it_is_audited(example, monkeypatch):
+    monkeypatch.setattr(example, "STEPS", 12)
     system = example.create()
     asked = {"baseline": "alone", "repair": "fed-forward", "fault": "mass:scale=0.8"}
     found = audit(system, **asked, library="training", scenes=2, workers=0)

@@ -93,6 +93,30 @@ def test_an_error_at_one_picture_reaches_that_picture_alone(example, fault):
         assert result.outcomes != clean
 
 
+@pytest.mark.filterwarnings("ignore")  # theirs, of Gymnasium
+def test_the_cost_of_plans_gets_the_pictures_that_the_taps_struck(example, monkeypatch):
+    torch = pytest.importorskip("torch")
+    pictures, world_model = [], type(example.fitted("plain", None))
+    cost = world_model.get_cost
+
+    def seen(self, info, candidates):
+        pictures.append([info[name][0, 0] for name in ("pixels", "goal")])
+        return cost(self, info, candidates)
+
+    monkeypatch.setattr(world_model, "get_cost", seen)
+    monkeypatch.setattr(example, "STEPS", 1)
+    fault, last = "exposure:scale=0.7", []
+    for where in (None, fault, f"{fault}@observation", f"{fault}@goal"):
+        attempted(example.create(), "plain", where)
+        last.append(pictures[-1])
+    right, shared, observation, goal = last
+    assert not any(map(torch.equal, right, shared))
+    assert torch.equal(observation[0], shared[0])
+    assert torch.equal(observation[1], right[1])
+    assert torch.equal(goal[0], right[0])
+    assert torch.equal(goal[1], shared[1])
+
+
 def test_a_rectified_picture_is_that_of_a_calibrated_camera(example, model):
     camera = model.Camera(rectifies=True)
     picture = example.Rooms().reset(seed=20)[0]["picture"][None]
@@ -102,7 +126,8 @@ def test_a_rectified_picture_is_that_of_a_calibrated_camera(example, model):
     assert apart[:, 4:-4, 4:-4].max() <= 1  # what left the picture is lost
 
 
-def test_it_is_audited(example):
+def test_it_is_audited(example, monkeypatch):
+    monkeypatch.setattr(example, "STEPS", 10)
     run = audit(
         example.create(),
         baseline="plain",

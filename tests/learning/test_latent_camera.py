@@ -51,17 +51,45 @@ def camera() -> Iterator[SimpleNamespace]:
         yield SimpleNamespace(**runpy.run_path(str(EXAMPLE)))
 
 
-def taken(camera: Any, count: int, exposure: float = 1.0, gamma: float = 1.0, shift: float = 0.0):
+def taken(
+    camera: Any,
+    count: int,
+    exposure: float = 1.0,
+    gamma: float = 1.0,
+    shift: float = 0.0,
+    smear: float = 0.0,
+):
     places = torch.tensor(camera.drawn(np.random.default_rng(3), count)).float()
     ones = torch.ones(count)
     moved = torch.tensor([[shift, 0.0]]).expand(count, 2)
-    return camera.picture(places, exposure * ones, gamma * ones, moved, "marked")
+    return camera.picture(places, exposure * ones, gamma * ones, moved, smear * ones, "marked")
 
 
 def test_a_shift_by_whole_pixels_moves_the_picture(camera: Any) -> None:
     assert torch.allclose(
         taken(camera, 4, shift=2.0)[..., 2:], taken(camera, 4)[..., :-2], atol=1e-5
     )
+
+
+def test_a_smear_is_the_mean_of_the_pictures_that_it_passes(camera: Any) -> None:
+    smeared, right = taken(camera, 4, smear=2.0), taken(camera, 4)
+    passed = (right[..., :-2] + right[..., 1:-1] + right[..., 2:]) / 3
+    assert torch.allclose(smeared[..., 1:-1], passed, atol=1e-5)
+    assert torch.equal(smeared, taken(camera, 4, smear=-2.0))
+
+
+def test_a_smear_of_one_picture_changes_no_bit_of_those_beside_it(camera: Any) -> None:
+    places, ones = torch.full((3, 2), 8.0), torch.ones(3)
+    others = ones, ones, torch.zeros(3, 2)
+    right, mixed = (
+        camera.picture(places, *others, torch.tensor(smears), "marked")
+        for smears in ([0.0, 0.0, 0.0], [0.0, 6.0, 0.0])
+    )
+    assert [torch.equal(one, two) for one, two in zip(right, mixed, strict=True)] == [
+        True,
+        False,
+        True,
+    ]
 
 
 @pytest.mark.parametrize("error", [{"exposure": 0.85}, {"gamma": 1.3}, {"shift": 2.0}])
