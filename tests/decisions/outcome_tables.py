@@ -10,7 +10,7 @@ from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
 
 BASELINE, REPAIR = "old", "new"
 SCENES = 100
-MOST_WORDS = 20
+MOST_WORDS = 24
 """Most words of a headline; names of modules and variants are one word each."""
 
 Counts = tuple[int, int, int]

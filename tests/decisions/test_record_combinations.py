@@ -149,7 +149,7 @@ def test_what_follows_says_who_is_ahead_where_and_what_sharing_does(
 def test_what_cannot_show_is_not_told_as_unseen(shared: State) -> None:
     it = made({CORRECT: OPEN, "a": GAIN, "b": OPEN, SHARED: shared}, SHARED)
     follows = answers(it)["What follows"]
-    assert "With only the a faulted, new succeeds more often." in follows
+    assert "With the fault at the a alone, new succeeds more often." in follows
     assert "no difference is seen" not in follows
 
 

@@ -159,7 +159,7 @@ def test_a_path_without_any_pair_costs_the_others_nothing_and_is_named():
     (correct,) = made.effects
     assert (correct.path, correct.scenes, correct.void_pairs) == (CORRECT, 100, 0)
     assert not made.break_even
-    said = "With only the observer faulted, no pair of trials is left to compare"
+    said = "With the fault at the observer alone, no pair of trials is left to compare"
     assert made.headline.startswith(said)
     assert made.findings[0].startswith(said)
     assert {(c.path, c.failed) for c in made.cells if c.variant == REPAIR} == {

@@ -24,7 +24,7 @@ def test_a_reversal_is_the_headline_and_names_who_is_ahead_where(isolated, share
     assert change.turn == "reversal"
     said = phrases.change(made, change)
     assert said in made.sentences
-    assert f"with only the observer faulted, {one} succeeds" in said
+    assert f"with the fault at the observer alone, {one} succeeds" in said
     assert f"under the shared fault, {other} does" in said
     assert made.headline == (
         f"Do not choose by the fault at the observer alone: {one} is ahead there, {other} with it "
@@ -60,7 +60,7 @@ def test_a_fault_without_a_shared_path_has_no_change():
     [
         ((GAIN, GAIN, GAIN), "new is ahead of old on every path."),
         ((LEVEL, LEVEL, LEVEL), "No difference between old and new is detected on any path."),
-        ((LEVEL, GAIN, GAIN), "under the shared fault and with only the observer faulted."),
+        ((LEVEL, GAIN, GAIN), "under the shared fault and with the fault at the observer alone."),
         ((LOSS, GAIN, GAIN), "; old is ahead under correct inputs."),
         ((LOSS, LEVEL, LEVEL), "is detected under the shared fault"),
         ((GAIN, GAIN, (0, 9, 0)), "Both nearly always fail under the shared fault; new is ahead"),
@@ -138,8 +138,8 @@ def test_a_fault_that_never_acted_was_not_tested():
     assert partly.headline.startswith("new is ahead of old under the shared fault")
     rarely = made({"observer": 30})
     assert (
-        "With only the observer faulted, the fault changed something in only 30 of 100 trials of "
-        "new." in rarely.sentences
+        "With the fault at the observer alone, the fault changed something in only 30 of 100 "
+        "trials of new." in rarely.sentences
     )
 
 

@@ -170,13 +170,13 @@ def test_a_reversal_is_announced_where_the_audit_decides_it_and_nowhere_else() -
     even, won, lost = (50, 10, 10), (20, 50, 5), (20, 5, 50)
     turned = record(even, won, lost)
     assert turned.headline == (
-        "A reversal was confirmed at gain:scale=0.6: new is ahead with only the observer faulted, "
-        "old with the fault shared."
+        "A reversal was confirmed at gain:scale=0.6: new is ahead with the fault at the observer "
+        "alone, old with it shared."
     )
     assert len(turned.headline.split()) <= MOST_WORDS
     for other in (record(even, even, even), record(even, won, even), record(even, won, won)):
         assert other.headline == (
-            "No reversal was confirmed with only the observer faulted, at gain:scale=0.6."
+            "No reversal was confirmed with the fault at the observer alone, at gain:scale=0.6."
         )
         assert "Not confirmed is not absent" in other.sentences[-1]
     untested = record(regret_pp=-40.0)

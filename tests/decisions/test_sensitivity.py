@@ -119,10 +119,10 @@ def test_a_source_comes_first_only_where_its_share_is_decided_to_be_the_largest(
 
 def test_ties_have_no_order_and_interactions_are_no_share_of_one() -> None:
     tied = record((1.0, 1.0, 0.0))
-    assert tied.headline == "a and b each explain a share; which explains most is not decided."
+    assert tied.headline == "a and b each explain a share; which explains most is open."
     assert "a more than b" not in " ".join(tied.sentences)
     product = record((0.0, 0.0, 0.0), together=1.0)
-    assert product.headline == "a and b matter, but no share of one alone is decided."
+    assert product.headline == "a and b matter, but no share of one alone is significant."
     assert "a: with all that it does together with others" in " ".join(product.sentences)
     nothing = record((0.0, 0.0, 0.0))
     assert (

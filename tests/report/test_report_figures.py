@@ -73,7 +73,7 @@ def test_the_curve_is_coloured_where_an_arm_is_decided(one_seed: ReportInput) ->
     silent = _panel(record, "", ((0.3, 0.7),), *regions)
     assert "curve baseline" not in silent
     assert "curve repair" not in silent
-    assert "No frequency is decided." in silent
+    assert "No frequency is significant." in silent
     both = _panel(record, "b is ahead", ((0.0, 0.2), (0.6, 1.0)), Region(low=0.2, high=0.6, sign=1))
     assert both.count('class="star-range"') == 2
 

@@ -1,6 +1,7 @@
 """For a package that adds verbs to `faultpath`; light, since `--help` loads it."""
 
 from faultpath.cli.options import FOUND, Json, Verbs, path, refuse_with
+from faultpath.core.errors import Stopped, UserError
 from faultpath.trials.texts import LARGEST
 
-__all__ = ["FOUND", "LARGEST", "Json", "Verbs", "path", "refuse_with"]
+__all__ = ["FOUND", "LARGEST", "Json", "Stopped", "UserError", "Verbs", "path", "refuse_with"]

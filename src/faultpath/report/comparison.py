@@ -166,9 +166,9 @@ def effects(runs: Sequence[Compared]) -> Table:
     return Table(
         title=f"{'All sizes' if swept(runs) else 'Each run by itself'}; bold is significant",
         corner="Run",
-        columns=("Baseline → repair, %", f"Difference, pp [{interval}]", "Decided for"),
+        columns=("Baseline → repair, %", f"Difference, pp [{interval}]", "Ahead"),
         lines=tuple(lines),
-        words=("Decided for",),
+        words=("Ahead",),
     )
 
 

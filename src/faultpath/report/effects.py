@@ -187,7 +187,7 @@ def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[s
     panels: list[tuple[str, str]] = []
     for path in with_curve:
         title, result = titles.get(path.path, path.path), path.result
-        words = f"{path.words or f'No {noun} is decided'}."
+        words = f"{path.words or f'No {noun} is significant'}."
         svg = Svg(290, 248, f"{title}: expected success difference, share of {over}", words)
         svg.text(0, 14, title, "head", room=285)
         svg.text(0, 32, "expected difference in success, pp", "small soft")
@@ -208,7 +208,7 @@ def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[s
             svg.line((x(100 * low), y(0)), (x(100 * high), y(0)), "star-range")
         if result.p_star is not None and result.regions:
             at = wording.break_even(result)
-            tip = f"no {noun} is decided" if at == "any" else f"not decided at {at} %"
+            tip = f"no {noun} is significant" if at == "any" else f"not significant at {at} %"
             svg.circle((x(100 * result.p_star), y(0)), 5, "star", tip)
         if y(0) - y.end > _ROOM:
             svg.text(x.start + 6, y.end + 12, "repair better", "small repair halo")

@@ -50,7 +50,7 @@ def _paths(record: MapRecord) -> Table:
         lines=tuple(lines),
         notes=(
             f"{wording.counted(record.scenes, 'scene')} of {question.library}, "
-            f"{wording.seeds(question.seeds)}. Bold: decided. Intervals hold at all "
+            f"{wording.seeds(question.seeds)}. Bold: significant. Intervals hold at all "
             f"{len(record.points)} pairs of errors at once.",
         ),
     )
@@ -79,10 +79,11 @@ def _flips(record: MapRecord) -> Table:
         columns=("Error", "Ahead without error, up to", "Estimate turns at", "Ahead beyond, from"),
         lines=tuple(lines),
         notes=(
-            "Ahead is who is decided to be, at all sizes up to that one, or from that one on. The "
+            "Ahead is who significantly is, at all sizes up to that one, or from that one on. The "
             "turn lies between the two, which are its interval. A dash: no size on the map is "
-            "decided, or the estimate does not turn; where correct inputs decide nothing there is "
-            "no ranking to reverse. All of it holds at once, with the intervals of the map.",
+            "significant, or the estimate does not turn; where nothing is significant with correct "
+            "inputs there is no ranking to reverse. All of it holds at once, with the intervals of "
+            "the map.",
         ),
     )
 

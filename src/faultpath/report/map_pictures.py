@@ -118,13 +118,13 @@ def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
         label = f"{value:+.0f}".replace("-", "−") if value else "0"
         svg.text(column * cell, 63, label, "small soft", "middle")
     svg.path("M0 74h22v11h-22Z", "inner")
-    svg.text(28, 84, "not decided")
+    svg.text(28, 84, "not significant")
     svg.line((112, 80), (134, 80), "range")
     svg.text(140, 84, f"estimate {_EQUAL}")
     svg.circle((11, 100), 2.6, "dot")
-    svg.text(28, 104, "run, decided")
+    svg.text(28, 104, "run, significant")
     svg.circle((134, 100), 2.6, "dot open")
-    svg.text(146, 104, "run, not decided")
+    svg.text(146, 104, "run, not significant")
 
 
 def correlation_picture(record: MapRecord) -> Svg:

@@ -70,7 +70,7 @@ def picture(record: SearchRecord) -> Svg:
         svg.text(x(tick), y.start + 16, tick_label(tick), "small soft", "middle")
         svg.text(x.start - 8, y(tick) + 4, tick_label(tick), "small soft", "end")
     difference = f"{question.repair} minus {question.baseline}, pp"
-    below = f"only the {question.bounds.isolated} faulted, {difference}"
+    below = f"the fault at the {question.bounds.isolated} alone, {difference}"
     svg.text(x(0.0), y.start + 36, below, "small soft", "middle", room=svg.width)
     for tried in record.tried:
         at, chosen = (x(tried.isolated_pp), y(tried.shared_pp)), tried.fault == record.best

@@ -62,7 +62,7 @@ def _labels(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
         "p": "p, alone",
         "mcnemar": "p, exact McNemar",
         "holm": "p, Holm" if record.stopped is None else "p, family",
-        "decided": "Decided for",
+        "decided": "Ahead",
         "power": "80 % power, pp",
         "scenes": "Scenes",
         "void": "Void pairs",
@@ -145,8 +145,8 @@ def whole_table(record: DecisionRecord) -> Table:
     notes = (
         f"Difference: success of {question.repair} minus success of {question.baseline}. Won:lost: "
         f"scenes in which only {question.repair} or only {question.baseline} succeeds. Void pairs "
-        "count for neither side. Break-even: the fault frequencies at which neither is decided to "
-        "be ahead, with the estimate in front; any: none is decided from which on one of them is."
+        "count for neither side. Break-even: the fault frequencies at which neither is "
+        "significantly ahead, with the estimate in front; any: neither is at any frequency."
         + (_BETA if record.break_even_beta else ""),
         f"Primary contrast: {question.primary}. {tests}{corrected} Intervals and tests speak of "
         f"{record.estimand}.",
@@ -203,7 +203,7 @@ def secondary(record: DecisionRecord) -> Table | None:
     if not lines:
         return None
     return Table(
-        title=f"Secondary, nothing is decided: {question.repair} minus {question.baseline}",
+        title=f"Secondary, not tested: {question.repair} minus {question.baseline}",
         corner="Metric",
         columns=_titles(record),
         lines=tuple(lines),
@@ -241,7 +241,7 @@ def by_threshold(record: DecisionRecord) -> Table | None:
             rates.append(f"{one} → {two}, {wording.with_interval(there.difference)}")
         lines.append(line(f"success if {label} {sign} {at:g} {metric.unit}, %", *rates))
     return Table(
-        title=f"Secondary, nothing is decided: {question.baseline} → {question.repair}, difference",
+        title=f"Secondary, not tested: {question.baseline} → {question.repair}, difference",
         corner=f"{label}: {metric.better} is better",
         columns=_titles(record),
         lines=tuple(lines),

@@ -5,8 +5,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.plugin.commands import Json, path, refuse_with
-from faultpath.plugin.system import UserError
+from faultpath.plugin.commands import Json, UserError, path, refuse_with
 
 ERRORS = "0.1,-0.1"
 EXAMPLE = "flight.ulg --columns px4 --mass 1.5"

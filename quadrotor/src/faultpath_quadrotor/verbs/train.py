@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.plugin.commands import FOUND, LARGEST, Verbs, path, refuse_with
-from faultpath.plugin.system import Stopped
+from faultpath.plugin.commands import FOUND, LARGEST, Stopped, Verbs, path, refuse_with
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID

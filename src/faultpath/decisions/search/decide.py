@@ -59,7 +59,7 @@ def _headline(question: ResolvedSearch, confirmed: DecisionRecord | None) -> str
         return f"No reversal was confirmed {alone}{f', at {fault}' if one else ''}."
     return (
         f"A reversal was confirmed{f' at {fault}' if one else ''}: {confirmed.winner(turned.sign)} "
-        f"is ahead {alone}, {confirmed.winner(-turned.sign)} with the fault shared."
+        f"is ahead {alone}, {confirmed.winner(-turned.sign)} with it shared."
     )
 
 

@@ -74,12 +74,12 @@ def headline(record: SensitivityRecord) -> str:
         return f"Alone, {first} explains more than any other source in the {where} that ran."
     alone = [index.group for index in record.indices if index.first.counts]
     if len(alone) == 1:
-        return f"{alone[0]} explains a share by itself; whether it is the largest is not decided."
+        return f"{alone[0]} explains a share by itself; whether it is the largest is open."
     if alone:
-        return f"{series(alone)} each explain a share; which explains most is not decided."
+        return f"{series(alone)} each explain a share; which explains most is open."
     if matter := [index.group for index in record.indices if index.total.counts]:
-        return f"{series(matter)} matter, but no share of one alone is decided."
-    return "Nothing is decided: of no source is it shown that its error matters."
+        return f"{series(matter)} matter, but no share of one alone is significant."
+    return "Nothing is significant: of no source is it shown that its error matters."
 
 
 def sentences(record: SensitivityRecord) -> Iterator[str]:

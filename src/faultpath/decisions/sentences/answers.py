@@ -201,7 +201,8 @@ def _would_change(record: DecisionRecord) -> Iterator[str]:
     judged = record.question.judged is not None
     if stopped and not all(effect.sign for effect in record.effects):
         yield (
-            "More scenes: --stop-when all-decided goes on until every effect is decided."
+            "More scenes: --stop-when all-decided goes on until every effect is significant or "
+            "shown to be small."
             if stopped.reached
             else "More scenes: a larger --scenes goes on with those of the same order, and what is "
             "said then holds as well."

@@ -1,4 +1,4 @@
-"""The headline: one sentence of at most twenty words, by the kind of verdict.
+"""The headline: one sentence of some twenty words, by the kind of verdict.
 
 Names of modules and variants count as one word each.
 """

@@ -26,8 +26,8 @@ def headline(record: MapRecord) -> str:
         )
     if not regions:
         return (
-            f"At no correlation of the two errors is it decided which of {question.baseline} and "
-            f"{question.repair} does better."
+            f"At no correlation of the two errors does {question.baseline} or {question.repair} do "
+            "significantly better."
         )
     decided = {point.sign for point in record.points}
     if not (regions := tuple(region for region in regions if region.sign in decided)):
@@ -44,7 +44,7 @@ def headline(record: MapRecord) -> str:
     ]
     clauses += [f"{question.winner(region.sign)} {_range(region)}" for region in others]
     # Beside three regions it would be more than twenty words.
-    clauses += ["elsewhere nothing is decided"] if len(regions) < 3 else []
+    clauses += ["elsewhere neither does significantly better"] if len(regions) < 3 else []
     return f"{'; '.join(clauses)}."
 
 
@@ -73,11 +73,12 @@ def sentences(record: MapRecord) -> tuple[str, ...]:
             winner = question.winner(expectation.sign)
             texts.append(f"{where} {winner} is expected to succeed more often {numbers}.")
         else:
-            texts.append(f"{where} no expected difference is decided {numbers}.")
+            texts.append(f"{where} no expected difference is significant {numbers}.")
     ahead = {sign: sum(point.sign == sign for point in record.points) for sign in (-1, 1)}
     texts.append(
         f"Of {run} pairs of errors run, {question.baseline} is ahead at {ahead[-1]} and "
-        f"{question.repair} at {ahead[1]}; at {run - ahead[-1] - ahead[1]} it is not decided."
+        f"{question.repair} at {ahead[1]}; at {run - ahead[-1] - ahead[1]} neither is "
+        "significantly."
     )
     return (*texts, *_reversals(record), *(_flipped(question, flip) for flip in record.flips))
 
@@ -132,7 +133,9 @@ def _flipped(question: ResolvedMap, flip: Flip) -> str:
             reach = f"between {first} and {question.said(cut(flip.last, out=False))}"
         clauses.append(f"{question.winner(flip.turned)} is ahead {reach}")
     elif not flip.start or abs(flip.until or 0.0) < question.up_to:
-        clauses.append("no size is decided to change that" if clauses else "nothing is decided")
+        clauses.append(
+            "no size changes that significantly" if clauses else "nothing is significant"
+        )
     return f"{where}: {', '.join(clauses)}."
 
 
@@ -150,6 +153,6 @@ def at_point(question: ResolvedMap, point: MapPoint) -> str:
     """Return a pair of errors and what was seen there, for the tip of a picture."""
     sizes = zip(question.against, map(question.said, point.errors), strict=True)
     pair = ", ".join(f"{module} {size}" for module, size in sizes)
-    decided = f"{question.winner(point.sign)} ahead" if point.sign else "not decided"
+    decided = f"{question.winner(point.sign)} ahead" if point.sign else "not significant"
     interval = f"[{plain(point.low)}, {plain(point.high)}]"
     return f"{pair}: {signed(point.difference)} pp {interval}, {decided}"

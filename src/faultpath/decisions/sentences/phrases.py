@@ -100,8 +100,8 @@ def change(record: DecisionRecord, of: Change) -> str:
         )
     between = f"between the effect {alone} and that {shared} ({numbers})"
     if of.unsettled:
-        return f"Nothing is decided {between}: trials that failed could undo it."
-    return f"{'Nothing is decided' if record.few else 'No change is detected'} {between}."
+        return f"No change is significant {between}: trials that failed could undo it."
+    return f"No change is {'significant' if record.few else 'detected'} {between}."
 
 
 class Shares(NamedTuple):
@@ -115,14 +115,14 @@ class Shares(NamedTuple):
 
 FREQUENCY = Shares(
     "at every frequency",
-    "where the fault is frequent; how rare it may be is not decided",
-    "where the fault is rare; how frequent it may be is not decided",
+    "where the fault is frequent; how rare it may be is open",
+    "where the fault is rare; how frequent it may be is open",
 )
 """The share of episodes with the fault."""
 BETA = Shares(
     "at every beta",
-    "where most of its faults are common cause; how few may be is not decided",
-    "where few of its faults are common cause; how many may be is not decided",
+    "where most of its faults are common cause; how few may be is open",
+    "where few of its faults are common cause; how many may be is open",
 )
 """The beta factor: of the faults of a module, the share that strikes all modules at once."""
 
@@ -156,7 +156,7 @@ def shares(
 
 def no_pair(path: str) -> str:
     """Say that a path has no pair of trials to compare."""
-    return f"{capital(where(path))}, no pair of trials is left to compare and nothing is decided"
+    return f"{capital(where(path))}, no pair of trials is left to compare"
 
 
 def not_standing(record: DecisionRecord) -> Iterator[str]:

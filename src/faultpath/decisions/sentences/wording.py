@@ -134,7 +134,7 @@ def where(path: str) -> str:
         return "under correct inputs"
     if path == AS_RUN:
         return "in these results"
-    return "under the shared fault" if path == SHARED else f"with only the {path} faulted"
+    return "under the shared fault" if path == SHARED else f"with the fault at the {path} alone"
 
 
 def capital(words: str) -> str:
