@@ -231,3 +231,13 @@ def test_ctrl_c_in_this_process_says_how_far_it_got(tmp_path):
     with pytest.raises(Stopped, match=f"interrupted with 2 of {UNITS} blocks done"):
         run_study(study(), tmp_path, workers=0, progress=stop)
     assert run_study(study(), tmp_path, workers=0).blocks_kept == 2
+
+
+def test_a_system_that_takes_one_scene_at_a_time_is_found_again_by_the_second_call(tmp_path):
+    for computed in (UNITS, 0):
+        result = run_study(study(alone="plain"), tmp_path / "run", workers=0, recheck=False)
+        assert result.blocks_computed == computed
+        assert not result.failures
+        (finding,) = (text for text in result.findings if "when each ran alone" in text)
+        assert "the truth value of an array is ambiguous" in finding
+        assert f" of {UNITS} blocks" in finding

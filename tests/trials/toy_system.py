@@ -93,6 +93,8 @@ class ToySystem(System):
             time.sleep(0.2)
         while Path(options.get("hang_while", "")).is_file():
             time.sleep(0.01)
+        if len(scenes) > 1 and options.get("alone") == variant:
+            raise ValueError("the truth value of an array is ambiguous")
         if options.get("raises") in scenes and Path(options.get("while", __file__)).exists():
             raise ValueError(f"no air in {options['raises']}")
         if options.get("dies") in scenes:

@@ -148,7 +148,7 @@ def run_study(
                         again.settle,
                         time_limit_s,
                     )
-            table, findings = state.table(), tuple(again.findings())
+            table, findings = state.table(), (*state.findings(), *again.findings())
             deliveries = Deliveries.of(study, state.taps(), table, findings)
             digest = run.save_tables(table, deliveries)
     except KeyboardInterrupt:

@@ -2,10 +2,11 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 from faultpath.core.errors import UserError
+from faultpath.core.text import one_line
 from faultpath.loop import TapCount, added
 from faultpath.trials.arm import Study
 from faultpath.trials.attempt import Died, Done, Raised, Reply, Wrong
@@ -19,6 +20,8 @@ from faultpath.trials.work.executor import Progress
 
 FEW = 5
 """So many failed trials without one that ran to its end stop the study."""
+_WHOLE = "All scenes of the block at once: "
+"""Begins the traceback of a block that raised an error, of which each scene is then run alone."""
 Stop = Callable[[OutcomeTable], bool]
 """Says of the trials of all looks so far whether they are enough."""
 
@@ -104,6 +107,9 @@ class RunState:
                 outcomes, taps = reply.outcomes, reply.taps
                 details = {o.scene: o.error or "" for o in outcomes if o.failed}
             case Died() | Raised() if task.scenes[1:]:
+                if isinstance(reply, Raised):
+                    whole = f"{_WHOLE}{one_line(reply.error)}\n{reply.traceback}\n"
+                    self._partial.setdefault(unit.key, _Partial()).tracebacks.append(whole)
                 return tuple(replace(task, scenes=(scene,)) for scene in task.scenes)
             case Died() | Raised():
                 scene = task.scenes[0]
@@ -138,6 +144,25 @@ class RunState:
             self.computed += 1
             self._enter(unit, shard)
         return ()
+
+    def findings(self) -> Iterator[str]:
+        """Yield what is wrong with the system though its trials ended: it takes one scene alone."""
+        units = self.units
+        sound = [unit for unit in units if not any(o.failed for o in self._outcomes_of(unit))]
+        errors = [
+            text.partition("\n")[0].removeprefix(_WHOLE)
+            for text in (self._folder.load_failure(unit.key) for unit in sound)
+            if text.startswith(_WHOLE)
+        ]
+        if errors:
+            yield (
+                f"{len(errors)} of {len(units)} blocks raised an error when their scenes ran "
+                f"together, and none when each ran alone: {errors[0]}. A reading holds a value for "
+                "each scene of its block: `faultpath check` says what to mend."
+            )
+
+    def _outcomes_of(self, unit: Unit) -> list[Outcome]:
+        return [self.outcomes[unit.arm.key(), scene] for scene in unit.scenes]
 
     def _enter(self, unit: Unit, shard: Shard) -> None:
         key = unit.arm.key()

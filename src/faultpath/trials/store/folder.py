@@ -204,6 +204,11 @@ class RunFolder:
         else:
             path.unlink(missing_ok=True)
 
+    def load_failure(self, key: str) -> str:
+        """Return what is known about the failed trials of a block; empty without any."""
+        path = self.failures / f"{key}.txt"
+        return path.read_text("utf-8", errors="replace") if path.exists() else ""
+
     def save_rechecks(self, text: str) -> None:
         """Write what running some trials again has found."""
         self._write(self.rechecks, text.encode())
