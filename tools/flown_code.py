@@ -22,15 +22,15 @@ def flown_by(origin: RunProvenance, system: str, options: Mapping[str, str]) -> 
     kept. Only that they changed is said, not how many, so that a document goes stale once.
     """
     commit = f"commit `{origin.commit[:12]}`" if origin.commit else "code of no known commit"
-    done = "Finished" if origin.blocks_kept else "Flown"  # parts may have been flown by others
-    text = f"{done} by {commit}{' with uncommitted changes' if origin.dirty else ''}"
+    done = "Finished" if origin.blocks_kept else "Run"  # parts may have been run before
+    text = f"{done} at {commit}{' with uncommitted changes' if origin.dirty else ''}"
     if not origin.sources:
-        return f"{text}, before runs kept digests of what flies: by older code than today's."
+        return f"{text}, before runs kept digests of their code: by older code than today's."
     here = _state(system, tuple(sorted(options.items())), tuple(origin.data))
     flown = {name: sha for name, sha in origin.sources.items() if name in here.files or _here(name)}
     if (here.files, here.data) == (flown, origin.data):
-        return f"{text}; nothing that flew has changed since."
-    return f"{text}; code{' or weights' if origin.data else ''} that flew changed since."
+        return f"{text}; its code has not changed since."
+    return f"{text}; its code{' or weights' if origin.data else ''} changed since."
 
 
 @cache

@@ -80,7 +80,7 @@ def contrast(name: str) -> str:
             row("every module that reads the estimate, as in deployment", shared.success),
             "",
             f"{run.record.scenes} scenes, {wording.seeds(question.seeds)}; bold: significant at "
-            f"5 % after Holm's correction. Flown by commit `{run.provenance.commit[:12]}`.",
+            f"5 % after Holm's correction. Run at commit `{run.provenance.commit[:12]}`.",
         ]
     )
 

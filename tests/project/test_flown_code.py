@@ -34,7 +34,7 @@ def made() -> RunProvenance:
 
 def test_a_run_by_the_code_that_is_here_says_so(made: RunProvenance) -> None:
     said = flown_code.flown_by(made, TOY, {})
-    assert said == "Flown by commit `0123456789ab`; nothing that flew has changed since."
+    assert said == "Run at commit `0123456789ab`; its code has not changed since."
 
 
 def other(digests: dict[str, str]) -> dict[str, str]:
@@ -44,10 +44,10 @@ def other(digests: dict[str, str]) -> dict[str, str]:
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (lambda made: {"sources": other(made.sources)}, "; code that flew changed since."),
-        (lambda made: {"sources": made.sources | {"absent/code.py": "0"}}, "nothing that flew has"),
-        (lambda made: {"data": {"a": "0"}}, "; code or weights that flew changed since."),
-        (lambda made: {"sources": {}}, "before runs kept digests of what flies: by older code"),
+        (lambda made: {"sources": other(made.sources)}, "; its code changed since."),
+        (lambda made: {"sources": made.sources | {"absent/code.py": "0"}}, "its code has not"),
+        (lambda made: {"data": {"a": "0"}}, "; its code or weights changed since."),
+        (lambda made: {"sources": {}}, "before runs kept digests of their code"),
     ],
 )
 def test_what_else_is_to_be_known_is_said(made: RunProvenance, change, says: str) -> None:

@@ -24,3 +24,12 @@ def test_an_example_of_another_package_runs_where_that_is_installed() -> None:
         assert references.environment(runs["motulator"]) == ".venv-3.12"
         assert references.environment(runs["toy"]) == ".venv"
     assert references.environment(runs["do-mpc"]).startswith(".venv")
+
+
+def test_a_run_keeps_to_the_instruction_set_by_which_it_was_flown() -> None:
+    runs = references.by_time()
+    assert references.instructions(runs["toy"]) == {}
+    for run in runs.values():
+        by_avx2 = run.provenance.backend == "compiled kernels (avx2)"
+        kernels = references.instructions(run).get("FAULTPATH_KERNELS", "auto")
+        assert kernels == ("avx2" if by_avx2 else "auto")

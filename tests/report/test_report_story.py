@@ -65,13 +65,13 @@ def test_a_source_with_one_reader_names_it(one_seed: ReportInput) -> None:
 def test_the_legend_names_the_grey_box_where_there_is_one(one_seed: ReportInput) -> None:
     open_ = [effect for effect in one_seed.record.effects if not effect.sign]
     assert open_
-    assert "A grey box reaches" in screen(one_seed)
+    assert "Grey: differences too small" in screen(one_seed)
     effects = tuple(
         effect.model_copy(update={"minimum_detectable_pp": None})
         for effect in one_seed.record.effects
     )
     record = one_seed.record.model_copy(update={"effects": effects})
-    assert "A grey box reaches" not in screen(replace(one_seed, record=record))
+    assert "Grey: differences too small" not in screen(replace(one_seed, record=record))
 
 
 def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> None:

@@ -33,7 +33,12 @@ Trust = Annotated[
     bool,
     typer.Option("--trust", help="Import the code that the file names; look at it first."),
 ]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON; words go to the standard error.")]
+Json = Annotated[
+    bool,
+    typer.Option(
+        "--json", help="Print JSON to standard output; other text goes to standard error."
+    ),
+]
 
 
 def display(stderr: bool = True) -> "Display":

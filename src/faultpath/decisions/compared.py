@@ -57,8 +57,8 @@ class ComparedTrials:
     """By path, where a trial failed on any of them; else nothing."""
 
     @property
-    def scenes(self) -> int:
-        """Scenes that every path compared has."""
+    def n_scenes(self) -> int:
+        """Number of scenes that every path compared has."""
         return len(next(iter(self.pairs.values())).scenes)
 
 
@@ -126,13 +126,13 @@ def _seeds(left: Mapping[str, Pairs], alike: Bools, distinct: bool) -> list[int]
 
 def _void(paired: Pairs, alike: Bools, seeds: list[int], judged: bool) -> Voids:
     ours, theirs = (side.failed for side in paired.ended)
-    won, lost = (side.success[alike][:, seeds] for side in paired.ended)
+    our_successes, their_successes = (side.success[alike][:, seeds] for side in paired.ended)
     alone = ours & ~theirs, theirs & ~ours
     could = (ours, theirs) if judged else alone
     return Voids(
         failed=(int(ours.sum()), int(theirs.sum())),
         alone=(int(alone[0].sum()), int(alone[1].sum())),
         open=int((could[0] | could[1]).sum()),
-        against=(won, lost | could[1][alike][:, seeds]),
-        favour=(won | could[0][alike][:, seeds], lost),
+        against=(our_successes, their_successes | could[1][alike][:, seeds]),
+        favour=(our_successes | could[0][alike][:, seeds], their_successes),
     )

@@ -51,8 +51,9 @@ def decide(
     untested = () if question.judged else untested_paths(paths, cells)
     # Only times and metrics rest on resamples, and of very many scenes these take gigabytes.
     timed = any(cell.median_time_s is not None for cell in cells)
-    none = question.judged is not None and not (timed or question.metrics)
-    trials, resamples, family = family_of(question, paths, table, untested, 1 if none else 10_000)
+    resampled = question.judged is None or timed or bool(question.metrics)
+    n_resamples = 10_000 if resampled else 1
+    trials, resamples, family = family_of(question, paths, table, untested, n_resamples)
     effects = {
         path: _effect(question, path, trials, family, resamples, path not in untested)
         for path in trials.arms
@@ -74,7 +75,7 @@ def decide(
             _break_even(question, path, family, (effects[path], effects[SHARED]), phrases.BETA)
             for path in family.changes
         ),
-        scenes=trials.scenes,
+        scenes=trials.n_scenes,
         scenes_needed=family.scenes_needed,
         hypotheses=family.hypotheses,
         estimand=phrases.estimand(question),
@@ -85,7 +86,7 @@ def decide(
         *phrases.failed_trials(record),
         *phrases.partly_measured(record),
         *mismatch_words(trials.mismatches),
-        *findings,  # of a record that is decided anew, with some of the above among them
+        *findings,  # a record that is decided anew has some of the above already
     )
     return record.model_copy(update={**in_words(record), "findings": tuple(dict.fromkeys(noted))})
 
@@ -185,8 +186,8 @@ def _break_even(
     shares: phrases.Shares,
 ) -> PathBreakEven:
     """Return where baseline and repair are even between the effects at two ends of a share."""
-    none, all_ = ends
-    tested = family.effects[none.path], family.effects[all_.path]
+    at_none, at_all = ends
+    tested = family.effects[at_none.path], family.effects[at_all.path]
     level = 1.0 - min(end.decision.critical_p for end in tested if end.decision)
     filled = [family.fills[end.path] for end in ends if end.path in family.fills]
     # Both ends with what failed trials leave open against the repair, and for it.
@@ -195,8 +196,8 @@ def _break_even(
     # What a table and a picture show is borne out by the effect at an end, and reaches it.
     kept: list[Region] = []
     for region in result.regions:
-        low = region.low > 0.0 or (none.leads and region.sign == none.sign)
-        high = region.high < 1.0 or (all_.leads and region.sign == all_.sign)
+        low = region.low > 0.0 or (at_none.leads and region.sign == at_none.sign)
+        high = region.high < 1.0 or (at_all.leads and region.sign == at_all.sign)
         inner = region.low > 0.0 and region.high < 1.0
         shown = wording.last(region.high) > 0 and wording.first(region.low) < 100
         if low and high and shown and not inner:
@@ -205,5 +206,5 @@ def _break_even(
         path=path,
         result=only(result, kept),
         curve=mixture_curve(*tested, level=level, fills=fills),
-        words=phrases.shares(question, result.regions, none, all_, shares),
+        words=phrases.shares(question, result.regions, at_none, at_all, shares),
     )

@@ -59,7 +59,7 @@ def captions(pairs: Sequence[Pair]) -> dict[At, str]:
     like = Counter(patterns.values())
     return {
         at: f"{like[pattern]} of {of} {'goes' if like[pattern] == 1 else 'go'} like this one: "
-        "the same arms succeed on each path."
+        "the same versions succeed on each path."
         for at, pattern in patterns.items()
     }
 

@@ -65,7 +65,7 @@ def family_of(
             "all seeds gave the same outcome in every trial, so they say nothing of newly trained "
             "models: leave --generalise models out."
         )
-    resamples = Resamples.draw(question.library_hash, trials.scenes, n_resamples=n_resamples)
+    resamples = Resamples.draw(question.library_hash, trials.n_scenes, n_resamples=n_resamples)
     family = decide_paths(
         trials.arms,
         rule=question.rule,
@@ -134,8 +134,10 @@ def decide_paths(
     for name in unsettled:
         decision = decided[name].decision
         decided[name] = replace(decided[name], decision=decision and decision._replace(sign=0))
-    effects = {path: decided.get(_effect(path), with_test(e, rule)) for path, e in effects.items()}
-    changes = {path: decided[_change(path)] for path in _isolated(tested)}
+    effects = {
+        path: decided.get(_effect_name(path), with_test(e, rule)) for path, e in effects.items()
+    }
+    changes = {path: decided[_change_name(path)] for path in _isolated(tested)}
     uneven = {path for path, void in voids.items() if void.uneven}
     turns: dict[str, Turn] = {}
     for path, moved in changes.items():
@@ -161,8 +163,10 @@ def _named(
     effects: Mapping[str, Contrast], alone: Mapping[str, Contrast], tested: Collection[str]
 ) -> dict[str, Contrast]:
     """Return the effects, and their changes from those `alone` to the shared one, by name."""
-    changes = {_change(path): change(alone[path], effects[SHARED]) for path in _isolated(tested)}
-    return {_effect(path): effects[path] for path in tested} | changes
+    changes = {
+        _change_name(path): change(alone[path], effects[SHARED]) for path in _isolated(tested)
+    }
+    return {_effect_name(path): effects[path] for path in tested} | changes
 
 
 def _nearest(against: Contrast, favour: Contrast, rule: RuleName) -> Contrast:
@@ -187,17 +191,17 @@ def alpha_shares(paths: Collection[str], primary: str) -> dict[str, float]:
     The effect on the primary path, for which sequential audits stop, has a half; all others share
     the rest. Where that path has none, the others' shares are equal.
     """
-    named = [*map(_effect, paths), *map(_change, _isolated(paths))]
-    others = [name for name in named if name != _effect(primary)]
+    named = [*map(_effect_name, paths), *map(_change_name, _isolated(paths))]
+    others = [name for name in named if name != _effect_name(primary)]
     shares = dict.fromkeys(others, 0.5 / max(1, len(others)))
-    return {_effect(primary): 0.5 if others else 1.0, **shares}
+    return {_effect_name(primary): 0.5 if others else 1.0, **shares}
 
 
-def _effect(path: str) -> str:
+def _effect_name(path: str) -> str:
     return f"effect/{path}"
 
 
-def _change(path: str) -> str:
+def _change_name(path: str) -> str:
     return f"change/{path}"
 
 

@@ -146,7 +146,7 @@ def whole_table(record: DecisionRecord) -> Table:
         f"Difference: success of {question.repair} minus success of {question.baseline}. Won:lost: "
         f"scenes in which only {question.repair} or only {question.baseline} succeeds. Void pairs "
         "count for neither side. Break-even: the fault frequencies at which neither is "
-        "significantly ahead, with the estimate in front; any: neither is at any frequency."
+        "shown to be ahead, with the estimate in front; any: no bound could be shown."
         + (_BETA if record.break_even_beta else ""),
         f"Primary contrast: {question.primary}. {tests}{corrected} Intervals and tests speak of "
         f"{record.estimand}.",

@@ -37,7 +37,10 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
         parts += [Text(f"A sequential audit: {record.stopping}.")]
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
     if any(share.result.kind in ("interval", "two pieces") for share in record.break_even):
-        explained = "Break-even: the share of trials with the fault at which neither is ahead."
+        explained = (
+            "Break-even: shares of trials with the fault, in percent, at which neither is shown to "
+            "be ahead; any: no bound could be shown."
+        )
         parts += [Text(explained, style="dim")]
     for sentence in not_standing(record):
         parts += [Text(""), Text(sentence)]

@@ -67,7 +67,7 @@ class Request(Asked):
         Flag("--set", several=True, panel=ADVANCED),
     ] = Field(
         default_factory=dict,
-        description="System option, key=value; where a flag has the same name, or in scripts.",
+        description="System option, key=value, where a flag of the command has its name.",
     )
 
     @property
@@ -161,19 +161,20 @@ class AuditQuestion(Running):
 
     fault: Annotated[str, Flag(panel=RepairQuestion.panel)] = Field(
         description="`gain:scale=0.6`, `gain:delay=5@observer`, `gain:scale=2,onset=20`, ...; "
-        "several sizes, `gain:scale=0.9,1.1` or `gain:offset=-0.2..0.2/9`, are an audit each."
+        "several sizes, `gain:scale=0.9,1.1` or `gain:offset=-0.2..0.2/9`, make one audit per size."
     )
     primary: str | None = Field(
         default=None, description="Path of the primary contrast, a module or shared (default)."
     )
     generalise: Annotated[Generalise, Flag(panel=ADVANCED)] = Field(
         default="scenes",
-        description="What intervals speak of: new scenes, or newly trained models too (several "
-        "seeds).",
+        description="What intervals are valid for: new scenes, or newly trained models too (with "
+        "several seeds).",
     )
     metric: str = Field(default="", description="Metric of the system to show beside success.")
     thresholds: Annotated[Sizes, Flag(panel=ADVANCED)] = Field(
-        default=(), description="Of that metric, to judge success anew: 0.02,0.05,0.1."
+        default=(),
+        description="Thresholds of --metric at which success is counted anew: 0.02,0.05,0.1.",
     )
     stop_when: Annotated[StopWhen | None, Flag(panel=ADVANCED)] = Field(
         default=None,

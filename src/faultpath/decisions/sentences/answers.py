@@ -90,7 +90,7 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
     if modules := [change.isolated for change in record.changes if change.turn == "interaction"]:
         yield (
             f"A fault at the {' or the '.join(modules)} alone does not stand for the shared one: "
-            "the difference between the two arms changes."
+            "the difference between the two versions changes."
         )
     if disagree and not turned:
         yield "Which is better depends on which fault occurs, and how often."

@@ -69,7 +69,7 @@ class Table(_Frozen):
         entries = [entry for line in self.lines for entry in line.entries]
         marks = (
             ("In parentheses: the paper's figures.", any(entry.published for entry in entries)),
-            ("Bold: a detected difference.", any(entry.detected for entry in entries)),
+            ("Bold: significant.", any(entry.detected for entry in entries)),
         )
         text = " ".join(words for words, there in marks if there)
         return (text,) if text else ()

@@ -86,7 +86,8 @@ class JudgeQuestion(Asked):
     )
     generalise: Annotated[Generalise, Flag(panel="How it is decided")] = Field(
         default="scenes",
-        description="What intervals speak of: new scenes, or newly trained models too, one a seed.",
+        description="What intervals are valid for: new scenes, or newly trained models too, one a "
+        "seed.",
     )
     folder: Annotated[Place, Flag("--out")] = Field(
         default=None, description="Run folder; default runs/judged-<arms>-<results>."
