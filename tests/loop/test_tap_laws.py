@@ -38,9 +38,7 @@ def test_torch_gives_the_bits_of_numpy(intervention: Intervention, window: dict[
 
 @EACH
 @WINDOWS
-def test_a_scene_does_not_depend_on_its_neighbours(
-    intervention: Intervention, window: dict[str, Any]
-) -> None:
+def test_a_scene_does_not_depend_on_its_neighbours(intervention, window):
     faulted = fault(intervention, window)
     block = play([faulted], SCENES, to=to_torch)
     for order in (("c", "a", "d", "b"), ("b", "d"), ("c",)):
@@ -51,9 +49,7 @@ def test_a_scene_does_not_depend_on_its_neighbours(
 
 @EACH
 @WINDOWS
-def test_isolated_and_shared_agree_where_both_act(
-    intervention: Intervention, window: dict[str, Any]
-) -> None:
+def test_isolated_and_shared_agree_where_both_act(intervention, window):
     alone = play([fault(intervention, window, "predictor")], SCENES)
     shared = play([fault(intervention, window)], SCENES)
     elsewhere = play([fault(intervention, window, "planner")], SCENES)

@@ -10,7 +10,7 @@ from tap_toys import make
 
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault, Freeze, Offset, Quantise, Scale
-from faultpath.loop import IllegalRead, MalformedReading, Reading, Taps, UndeclaredReader
+from faultpath.loop import IllegalRead, MalformedReading, Reading, UndeclaredReader
 
 SCALE = Fault(channel="mass", intervention=Scale(factor=2.0), consumers=("observer",))
 
@@ -76,9 +76,7 @@ WIND = Reading(np.zeros((2, 3)), "truth", 0)
         ),
     ],
 )
-def test_an_illegal_read_names_the_tap(
-    taps: Taps, tap: str, reading: Reading, error: type[Exception], said: str
-) -> None:
+def test_an_illegal_read_names_the_tap(taps, tap, reading, error, said):
     channel, consumer = tap.split(" -> ")
     with pytest.raises(error, match=f"^tap {tap}: .*{re.escape(said)}"):
         taps.deliver(channel, consumer, reading, 0)

@@ -7,15 +7,7 @@ from itertools import product
 import numpy as np
 from faultpath_paper.cells import Cell
 from faultpath_paper.evidence.table import EvidenceTable, Measured, Measurement
-from faultpath_paper.pages import (
-    figure_3,
-    in_text,
-    table_1,
-    table_2,
-    table_3,
-    table_4,
-    table_6,
-)
+from faultpath_paper.pages import figure_3, in_text, table_1, table_2, table_3, table_4, table_6
 from faultpath_paper.results import Results
 from toy_runs import CELLS, MEASUREMENTS, Ends, trials
 

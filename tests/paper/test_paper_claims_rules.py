@@ -122,9 +122,7 @@ def found(
         (within(16, 20), shown(10.0, UP, 10), "refuted"),
     ],
 )
-def test_a_rule_answers_by_value_interval_and_test(
-    rule: Rule, difference: Contrast, answer: str
-) -> None:
+def test_a_rule_answers_by_value_interval_and_test(rule, difference, answer):
     assert rule.judge(difference).answer == answer
 
 
@@ -153,9 +151,7 @@ TOUCHING = [(0.0, 15.0), (-15.0, 0.0), (0.0, 0.0), OPEN]
 @pytest.mark.parametrize("rule", [ABOVE, BELOW])
 @pytest.mark.parametrize("interval", TOUCHING)
 @pytest.mark.parametrize("n_scenes", [10, 100])
-def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(
-    rule: Rule, interval: tuple[float, float], n_scenes: int
-) -> None:
+def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(rule, interval, n_scenes):
     difference = shown(sum(interval) / 2, interval, n_scenes)
     assert rule.judge(difference).answer == "undecided"
 
@@ -164,9 +160,7 @@ def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(
     "rule", [at_least(30), at_least(-60), less_than(30), within(1, 2), within(49, 51)]
 )
 @pytest.mark.parametrize("value", [0.0, 50.0, -50.0])
-def test_an_interval_without_width_of_few_scenes_is_no_more_than_a_point(
-    rule: Rule, value: float
-) -> None:
+def test_an_interval_without_width_of_few_scenes_is_no_more_than_a_point(rule, value):
     difference = shown(value, (value, value), 10, mde=1.0)
     assert rule.judge(difference).answer == "undecided"
 
@@ -194,9 +188,7 @@ N = 40
         (effect(5, 5, 0), effect(5, 0, 5), "undecided"),
     ],
 )
-def test_a_reversal_is_refuted_by_a_detected_sign_that_it_forbids(
-    before: Contrast, after: Contrast, answer: str
-) -> None:
+def test_a_reversal_is_refuted_by_a_detected_sign_that_it_forbids(before, after, answer):
     assert Turned(decisive(change(before, after)), before, after).judge().answer == answer
 
 

@@ -1,7 +1,6 @@
 """Sizes: how an estimate stands to the paper's figure, beside answers that do not know it."""
 
 import pytest
-from faultpath_paper.answers import ClaimVerdict
 from faultpath_paper.cells import Printed
 from faultpath_paper.claims import STATEMENTS
 from faultpath_paper.claims.statement import size
@@ -47,9 +46,7 @@ UNPRINTED = {
         (20.0, (18.0, 60.0), Printed(10.0, (1.0, 12.0)), "right sign, other size"),
     ],
 )
-def test_an_estimate_stands_to_a_figure(
-    value: float, interval: tuple[float, float], paper: Printed, expected: str
-) -> None:
+def test_an_estimate_stands_to_a_figure(value, interval, paper, expected):
     assert size(value, interval, 100, paper, 0.0) == expected
     low, high = interval
     ends = paper.interval and (-paper.interval[1], -paper.interval[0])
@@ -72,9 +69,7 @@ def test_every_figure_that_the_paper_prints_is_carried() -> None:
     assert without == set(UNPRINTED)
 
 
-def test_where_the_papers_figures_come_true_sizes_are_compatible(
-    answers: dict[str, ClaimVerdict],
-) -> None:
+def test_where_the_papers_figures_come_true_sizes_are_compatible(answers):
     """The toy's windows are noisier than its intervals in two medians; all else is as printed."""
     others = [
         (claim.id, at)

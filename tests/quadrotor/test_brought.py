@@ -95,16 +95,8 @@ def test_an_arm_gets_a_part_of_its_own_with_the_seed_that_it_names():
 BROKEN = {
     "no file": ("", "nowhere.py:create", "there is no file"),
     "no factory": ("", "create", "has no function 'create'"),
-    "no part": (
-        "def create(seed) -> K:\n    return 3",
-        "create",
-        "returned a int for seed None",
-    ),
-    "raises": (
-        "def create(seed) -> K:\n    1 / 0  # here",
-        "create",
-        "line 10: ZeroDivisionError",
-    ),
+    "no part": ("def create(seed) -> K:\n    return 3", "create", "returned a int for seed None"),
+    "raises": ("def create(seed) -> K:\n    1 / 0  # here", "create", "line 10: ZeroDivisionError"),
     "syntax": ("def create(:", "create", "line 9: SyntaxError"),
     "takes nothing": (
         "def create() -> K:\n    return K()",

@@ -4,12 +4,7 @@ import numpy as np
 import pytest
 from faultpath_paper.evidence import recording
 from faultpath_paper.evidence.quantities import measure
-from faultpath_paper.evidence.table import (
-    Measurement,
-    Recording,
-    read_evidence,
-    write_evidence,
-)
+from faultpath_paper.evidence.table import Measurement, Recording, read_evidence, write_evidence
 from faultpath_quadrotor.scenes.library import Library, as_text
 from flights import hall
 

@@ -105,9 +105,7 @@ def _finishes_to_the_same_bits(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("gate")
-def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(tmp_path, monkeypatch):
     journal = journal_path(tmp_path / "out" / "slow-0.safetensors")
     processes: list[subprocess.Popen[bytes]] = []
     original = processes_of_work._Process.__init__

@@ -99,9 +99,7 @@ def test_cells_may_hold_lists(tmp_path: Path, known: Compensation, name: str) ->
     assert compensation(read_flight(log, read_columns(map_file(tmp_path, text)))) == known
 
 
-def test_other_units_frames_and_orders_hold_the_same_flight(
-    tmp_path: Path, known: Compensation
-) -> None:
+def test_other_units_frames_and_orders_hold_the_same_flight(tmp_path, known):
     other = dict(COLUMNS)
     other["t"] = COLUMNS["t"] * 1e6
     for name in ("vx", "vy", "vz", "qy", "qz"):
@@ -187,9 +185,7 @@ def test_only_what_is_decided_is_said(known: Compensation, decided: Any) -> None
         ),
     ],
 )
-def test_a_mistake_is_one_sentence(
-    tmp_path: Path, change: dict[str, Any], text: str, says: str
-) -> None:
+def test_a_mistake_is_one_sentence(tmp_path, change, text, says):
     columns = COLUMNS | {name: make(COLUMNS) for name, make in change.items()}
     columns["word"] = np.array(["high"] * len(COLUMNS["t"]))
     if says == "column 'word'":

@@ -65,14 +65,8 @@ def log(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, st
     ],
 )
 def test_a_bag_and_the_map_proposed_for_it_hold_the_flight(
-    tmp_path: Path,
-    known: Compensation,
-    capsys: Any,
-    topics: Any,
-    storage: Any,
-    part: str,
-    time: str,
-) -> None:
+    tmp_path, known, capsys, topics, storage, part, time
+):
     bag = write_bag(tmp_path / "bag", COLUMNS["t"], topics(COLUMNS), storage) / part
     to = tmp_path / "columns.yaml"
     status, said = log(capsys, bag, "--propose", "--columns", to, "--mass", 1.5)

@@ -98,9 +98,7 @@ UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
 
 
 @pytest.mark.parametrize(("changed", "says"), UNSOUND.values(), ids=UNSOUND)
-def test_a_scene_that_cannot_be_flown_is_refused(
-    tmp_path: Path, changed: dict[str, Any], says: str
-) -> None:
+def test_a_scene_that_cannot_be_flown_is_refused(tmp_path, changed, says):
     said = refused(tmp_path, mine(**changed))
     assert "scene 1" in said
     assert re.search(says, said), said

@@ -12,13 +12,7 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.systems import ComposedSystem, FunctionPlant, writes
 from faultpath.systems.checks.check import check_system
 from faultpath.systems.checks.judging import remedy
-from faultpath.systems.checks.remarks import (
-    ENOUGH,
-    diverged,
-    other_names,
-    successes,
-    without_room,
-)
+from faultpath.systems.checks.remarks import ENOUGH, diverged, other_names, successes, without_room
 from faultpath.trials import Outcome, Status, SystemSpec, load_system
 from faultpath.trials.question import CheckQuestion
 
