@@ -111,7 +111,6 @@ def test_effects_of_the_same_windows_are_joint():
 @pytest.mark.parametrize(
     "ask",
     [
-        lambda values, scenes: quantile_estimate(values, scenes, 0.0),
         lambda values, scenes: quantile_estimate(values, scenes, 1.0),
         lambda values, scenes: quantile_estimate(values[:-1], scenes),
         lambda values, scenes: quantile_estimate(np.full_like(values, np.nan), scenes),

@@ -70,10 +70,10 @@ def test_interval_and_test_have_to_point_the_same_way():
 
 
 def test_what_has_no_test_is_refused():
-    with pytest.raises(ValueError, match="has no test"):
-        with_test(mean_effect(np.ones(N), np.zeros(N), RESAMPLES, "m"), "exact")
-    with pytest.raises(ValueError, match="has no test"):
-        with_test(success_rate(np.ones(N), RESAMPLES), "exact")
+    metres = mean_effect(np.ones(N), np.zeros(N), RESAMPLES, "m")
+    for untested in (metres, success_rate(np.ones(N), RESAMPLES)):
+        with pytest.raises(ValueError, match="has no test"):
+            with_test(untested, "exact")
 
 
 @settings(deadline=None)

@@ -23,14 +23,9 @@ def tables(n):
 
 def chances(n, share):
     """Return the chance of each table under no difference, where `share` of pairs is discordant."""
-    return np.array(
-        [
-            float(comb(n, b + c) * comb(b + c, b))
-            * (share / 2) ** (b + c)
-            * (1 - share) ** (n - b - c)
-            for b, c in tables(n)
-        ]
-    )
+    ways = [comb(n, b + c) * comb(b + c, b) for b, c in tables(n)]
+    apart = np.array(tables(n)).sum(axis=1)
+    return np.array(ways, float) * (share / 2) ** apart * (1 - share) ** (n - apart)
 
 
 def by_definition(n):
