@@ -13,13 +13,8 @@ from faultpath.faults import Fault, Scale
 from faultpath.loop import FaultedElsewhere, NotDelivered, Reading, Taps
 from faultpath.loop.receipts import check_delivered
 
-LATE = Fault(
-    channel="mass",
-    intervention=Scale(factor=2.0),
-    consumers=("observer",),
-    onset_step=3,
-    duration_steps=2,
-)
+DOUBLE = Fault(channel="mass", intervention=Scale(factor=2.0))
+LATE = DOUBLE.model_copy(update={"onset_step": 3, "duration_steps": 2}).aimed_at("observer")
 
 
 def run(taps: Taps, to: Any = np.asarray, steps: Any = range(6), zero: int = -1) -> None:
@@ -57,7 +52,7 @@ def test_faulted_is_not_yet_altered(to: Any) -> None:
 
 @LIBRARIES
 def test_a_nan_that_stays_is_not_altered(to: Any) -> None:
-    taps = make([Fault(channel="mass", intervention=Scale(factor=2.0))])
+    taps = make([DOUBLE])
     for step, lost in enumerate((0.0, np.nan)):
         reading = Reading(to(np.array([lost, 1.0])), "scale", step)
         taps.deliver("mass", "observer.model", reading, step)

@@ -119,17 +119,14 @@ def test_recovery_is_a_straight_line_back() -> None:
 
 def test_coupled_faults_draw_the_same_numbers() -> None:
     noise = Noise(std=1.0)
-    coupled = Coupled(
-        name="storm",
-        faults=(
-            Fault(channel="mass", intervention=noise),
-            Fault(channel="wind", intervention=noise),
-        ),
-    )
+    faults = tuple(Fault(channel=name, intervention=noise) for name in ("mass", "wind"))
+    coupled = Coupled(name="storm", faults=faults)
 
     def error(faults: list[Any], channel: str, consumer: str) -> np.ndarray[Any, Any]:
-        given = {"channel": channel, "consumer": consumer}
-        return play(faults, "ab", **given) - play([], "ab", **given)
+        faulted, clean = (
+            play(some, "ab", channel=channel, consumer=consumer) for some in (faults, [])
+        )
+        return faulted - clean
 
     mass = error([coupled], "mass", "observer.model")
     wind = error([coupled], "wind", "predictor.wind")

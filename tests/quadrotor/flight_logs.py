@@ -46,6 +46,21 @@ def flown(
     return dict(zip(names, (t, w, x, y, z, *velocity.T, thrust), strict=True))
 
 
+def map_file(folder: Path, text: str = MAP) -> str:
+    path = folder / "map.yaml"
+    path.write_text(text)
+    return str(path)
+
+
+def compensated(log: Path, text: str = MAP) -> Any:
+    """Return what a log shows, read by a map beside it; who only writes logs needs no quadrotor."""
+    from faultpath_quadrotor.flightlog.compensation import compensation
+    from faultpath_quadrotor.flightlog.flight import read_flight
+    from faultpath_quadrotor.flightlog.reading import read_columns
+
+    return compensation(read_flight(log, read_columns(map_file(log.parent, text))))
+
+
 def write(path: Path, columns: dict[str, Any]) -> Path:
     table = pa.table(columns)
     if path.suffix == ".parquet":

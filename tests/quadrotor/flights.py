@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import torch
 from faultpath_quadrotor.scenes.library import Library, as_text
 from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Scene, Topology
 from faultpath_quadrotor.system import Quadrotor
@@ -134,6 +135,14 @@ def in_memory(flights: Flights) -> FlightData:
     """Return recorded flights as they come back from their files."""
     every = range(len(flights.steps))
     return FlightData.decode("test", encode_rows(every, flights), encode_episodes(every, flights))
+
+
+def spread(scenes: Sequence[Scene], count: int, margin: float = 0.0) -> torch.Tensor:
+    """Return points over the arenas of scenes and so far outside, `[3, scenes, count]`."""
+    draws = np.random.default_rng(7)
+    low = np.array([scene.bounds.low_m for scene in scenes]).T[:, :, None] - margin
+    high = np.array([scene.bounds.high_m for scene in scenes]).T[:, :, None] + margin
+    return torch.from_numpy(draws.uniform(low, high, (3, len(scenes), count)))
 
 
 def hall(

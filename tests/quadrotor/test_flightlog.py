@@ -10,7 +10,7 @@ from faultpath_quadrotor.flightlog.compensation import Compensation, compensatio
 from faultpath_quadrotor.flightlog.flight import read_flight
 from faultpath_quadrotor.flightlog.reading import read_columns
 from faultpath_quadrotor.flightlog.words import sentences
-from flight_logs import MAP, flown, write, write_ulog
+from flight_logs import MAP, compensated, flown, map_file, write, write_ulog
 from typer.testing import CliRunner
 
 from faultpath.cli.app import build
@@ -31,15 +31,8 @@ def odd(name: str, value: float) -> Any:
     return change
 
 
-def map_file(folder: Path, text: str = MAP) -> str:
-    path = folder / "map.yaml"
-    path.write_text(text)
-    return str(path)
-
-
 def found(folder: Path, columns: dict[str, Any] = COLUMNS, text: str = MAP) -> Compensation:
-    log = write(folder / "flight.csv", columns)
-    return compensation(read_flight(log, read_columns(map_file(folder, text))))
+    return compensated(write(folder / "flight.csv", columns), text)
 
 
 @pytest.fixture(scope="module")
@@ -80,8 +73,7 @@ def test_without_delay_and_filter_nothing_of_a_shared_error_is_left(tmp_path: Pa
 
 
 def test_a_file_of_any_kind_holds_the_same_flight(tmp_path: Path, known: Compensation) -> None:
-    log = write(tmp_path / "flight.parquet", COLUMNS)
-    assert compensation(read_flight(log, read_columns(map_file(tmp_path)))) == known
+    assert compensated(write(tmp_path / "flight.parquet", COLUMNS)) == known
 
 
 @pytest.mark.parametrize("name", ["flight.csv", "flight.parquet"])
@@ -95,8 +87,7 @@ def test_cells_may_hold_lists(tmp_path: Path, known: Compensation, name: str) ->
         columns["v"] = [str(each).replace(",", "") for each in columns["v"]]
     text = MAP.replace("qw, qx, qy, qz", "'q[0]', 'q[1]', 'q[2]', 'q[3]'")
     text = text.replace("vx, vy, vz", "'v[0]', 'v[1]', 'v[2]'")
-    log = write(tmp_path / name, columns)
-    assert compensation(read_flight(log, read_columns(map_file(tmp_path, text)))) == known
+    assert compensated(write(tmp_path / name, columns), text) == known
 
 
 def test_other_units_frames_and_orders_hold_the_same_flight(tmp_path, known):
@@ -204,9 +195,8 @@ def test_the_command_prints_and_writes_what_it_found(tmp_path: Path, known: Comp
     assert "sharing compensates: the error is 0." in " ".join(printed.output.split())
     again = CliRunner().invoke(build(line), [*line, "--json"], catch_exceptions=False)
     assert Compensation.model_validate_json(again.output) == known
-    assert (
-        json.loads((tmp_path / "out" / "compensation.json").read_text())["blocks"] == known.blocks
-    )
+    stored = json.loads((tmp_path / "out" / "compensation.json").read_text())
+    assert stored["blocks"] == known.blocks
 
 
 @pytest.mark.parametrize("text", [MAP, MAP.replace("drag_kgps: [0.3, 0.3, 0.6]", "")])
@@ -229,15 +219,15 @@ def test_a_stray_quote_is_refused_with_its_line(tmp_path: Path) -> None:
     lines[5638] = lines[5638].replace(",", ',"', 1)
     log.write_text("\n".join(lines))
     with pytest.raises(UserError, match=r"flight.csv, line 5639: a quote opens a cell"):
-        read_flight(log, read_columns(map_file(tmp_path)))
+        compensated(log)
     lines[9000] += '"'  # as far as there the rows would be one cell
     log.write_text("\n".join(lines))
     with pytest.raises(UserError, match=r"line 5639"):
-        read_flight(log, read_columns(map_file(tmp_path)))
+        compensated(log)
 
 
 def test_a_log_with_a_column_twice_is_a_mistake(tmp_path: Path) -> None:
     log = write(tmp_path / "flight.csv", COLUMNS)
     log.write_bytes(log.read_bytes().replace(b'"vy"', b'"vx"', 1))
     with pytest.raises(UserError, match="two columns are called 'vx'"):
-        read_flight(log, read_columns(map_file(tmp_path)))
+        compensated(log)

@@ -14,7 +14,7 @@ from faultpath_quadrotor.flightlog.compensation import Compensation, compensatio
 from faultpath_quadrotor.flightlog.flight import read_flight
 from faultpath_quadrotor.flightlog.proposing import propose
 from faultpath_quadrotor.flightlog.reading import read_columns
-from flight_logs import MAP, flown, write
+from flight_logs import MAP, compensated, flown, write
 
 from faultpath.cli.main import main
 from faultpath.core.errors import UserError
@@ -31,13 +31,9 @@ ODOM, ATTITUDE = "/mavros/local_position/odom", "/mavros/setpoint_raw/attitude"
 @pytest.fixture(scope="module")
 def known(tmp_path_factory: pytest.TempPathFactory) -> Compensation:
     """The same flight in a table, without the drag, which no bag states."""
-    folder = tmp_path_factory.mktemp("table")
-    text = MAP.replace("drag_kgps: [0.3, 0.3, 0.6]", "").replace(
-        "thrust}", "thrust, newton_per_unit: fit}"
-    )
-    (folder / "map.yaml").write_text(text)
-    log = write(folder / "flight.csv", COLUMNS)
-    return compensation(read_flight(log, read_columns(str(folder / "map.yaml"))))
+    text = MAP.replace("drag_kgps: [0.3, 0.3, 0.6]", "")
+    text = text.replace("thrust}", "thrust, newton_per_unit: fit}")
+    return compensated(write(tmp_path_factory.mktemp("table") / "flight.csv", COLUMNS), text)
 
 
 @pytest.fixture(scope="module")

@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import torch
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import FROZEN, Library, as_text, frozen_file, load_library
 from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Scene
 from faultpath_quadrotor.scenes.soundness import MOST_OBSTACLES, clearance_m, unsound
+from flights import spread
 
 from faultpath.core.errors import UserError
 
@@ -48,15 +48,11 @@ def test_every_frozen_scene_is_sound(name: str) -> None:
 
 
 def test_clearance_is_that_of_the_geometry() -> None:
-    stream = torch.Generator().manual_seed(3)
     for scene in BASE[:20]:
-        low, high = (
-            torch.tensor(end).double() for end in (scene.bounds.low_m, scene.bounds.high_m)
-        )
-        points = low + (high - low) * torch.rand(50, 3, generator=stream, dtype=torch.float64)
-        exact = Geometry.stack([scene]).distance(points.T[:, None])[0]
-        for point, distance in zip(points.tolist(), exact.tolist(), strict=True):
-            found = clearance_m(scene, (point[0], point[1], point[2]))
+        points = spread([scene], 50)
+        exact = Geometry.stack([scene]).distance(points)[0]
+        for point, distance in zip(points[:, 0].T.tolist(), exact.tolist(), strict=True):
+            found = clearance_m(scene, tuple(point))
             assert (found > 0) == (distance > 0)
             assert distance < 0 or found == pytest.approx(distance, abs=1e-9)
 

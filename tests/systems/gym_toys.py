@@ -6,7 +6,7 @@ from gymnasium.spaces import Box, Dict, Discrete
 
 from faultpath.faults import resolve
 from faultpath.loop import Module, Port, Taps
-from faultpath.systems import ComposedSystem, Parts
+from faultpath.systems import ComposedSystem, FunctionPlant, Parts
 from faultpath.systems.gymnasium import GymnasiumPlant
 
 REAL = Box(-np.inf, np.inf, (1,), np.float64)
@@ -73,6 +73,13 @@ def kept(episode):
 def plant(environment=Walk, **given):
     given = {"observes": {"place": 0}, "steps": 20, "succeeded": kept} | given
     return GymnasiumPlant(environment, action="push", **given)
+
+
+def functions(start, step, action="push", steps=2, succeeded=lambda episode: True, **given):
+    """Return a plant of plain functions in which every scene succeeds."""
+    return FunctionPlant(
+        start, step, action=action, steps=steps, succeeded=succeeded, **{"dt_s": 0.1} | given
+    )
 
 
 def system(made, modules=None, **given):
