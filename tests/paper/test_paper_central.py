@@ -36,17 +36,13 @@ SIGNS = {-1: "−5.0 [−9.0, −1.0]", 0: "+1.0 [−3.0, 5.0]", 1: "+6.0 [2.0, 
 
 def case(isolated: Sign, shared: Sign, *, reversal: bool = False) -> Case:
     """Return a run that detected effects with these signs."""
-    effects = (Effect(text=SIGNS[sign], sign=sign) for sign in (isolated, shared))
-    return Case(
-        place="4 scenes of here, seed 0",
-        **dict(zip(("isolated", "shared"), effects, strict=True)),
-        reversal=reversal,
-    )
+    one, two = (Effect(text=SIGNS[sign], sign=sign) for sign in (isolated, shared))
+    return Case(place="4 scenes of here, seed 0", isolated=one, shared=two, reversal=reversal)
 
 
 def test_the_answer_is_a_reversal_only_where_a_run_decides_one() -> None:
     for signs in ((0, 0), (1, 0), (0, -1), (1, -1), (-1, 1)):
-        assert answer([case(*signs)]) == "We did not reproduce the paper's reversal"
+        assert "did not reproduce" in answer([case(*signs)])
     cases = [case(1, -1, reversal=True), case(0, 0)]
     assert "appeared" in answer(cases)
     assert "more often (+6.0" in detail(cases)
@@ -125,12 +121,8 @@ def test_findings_and_matched_properties_are_counted_apart(ledger: Ledger) -> No
     text = headline(ledger, "paper")
     assert f"{len(findings)} findings, {findings.count('confirmed')} came out" in text
     assert f"of {len(ledger.claims) - len(findings)} properties" in text
-    some = ledger.model_copy(
-        update={
-            "claims": tuple(c for c in ledger.claims if c.kind == "finding")[:2],
-            "left_out": 43,
-        }
-    )
+    two = tuple(claim for claim in ledger.claims if claim.kind == "finding")[:2]
+    some = ledger.model_copy(update={"claims": two, "left_out": 43})
     assert "2 findings that this run is about" in headline(some, "paper")
     assert "properties" not in headline(some, "paper")
     assert headline(ledger.model_copy(update={"claims": ()}), "paper")
@@ -138,9 +130,7 @@ def test_findings_and_matched_properties_are_counted_apart(ledger: Ledger) -> No
 
 def test_a_claim_confirmed_by_no_detection_is_marked(ledger: Ledger) -> None:
     marked = re.findall(r"(C\d\d)\*", str(by_kind(ledger)))
-    assert marked == sorted(
-        (claim.id for claim in ledger.claims if is_non_detection(claim)), key=marked.index
-    )
+    assert sorted(marked) == [claim.id for claim in ledger.claims if is_non_detection(claim)]
     assert "C02" in marked
     assert "C05" not in marked
 

@@ -156,9 +156,7 @@ def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(rule, inter
     assert rule.judge(difference).answer == "undecided"
 
 
-@pytest.mark.parametrize(
-    "rule", [at_least(30), at_least(-60), less_than(30), within(1, 2), within(49, 51)]
-)
+@pytest.mark.parametrize("rule", [at_least(-60), less_than(30), within(1, 2), within(49, 51)])
 @pytest.mark.parametrize("value", [0.0, 50.0, -50.0])
 def test_an_interval_without_width_of_few_scenes_is_no_more_than_a_point(rule, value):
     difference = shown(value, (value, value), 10, mde=1.0)
