@@ -65,15 +65,12 @@ def test_no_kind_is_missing() -> None:
 def test_a_window_gets_what_a_flight_of_its_name_and_seed_gets(kind: Intervention) -> None:
     images = np.random.default_rng(0).uniform(size=(WINDOWS, STEPS, 6, 8)).astype(np.float32)
     data = Windows(INTERFACE, "encoder", {"image": images}, targets=np.zeros(WINDOWS), dt_s=DT_S)
-    (fault,) = Fault(channel="image", intervention=kind, onset_step=1).resolved(
-        INTERFACE, {"encoder.pixels"}
-    )
+    everywhere = Fault(channel="image", intervention=kind, onset_step=1)
+    (fault,) = everywhere.resolved(INTERFACE, {"encoder.pixels"})
     got, counts = delivered(data, (fault,), data.readings, range(WINDOWS), 0, epoch=2)
     (seen,) = got.values()
     taps = Taps(INTERFACE, (fault,), scenes=data.ids, dt_s=DT_S, seed=2)
-    flown = [
-        taps.deliver("image", "encoder.pixels", Reading(images[:, step], "camera", step), step)
-        for step in range(STEPS)
-    ]
+    readings = [Reading(images[:, step], "camera", step) for step in range(STEPS)]
+    flown = [taps.deliver("image", "encoder.pixels", r, i) for i, r in enumerate(readings)]
     np.testing.assert_array_equal(seen, np.stack(flown, axis=1))
     assert sum(count.altered_steps for count in counts)

@@ -94,9 +94,8 @@ def test_withholding_puts_the_neutral_value_in_every_window_and_keeps_it() -> No
     data = windows()
     fitted = fit(Spy, data, repair=withholding("gain"), schedule=SHORT)
     assert {float(value) for seen in SEEN for value in seen["gain", "model"].unique()} == {1.0}
-    doubled = replace(
-        data, readings={**data.readings, "gain": 2 * np.asarray(data.readings["gain"])}
-    )
+    gain = 2 * np.asarray(data.readings["gain"])
+    doubled = replace(data, readings={**data.readings, "gain": gain})
     net = fit(Net, data, repair=withholding("gain"), schedule=SHORT)
     correct = [curve["correct"] for curve in net.record.validation]
     assert correct == [curve["perturbed"] for curve in net.record.validation]

@@ -102,10 +102,8 @@ def test_a_learned_module_gets_the_last_steps_as_in_its_windows() -> None:
     made = Learned("observer", net, "slope", [GAIN, VELOCITY], steps=4)
     memory = None
     for step in range(4):
-        delivered = {
-            GAIN: np.asarray(data.readings["gain"], dtype=float),
-            VELOCITY: np.asarray(data.readings["velocity"][:, step], dtype=float),
-        }
+        read = {GAIN: data.readings["gain"], VELOCITY: data.readings["velocity"][:, step]}
+        delivered = {port: np.asarray(value, dtype=float) for port, value in read.items()}
         outputs, memory = made.step(Inputs("observer", step, delivered, {}), memory)
     gain = torch.from_numpy(np.repeat(np.asarray(data.readings["gain"])[:, None], 4, axis=1))
     velocity = torch.from_numpy(np.asarray(data.readings["velocity"]))
@@ -113,9 +111,8 @@ def test_a_learned_module_gets_the_last_steps_as_in_its_windows() -> None:
         expected = net({GAIN: gain, VELOCITY: velocity}).numpy()
     assert outputs["slope"] == pytest.approx(expected, rel=1e-5)
     one = {port: value[3:4] for port, value in delivered.items()}
-    first, alone = (
-        made.step(Inputs("observer", 0, some, {}), None)[0] for some in (delivered, one)
-    )
+    inputs = [Inputs("observer", 0, some, {}) for some in (delivered, one)]
+    first, alone = (made.step(given, None)[0] for given in inputs)
     assert first["slope"][3] == alone["slope"][0]  # to the bit, in other company
 
 

@@ -102,8 +102,6 @@ def play(
     """Return what `consumer` gets, `[T, B, ...]`."""
     taps = make(faults, scenes, **more)
     readings = np.stack([series(scene, channel, steps) for scene in scenes], axis=1)
-    values = [
-        taps.deliver(channel, consumer, Reading(to(readings[step]), SOURCES[channel], step), step)
-        for step in range(steps)
-    ]
+    shown = [Reading(to(readings[step]), SOURCES[channel], step) for step in range(steps)]
+    values = (taps.deliver(channel, consumer, each, step) for step, each in enumerate(shown))
     return np.stack([np.asarray(value) for value in values])

@@ -112,9 +112,8 @@ def test_recovery_is_a_straight_line_back() -> None:
     window = {"onset_step": 2, "duration_steps": 3, "recovery_steps": 3}
     error = play([fault(Offset(by=1.0), window)], "ab") - play([], "ab")
     line = [0, 0, 1, 1, 1, 0.75, 0.5, 0.25, *[0] * 8]
-    np.testing.assert_allclose(
-        error, np.broadcast_to(np.reshape(line, (16, 1, 1)), error.shape), atol=1e-15
-    )
+    expected = np.broadcast_to(np.reshape(line, (16, 1, 1)), error.shape)
+    np.testing.assert_allclose(error, expected, atol=1e-15)
 
 
 def test_coupled_faults_draw_the_same_numbers() -> None:
@@ -123,10 +122,8 @@ def test_coupled_faults_draw_the_same_numbers() -> None:
     coupled = Coupled(name="storm", faults=faults)
 
     def error(faults: list[Any], channel: str, consumer: str) -> np.ndarray[Any, Any]:
-        faulted, clean = (
-            play(some, "ab", channel=channel, consumer=consumer) for some in (faults, [])
-        )
-        return faulted - clean
+        tap = {"channel": channel, "consumer": consumer}
+        return play(faults, "ab", **tap) - play([], "ab", **tap)
 
     mass = error([coupled], "mass", "observer.model")
     wind = error([coupled], "wind", "predictor.wind")

@@ -149,9 +149,8 @@ def test_every_claim_stands_once_under_its_kind_and_answer(ledger: Ledger) -> No
 def test_every_claim_has_one_subject_and_its_figures_add_up(ledger: Ledger) -> None:
     every = [claim for claims in SUBJECTS.values() for claim in claims]
     assert sorted(every) == [claim.id for claim in published_claims()]
-    *subjects, last = (
-        [int(entry.text) for entry in each.entries] for each in by_subject(ledger).lines
-    )
+    lines = by_subject(ledger).lines
+    *subjects, last = ([int(entry.text) for entry in line.entries] for line in lines)
     assert [sum(column) for column in zip(*subjects, strict=True)] == last
     assert last[0] >= sum(last[1:]) > 0
 

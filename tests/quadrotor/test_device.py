@@ -163,9 +163,7 @@ def test_a_gpu_flies_what_the_cpu_flies_and_never_waits(options, variant, texts,
         next(steps)  # libraries are loaded
         with _no_waiting():
             next(steps)
-    ends = [
-        built.run(variant, HELD_OUT, _wired(built, variant, texts, HELD_OUT), 0)
-        for built in (here, there)
-    ]
+    flights = [(built, _wired(built, variant, texts, HELD_OUT)) for built in (here, there)]
+    ends = [built.run(variant, HELD_OUT, taps, 0) for built, taps in flights]
     for one, two in zip(*ends, strict=True):
         assert trace(two) == pytest.approx(trace(one), abs=1e-3)

@@ -124,11 +124,8 @@ class _Other:
             for each, mean in ((self._accelerometer, gained), (self._gyroscope, rate))
         )
         one = np.eye(3)
-        noise[:3, :3], noise[3:6, 3:6], noise[6:9, 6:9] = (
-            one * push * dt**2 / 3,
-            one * push,
-            one * turn,
-        )
+        noise[:3, :3], noise[3:6, 3:6] = one * push * dt**2 / 3, one * push
+        noise[6:9, 6:9] = one * turn
         noise[:3, 3:6] = noise[3:6, :3] = one * push * dt / 2
         noise[9:12, 9:12] = one * self._gyroscope.walk**2 * dt
         noise[12:, 12:] = one * self._accelerometer.walk**2 * dt
@@ -147,24 +144,16 @@ class _Other:
 
         beside = said - expected(np.zeros(SIZE))
         beside[-1] = np.angle(np.exp(1j * beside[-1]))
-        self.filter.update(
-            beside,
-            HJacobian=lambda _: _slope(expected),
-            Hx=lambda _: np.zeros(len(said)),
-            R=np.eye(len(said)) * 0.02**2,
-        )
+        spread, none = np.eye(len(said)) * 0.02**2, np.zeros(len(said))
+        self.filter.update(beside, lambda _: _slope(expected), lambda _: none, R=spread)
         found = self._with(self.filter.x)
         self.position, self.velocity, self.attitude, self.biases = found
         self.filter.x = np.zeros(SIZE)
 
     def _with(self, error):
         turned = self.attitude * Rotation.from_rotvec(error[6:9])
-        return (
-            self.position + error[:3],
-            self.velocity + error[3:6],
-            turned,
-            self.biases + error[9:],
-        )
+        position, velocity = self.position + error[:3], self.velocity + error[3:6]
+        return position, velocity, turned, self.biases + error[9:]
 
 
 def _apart(one, other):

@@ -41,11 +41,8 @@ def known(tmp_path_factory: pytest.TempPathFactory) -> Compensation:
 
 
 def median(result: Compensation, observer: float, predictor: float) -> float:
-    return next(
-        each.error_mps2.value
-        for each in result.combinations
-        if (each.observer, each.predictor) == (observer, predictor)
-    )
+    errors = {(each.observer, each.predictor): each.error_mps2 for each in result.combinations}
+    return errors[observer, predictor].value
 
 
 def test_an_isolated_error_adds_and_a_shared_one_cancels(known: Compensation) -> None:

@@ -22,14 +22,8 @@ def test_a_pillar_is_round_and_a_short_one_has_a_top():
         Cylinder(centre_m=(1.0, 0.0), radius_m=0.3, low_m=0.0, high_m=3.0),
         Cylinder(centre_m=(-1.0, 0.0), radius_m=0.3, low_m=0.0, high_m=1.0),
     ]
-    points = [
-        (1.3, 0.4, 1.0),
-        (1.0, 0.1, 0.05),
-        (-1.0, 0.0, 1.4),
-        (-1.0, 0.6, 1.4),
-        (-1.0, 0.0, 0.9),
-    ]
-    found = at(hall(0, things=pillars), *points)
+    tall, short = [(1.3, 0.4, 1.0), (1.0, 0.1, 0.05)], [(-1.0, 0.0, 1.4), (-1.0, 0.6, 1.4)]
+    found = at(hall(0, things=pillars), *tall, *short, (-1.0, 0.0, 0.9))
     assert found == pytest.approx([0.2, -0.2, 0.4, 0.5, -0.1], abs=1e-12)
 
 

@@ -23,9 +23,8 @@ def test_a_zero_residual_leaves_the_kinematic_integrator_exactly(wind):
     network.initialise(torch.Generator().manual_seed(0))
     anchored = AnchoredPredictor(network, wind, NOMINAL_DRAG_KGPS)
     kinematic = KinematicIntegrator(wind=wind, drag_kgps=NOMINAL_DRAG_KGPS)
-    rolled, plain = (
-        rollout(each, inputs_of(SCENES), commands_of(SCENES, 512)) for each in (anchored, kinematic)
-    )
+    given, drawn = inputs_of(SCENES), commands_of(SCENES, 512)
+    rolled, plain = (rollout(model, given, drawn) for model in (anchored, kinematic))
     assert torch.equal(rolled.positions, plain.positions)
     assert torch.equal(rolled.velocities, plain.velocities)
     assert torch.equal(rolled.final.rotation, plain.final.rotation)

@@ -35,9 +35,8 @@ def random_weights(module: torch.nn.Module, seed: int = 0) -> None:
 
 def predictor(name: str) -> Predictor:
     if name.startswith("dki"):
-        return KinematicIntegrator(
-            drag=name == "dki-drag", wind=name != "dki-still", drag_kgps=NOMINAL_DRAG_KGPS
-        )
+        drag, wind = name == "dki-drag", name != "dki-still"
+        return KinematicIntegrator(drag, wind, drag_kgps=NOMINAL_DRAG_KGPS)
     if name == "wm-u":
         unanchored = UnanchoredPredictor.build_network()
         random_weights(unanchored)

@@ -19,9 +19,8 @@ def planner_inputs(scenes=4, mass=1.0):
     state = State.hover(torch.zeros(3, scenes, 1), torch.zeros(scenes, 1))
     column = torch.full((scenes, 1), mass)
     delivered = {("mass", place): column for place in ("trim", "dynamics", "wind_map")}
-    delivered |= {
-        ("thrust_scale", place): torch.ones_like(column) for place in ("trim", "dynamics")
-    }
+    one = torch.ones_like(column)
+    delivered |= {("thrust_scale", place): one for place in ("trim", "dynamics")}
     return PredictorInputs(state, delivered | {("wind", "wind_map"): torch.zeros(3, scenes, 1)})
 
 
@@ -88,9 +87,8 @@ def test_the_cross_entropy_method_closes_in_with_as_many_candidates():
     replan(planner, given, planner.initial_plan(hover), SCENES, goal=goal, seen=searched.append)
     first, *_, last = [search.spread for search in searched]
     assert last.mean() < 0.7 * first.mean()
-    alone = replan(
-        planner, planner_inputs(1), planner.initial_plan(hover[:1]), SCENES[2:3], goal=goal[:, :1]
-    )
+    plan = planner.initial_plan(hover[:1])
+    alone = replan(planner, planner_inputs(1), plan, SCENES[2:3], goal=goal[:, :1])
     assert torch.equal(alone[..., 0], searched[-1].plan[..., 2])
 
 

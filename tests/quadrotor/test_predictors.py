@@ -44,19 +44,15 @@ def inputs(
 
     state = State.hover(three((0.0, 0.0, 0.0)), 0 * column)
     state = replace(state, velocity=three(velocity))
-    physics = Physics(
-        three(NOMINAL_INERTIA_KGM2),
-        column,
-        NOMINAL_MOTOR_TIME_CONSTANT_S * column,
-        three(NOMINAL_DRAG_KGPS),
-        thrust * column,
-    )
+    inertia, drag = three(NOMINAL_INERTIA_KGM2), three(NOMINAL_DRAG_KGPS)
+    lag_s = NOMINAL_MOTOR_TIME_CONSTANT_S * column
+    physics = Physics(inertia, column, lag_s, drag, thrust * column)
     delivered = {("mass", place): mass * column for place in ("trim", "dynamics", "wind_map")}
     delivered |= {("thrust_scale", place): scale * column for place in ("trim", "dynamics")}
-    delivered |= {
-        ("wind", "wind_map"): three(wind),
-        ("physics", "physics"): physics.reading(),
-    }
+    code = torch.zeros(32, scenes, 1, dtype=dtype)
+    code[12:16] = thrust  # of motors that were told so for long
+    delivered |= {("wind", "wind_map"): three(wind), ("history_code", "latent"): code}
+    delivered |= {("physics", "physics"): physics.reading()}
     return PredictorInputs(state, delivered)
 
 

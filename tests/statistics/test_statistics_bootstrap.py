@@ -17,12 +17,9 @@ from faultpath.statistics.resamples import Resamples
 
 N = 20
 RESAMPLES = Resamples.draw("laws", N, n_resamples=500)
-BINARY = hnp.arrays(np.bool_, st.tuples(st.just(2), st.just(N), st.integers(1, 4)))
-FLOATS = hnp.arrays(
-    np.float64,
-    st.tuples(st.just(2), st.just(N), st.integers(1, 4)),
-    elements=st.floats(-50, 50, width=32),
-)
+SHAPE = st.tuples(st.just(2), st.just(N), st.integers(1, 4))
+BINARY = hnp.arrays(np.bool_, SHAPE)
+FLOATS = hnp.arrays(np.float64, SHAPE, elements=st.floats(-50, 50, width=32))
 fewer = settings(max_examples=50, deadline=None)
 
 

@@ -32,10 +32,8 @@ def effect(wins, losses, first_scene=0):
     ],
 )
 def test_the_point_is_where_the_estimates_cross(delta_0, delta_f, expected):
-    wins, losses = (
-        tuple(int(max(0, sign * each)) for each in (delta_0, delta_f)) for sign in (1, -1)
-    )
-    assert break_even(*map(effect, wins, losses)).p_star == expected
+    effects = (effect(max(0, int(delta)), max(0, -int(delta))) for delta in (delta_0, delta_f))
+    assert break_even(*effects).p_star == expected
 
 
 @pytest.mark.parametrize(

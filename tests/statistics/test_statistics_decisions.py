@@ -110,9 +110,8 @@ def test_the_critical_p_is_where_the_decision_turns(p_values, data):
 def test_weighted_holm_is_the_closed_test_of_weighted_bonferroni(p_values, data):
     """One is rejected where every intersection that it is in has some p within its own part."""
     number = len(p_values)
-    weights = data.draw(
-        st.lists(st.sampled_from([0.5, 1.0, 3.0]), min_size=number, max_size=number)
-    )
+    weight = st.sampled_from([0.5, 1.0, 3.0])
+    weights = data.draw(st.lists(weight, min_size=number, max_size=number))
     names = [str(i) for i in range(number)]
     family = {name: contrast(p) for name, p in zip(names, p_values, strict=True)}
     decided = decide_family(family, weights=dict(zip(names, weights, strict=True)))

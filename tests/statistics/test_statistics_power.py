@@ -50,9 +50,8 @@ def test_power_agrees_with_enumerating_every_table(n, rate, lean, alpha):
                 expected += binom.pmf(first + second, n, rate) * binom.pmf(
                     first, first + second, p_first / (p_first + p_second)
                 )
-    assert rule_power(n, rate, difference, alpha, rule="exact") == pytest.approx(
-        expected, abs=1e-10
-    )
+    found = rule_power(n, rate, difference, alpha, rule="exact")
+    assert found == pytest.approx(expected, abs=1e-10)
 
 
 @settings(deadline=None, max_examples=30)
@@ -61,9 +60,8 @@ def test_power_is_80_percent_at_the_detectable_difference_and_less_below(first, 
     least = found((first, second), alpha=alpha)
     difference, observed = least / 100, (first + second) / 100
     assumed = observed or beta.ppf(0.975, 1, 100)
-    assert rule_power(
-        100, max(assumed, difference), difference, alpha, rule="exact"
-    ) == pytest.approx(0.8, abs=2e-3)
+    power = rule_power(100, max(assumed, difference), difference, alpha, rule="exact")
+    assert power == pytest.approx(0.8, abs=2e-3)
     below = difference - 0.005
     assert rule_power(100, max(assumed, below), below, alpha, rule="exact") < 0.8
     assert found((second, first), alpha=alpha) == least

@@ -25,9 +25,8 @@ def test_p_values_are_the_exact_fractions_of_every_table_up_to_60_discordant_pai
         for first_only in range(total + 1):
             fewer = min(first_only, total - first_only)
             exact = min(Fraction(1), Fraction(2 * sum(ways[: fewer + 1]), 2**total))
-            assert sign_p_value(first_only, total - first_only) == pytest.approx(
-                float(exact), rel=1e-12
-            )
+            p_value = sign_p_value(first_only, total - first_only)
+            assert p_value == pytest.approx(float(exact), rel=1e-12)
 
 
 def found(first, second):

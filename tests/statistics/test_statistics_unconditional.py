@@ -32,9 +32,8 @@ def by_definition(n):
     """Return the E step's p of every table, by Lloyd's definition and nothing else."""
     z = np.array([abs(b - c) / sqrt(b + c) if b + c else 0.0 for b, c in tables(n)])
     laws = [chances(n, d / n) for d in range(n + 1)]
-    return np.array(
-        [laws[b + c][z >= own - 1e-9].sum() for (b, c), own in zip(tables(n), z, strict=True)]
-    )
+    apart = [b + c for b, c in tables(n)]
+    return np.array([laws[d][z >= own - 1e-9].sum() for d, own in zip(apart, z, strict=True)])
 
 
 def found(n):

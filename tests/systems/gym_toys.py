@@ -6,7 +6,7 @@ from gymnasium.spaces import Box, Dict, Discrete
 
 from faultpath.faults import resolve
 from faultpath.loop import Module, Port, Taps
-from faultpath.systems import ComposedSystem, FunctionPlant, Parts
+from faultpath.systems import ComposedSystem, FunctionPlant
 from faultpath.systems.gymnasium import GymnasiumPlant
 
 REAL = Box(-np.inf, np.inf, (1,), np.float64)
@@ -77,16 +77,13 @@ def plant(environment=Walk, **given):
 
 def functions(start, step, action="push", steps=2, succeeded=lambda episode: True, **given):
     """Return a plant of plain functions in which every scene succeeds."""
-    return FunctionPlant(
-        start, step, action=action, steps=steps, succeeded=succeeded, **{"dt_s": 0.1} | given
-    )
+    given = {"dt_s": 0.1, "steps": steps, "succeeded": succeeded} | given
+    return FunctionPlant(start, step, action=action, **given)
 
 
 def system(made, modules=None, **given):
     units = {"place": "m", "push": "m", "slope": "m"} | given.pop("units", {})
-    return ComposedSystem(
-        "walk", made, {"only": Parts("One.", modules or [Steer()])}, units, **given
-    )
+    return ComposedSystem("walk", made, {"only": modules or [Steer()]}, units, **given)
 
 
 def fly(built, scenes=SCENES, variant="only", faults=(), seed=0):

@@ -24,14 +24,21 @@ LOOPS = f"{Path(__file__).with_name('broken_loops.py')}:create"
 
 def check(name: str = BROKEN, broken: str | None = None, library: str = "any", **question):
     spec = SystemSpec(name=name, options={} if broken is None else {"broken": broken})
-    asked = CheckQuestion(**{"workers": 0, "library": library} | question)
-    return check_system(load_system(spec), spec, asked, lambda done, known: None)
+    question = {"workers": 0, "library": library} | question
+    return check_system(
+        load_system(spec), spec, CheckQuestion(**question), lambda done, known: None
+    )
 
 
 def failed(report) -> dict[str, tuple[str, ...]]:
     return {check.name: check.failures for check in report.checks if check.status == "failed"}
 
 
+def named(broken: str):
+    return {outcome.name: outcome for outcome in check(broken=broken).checks}
+
+
+INDEPENDENCE = "scene independence"
 SAID = {
     "raises": ("trials end", "Variant 'bare': ValueError: no air"),
     "never repeats": ("determinism", "first at step 1 in tap range -> pilot.approach, scene 'w0'"),
@@ -119,8 +126,7 @@ def test_a_check_counts_successes_and_sees_what_diverged():
 
 def test_a_check_says_that_a_system_is_at_its_ceiling():
     name = f"{ROOT / 'examples/toy.py'}:create"
-    asked = {"library": "carts", "scenes": ENOUGH, "variants": ("calibrated",)}
-    trials = check(name, **asked).checks[0]
+    trials = check(name, library="carts", scenes=ENOUGH, variants=("calibrated",)).checks[0]
     assert trials.status == "passed"
     assert trials.remarks[0].startswith("Variant 'calibrated' succeeds in all of 20 checked scenes")
 
@@ -156,24 +162,19 @@ def test_modules_that_stand_for_each_other_under_two_names_are_a_remark():
 
 def test_rounding_is_told_from_dependence_by_its_size():
     """A sum over scenes beside it may change a last digit; that is no shared state."""
-    named = {each.name: each for each in check(broken="rounds").checks}
-    assert (found := named["scene independence"]).status == "passed"
+    assert (found := named("rounds")[INDEPENDENCE]).status == "passed"
     assert re.search(r"differs by rounding alone, at most [1-9]e-1[5-7]", found.remarks[0])
     assert "the same to rounding" in found.says
 
 
 def test_where_a_last_digit_decides_dependence_is_not_judged():
-    named = {each.name: each for each in check(broken="last digit").checks}
-    assert (found := named["scene independence"]).status == "not judged"
+    assert (found := named("last digit")[INDEPENDENCE]).status == "not judged"
     assert "rounding cannot be told from dependence" in found.remarks[0]
 
 
 def test_a_network_rounds_by_its_batch_unless_it_takes_row_by_row():
     pytest.importorskip("torch")
-    batched, by_row = (
-        next(e for e in check(broken=kind).checks if e.name == "scene independence")
-        for kind in ("network", "network row by row")
-    )
+    batched, by_row = (named(kind)[INDEPENDENCE] for kind in ("network", "network row by row"))
     assert (batched.status, by_row.status) == ("passed", "passed")
     assert "differs by rounding alone" in batched.remarks[0]
     assert by_row.remarks == ()

@@ -99,15 +99,9 @@ def test_a_module_that_reads_the_past_says_what_was_before():
 
 def test_a_system_of_functions_is_audited(tmp_path):
     (tmp_path / "cart.py").write_text(SYSTEM)
+    question = {"baseline": "typical", "repair": "known", "fault": "gain:scale=0.2", "scenes": 30}
     run = faultpath.audit(
-        tmp_path / "cart.py",
-        baseline="typical",
-        repair="known",
-        fault="gain:scale=0.2",
-        scenes=30,
-        workers=0,
-        folder=tmp_path / "run",
-        progress=False,
+        tmp_path / "cart.py", **question, workers=0, folder=tmp_path / "run", progress=False
     )
     assert run.record.findings == ()
     assert [path.name for path in run.record.paths] == ["correct", "brake"]
