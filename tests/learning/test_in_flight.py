@@ -12,6 +12,8 @@ from faultpath.faults import Fault, Scale, resolve
 from faultpath.learning import Learned, errors, fit, uncertainty_training, withheld, withholding
 from faultpath.loop import Batch, Inputs, Module, Port, Reading, Taps
 from faultpath.systems import ComposedSystem, FunctionPlant, Parts
+from faultpath.trials import Arm
+from faultpath.trials.attempt import taps_of
 
 GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")
 
@@ -47,15 +49,8 @@ def system(*variants: Module) -> ComposedSystem:
 
 
 def fly(made: ComposedSystem, variant: str, *faults: Fault, scenes=("seed/1", "seed/2")):
-    declared = made.variants[variant]
-    taps = Taps(
-        made.interface,
-        resolve(faults, made.interface, declared.consumers),
-        scenes=scenes,
-        dt_s=0.1,
-        bindings=declared.bindings,
-        consumers=declared.consumers,
-    )
+    resolved = resolve(faults, made.interface, made.variants[variant].consumers)
+    taps = taps_of(made, Arm(variant=variant, faults=resolved), scenes)
     return made.run(variant, scenes, taps, 0)
 
 

@@ -52,13 +52,12 @@ def map_file(folder: Path, text: str = MAP) -> str:
     return str(path)
 
 
-def compensated(log: Path, text: str = MAP) -> Any:
-    """Return what a log shows, read by a map beside it; who only writes logs needs no quadrotor."""
-    from faultpath_quadrotor.flightlog.compensation import compensation
+def read(log: Path, text: str = MAP) -> Any:
+    """Read a log by a map beside it; who only writes logs needs no quadrotor."""
     from faultpath_quadrotor.flightlog.flight import read_flight
     from faultpath_quadrotor.flightlog.reading import read_columns
 
-    return compensation(read_flight(log, read_columns(map_file(log.parent, text))))
+    return read_flight(log, read_columns(map_file(log.parent, text)))
 
 
 def write(path: Path, columns: dict[str, Any]) -> Path:

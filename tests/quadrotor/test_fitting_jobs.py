@@ -80,25 +80,10 @@ def test_worker_processes_give_the_same_bits_and_fail_alone(tmp_path: Path) -> N
     assert "memory" in killed.error
 
 
-@pytest.fixture
-def gate(tmp_path: Path) -> Path:
-    """A file that makes the toy slow and long while it exists."""
-    place = tmp_path / "data" / "gate"
-    place.parent.mkdir()
-    place.touch()
-    return place
-
-
-def _finishes_to_the_same_bits(tmp_path: Path) -> None:
-    task = Toy(epochs=30)
-    task.name = "slow"
-    _run(tmp_path, [FitJob(entry("slow"), 0)])
-    ours, whole = tmp_path / "out" / "slow-0.safetensors", fit(task, tmp_path / "whole")
-    assert ours.read_bytes() == whole.read_bytes()
-
-
-@pytest.mark.usefixtures("gate")
 def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(tmp_path, monkeypatch):
+    gate = tmp_path / "data" / "gate"  # makes the toy slow and long while it exists
+    gate.parent.mkdir()
+    gate.touch()
     journal = journal_path(tmp_path / "out" / "slow-0.safetensors")
     processes: list[subprocess.Popen[bytes]] = []
     original = processes_of_work._Process.__init__
@@ -115,4 +100,8 @@ def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(tmp_path, monkeypatch):
     with pytest.raises(Stopped, match="with 0 of 1 models finished"):
         _run(tmp_path, [FitJob(entry("slow"), 0)], 1, stop)
     assert [process.returncode for process in processes] == [-signal.SIGKILL]
-    _finishes_to_the_same_bits(tmp_path)
+    _run(tmp_path, [FitJob(entry("slow"), 0)])
+    task = Toy(epochs=30)
+    task.name = "slow"
+    whole = fit(task, tmp_path / "whole")
+    assert (tmp_path / "out" / whole.name).read_bytes() == whole.read_bytes()

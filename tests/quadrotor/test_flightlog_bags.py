@@ -14,7 +14,7 @@ from faultpath_quadrotor.flightlog.compensation import Compensation, compensatio
 from faultpath_quadrotor.flightlog.flight import read_flight
 from faultpath_quadrotor.flightlog.proposing import propose
 from faultpath_quadrotor.flightlog.reading import read_columns
-from flight_logs import MAP, compensated, flown, write
+from flight_logs import MAP, flown, read, write
 
 from faultpath.cli.main import main
 from faultpath.core.errors import UserError
@@ -33,7 +33,8 @@ def known(tmp_path_factory: pytest.TempPathFactory) -> Compensation:
     """The same flight in a table, without the drag, which no bag states."""
     text = MAP.replace("drag_kgps: [0.3, 0.3, 0.6]", "")
     text = text.replace("thrust}", "thrust, newton_per_unit: fit}")
-    return compensated(write(tmp_path_factory.mktemp("table") / "flight.csv", COLUMNS), text)
+    log = write(tmp_path_factory.mktemp("table") / "flight.csv", COLUMNS)
+    return compensation(read(log, text))
 
 
 @pytest.fixture(scope="module")

@@ -7,11 +7,12 @@ from faultpath_quadrotor.flightlog.compensation import (
     LEAST_S,
     Compensation,
     Medians,
+    compensation,
     correlation_time,
 )
 from faultpath_quadrotor.flightlog.flight import INTERVAL_S
 from faultpath_quadrotor.flightlog.words import sentences
-from flight_logs import compensated, flown, write
+from flight_logs import flown, read, write
 from scipy.signal import lfilter
 
 
@@ -61,7 +62,8 @@ def test_pairs_across_a_gap_do_not_count() -> None:
 
 @pytest.fixture(scope="module")
 def short(tmp_path_factory: pytest.TempPathFactory) -> Compensation:
-    return compensated(write(tmp_path_factory.mktemp("short") / "flight.csv", flown(18.0)))
+    log = write(tmp_path_factory.mktemp("short") / "flight.csv", flown(18.0))
+    return compensation(read(log))
 
 
 def test_too_short_a_flight_decides_nothing_and_says_what_it_takes(short: Compensation) -> None:

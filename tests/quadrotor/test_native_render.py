@@ -48,6 +48,7 @@ def test_fused_sets_draw_the_same_bits() -> None:
     assert all(torch.equal(first, other) for other in others)
 
 
+@pytest.mark.parametrize("isa", [*native.available(), native.PORTABLE])
 def test_a_scene_s_image_does_not_depend_on_its_neighbours(isa: str) -> None:
     state = flown(SCENES)
     together = drawn(isa, SCENES, state)

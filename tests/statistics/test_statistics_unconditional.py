@@ -36,16 +36,13 @@ def by_definition(n):
     return np.array([laws[d][z >= own - 1e-9].sum() for d, own in zip(apart, z, strict=True)])
 
 
-def found(n):
-    return np.array([unconditional.p_value(b, c, n) for b, c in tables(n)])
-
-
 @pytest.mark.parametrize("n", [1, 2, 10, 30])
 def test_p_values_are_those_of_the_definition_and_keep_their_level(n):
     """Of every table; the maximum is looked for on another grid."""
     grid = np.unique(np.append(np.linspace(0.0, 1.0, 401), np.arange(n + 1) / n))
     laws = np.array([chances(n, share) for share in grid])
-    e_step, ours = by_definition(n), found(n)
+    e_step = by_definition(n)
+    ours = np.array([unconditional.p_value(b, c, n) for b, c in tables(n)])
     for own, p in zip(e_step, ours, strict=True):
         expected = min(1.0, (laws @ (e_step <= own * (1.0 + 1e-9))).max())
         assert p == pytest.approx(expected, rel=2e-3)

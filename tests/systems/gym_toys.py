@@ -4,10 +4,11 @@ import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Dict, Discrete
 
-from faultpath.faults import resolve
-from faultpath.loop import Module, Port, Taps
+from faultpath.loop import Module, Port
 from faultpath.systems import ComposedSystem, FunctionPlant
 from faultpath.systems.gymnasium import GymnasiumPlant
+from faultpath.trials import Arm
+from faultpath.trials.attempt import taps_of
 
 REAL = Box(-np.inf, np.inf, (1,), np.float64)
 SCENES = tuple(f"seed/{i}" for i in range(6))
@@ -86,14 +87,5 @@ def system(made, modules=None, **given):
     return ComposedSystem("walk", made, {"only": modules or [Steer()]}, units, **given)
 
 
-def fly(built, scenes=SCENES, variant="only", faults=(), seed=0):
-    wired = built.variants[variant]
-    taps = Taps(
-        built.interface,
-        resolve(faults, built.interface, wired.consumers),
-        scenes=tuple(scenes),
-        dt_s=built.control_dt_s,
-        bindings=wired.bindings,
-        consumers=wired.consumers,
-    )
-    return built.run(variant, scenes, taps, seed)
+def fly(built, scenes=SCENES, variant="only", seed=0):
+    return built.run(variant, scenes, taps_of(built, Arm(variant=variant), scenes), seed)
