@@ -13,9 +13,7 @@ from faultpath.faults import Coupled, Delay, Fault, Intervention, Noise, Offset,
 from faultpath.loop import Reading
 
 SCENES = ("a", "b", "c", "d")
-EACH = pytest.mark.parametrize(
-    "intervention", INTERVENTIONS, ids=[f"{i}-{v.kind}" for i, v in enumerate(INTERVENTIONS)]
-)
+EACH = pytest.mark.parametrize("intervention", INTERVENTIONS, ids=lambda each: each.kind)
 WINDOWS = pytest.mark.parametrize(
     "window",
     [{}, {"onset_step": 4, "duration_steps": 5, "recovery_steps": 3}],

@@ -24,9 +24,7 @@ SIGNS = {-1: "−5.0 [−9.0, −1.0]", 0: "+1.0 [−3.0, 5.0]", 1: "+6.0 [2.0, 
 def case(isolated: Sign, shared: Sign, *, reversal: bool = False) -> central.Case:
     """Return a run that detected effects with these signs."""
     one, two = (central.Effect(text=SIGNS[sign], sign=sign) for sign in (isolated, shared))
-    return central.Case(
-        place="4 scenes of here, seed 0", isolated=one, shared=two, reversal=reversal
-    )
+    return central.Case(place="4 scenes here", isolated=one, shared=two, reversal=reversal)
 
 
 def test_the_answer_is_a_reversal_only_where_a_run_decides_one() -> None:

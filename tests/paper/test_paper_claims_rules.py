@@ -30,16 +30,11 @@ from faultpath.statistics.effects import mean_effect, success_effect
 from faultpath.statistics.estimate import PairedTest
 from faultpath.statistics.resamples import Resamples
 
+Interval = tuple[float, float] | None
 UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
 
 
-def shown(
-    value: float,
-    interval: tuple[float, float] | None,
-    n_scenes: int = 100,
-    test: PairedTest | None = None,
-    mde: float | None = None,
-) -> Contrast:
+def shown(value: float, interval: Interval, n_scenes=100, test=None, mde=None) -> Contrast:
     """Return a difference with this interval, that notable ones of 20 pp are set beside."""
     draws = np.empty(0) if interval is None else np.repeat(interval, 50)
     made = Contrast(value, "pp", n_scenes, draws=draws, test=test, notable=20.0)
@@ -47,9 +42,7 @@ def shown(
     return made
 
 
-def found(
-    interval: tuple[float, float] | None, p_value: float | None = None, mde: float | None = 8.0
-) -> Contrast:
+def found(interval: Interval, p_value: float | None = None, mde: float | None = 8.0) -> Contrast:
     """Return a difference at the middle of its interval, with a test that finds its side ahead."""
     value = 0.0 if interval is None else sum(interval) / 2
     test = None if p_value is None else PairedTest("sign", p_value, 1 if value > 0 else -1)

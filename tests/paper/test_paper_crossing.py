@@ -82,9 +82,7 @@ def test_too_few_scenes_give_no_interval() -> None:
         (OVER_30, None, 2, 100, "undecided"),
     ],
 )
-def test_a_break_even_frequency_meets_a_bound_or_does_not_exist(
-    bound, value, behind, scenes, answer
-):
+def test_a_break_even_frequency_meets_a_bound_or_is_none(bound, value, behind, scenes, answer):
     ends = None if value is None else (max(0.0, value - 10), value + 10)
     found = crossing(flown(0, -behind, scenes), REPAIR)
     assert judge(replace(found, value=value, interval=ends), bound).answer == answer

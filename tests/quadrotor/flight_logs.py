@@ -23,9 +23,7 @@ drag_kgps: [0.3, 0.3, 0.6]
 """
 
 
-def flown(
-    seconds: float = 60.0, wind: float = 3.0, seed: int = 0
-) -> dict[str, np.ndarray[Any, Any]]:
+def flown(seconds: float = 60.0, wind: float = 3.0, seed: int = 0) -> dict[str, Any]:
     """Return the columns of a flight: z up, thrust in N, wind that changes within seconds."""
     rng = np.random.default_rng(seed)
     n = int(seconds * RATE_HZ)

@@ -32,9 +32,7 @@ class Log(Observer):
         if not isinstance(reading.value, Query):
             self._keep(tap, reading.value, got)
 
-    def answered(
-        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
-    ) -> None:
+    def answered(self, tap, query, step, request, answer, got) -> None:
         self._keep(tap, query.value(answer), query.value(got))
 
     def _keep(self, tap: Tap, given: Any, got: Any) -> None:

@@ -175,9 +175,7 @@ def test_a_part_that_cannot_be_brought_is_refused_in_a_sentence(code, says, tmp_
 
 
 @pytest.mark.parametrize(("code", "says"), FLOWN.values(), ids=FLOWN)
-def test_a_part_that_does_another_thing_than_it_should_is_refused_at_first_use(
-    code, says, tmp_path
-):
+def test_a_part_that_does_another_thing_is_refused_at_first_use(code, says, tmp_path):
     named = f"{_file(tmp_path, code)}:create"
     system = quadrotor(bring=named)
     with pytest.raises(UserError) as refused:

@@ -43,9 +43,7 @@ class Placed(Observer):
         if not isinstance(reading.value, Query):
             assert reading.value.device == got.device == GPU, str(tap)
 
-    def answered(
-        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
-    ) -> None:
+    def answered(self, tap, query, step, request, answer, got) -> None:
         assert query.value(got).device == GPU, str(tap)
 
 

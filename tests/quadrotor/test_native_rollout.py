@@ -64,11 +64,9 @@ def inputs_of(scenes: int = SCENES, seed: int = 1) -> PredictorInputs:
     return PredictorInputs(state, delivered)
 
 
-def commands_of(
-    scenes: int = SCENES, candidates: int = 96, horizon: int = 20, seed: int = 2
-) -> torch.Tensor:
-    stream = torch.Generator().manual_seed(seed)
-    commands = torch.randn(horizon, 4, scenes, candidates, generator=stream)
+def commands_of(scenes: int = SCENES, candidates: int = 96) -> torch.Tensor:
+    stream = torch.Generator().manual_seed(2)
+    commands = torch.randn(20, 4, scenes, candidates, generator=stream)
     commands[:, 0] = (9.8 + 3 * commands[:, 0]).clamp_(min=0)
     return commands
 

@@ -45,9 +45,8 @@ def test_hover_trim_stays_put():
 
 @pytest.mark.parametrize("scale", [0.6, 1.0, 1.4])
 def test_thrust_scale_multiplies_realised_thrust(scale):
-    parameters = VehicleParameters(
-        mass_kg=0.8, thrust_scale=scale, motor_time_constant_s=1e-9, drag_kgps=(1e-12,) * 3
-    )
+    instant = {"motor_time_constant_s": 1e-9, "drag_kgps": (1e-12,) * 3}
+    parameters = VehicleParameters(mass_kg=0.8, thrust_scale=scale, **instant)
     plant = TorchPlant(Vehicle.stack([parameters]))
     command = torch.tensor([[12.0], [0.0], [0.0], [0.0]], dtype=F64)
     end = plant.advance(plant.start(hovering(1)), command, calm(50, 1))

@@ -24,10 +24,8 @@ LOOPS = f"{Path(__file__).with_name('broken_loops.py')}:create"
 
 def check(name: str = BROKEN, broken: str | None = None, library: str = "any", **question):
     spec = SystemSpec(name=name, options={} if broken is None else {"broken": broken})
-    question = {"workers": 0, "library": library} | question
-    return check_system(
-        load_system(spec), spec, CheckQuestion(**question), lambda done, known: None
-    )
+    question = CheckQuestion(**{"workers": 0, "library": library} | question)
+    return check_system(load_system(spec), spec, question, lambda done, known: None)
 
 
 def failed(report) -> dict[str, tuple[str, ...]]:
