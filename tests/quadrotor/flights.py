@@ -143,6 +143,14 @@ def spread(scenes: Sequence[Scene], count: int, margin: float = 0.0) -> torch.Te
     return torch.from_numpy(draws.uniform(low, high, (3, len(scenes), count)))
 
 
+def tumbling(steps: int, lanes: int) -> torch.Tensor:
+    """Return commands under which some vehicles crash and some fly on, `[steps, 4, lanes]`."""
+    stream = torch.Generator().manual_seed(5)
+    commands = torch.randn(steps, 4, lanes, dtype=torch.float64, generator=stream)
+    commands[:, 0] = 10 + 4 * commands[:, 0]
+    return commands
+
+
 def hall(
     index: int,
     start: Point = (-3.0, 0.0, 1.0),

@@ -90,6 +90,7 @@ def test_an_arm_gets_a_part_of_its_own_with_the_seed_that_it_names():
 
 
 CREATE = "def create(seed) -> K:\n    "
+READS = f"{CREATE}c = Constant(); c.reads = "
 STEP = "class P(K):\n    def step(self, *given):\n        "
 P = f"\n{CREATE}return P()"
 BROKEN = {
@@ -100,27 +101,12 @@ BROKEN = {
     "syntax": ("def create(:", "line 9: SyntaxError"),
     "takes nothing": ("def create() -> K:\n    return K()", "called with a seed alone"),
     "place": (f"{CREATE}k = K(); k.reads |= {{'sonar'}}; return k", "'sonar', which predictors do"),
-    "without a start": (
-        f"{CREATE}k = K(); k.reads = frozenset({{'trim'}}); return k",
-        "does not read at 'initial_state'",
-    ),
-    "history alone": (f"{CREATE}k = K(); k.reads |= {{'latent'}}; return k", "'history' and 'lat"),
-    "channel": (
-        f"{CREATE}c = Constant(); c.reads = {{('wind', 'head')}}; return c",
-        "('wind', 'head'), a channel and place that reconstructions do not have",
-    ),
-    "half a place": (
-        f"{CREATE}c = Constant(); c.reads = {{('mass', 'head')}}; return c",
-        "add ('thrust_scale', 'head')",
-    ),
-    "weights from nowhere": (
-        f"{CREATE}k = K(); k.net = torch.nn.Linear(1, 1); return k",
-        "set its data_files",
-    ),
-    "missing data": (
-        f"{CREATE}k = K(); k.data_files = ['gone.pt']; return k",
-        "names among its data files",
-    ),
+    "no start": (f"{CREATE}k = K(); k.reads = frozenset({{'trim'}}); return k", "'initial_state'"),
+    "history alone": (f"{CREATE}k = K(); k.reads |= {{'latent'}}; return k", "'history' and"),
+    "channel": (f"{READS}{{('wind', 'head')}}; return c", "('wind', 'head'), a channel and place"),
+    "half a place": (f"{READS}{{('mass', 'head')}}; return c", "add ('thrust_scale', 'head')"),
+    "no data": (f"{CREATE}k = K(); k.net = torch.nn.Linear(1, 1); return k", "set its data_files"),
+    "lost data": (f"{CREATE}k = K(); k.data_files = ['gone.pt']; return k", "its data files"),
 }
 FLOWN = {
     "wide state": (f"{STEP}return given[0], given[2]{P}", "[3, 2, 1] of float32: it must be a"),
@@ -128,16 +114,13 @@ FLOWN = {
     "fails in a step": (f"{STEP}return {{}}['x'], 0  # here{P}", "line 11: KeyError"),
     "not a number": (
         f"{STEP}s, m = super().step(*given); return replace(s, rate=s.rate / 0), m{P}",
-        "rate of the state that step() returns is NaN or infinite",
+        "rate of the state that step() returns is NaN",
     ),
     "flat wind": (
         f"class C(Constant):\n    def wind(self, memory): return memory\n{CREATE}return C()",
         "wind() is a tensor [32] of float64: it must be a tensor [3, 32]",
     ),
-    "other kind": (
-        f"{CREATE}return K(drag=seed is None, wind=seed is None)",
-        "reads elsewhere than the one for None",
-    ),
+    "other kind": (f"{CREATE}return K(seed is None, seed is None)", "reads elsewhere than the one"),
     "no weights": (
         f"{CREATE}if seed is not None:\n        open('gone.pt')  # here\n    return K()",
         "line 11: FileNotFoundError",

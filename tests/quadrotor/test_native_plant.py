@@ -11,7 +11,7 @@ from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M, MOTOR_THRUST_MAX_N, VehicleParameters
-from flights import hall, spread
+from flights import hall, spread, tumbling
 from kernel_sets import FUSED
 from test_plant import drawn_vehicles
 from torch import Tensor
@@ -93,15 +93,8 @@ def assert_same_trials(ours: World, theirs: World) -> None:
         torch.testing.assert_close(*both, rtol=0, atol=1e-10, equal_nan=True)
 
 
-def tumbling(world_lanes: int, steps: int) -> Tensor:
-    stream = torch.Generator().manual_seed(5)
-    commands = torch.randn(steps, 4, world_lanes, dtype=F64, generator=stream)
-    commands[:, 0] = 10 + 4 * commands[:, 0]
-    return commands
-
-
 SCENES = list(load_library("selection").scenes[:34])
-COMMANDS = tumbling(64, 22)
+COMMANDS = tumbling(22, 64)
 
 
 @pytest.fixture(scope="module")

@@ -63,14 +63,12 @@ PEBBLE = Box(centre_m=(0.0, 0.0, -5.0), half_extents_m=(0.01, 0.01, 0.01))
 VEHICLE, LOW, HIGH = BASE[1].vehicle, BASE[1].bounds.low_m, BASE[1].bounds.high_m
 PILLAR = Cylinder(centre_m=BASE[1].start_m[:2], radius_m=0.3, low_m=LOW[2], high_m=3)
 CRATE = Box(centre_m=BASE[1].goal_m, half_extents_m=(0.3, 0.3, 0.3), yaw_rad=1.0)
+THIN = VEHICLE.model_copy(update={"inertia_kgm2": (1.0, 0.1, 0.1)})
 FAR = (5e4, 0.0, 1.0)
 UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
     "bounds": ({"bounds": ArenaBounds(low_m=HIGH, high_m=LOW)}, "field bounds"),
     "flat": ({"bounds": ArenaBounds(low_m=LOW, high_m=(*HIGH[:2], LOW[2]))}, "along z"),
-    "huge": (
-        {"bounds": ArenaBounds(low_m=(-900,) * 3, high_m=(900,) * 3)},
-        "cells of 0.1 m are too",
-    ),
+    "huge": ({"bounds": ArenaBounds(low_m=(-900,) * 3, high_m=(900,) * 3)}, "cells of 0.1 m"),
     "far": ({"goal_m": FAR}, "field goal_m: lies beyond 1000 m"),
     "start outside": ({"start_m": (HIGH[0] + 1, 0.0, 1.0)}, "start_m: .*outside the bounds"),
     "goal below": ({"goal_m": (*BASE[1].goal_m[:2], LOW[2] - 1)}, "goal_m: .*outside the bounds"),
@@ -82,10 +80,7 @@ UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
     "crowded": ({"boxes": (PEBBLE,) * (MOST_OBSTACLES + 1)}, "257 obstacles are too many"),
     "heavy": ({"vehicle": VEHICLE.model_copy(update={"mass_kg": 1e4})}, "cannot lift itself"),
     "there already": ({"goal_m": BASE[1].start_m}, "goal_m: within 0.5 m of start_m"),
-    "no body": (
-        {"vehicle": VEHICLE.model_copy(update={"inertia_kgm2": (1.0, 0.1, 0.1)})},
-        "vehicle.inertia_kgm2",
-    ),
+    "no body": ({"vehicle": THIN}, "vehicle.inertia_kgm2"),
     "another's id": ({"id": "held-out/001"}, "field id: 'held-out/001' is not 'mine/001'"),
     "the same id": ({"id": "mine/000"}, "field id"),
     "another's library": ({"library": "other"}, "field library"),
