@@ -3,25 +3,7 @@
 import numpy as np
 import pytest
 
-from faultpath.faults import (
-    INTERVENTIONS,
-    Bias,
-    Delay,
-    Drift,
-    Dropout,
-    Erase,
-    Fault,
-    Freeze,
-    Hold,
-    Intervention,
-    Noise,
-    Offset,
-    Quantise,
-    Scale,
-    Sequence,
-    Shuffle,
-    UniformScale,
-)
+from faultpath import faults
 from faultpath.interface import read_interface
 from faultpath.learning.windows import Windows, delivered
 from faultpath.loop import Reading, Taps
@@ -34,21 +16,21 @@ sources:
 channels:
 - {name: image, sources: [camera], consumers: [encoder.pixels, guard.pixels], erasure_default: 0.5}
 """)
-KINDS: tuple[Intervention, ...] = (
-    Scale(factor=1.1),
-    UniformScale(half_range=0.2),
-    Offset(by=0.1),
-    Quantise(step_size=0.25),
-    Erase(),
-    Noise(std=0.3),
-    Drift(walk_per_sqrt_s=0.5),
-    Bias(std=0.3, time_constant_s=0.2),
-    Delay(steps=3),
-    Hold(every=3),
-    Freeze(),
-    Dropout(probability=0.4),
-    Shuffle(axis=1),
-    Sequence(parts=(Scale(factor=1.1), Noise(std=0.1))),
+KINDS: tuple[faults.Intervention, ...] = (
+    faults.Scale(factor=1.1),
+    faults.UniformScale(half_range=0.2),
+    faults.Offset(by=0.1),
+    faults.Quantise(step_size=0.25),
+    faults.Erase(),
+    faults.Noise(std=0.3),
+    faults.Drift(walk_per_sqrt_s=0.5),
+    faults.Bias(std=0.3, time_constant_s=0.2),
+    faults.Delay(steps=3),
+    faults.Hold(every=3),
+    faults.Freeze(),
+    faults.Dropout(probability=0.4),
+    faults.Shuffle(axis=1),
+    faults.Sequence(parts=(faults.Scale(factor=1.1), faults.Noise(std=0.1))),
 )
 
 
@@ -58,22 +40,19 @@ OF_NO_IMAGE = {"rotate", "recorded"}
 
 def test_no_kind_is_missing() -> None:
     # Every kind of fault declares it; the union's base does not.
-    assert {each.kind for each in KINDS} | OF_NO_IMAGE == set(INTERVENTIONS)  # pyright: ignore[reportAttributeAccessIssue]
+    assert {each.kind for each in KINDS} | OF_NO_IMAGE == set(faults.INTERVENTIONS)  # pyright: ignore[reportAttributeAccessIssue]
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda each: each.kind)
-def test_a_window_gets_what_a_flight_of_its_name_and_seed_gets(kind: Intervention) -> None:
+def test_a_window_gets_what_a_flight_of_its_name_and_seed_gets(kind: faults.Intervention) -> None:
     images = np.random.default_rng(0).uniform(size=(WINDOWS, STEPS, 6, 8)).astype(np.float32)
     data = Windows(INTERFACE, "encoder", {"image": images}, targets=np.zeros(WINDOWS), dt_s=DT_S)
-    (fault,) = Fault(channel="image", intervention=kind, onset_step=1).resolved(
-        INTERFACE, {"encoder.pixels"}
-    )
+    everywhere = faults.Fault(channel="image", intervention=kind, onset_step=1)
+    (fault,) = everywhere.resolved(INTERFACE, {"encoder.pixels"})
     got, counts = delivered(data, (fault,), data.readings, range(WINDOWS), 0, epoch=2)
     (seen,) = got.values()
     taps = Taps(INTERFACE, (fault,), scenes=data.ids, dt_s=DT_S, seed=2)
-    flown = [
-        taps.deliver("image", "encoder.pixels", Reading(images[:, step], "camera", step), step)
-        for step in range(STEPS)
-    ]
+    readings = [Reading(images[:, step], "camera", step) for step in range(STEPS)]
+    flown = [taps.deliver("image", "encoder.pixels", r, i) for i, r in enumerate(readings)]
     np.testing.assert_array_equal(seen, np.stack(flown, axis=1))
     assert sum(count.altered_steps for count in counts)

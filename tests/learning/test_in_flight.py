@@ -12,6 +12,8 @@ from faultpath.faults import Fault, Scale, resolve
 from faultpath.learning import Learned, errors, fit, uncertainty_training, withheld, withholding
 from faultpath.loop import Batch, Inputs, Module, Port, Reading, Taps
 from faultpath.systems import ComposedSystem, FunctionPlant, Parts
+from faultpath.trials import Arm
+from faultpath.trials.attempt import taps_of
 
 GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")
 
@@ -47,15 +49,8 @@ def system(*variants: Module) -> ComposedSystem:
 
 
 def fly(made: ComposedSystem, variant: str, *faults: Fault, scenes=("seed/1", "seed/2")):
-    declared = made.variants[variant]
-    taps = Taps(
-        made.interface,
-        resolve(faults, made.interface, declared.consumers),
-        scenes=scenes,
-        dt_s=0.1,
-        bindings=declared.bindings,
-        consumers=declared.consumers,
-    )
+    resolved = resolve(faults, made.interface, made.variants[variant].consumers)
+    taps = taps_of(made, Arm(variant=variant, faults=resolved), scenes)
     return made.run(variant, scenes, taps, 0)
 
 
@@ -63,9 +58,8 @@ def test_a_withheld_channel_is_not_read_and_its_neutral_value_arrives() -> None:
     inner = Brake()
     interface = system(Brake()).interface
     made = system(Brake(), withheld(inner, withholding("gain", value=1.25), interface))
-    assert made.variants["variant_0"].consumers - made.variants["variant_1"].consumers == {
-        "brake.model"
-    }
+    reading, blind = (made.variants[f"variant_{i}"].consumers for i in (0, 1))
+    assert reading - blind == {"brake.model"}
     inner.got.clear()
     fly(made, "variant_1")
     assert {float(value) for got in inner.got for value in got[Port("gain", "model")]} == {1.25}
@@ -103,20 +97,17 @@ def test_a_learned_module_gets_the_last_steps_as_in_its_windows() -> None:
     made = Learned("observer", net, "slope", [GAIN, VELOCITY], steps=4)
     memory = None
     for step in range(4):
-        delivered = {
-            GAIN: np.asarray(data.readings["gain"], dtype=float),
-            VELOCITY: np.asarray(data.readings["velocity"][:, step], dtype=float),
-        }
+        read = {GAIN: data.readings["gain"], VELOCITY: data.readings["velocity"][:, step]}
+        delivered = {port: np.asarray(value, dtype=float) for port, value in read.items()}
         outputs, memory = made.step(Inputs("observer", step, delivered, {}), memory)
     gain = torch.from_numpy(np.repeat(np.asarray(data.readings["gain"])[:, None], 4, axis=1))
     velocity = torch.from_numpy(np.asarray(data.readings["velocity"]))
     with torch.no_grad():
         expected = net({GAIN: gain, VELOCITY: velocity}).numpy()
     assert outputs["slope"] == pytest.approx(expected, rel=1e-5)
-    first, _ = made.step(Inputs("observer", 0, delivered, {}), None)
-    alone, _ = made.step(
-        Inputs("observer", 0, {port: value[3:4] for port, value in delivered.items()}, {}), None
-    )
+    one = {port: value[3:4] for port, value in delivered.items()}
+    inputs = [Inputs("observer", 0, some, {}) for some in (delivered, one)]
+    first, alone = (made.step(given, None)[0] for given in inputs)
     assert first["slope"][3] == alone["slope"][0]  # to the bit, in other company
 
 

@@ -41,20 +41,14 @@ print([len(shipped.modules(name, 0)) for name in shipped.variants])
 def test_it_runs_from_an_empty_folder_and_its_fits_are_matched_and_audited(tmp_path: Path) -> None:
     """One process for all of it: half of the time goes into loading torch and Gymnasium."""
     pytest.importorskip("torch")
-    done = subprocess.run(
-        [sys.executable, "-c", FIT_AND_AUDIT, str(EXAMPLE)],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-    )
+    line = [sys.executable, "-c", FIT_AND_AUDIT, str(EXAMPLE)]
+    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     fitted, *_, paths, ends, findings, weights, shipped = done.stdout.splitlines()
     assert fitted.startswith("matched in all but the repair (uncertainty training: motor_gain")
     assert paths == "['correct', 'encoder', 'planner', 'shared']"
     assert "failed" not in ends
     assert findings == "[]"
-    names = [
-        f"{name}-0.{kind}" for name in ("exact", "uncertain") for kind in ("json", "safetensors")
-    ]
-    assert weights == str(names)
+    kinds = ("json", "safetensors")
+    assert weights == str([f"{name}-0.{of}" for name in ("exact", "uncertain") for of in kinds])
     assert shipped == "[2, 2]"

@@ -125,8 +125,5 @@ def test_all_differences_are_listed(baseline) -> None:
     changed = made(loss=absolute, schedule=Schedule(epochs=1, batch_size=16), seed=2, repair=REPAIR)
     said = str(matched(baseline, changed)).splitlines()
     assert said[0] == "not matched:"
-    assert [line.split(":")[0] for line in said[1:]] == [
-        "  - Loss",
-        "  - Budget",
-        "  - Minibatch order",
-    ]
+    names = [line.split(":")[0] for line in said[1:]]
+    assert names == ["  - Loss", "  - Budget", "  - Minibatch order"]

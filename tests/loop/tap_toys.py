@@ -5,28 +5,9 @@ from typing import Any
 
 import numpy as np
 
+from faultpath import faults as kinds
 from faultpath.core.streams import generator
-from faultpath.faults import (
-    Bias,
-    Coupled,
-    Delay,
-    Drift,
-    Dropout,
-    Erase,
-    Fault,
-    Freeze,
-    Hold,
-    Intervention,
-    Noise,
-    Offset,
-    Quantise,
-    Rotate,
-    Scale,
-    Shuffle,
-    UniformScale,
-    resolve,
-)
-from faultpath.faults import Sequence as InTurn
+from faultpath.faults import Coupled, Fault, resolve
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.loop import Reading, Taps
 
@@ -56,26 +37,26 @@ INTERFACE = Interface(
 )
 SOURCES = {"mass": "scale", "wind": "still"}
 
-INTERVENTIONS: tuple[Intervention, ...] = (
-    Scale(factor=1.1),
-    UniformScale(half_range=0.2),
-    Offset(by=(0.1, 0.0, -0.2)),
-    Rotate(by=(0.1, 0.0, -0.2)),
-    Quantise(step_size=0.25),
-    Erase(),
-    Noise(std=0.3),
-    Noise(std=0.3, relative=True),
-    Drift(rate_per_s=(1.0, 0.0, 2.0)),
-    Drift(walk_per_sqrt_s=0.5),
-    Bias(std=(0.3, 0.1, 0.2)),
-    Bias(std=0.3, relative=True, time_constant_s=0.2),
-    Delay(steps=3),
-    Hold(every=4),
-    Freeze(),
-    Dropout(probability=0.4),
-    Dropout(probability=0.4, substitute=Erase()),
-    Shuffle(axis=1),
-    InTurn(parts=(Scale(factor=1.1), Noise(std=0.1), Delay(steps=2))),
+INTERVENTIONS: tuple[kinds.Intervention, ...] = (
+    kinds.Scale(factor=1.1),
+    kinds.UniformScale(half_range=0.2),
+    kinds.Offset(by=(0.1, 0.0, -0.2)),
+    kinds.Rotate(by=(0.1, 0.0, -0.2)),
+    kinds.Quantise(step_size=0.25),
+    kinds.Erase(),
+    kinds.Noise(std=0.3),
+    kinds.Noise(std=0.3, relative=True),
+    kinds.Drift(rate_per_s=(1.0, 0.0, 2.0)),
+    kinds.Drift(walk_per_sqrt_s=0.5),
+    kinds.Bias(std=(0.3, 0.1, 0.2)),
+    kinds.Bias(std=0.3, relative=True, time_constant_s=0.2),
+    kinds.Delay(steps=3),
+    kinds.Hold(every=4),
+    kinds.Freeze(),
+    kinds.Dropout(probability=0.4),
+    kinds.Dropout(probability=0.4, substitute=kinds.Erase()),
+    kinds.Shuffle(axis=1),
+    kinds.Sequence(parts=(kinds.Scale(factor=1.1), kinds.Noise(std=0.1), kinds.Delay(steps=2))),
 )
 
 
@@ -102,8 +83,6 @@ def play(
     """Return what `consumer` gets, `[T, B, ...]`."""
     taps = make(faults, scenes, **more)
     readings = np.stack([series(scene, channel, steps) for scene in scenes], axis=1)
-    values = [
-        taps.deliver(channel, consumer, Reading(to(readings[step]), SOURCES[channel], step), step)
-        for step in range(steps)
-    ]
+    shown = [Reading(to(readings[step]), SOURCES[channel], step) for step in range(steps)]
+    values = (taps.deliver(channel, consumer, each, step) for step, each in enumerate(shown))
     return np.stack([np.asarray(value) for value in values])

@@ -145,12 +145,10 @@ def test_a_privileged_source_is_not_read_unasked() -> None:
 
 
 def test_modules_that_wait_for_each_other_are_named() -> None:
-    class Ring(Guess):
-        reads = frozenset({Port("position", "seen"), Port("action", "now")})
-        reads_past = frozenset()
-
+    ring = Guess()
+    ring.reads, ring.reads_past = ring.reads | {Port("action", "now")}, frozenset()
     with pytest.raises(SystemMistake, match=r"observer -> planner; .*reads_past"):
-        wired((Ring(), Planner()))
+        wired((ring, Planner()))
 
 
 def test_a_source_has_one_writer_and_each_port_one() -> None:
@@ -166,9 +164,7 @@ def test_a_module_that_forgets_its_source_is_named() -> None:
         def step(self, inputs, memory):
             return {}, memory
 
-    with pytest.raises(
-        SystemMistake, match="'observer' writes source 'guess', but at step 0 it returned no such"
-    ):
+    with pytest.raises(SystemMistake, match="'observer' writes source 'guess', but at step 0"):
         execute((Mute(), Planner()))
 
 
@@ -189,15 +185,10 @@ def test_the_interface_follows_from_the_ports() -> None:
     assert interface.reconstructs == {"observer": ("guess",)}
     every = {name for channel in interface.channels for name in channel.consumers}
     assert every == set(consumers(parts))
+    other = Guess()
+    other.reads = frozenset({Port("position", "other")})
     with pytest.raises(SystemMistake, match=r"does not list observer\.other"):
-        _undeclared()
-
-
-def _undeclared():
-    class Other(Guess):
-        reads = frozenset({Port("position", "other")})
-
-    graph(interface_of((Guess(), Planner(), Line())), Line(), (Other(), Planner()))
+        graph(interface, Line(), (other, Planner()))
 
 
 def test_a_filter_reconstructs_position_and_velocity():
@@ -236,11 +227,8 @@ def test_a_filter_reconstructs_position_and_velocity():
     parts = (Filter(), pilot, Line())
     interface = derived(facts, parts)
     assert interface.reconstructs == {"filter": ("guess", "speed")}
-    assert transitive_consumers(interface, "position") == (
-        "filter.seen",
-        "pilot.start",
-        "pilot.feedback",
-    )
+    reached = ("filter.seen", "pilot.start", "pilot.feedback")
+    assert transitive_consumers(interface, "position") == reached
     scaled = Fault(channel="position", intervention=Scale(factor=2.0))
     taps = Taps(interface, resolve([scaled], interface), scenes=SCENES, dt_s=DT_S)
     list(Loop(interface, graph(interface, Line(), parts[:2])).execute(_batch(), taps))

@@ -13,13 +13,8 @@ from faultpath.faults import Fault, Scale
 from faultpath.loop import FaultedElsewhere, NotDelivered, Reading, Taps
 from faultpath.loop.receipts import check_delivered
 
-LATE = Fault(
-    channel="mass",
-    intervention=Scale(factor=2.0),
-    consumers=("observer",),
-    onset_step=3,
-    duration_steps=2,
-)
+DOUBLE = Fault(channel="mass", intervention=Scale(factor=2.0))
+LATE = DOUBLE.model_copy(update={"onset_step": 3, "duration_steps": 2}).aimed_at("observer")
 
 
 def run(taps: Taps, to: Any = np.asarray, steps: Any = range(6), zero: int = -1) -> None:
@@ -37,9 +32,8 @@ def test_counts_deliveries_and_steps(to: Any) -> None:
     assert faulted.deliveries == 4
     assert faulted.steps_faulted.tolist() == [2, 2]
     assert faulted.steps_altered.tolist() == [2, 2]
-    assert [s.fault for s in faulted.corruptions] == [
-        "mass scaled by 2 at observer.model from step 3 for 2 steps"
-    ]
+    (corruption,) = faulted.corruptions
+    assert corruption.fault == "mass scaled by 2 at observer.model from step 3 for 2 steps"
     clean = taps.receipts().at("mass", "predictor.dynamics")
     assert (clean.deliveries, clean.corruptions, clean.steps_faulted.tolist()) == (4, (), [0, 0])
     silent = taps.receipts().at("wind", "planner.wind")
@@ -57,7 +51,7 @@ def test_faulted_is_not_yet_altered(to: Any) -> None:
 
 @LIBRARIES
 def test_a_nan_that_stays_is_not_altered(to: Any) -> None:
-    taps = make([Fault(channel="mass", intervention=Scale(factor=2.0))])
+    taps = make([DOUBLE])
     for step, lost in enumerate((0.0, np.nan)):
         reading = Reading(to(np.array([lost, 1.0])), "scale", step)
         taps.deliver("mass", "observer.model", reading, step)
@@ -128,10 +122,8 @@ def test_a_fault_that_reached_another_is_an_error() -> None:
         check_delivered(receipts, frozenset(), last)
     named = frozenset({("mass", "observer.model")})
     check_delivered(receipts, named, last)
-    strange = tuple(
-        replace(r, steps_altered=np.array([1, 0])) if r.channel == "wind" else r
-        for r in receipts.taps
-    )
+    once = {"mass": {}, "wind": {"steps_altered": np.array([1, 0])}}
+    strange = tuple(replace(receipt, **once[receipt.channel]) for receipt in receipts.taps)
     with pytest.raises(FaultedElsewhere, match=re.escape("tap wind -> predictor.wind altered a")):
         check_delivered(replace(receipts, taps=strange), named, last)
 

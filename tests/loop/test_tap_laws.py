@@ -13,9 +13,7 @@ from faultpath.faults import Coupled, Delay, Fault, Intervention, Noise, Offset,
 from faultpath.loop import Reading
 
 SCENES = ("a", "b", "c", "d")
-EACH = pytest.mark.parametrize(
-    "intervention", INTERVENTIONS, ids=[f"{i}-{v.kind}" for i, v in enumerate(INTERVENTIONS)]
-)
+EACH = pytest.mark.parametrize("intervention", INTERVENTIONS, ids=lambda each: each.kind)
 WINDOWS = pytest.mark.parametrize(
     "window",
     [{}, {"onset_step": 4, "duration_steps": 5, "recovery_steps": 3}],
@@ -38,9 +36,7 @@ def test_torch_gives_the_bits_of_numpy(intervention: Intervention, window: dict[
 
 @EACH
 @WINDOWS
-def test_a_scene_does_not_depend_on_its_neighbours(
-    intervention: Intervention, window: dict[str, Any]
-) -> None:
+def test_a_scene_does_not_depend_on_its_neighbours(intervention, window):
     faulted = fault(intervention, window)
     block = play([faulted], SCENES, to=to_torch)
     for order in (("c", "a", "d", "b"), ("b", "d"), ("c",)):
@@ -51,9 +47,7 @@ def test_a_scene_does_not_depend_on_its_neighbours(
 
 @EACH
 @WINDOWS
-def test_isolated_and_shared_agree_where_both_act(
-    intervention: Intervention, window: dict[str, Any]
-) -> None:
+def test_isolated_and_shared_agree_where_both_act(intervention, window):
     alone = play([fault(intervention, window, "predictor")], SCENES)
     shared = play([fault(intervention, window)], SCENES)
     elsewhere = play([fault(intervention, window, "planner")], SCENES)
@@ -116,24 +110,18 @@ def test_recovery_is_a_straight_line_back() -> None:
     window = {"onset_step": 2, "duration_steps": 3, "recovery_steps": 3}
     error = play([fault(Offset(by=1.0), window)], "ab") - play([], "ab")
     line = [0, 0, 1, 1, 1, 0.75, 0.5, 0.25, *[0] * 8]
-    np.testing.assert_allclose(
-        error, np.broadcast_to(np.reshape(line, (16, 1, 1)), error.shape), atol=1e-15
-    )
+    expected = np.broadcast_to(np.reshape(line, (16, 1, 1)), error.shape)
+    np.testing.assert_allclose(error, expected, atol=1e-15)
 
 
 def test_coupled_faults_draw_the_same_numbers() -> None:
     noise = Noise(std=1.0)
-    coupled = Coupled(
-        name="storm",
-        faults=(
-            Fault(channel="mass", intervention=noise),
-            Fault(channel="wind", intervention=noise),
-        ),
-    )
+    faults = tuple(Fault(channel=name, intervention=noise) for name in ("mass", "wind"))
+    coupled = Coupled(name="storm", faults=faults)
 
     def error(faults: list[Any], channel: str, consumer: str) -> np.ndarray[Any, Any]:
-        given = {"channel": channel, "consumer": consumer}
-        return play(faults, "ab", **given) - play([], "ab", **given)
+        tap = {"channel": channel, "consumer": consumer}
+        return play(faults, "ab", **tap) - play([], "ab", **tap)
 
     mass = error([coupled], "mass", "observer.model")
     wind = error([coupled], "wind", "predictor.wind")

@@ -43,11 +43,9 @@ def test_a_consumer_cannot_write_into_what_it_gets(faults: tuple[Fault, ...]) ->
     assert deliver(taps, plant, 2, "predictor.dynamics").tolist() == [2.0, 4.0]
 
 
-@CLEAN_OR_NULL
+@ANY_FAULT
 @LIBRARIES
-def test_a_second_delivery_is_the_first_one_with_a_null_fault_and_without(
-    faults: tuple[Fault, ...], to: Any
-) -> None:
+def test_a_second_delivery_is_the_first_one_with_a_fault_and_without(faults, to):
     taps = make(faults)
     first = deliver(taps, to([1.0, 3.0]))
     assert deliver(taps, to([1.0, 3.0])) is first
@@ -79,9 +77,7 @@ def test_a_second_delivery_is_the_first_one_with_a_null_fault_and_without(
         (partial(to_torch, [1j, 1.0]), "the reading is of torch.complex64"),
     ],
 )
-def test_the_first_reading_is_as_declared_faulted_or_not(
-    faults: tuple[Fault, ...], value: Any, sentence: str
-) -> None:
+def test_the_first_reading_is_as_declared_faulted_or_not(faults, value, sentence):
     with pytest.raises(MalformedReading, match=re.escape(sentence)):
         deliver(make(faults), value() if callable(value) else value)
 
@@ -111,9 +107,7 @@ def test_a_step_before_the_first_is_refused() -> None:
 class TestGuard:
     @pytest.mark.parametrize("inference", [False, True])
     @ANY_FAULT
-    def test_a_consumer_that_writes_is_named(
-        self, inference: bool, faults: tuple[Fault, ...]
-    ) -> None:
+    def test_a_consumer_that_writes_is_named(self, inference, faults):
         import torch
 
         with torch.inference_mode() if inference else nullcontext():

@@ -10,7 +10,7 @@ from tap_toys import make
 
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault, Freeze, Offset, Quantise, Scale
-from faultpath.loop import IllegalRead, MalformedReading, Reading, Taps, UndeclaredReader
+from faultpath.loop import IllegalRead, MalformedReading, Reading, UndeclaredReader
 
 SCALE = Fault(channel="mass", intervention=Scale(factor=2.0), consumers=("observer",))
 
@@ -31,54 +31,21 @@ def test_only_the_faulted_consumer_gets_another_value() -> None:
     assert taps.deliver("mass", "predictor.dynamics", mass(0), 0).tolist() == [1.0, 3.0]
 
 
-def test_a_second_delivery_in_a_step_returns_the_first() -> None:
-    taps = make([SCALE])
-    first = taps.deliver("mass", "observer.model", mass(0), 0)
-    assert taps.deliver("mass", "observer.model", mass(0), 0) is first
-    assert taps.receipts().at("mass", "observer.model").deliveries == 1
-
-
-WIND = Reading(np.zeros((2, 3)), "truth", 0)
+STILL, WIND = mass(0, source="still"), Reading(np.zeros((2, 3)), "truth", 0)
+FEWER, TRUE = make(consumers={"predictor.dynamics"}), make(bindings={"wind": "truth"})
 
 
 @pytest.mark.parametrize(
     ("taps", "tap", "reading", "error", "said"),
     [
         (make(), "mass -> planner.wind", mass(0), UndeclaredReader, "does not declare this"),
-        (
-            make(consumers={"predictor.dynamics"}),
-            "mass -> observer.model",
-            mass(0),
-            UndeclaredReader,
-            "this variant has no such consumer",
-        ),
-        (
-            make(),
-            "mass -> observer.model",
-            mass(0, source="still"),
-            IllegalRead,
-            "'still', but the channel is bound to 'scale'",
-        ),
-        (
-            make(bindings={"wind": "truth"}),
-            "wind -> planner.wind",
-            WIND,
-            IllegalRead,
-            "source 'truth' is privileged",
-        ),
+        (FEWER, "mass -> observer.model", mass(0), UndeclaredReader, "this variant has no such"),
+        (make(), "mass -> observer.model", STILL, IllegalRead, "'still', but the channel is bound"),
+        (TRUE, "wind -> planner.wind", WIND, IllegalRead, "source 'truth' is privileged"),
         (make(), "mass -> observer.model", mass(1), IllegalRead, "which is after step 0"),
-        (
-            make([SCALE]),
-            "mass -> observer.model",
-            mass(0, np.zeros(3)),
-            MalformedReading,
-            "3 rows for 2 scenes",
-        ),
     ],
 )
-def test_an_illegal_read_names_the_tap(
-    taps: Taps, tap: str, reading: Reading, error: type[Exception], said: str
-) -> None:
+def test_an_illegal_read_names_the_tap(taps, tap, reading, error, said):
     channel, consumer = tap.split(" -> ")
     with pytest.raises(error, match=f"^tap {tap}: .*{re.escape(said)}"):
         taps.deliver(channel, consumer, reading, 0)
@@ -95,17 +62,13 @@ def test_steps_do_not_run_backwards() -> None:
     ("given", "sentence"),
     [
         ({"bindings": {"wnd": "still"}}, "unknown channel 'wnd'; did you mean 'wind'"),
-        (
-            {"bindings": {"wind": "scale"}},
-            "channel 'wind' cannot be bound: unknown source 'scale'; known: still, truth",
-        ),
+        ({"bindings": {"wind": "scale"}}, "channel 'wind' cannot be bound: unknown source 'scale'"),
         ({"privileged": {"oracle"}}, "unknown source 'oracle'"),
         ({"consumers": {"pilot.x"}}, "this variant's consumers: unknown consumer 'pilot.x'"),
         ({"faults": [SCALE.aimed_at("pilot")]}, "channel 'mass': unknown consumer 'pilot'"),
         (
             {"faults": [SCALE], "consumers": {"predictor.dynamics"}},
-            "fault 'mass scaled by 2 at observer' reaches no consumer in this variant, "
-            "which has no observer.model; leave the fault out or name other consumers",
+            "fault 'mass scaled by 2 at observer' reaches no consumer",
         ),
     ],
 )
@@ -115,30 +78,20 @@ def test_wrong_names_are_a_users_mistake(given: dict[str, Any], sentence: str) -
 
 
 @pytest.mark.parametrize(
-    ("fault", "sentence"),
+    ("changes", "says"),
     [
+        ({"intervention": Quantise(step_size=0.5)}, "quantise turns int64 [2] into float64 [2]"),
         (
-            SCALE.model_copy(update={"intervention": Quantise(step_size=0.5)}),
-            "fault on channel 'mass': quantise turns int64 [2] into float64 [2]; choose one that "
-            "keeps them",
-        ),
-        (
-            SCALE.model_copy(
-                update={"intervention": Freeze(), "duration_steps": 1, "recovery_steps": 1}
-            ),
-            "fault on channel 'mass': freeze cannot recover step by step in int64; leave recovery",
+            {"intervention": Freeze(), "duration_steps": 1, "recovery_steps": 1},
+            "freeze cannot recover step by step in int64",
         ),
     ],
 )
-def test_whole_numbers_are_not_turned_into_others(fault: Fault, sentence: str) -> None:
-    taps = make([fault])
-
-    def deliver_twice() -> None:
-        for step in range(2):
-            taps.deliver("mass", "observer.model", mass(step, np.array([1, 2])), step)
-
-    with pytest.raises(UserError, match=f"^{re.escape(sentence)}"):
-        deliver_twice()
+def test_whole_numbers_are_not_turned_into_others(changes: dict[str, Any], says: str) -> None:
+    taps = make([SCALE.model_copy(update=changes)])
+    whole = np.array([1, 2])
+    with pytest.raises(UserError, match=re.escape(f"fault on channel 'mass': {says}")):
+        [taps.deliver("mass", "observer.model", mass(step, whole), step) for step in range(2)]
 
 
 class TestModuleView:

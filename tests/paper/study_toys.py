@@ -7,15 +7,7 @@ from itertools import product
 import numpy as np
 from faultpath_paper.cells import Cell
 from faultpath_paper.evidence.table import EvidenceTable, Measured, Measurement
-from faultpath_paper.pages import (
-    figure_3,
-    in_text,
-    table_1,
-    table_2,
-    table_3,
-    table_4,
-    table_6,
-)
+from faultpath_paper.pages import figure_3, in_text, table_1, table_2, table_3, table_4, table_6
 from faultpath_paper.results import Results
 from toy_runs import CELLS, MEASUREMENTS, Ends, trials
 
@@ -74,11 +66,8 @@ FIRST_WON = {table_6.negative("gru+dcc", "shared"): 11}
 """The paper's 3:11 discordant scenes of one difference, which is not detected."""
 FARTHER = table_4.cell("gru+dcc", "reconstruction-only")
 """Whose lost scenes end farther away, so that the distance hides what success shows."""
-CRASHES = {
-    table_1.WM_A: 21,
-    table_1.TRUE_PARAMETER: 16,
-    **dict.fromkeys(table_1.WITH_TRUE_CLEARANCE, 4),
-}
+CRASHES = {table_1.WM_A: 21, table_1.TRUE_PARAMETER: 16}
+CRASHES |= dict.fromkeys(table_1.WITH_TRUE_CLEARANCE, 4)
 
 POSITIONS = (0.30, 0.36, 0.36, 0.38, 0.39, 0.40, 0.31, 0.42, 0.33)
 MEDIANS: dict[Measurement, float] = {
@@ -142,10 +131,8 @@ def outcomes(ends: Ends, scenes: int = SCENES, slower_s: float = 1.4) -> Outcome
 def windows(power: float = 1.0) -> EvidenceTable:
     """Return every measurement of the paper, to a power: -1 turns all orders round."""
     scenes = tuple(f"s{i:03d}" for i in range(SCENES) for _ in range(WINDOWS))
-    steps = np.arange(len(scenes))
-    return EvidenceTable(
-        {m: Measured(scenes, steps, _values(m, len(scenes)) ** power) for m in MEASUREMENTS}
-    )
+    n, steps = len(scenes), np.arange(len(scenes))
+    return EvidenceTable({m: Measured(scenes, steps, _values(m, n) ** power) for m in MEASUREMENTS})
 
 
 def whole(ends: Ends = as_published, power: float = 1.0, slower_s: float = 1.4) -> Results:

@@ -7,10 +7,7 @@ import pytest
 from faultpath_paper.facts import SECTIONS, Fact, counted, facts, groups
 
 ROOT = Path(__file__).resolve().parents[2]
-PLACES = {
-    "faultpath": ROOT / "src",
-    "faultpath_paper": ROOT / "paper" / "src",
-}
+PLACES = {"faultpath": ROOT / "src", "faultpath_paper": ROOT / "paper" / "src"}
 PACKAGE = ROOT / "quadrotor" / "src" / "faultpath_quadrotor"
 
 

@@ -50,9 +50,7 @@ def test_where_the_papers_figures_come_true_every_claim_is_confirmed(answers: An
     assert not others
 
 
-def test_turning_all_outcomes_round_refutes_what_was_detected(
-    answers: Answers, mirror: Answers
-) -> None:
+def test_turning_all_outcomes_round_refutes_what_was_detected(answers, mirror):
     """Success becomes failure and errors their inverse: each detected side is the other one."""
     detected = [
         (old, new)

@@ -45,9 +45,7 @@ def flown(costs: int, gains: int, scenes: int = SCENES) -> Results:
         (0, 0, 0.0, False),
     ],
 )
-def test_a_repair_pays_above_its_break_even_frequency(
-    costs: int, gains: int, value: float | None, throughout: bool
-) -> None:
+def test_a_repair_pays_above_its_break_even_frequency(costs, gains, value, throughout):
     found = crossing(flown(costs, gains), REPAIR)
     assert found.value == (None if value is None else pytest.approx(value))
     assert found.behind_throughout is throughout
@@ -84,9 +82,7 @@ def test_too_few_scenes_give_no_interval() -> None:
         (OVER_30, None, 2, 100, "undecided"),
     ],
 )
-def test_a_break_even_frequency_meets_a_bound_or_does_not_exist(
-    bound: Bound, value: float | None, behind: int, scenes: int, answer: str
-) -> None:
+def test_a_break_even_frequency_meets_a_bound_or_is_none(bound, value, behind, scenes, answer):
     ends = None if value is None else (max(0.0, value - 10), value + 10)
     found = crossing(flown(0, -behind, scenes), REPAIR)
     assert judge(replace(found, value=value, interval=ends), bound).answer == answer

@@ -1,5 +1,6 @@
 """Pages of the studies: what they need flown, what they show without it, and what is published."""
 
+import re
 from collections.abc import Iterator
 from functools import cache
 from typing import Any
@@ -105,14 +106,7 @@ def _figures(value: Any) -> Iterator[float | str]:
 def test_every_published_figure_of_a_table_stands_in_it(key: str, name: str) -> None:
     built = tables(page(name), EMPTY).values()
     shown = " ".join(entry.published for table in built for entry in entries(table))
-    shown = f" {shown} ".replace("−", "-").replace("+", "")
-    for mark in "[](),/–":
-        shown = shown.replace(mark, " ")
-    words = shown.split()
-    numbers = {
-        float(word)
-        for word in words
-        if ":" not in word and word.strip("-.").replace(".", "").isdigit()
-    }
+    words = re.sub(r"[][(),/–]", " ", shown.replace("−", "-").replace("+", "")).split()
+    numbers = {float(word) for word in words if re.fullmatch(r"-?[\d.]+", word)}
     for figure in _figures(published(key)):
         assert (figure in words) if isinstance(figure, str) else (figure in numbers)

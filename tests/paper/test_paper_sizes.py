@@ -1,7 +1,8 @@
 """Sizes: how an estimate stands to the paper's figure, beside answers that do not know it."""
 
+from itertools import chain
+
 import pytest
-from faultpath_paper.answers import ClaimVerdict
 from faultpath_paper.cells import Printed
 from faultpath_paper.claims import STATEMENTS
 from faultpath_paper.claims.statement import size
@@ -47,9 +48,7 @@ UNPRINTED = {
         (20.0, (18.0, 60.0), Printed(10.0, (1.0, 12.0)), "right sign, other size"),
     ],
 )
-def test_an_estimate_stands_to_a_figure(
-    value: float, interval: tuple[float, float], paper: Printed, expected: str
-) -> None:
+def test_an_estimate_stands_to_a_figure(value, interval, paper, expected):
     assert size(value, interval, 100, paper, 0.0) == expected
     low, high = interval
     ends = paper.interval and (-paper.interval[1], -paper.interval[0])
@@ -63,43 +62,26 @@ def test_a_ratio_has_its_sides_about_1_and_a_share_has_none() -> None:
 
 
 def test_every_figure_that_the_paper_prints_is_carried() -> None:
-    without = {
-        (claim, at)
-        for claim, statements in STATEMENTS.items()
-        for at, statement in enumerate(statements)
-        if statement.paper is None
-    }
-    assert without == set(UNPRINTED)
+    every = ((claim, at, s) for claim, of in STATEMENTS.items() for at, s in enumerate(of))
+    assert {(claim, at) for claim, at, s in every if s.paper is None} == set(UNPRINTED)
 
 
-def test_where_the_papers_figures_come_true_sizes_are_compatible(
-    answers: dict[str, ClaimVerdict],
-) -> None:
+def test_where_the_papers_figures_come_true_sizes_are_compatible(answers):
     """The toy's windows are noisier than its intervals in two medians; all else is as printed."""
+    parts = [(claim.id, at, p) for claim in answers.values() for at, p in enumerate(claim.parts)]
     others = [
-        (claim.id, at)
-        for claim in answers.values()
-        for at, part in enumerate(claim.parts)
-        if part.paper is not None and part.size != "compatible"
+        (claim, at) for claim, at, p in parts if p.paper is not None and p.size != "compatible"
     ]
     assert others == [("C12", 0), ("C30", 7), ("C34", 0), ("C34", 1)]
 
 
 def test_the_paper_has_the_sign_that_a_claim_states() -> None:
     """A figure with its terms in the wrong order would contradict its own claim."""
-    stated = {
-        "above 0": 1,
-        "below 0": -1,
-        "above 0, by the point estimate": 1,
-        "below 0, by the point estimate": -1,
-    }
     checked = 0
-    for statements in STATEMENTS.values():
-        for statement in statements:
-            for words, sign in stated.items():
-                if statement.words.endswith(f" {words}") and "not detected" not in statement.words:
-                    if statement.paper is None:
-                        continue
-                    assert statement.paper.value * sign > 0, statement.words
-                    checked += 1
+    for statement in chain(*STATEMENTS.values()):
+        words = statement.words.removesuffix(", by the point estimate")
+        side = words.endswith(" above 0") - words.endswith(" below 0")
+        if side and statement.paper and "not detected" not in words:
+            assert statement.paper.value * side > 0, statement.words
+            checked += 1
     assert checked > 25

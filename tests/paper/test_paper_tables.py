@@ -28,11 +28,8 @@ def test_table_1_counts_how_trials_end_and_when() -> None:
 
 def test_what_the_paper_prints_below_table_1_is_of_common_successes() -> None:
     def ends(cell: Cell, seed: int, scene: int) -> Status:
-        return (
-            Status.SUCCESS
-            if scene < 12 + seed and (cell.variant, scene) != ("dki", 3)
-            else (Status.CRASH)
-        )
+        won = scene < 12 + seed and (cell.variant, scene) != ("dki", 3)
+        return Status.SUCCESS if won else Status.CRASH
 
     table = tables(page("table-1"), run(ends))["table-1b"]
     assert texts(line(table, "DKI"))[::2] == ["0.00", "11"]
@@ -67,11 +64,9 @@ def test_table_2_has_means_over_seeds_and_detected_differences() -> None:
     assert texts(counts) == ["13:0/13:0/13:0", "1:0/1:0/1:0", "13:0/13:0/13:0"]
     assert papers(counts)[0] == "51:0/51:1/49:1"
     assert texts(line(table, "Success (%)")) == ["10", "70", "10"]
-    ends, score = (
-        texts(line(table, label, below=heading))[1] for label in ("95 % interval", "Score interval")
-    )
-    assert ends == "[0.0, 15.0]"  # of one scene in twenty; the score's holds what none showed
-    assert score.startswith("[−")
+    ends = [texts(line(table, f"{of} interval", below=heading))[1] for of in ("95 %", "Score")]
+    assert ends[0] == "[0.0, 15.0]"  # of one scene in twenty; the score's holds what none showed
+    assert ends[1].startswith("[−")
 
 
 def test_figure_3_has_a_point_with_its_interval_for_each_error() -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 from faultpath_paper.cells import Cell, of_seed
@@ -31,14 +32,11 @@ def trials(
 ) -> OutcomeTable:
     """Return a table with each variant, path and seed once."""
     arms = {(c.variant, c.path, seed): c for c in cells for seed in c.seeds}
-    indices = tuple(scenes)
-    return OutcomeTable(
-        tuple(
-            TrialRow(variant, path, seed, i, "", _outcome(i, seed, ends(cell, seed, i)))
-            for (variant, path, seed), cell in arms.items()
-            for i in indices
-        )
+    rows = (
+        TrialRow(*arm, i, "", _outcome(i, arm[-1], ends(cell, arm[-1], i)))
+        for (arm, cell), i in product(arms.items(), scenes)
     )
+    return OutcomeTable(tuple(rows))
 
 
 def measured(
@@ -96,17 +94,12 @@ class Watched(Results):
 
 
 def _outcome(scene: int, seed: int, status: Status) -> Outcome:
-    failed = status is Status.FAILED
+    failed, missed = status is Status.FAILED, 0.3 if status is Status.SUCCESS else 2.3
     return Outcome(
         scene=f"s{scene:03d}",
         status=status,
         time_s=0.0 if failed else 3.0 + 0.1 * scene,
-        metrics={}
-        if failed
-        else {
-            "terminal_distance_m": 0.3 if status is Status.SUCCESS else 2.3,
-            "min_clearance_m": 0.25,
-        },
+        metrics={} if failed else {"terminal_distance_m": missed, "min_clearance_m": 0.25},
         initial_hash=f"i{scene}",
         disturbance_hash=f"d{scene}",
         planner_noise_hash=f"n{scene}-{seed}",

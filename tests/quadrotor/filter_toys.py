@@ -68,20 +68,15 @@ class Sensed:
         biases: list[Tensor] = []
         for step, given in enumerate(exact):
             each = {name: given[name].movedim(-1, 0) for name in SENSORS}
-            many = {
-                name: value.repeat(repeats, *[1] * (value.ndim - 1)) for name, value in each.items()
-            }
-            found.append(
-                {n: errors.on(n, step, many[n]).movedim(0, -1).contiguous() for n in SENSORS}
-            )
+            many = {n: value.repeat(repeats, *[1] * (value.ndim - 1)) for n, value in each.items()}
+            wrong = {n: errors.on(n, step, many[n]).movedim(0, -1) for n in SENSORS}
+            found.append({n: value.contiguous() for n, value in wrong.items()})
             none = {name: torch.zeros_like(many[name]) for name in BIASED}
             biases.append(torch.cat([biased.on(n, step, none[n])[:, 0].T for n in BIASED]))
         late = known["position_fix"].late
         taken = [max(0, (step - late) // 2 * 2) for step in range(steps)]
-        read = [
-            {**now, "position_fix": found[at]["position_fix"]}
-            for now, at in zip(found, taken, strict=True)
-        ]
+        fixes = [{"position_fix": found[step]["position_fix"]} for step in taken]
+        read = [now | fix for now, fix in zip(found, fixes, strict=True)]
         return cls(read, biases)
 
 

@@ -77,11 +77,8 @@ class Toy(ModelTask):
         return {"error": error.detach().square().mean().sqrt().item()}
 
     def describe(self) -> dict[str, Any]:
-        return {
-            "description": "a toy",
-            "data_sha256": {"toy": self.data_sha256},
-            "magnitude": self.magnitude,
-        }
+        data = {"toy": self.data_sha256}
+        return {"description": "a toy", "data_sha256": data, "magnitude": self.magnitude}
 
 
 def make(name: str, seed: int, data: Path) -> ModelTask:

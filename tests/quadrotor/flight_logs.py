@@ -23,9 +23,7 @@ drag_kgps: [0.3, 0.3, 0.6]
 """
 
 
-def flown(
-    seconds: float = 60.0, wind: float = 3.0, seed: int = 0
-) -> dict[str, np.ndarray[Any, Any]]:
+def flown(seconds: float = 60.0, wind: float = 3.0, seed: int = 0) -> dict[str, Any]:
     """Return the columns of a flight: z up, thrust in N, wind that changes within seconds."""
     rng = np.random.default_rng(seed)
     n = int(seconds * RATE_HZ)
@@ -44,6 +42,20 @@ def flown(
     x, y, z, w = rotation.as_quat().T
     names = ("t", "qw", "qx", "qy", "qz", "vx", "vy", "vz", "thrust")
     return dict(zip(names, (t, w, x, y, z, *velocity.T, thrust), strict=True))
+
+
+def map_file(folder: Path, text: str = MAP) -> str:
+    path = folder / "map.yaml"
+    path.write_text(text)
+    return str(path)
+
+
+def read(log: Path, text: str = MAP) -> Any:
+    """Read a log by a map beside it; who only writes logs needs no quadrotor."""
+    from faultpath_quadrotor.flightlog.flight import read_flight
+    from faultpath_quadrotor.flightlog.reading import read_columns
+
+    return read_flight(log, read_columns(map_file(log.parent, text)))
 
 
 def write(path: Path, columns: dict[str, Any]) -> Path:

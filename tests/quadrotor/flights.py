@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import torch
 from faultpath_quadrotor.scenes.library import Library, as_text
 from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Scene, Topology
 from faultpath_quadrotor.system import Quadrotor
@@ -31,9 +32,7 @@ class Log(Observer):
         if not isinstance(reading.value, Query):
             self._keep(tap, reading.value, got)
 
-    def answered(
-        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
-    ) -> None:
+    def answered(self, tap, query, step, request, answer, got) -> None:
         self._keep(tap, query.value(answer), query.value(got))
 
     def _keep(self, tap: Tap, given: Any, got: Any) -> None:
@@ -134,6 +133,22 @@ def in_memory(flights: Flights) -> FlightData:
     """Return recorded flights as they come back from their files."""
     every = range(len(flights.steps))
     return FlightData.decode("test", encode_rows(every, flights), encode_episodes(every, flights))
+
+
+def spread(scenes: Sequence[Scene], count: int, margin: float = 0.0) -> torch.Tensor:
+    """Return points over the arenas of scenes and so far outside, `[3, scenes, count]`."""
+    draws = np.random.default_rng(7)
+    low = np.array([scene.bounds.low_m for scene in scenes]).T[:, :, None] - margin
+    high = np.array([scene.bounds.high_m for scene in scenes]).T[:, :, None] + margin
+    return torch.from_numpy(draws.uniform(low, high, (3, len(scenes), count)))
+
+
+def tumbling(steps: int, lanes: int) -> torch.Tensor:
+    """Return commands under which some vehicles crash and some fly on, `[steps, 4, lanes]`."""
+    stream = torch.Generator().manual_seed(5)
+    commands = torch.randn(steps, 4, lanes, dtype=torch.float64, generator=stream)
+    commands[:, 0] = 10 + 4 * commands[:, 0]
+    return commands
 
 
 def hall(

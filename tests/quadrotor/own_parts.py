@@ -65,8 +65,5 @@ def wind(seed) -> Constant:
 
 
 def planner(seed) -> Halved:
-    return Halved(
-        AutoregressiveSampler(OPTIONS.sampling),
-        NavigationCost(CostWeights(running=0.0)),
-        PLATFORM.planner.temperature,
-    )
+    sampler, cost = AutoregressiveSampler(OPTIONS.sampling), CostWeights(running=0.0)
+    return Halved(sampler, NavigationCost(cost), PLATFORM.planner.temperature)

@@ -85,9 +85,7 @@ def test_clearance_is_bounded_and_is_what_training_sees_between_the_bounds(model
     torch.testing.assert_close(found, free.clamp(LOWEST_M, HIGHEST_M), atol=1e-5, rtol=1e-5)
 
 
-def test_what_no_pixel_can_show_has_little_clearance_and_what_one_shows_keeps_its_own(
-    model: ClearanceModel,
-):
+def test_what_no_pixel_can_show_has_little_clearance_and_what_one_shows_keeps_its_own(model):
     generous = copy.deepcopy(model)
     generous.layers[2].bias[-1] += 0.5  # the query network's own bias
     with native.using(native.PORTABLE):

@@ -89,9 +89,8 @@ def test_a_pool_that_is_there_is_kept(pools, tmp_path):
 
 def test_a_pool_of_another_seed_is_another_pool_and_is_not_overwritten(pools, tmp_path):
     path = collect(tmp_path, ("nominal",), 0, SMALL, seed=1)["nominal"]
-    assert not np.array_equal(
-        read_pool(path).values[:, 0], read_pool(pools["nominal"]).values[:, 0]
-    )
+    here, there = (read_pool(each).values[:, 0] for each in (path, pools["nominal"]))
+    assert not np.array_equal(here, there)
     with pytest.raises(UserError, match="collected with another 'seed'"):
         collect(tmp_path, ("nominal",), 0, SMALL, seed=2)
 

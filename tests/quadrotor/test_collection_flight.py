@@ -39,16 +39,9 @@ def test_an_episode_is_the_same_in_any_batch_to_the_bit(pool, monkeypatch):
 
 def test_episodes_belong_to_pool_number_and_seed(monkeypatch):
     shorten(monkeypatch, 2)
-    starts = [
-        fly(pool, [episode], seed).values[:3, 0, 0].tolist()
-        for pool, episode, seed in (
-            ("nominal", 0, 0),
-            ("wind", 0, 0),
-            ("nominal", 1, 0),
-            ("nominal", 0, 1),
-        )
-    ]
-    assert len({tuple(start) for start in starts}) == len(starts)
+    keys = [("nominal", 0, 0), ("wind", 0, 0), ("nominal", 1, 0), ("nominal", 0, 1)]
+    starts = [fly(pool, [episode], seed).values[:3, 0, 0] for pool, episode, seed in keys]
+    assert len({tuple(start.tolist()) for start in starts}) == len(starts)
 
 
 def test_commands_respect_the_vehicle_s_limits(flights):

@@ -43,9 +43,7 @@ class Placed(Observer):
         if not isinstance(reading.value, Query):
             assert reading.value.device == got.device == GPU, str(tap)
 
-    def answered(
-        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
-    ) -> None:
+    def answered(self, tap, query, step, request, answer, got) -> None:
         assert query.value(got).device == GPU, str(tap)
 
 
@@ -163,9 +161,7 @@ def test_a_gpu_flies_what_the_cpu_flies_and_never_waits(options, variant, texts,
         next(steps)  # libraries are loaded
         with _no_waiting():
             next(steps)
-    ends = [
-        built.run(variant, HELD_OUT, _wired(built, variant, texts, HELD_OUT), 0)
-        for built in (here, there)
-    ]
+    flights = [(built, _wired(built, variant, texts, HELD_OUT)) for built in (here, there)]
+    ends = [built.run(variant, HELD_OUT, taps, 0) for built, taps in flights]
     for one, two in zip(*ends, strict=True):
         assert trace(two) == pytest.approx(trace(one), abs=1e-3)

@@ -4,12 +4,7 @@ import numpy as np
 import pytest
 from faultpath_paper.evidence import recording
 from faultpath_paper.evidence.quantities import measure
-from faultpath_paper.evidence.table import (
-    Measurement,
-    Recording,
-    read_evidence,
-    write_evidence,
-)
+from faultpath_paper.evidence.table import Measurement, Recording, read_evidence, write_evidence
 from faultpath_quadrotor.scenes.library import Library, as_text
 from flights import hall
 
@@ -35,11 +30,9 @@ def small_blocks():
 
 def asked(library) -> list[Measurement]:
     flown = Recording(library=library, variant="dki-drag", options={"clearance": "true"})
-    return [
-        Measurement(recording=flown, quantity="position-error", subject=subject, faults=faults)
-        for subject in ("dki", "wm-a")
-        for faults in ((), ("calibration=+0.1",))
-    ]
+    plain = Measurement(recording=flown, quantity="position-error", subject="dki", faults=())
+    both = [plain, plain.model_copy(update={"faults": ("calibration=+0.1",)})]
+    return [*both, *(each.model_copy(update={"subject": "wm-a"}) for each in both)]
 
 
 @pytest.fixture(scope="module")

@@ -19,9 +19,9 @@ from flights import in_memory
 from faultpath.core.errors import UserError
 
 RECORDING = Recording(library="selection", variant="true-parameter", options={"wind": "L3"})
-SHARED, AT_RECONSTRUCTION, AT_PREDICTOR = (
-    f"calibration=+0.1{where}" for where in ("", "@reconstruction", "@predictor")
-)
+SHARED = "calibration=+0.1"
+QUANTITIES = ("acceleration", "wind-term")
+AT_RECONSTRUCTION, AT_PREDICTOR = f"{SHARED}@reconstruction", f"{SHARED}@predictor"
 
 
 @pytest.fixture(scope="module")
@@ -33,11 +33,9 @@ def recorded() -> Recorded:
     return Recorded(cut(flown, STRIDE), scenes, place[:, 2] + HISTORY)
 
 
-def ask(recorded, quantity, subject, *faults, seed=0, recording=RECORDING) -> np.ndarray:
-    asked = Measurement(
-        recording=recording, quantity=quantity, subject=subject, seed=seed, faults=faults
-    )
-    found = measured(asked, recorded)
+def ask(recorded, quantity, subject, *faults) -> np.ndarray:
+    named = {"quantity": quantity, "subject": subject, "seed": 0, "faults": faults}
+    found = measured(Measurement(recording=RECORDING, **named), recorded)
     assert (found.scenes, len(found)) == (recorded.scenes, len(recorded.windows))
     assert np.isfinite(found.values).all()
     return found.values
@@ -80,11 +78,9 @@ def test_shuffled_histories_move_what_is_predicted_from_a_history_alone(recorded
 
 
 def test_the_wind_input_is_the_variant_s(recorded):
-    errors = {
-        name: np.median(ask(recorded, "position-error", f"true-parameter/{name}"))
-        for name in ("true-wind", "gru", "zero-wind")
-    }
-    assert errors["true-wind"] < errors["gru"] < errors["zero-wind"]
+    subjects = (f"true-parameter/{wind}" for wind in ("true-wind", "gru", "zero-wind"))
+    right, estimated, none = (np.median(ask(recorded, "position-error", s)) for s in subjects)
+    assert right < estimated < none
 
 
 def test_a_fault_strikes_only_the_consumers_that_it_names(recorded):
@@ -103,28 +99,25 @@ def test_a_fault_strikes_only_the_consumers_that_it_names(recorded):
 def test_an_unfiltered_observer_recombines_under_shared_error(recorded, monkeypatch):
     def unfiltered(asked):
         subject = Subject.load(quantities.quadrotor(RECORDING), asked.subject, 0)
-        return replace(
-            subject, reconstruction=DisturbanceObserver(PLATFORM.drag_kgps, low_pass=1.0)
-        )
+        observer = DisturbanceObserver(PLATFORM.drag_kgps, low_pass=1.0)
+        return replace(subject, reconstruction=observer)
 
     monkeypatch.setattr(quantities, "_subject", unfiltered)
-    nominal, shared, isolated = (
-        ask(recorded, "acceleration-error", "dob", *faults)
-        for faults in ((), (SHARED,), (AT_RECONSTRUCTION,))
-    )
+    where = ((), (SHARED,), (AT_RECONSTRUCTION,))
+    errors = (ask(recorded, "acceleration-error", "dob", *faults) for faults in where)
+    nominal, shared, isolated = errors
     np.testing.assert_allclose(shared, nominal, atol=2e-4)
     assert np.median(isolated) > np.median(nominal) + 0.5
 
 
 def test_with_a_correct_predictor_the_wind_term_is_the_whole_acceleration_error(recorded):
-    for faults in ((), (AT_RECONSTRUCTION,)):
-        whole, wind = (
-            ask(recorded, quantity, "gru", *faults)
-            for quantity in ("acceleration-error", "wind-term-error")
-        )
-        assert np.array_equal(whole, wind)
-    shared = [ask(recorded, q, "gru", SHARED) for q in ("acceleration-error", "wind-term-error")]
-    assert np.median(np.abs(shared[0] - shared[1])) > 0.1
+    def apart(*faults):
+        whole, wind = (ask(recorded, f"{of}-error", "gru", *faults) for of in QUANTITIES)
+        return np.abs(whole - wind)
+
+    assert not apart().any()
+    assert not apart(AT_RECONSTRUCTION).any()
+    assert np.median(apart(SHARED)) > 0.1
 
 
 def test_true_wind_and_correct_calibration_leave_no_acceleration_error(recorded):
@@ -149,11 +142,8 @@ def test_true_wind_and_correct_calibration_leave_no_acceleration_error(recorded)
 )
 def test_a_window_s_number_does_not_depend_on_those_beside_it(recorded, quantity, subject, fault):
     order = torch.arange(len(recorded.windows)).flip(0)[:37]
-    some = Recorded(
-        recorded.windows.take(order),
-        tuple(recorded.scenes[i] for i in order),
-        recorded.steps[order.numpy()],
-    )
+    scenes = tuple(recorded.scenes[i] for i in order)
+    some = Recorded(recorded.windows.take(order), scenes, recorded.steps[order.numpy()])
     whole = ask(recorded, quantity, subject, fault)
     assert np.array_equal(ask(some, quantity, subject, fault), whole[order.numpy()])
 

@@ -59,9 +59,7 @@ def test_fitting_helps_and_its_card_says_so(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("optimiser", ["adam", "adamw"])
 @pytest.mark.parametrize("stop", [(0, 3), (1, 0), (2, 4), (3, 2)])
-def test_an_interrupted_fit_goes_on_to_the_same_bits(
-    optimiser: str, stop: tuple[int, int], tmp_path: Path
-) -> None:
+def test_an_interrupted_fit_goes_on_to_the_same_bits(optimiser, stop, tmp_path):
     whole = _fit(Toy(optimiser=optimiser), tmp_path / "whole")
     cut = Toy(optimiser=optimiser)
     cut.stop_at = stop
@@ -76,9 +74,7 @@ def test_an_interrupted_fit_goes_on_to_the_same_bits(
     assert first.validation == second.validation
 
 
-def test_a_stop_at_any_write_loses_no_bits(
-    reference: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_stop_at_any_write_loses_no_bits(reference, tmp_path, monkeypatch):
     """The journal of each epoch, the weights and the card: each write in turn is the last."""
     for survived in itertools.count():
         folder = tmp_path / str(survived)
@@ -185,9 +181,7 @@ def test_a_missing_checkpoint_is_named_with_the_command_that_makes_it() -> None:
     assert "`faultpath train quadrotor wm-q --seed 7 --ship`" in str(stop.value)
 
 
-def test_shipping_puts_a_checkpoint_where_the_package_finds_it(
-    fitted: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_shipping_puts_a_checkpoint_where_the_package_finds_it(fitted, tmp_path, monkeypatch):
     monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path / "package")
     jobs.ship(fitted)
     found = checkpoint_path("toy", 0)

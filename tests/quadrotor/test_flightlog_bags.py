@@ -14,7 +14,7 @@ from faultpath_quadrotor.flightlog.compensation import Compensation, compensatio
 from faultpath_quadrotor.flightlog.flight import read_flight
 from faultpath_quadrotor.flightlog.proposing import propose
 from faultpath_quadrotor.flightlog.reading import read_columns
-from flight_logs import MAP, flown, write
+from flight_logs import MAP, flown, read, write
 
 from faultpath.cli.main import main
 from faultpath.core.errors import UserError
@@ -31,13 +31,10 @@ ODOM, ATTITUDE = "/mavros/local_position/odom", "/mavros/setpoint_raw/attitude"
 @pytest.fixture(scope="module")
 def known(tmp_path_factory: pytest.TempPathFactory) -> Compensation:
     """The same flight in a table, without the drag, which no bag states."""
-    folder = tmp_path_factory.mktemp("table")
-    text = MAP.replace("drag_kgps: [0.3, 0.3, 0.6]", "").replace(
-        "thrust}", "thrust, newton_per_unit: fit}"
-    )
-    (folder / "map.yaml").write_text(text)
-    log = write(folder / "flight.csv", COLUMNS)
-    return compensation(read_flight(log, read_columns(str(folder / "map.yaml"))))
+    text = MAP.replace("drag_kgps: [0.3, 0.3, 0.6]", "")
+    text = text.replace("thrust}", "thrust, newton_per_unit: fit}")
+    log = write(tmp_path_factory.mktemp("table") / "flight.csv", COLUMNS)
+    return compensation(read(log, text))
 
 
 @pytest.fixture(scope="module")
@@ -65,14 +62,8 @@ def log(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, st
     ],
 )
 def test_a_bag_and_the_map_proposed_for_it_hold_the_flight(
-    tmp_path: Path,
-    known: Compensation,
-    capsys: Any,
-    topics: Any,
-    storage: Any,
-    part: str,
-    time: str,
-) -> None:
+    tmp_path, known, capsys, topics, storage, part, time
+):
     bag = write_bag(tmp_path / "bag", COLUMNS["t"], topics(COLUMNS), storage) / part
     to = tmp_path / "columns.yaml"
     status, said = log(capsys, bag, "--propose", "--columns", to, "--mass", 1.5)

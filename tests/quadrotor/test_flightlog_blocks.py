@@ -10,10 +10,9 @@ from faultpath_quadrotor.flightlog.compensation import (
     compensation,
     correlation_time,
 )
-from faultpath_quadrotor.flightlog.flight import INTERVAL_S, read_flight
-from faultpath_quadrotor.flightlog.reading import read_columns
+from faultpath_quadrotor.flightlog.flight import INTERVAL_S
 from faultpath_quadrotor.flightlog.words import sentences
-from flight_logs import MAP, flown, write
+from flight_logs import flown, read, write
 from scipy.signal import lfilter
 
 
@@ -63,10 +62,8 @@ def test_pairs_across_a_gap_do_not_count() -> None:
 
 @pytest.fixture(scope="module")
 def short(tmp_path_factory: pytest.TempPathFactory) -> Compensation:
-    folder = tmp_path_factory.mktemp("short")
-    (folder / "map.yaml").write_text(MAP)
-    log = write(folder / "flight.csv", flown(18.0))
-    return compensation(read_flight(log, read_columns(str(folder / "map.yaml"))))
+    log = write(tmp_path_factory.mktemp("short") / "flight.csv", flown(18.0))
+    return compensation(read(log))
 
 
 def test_too_short_a_flight_decides_nothing_and_says_what_it_takes(short: Compensation) -> None:

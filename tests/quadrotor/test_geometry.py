@@ -8,7 +8,7 @@ import torch
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Cylinder, Scene
-from flights import hall
+from flights import hall, spread
 from scipy.spatial import cKDTree
 
 
@@ -17,29 +17,14 @@ def at(scene: Scene, *points: tuple[float, float, float]) -> list[float]:
     return Geometry.stack([scene]).distance(tensor)[0].tolist()
 
 
-def spread(scenes: list[Scene], count: int, margin: float = 0.5) -> torch.Tensor:
-    """Points over the arenas and a little outside, `[3, B, count]`."""
-    rng = np.random.default_rng(7)
-    low = np.array([scene.bounds.low_m for scene in scenes]).T[:, :, None] - margin
-    high = np.array([scene.bounds.high_m for scene in scenes]).T[:, :, None] + margin
-    return torch.from_numpy(rng.uniform(low, high, (3, len(scenes), count)))
-
-
 def test_a_pillar_is_round_and_a_short_one_has_a_top():
     pillars = [
         Cylinder(centre_m=(1.0, 0.0), radius_m=0.3, low_m=0.0, high_m=3.0),
         Cylinder(centre_m=(-1.0, 0.0), radius_m=0.3, low_m=0.0, high_m=1.0),
     ]
-    points = [
-        (1.3, 0.4, 1.0),
-        (1.0, 0.1, 0.05),
-        (-1.0, 0.0, 1.4),
-        (-1.0, 0.6, 1.4),
-        (-1.0, 0.0, 0.9),
-    ]
-    assert at(hall(0, things=pillars), *points) == pytest.approx(
-        [0.2, -0.2, 0.4, 0.5, -0.1], abs=1e-12
-    )
+    tall, short = [(1.3, 0.4, 1.0), (1.0, 0.1, 0.05)], [(-1.0, 0.0, 1.4), (-1.0, 0.6, 1.4)]
+    found = at(hall(0, things=pillars), *tall, *short, (-1.0, 0.0, 0.9))
+    assert found == pytest.approx([0.2, -0.2, 0.4, 0.5, -0.1], abs=1e-12)
 
 
 def test_the_arena_is_free_inside_and_solid_outside():
@@ -91,7 +76,7 @@ def surface(scene: Scene, spacing: float) -> np.ndarray:
 @pytest.mark.parametrize("index", range(5))
 def test_in_free_space_the_distance_is_that_to_the_nearest_of_many_surface_points(index):
     scene, spacing = load_library("training")[index], 0.04
-    points = spread([scene], 3000, margin=0.0)
+    points = spread([scene], 3000)
     distance = Geometry.stack([scene]).distance(points)[0].numpy()
     nearest, _ = cKDTree(surface(scene, spacing)).query(points[:, 0].numpy().T)
     free = distance > 0
@@ -105,7 +90,7 @@ def test_in_free_space_the_distance_is_that_to_the_nearest_of_many_surface_point
 
 def test_neither_neighbours_nor_place_nor_padding_change_a_bit():
     scenes = list(load_library("training").scenes[:32])
-    points = spread(scenes, 1)[:, :, 0]
+    points = spread(scenes, 1, margin=0.5)[:, :, 0]
     together = Geometry.stack(scenes).distance(points)
     alone = [Geometry.stack([s]).distance(points[:, b : b + 1]) for b, s in enumerate(scenes)]
     assert torch.equal(together, torch.cat(alone))

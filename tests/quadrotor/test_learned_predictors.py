@@ -22,12 +22,9 @@ def test_a_zero_residual_leaves_the_kinematic_integrator_exactly(wind):
     network = AnchoredPredictor.build_network()
     network.initialise(torch.Generator().manual_seed(0))
     anchored = AnchoredPredictor(network, wind, NOMINAL_DRAG_KGPS)
-    plain = rollout(
-        KinematicIntegrator(wind=wind, drag_kgps=NOMINAL_DRAG_KGPS),
-        inputs_of(SCENES),
-        commands_of(SCENES, 512),
-    )
-    rolled = rollout(anchored, inputs_of(SCENES), commands_of(SCENES, 512))
+    kinematic = KinematicIntegrator(wind=wind, drag_kgps=NOMINAL_DRAG_KGPS)
+    given, drawn = inputs_of(SCENES), commands_of(SCENES, 512)
+    rolled, plain = (rollout(model, given, drawn) for model in (anchored, kinematic))
     assert torch.equal(rolled.positions, plain.positions)
     assert torch.equal(rolled.velocities, plain.velocities)
     assert torch.equal(rolled.final.rotation, plain.final.rotation)

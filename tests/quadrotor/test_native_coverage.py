@@ -133,9 +133,7 @@ REASONS: dict[str, tuple[Callable[[], Predictor], str]] = {
 
 
 @pytest.mark.parametrize(("make", "why"), REASONS.values(), ids=REASONS)
-def test_what_the_kernel_cannot_stand_for_is_refused_with_a_reason(
-    make: Callable[[], Predictor], why: str
-) -> None:
+def test_what_the_kernel_cannot_stand_for_is_refused_with_a_reason(make, why):
     model = make()
     assert uncovered(model)
     with pytest.raises(ValueError, match=why):

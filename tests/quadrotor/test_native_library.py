@@ -28,9 +28,7 @@ def test_an_unknown_set_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         native.kernels()
 
 
-def test_without_built_kernels_the_portable_path_runs_and_says_why(
-    monkeypatch: pytest.MonkeyPatch, tmp_path
-) -> None:
+def test_without_built_kernels_the_portable_path_runs_and_says_why(monkeypatch, tmp_path):
     monkeypatch.delenv(library.VARIABLE, raising=False)
     monkeypatch.setattr(library, "_path", lambda isa: tmp_path / isa)
     library._chosen.cache_clear()

@@ -69,9 +69,7 @@ def scored(stream: torch.Generator, candidates: int) -> Scored:
 
 @pytest.mark.parametrize("candidates", [64, 50])
 @pytest.mark.parametrize("running", [0.0, 0.35, 1.0])
-def test_costs_are_the_portable_ones(
-    isa: str, running: float, candidates: int, stream: torch.Generator
-) -> None:
+def test_costs_are_the_portable_ones(isa, running, candidates, stream):
     cost = NavigationCost(CostWeights(running=running))
     case = scored(stream, candidates)
     close(*both(isa, cost, case))

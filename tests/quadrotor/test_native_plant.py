@@ -1,6 +1,5 @@
 """The compiled plant, contact checks and distance field are the portable ones."""
 
-import numpy as np
 import pytest
 import torch
 from faultpath_quadrotor import native, so3
@@ -12,7 +11,7 @@ from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M, MOTOR_THRUST_MAX_N, VehicleParameters
-from flights import hall
+from flights import hall, spread, tumbling
 from kernel_sets import FUSED
 from test_plant import drawn_vehicles
 from torch import Tensor
@@ -90,24 +89,12 @@ def assert_same_trials(ours: World, theirs: World) -> None:
     for name in ("running", "crashed", "succeeded", "time_s"):
         assert torch.equal(getattr(ours.progress, name), getattr(theirs.progress, name)), name
     for name in ("terminal_distance_m", "min_clearance_m"):
-        torch.testing.assert_close(
-            getattr(ours.progress, name),
-            getattr(theirs.progress, name),
-            rtol=0,
-            atol=1e-10,
-            equal_nan=True,
-        )
-
-
-def tumbling(world_lanes: int, steps: int) -> Tensor:
-    stream = torch.Generator().manual_seed(5)
-    commands = torch.randn(steps, 4, world_lanes, dtype=F64, generator=stream)
-    commands[:, 0] = 10 + 4 * commands[:, 0]
-    return commands
+        both = (getattr(world.progress, name) for world in (ours, theirs))
+        torch.testing.assert_close(*both, rtol=0, atol=1e-10, equal_nan=True)
 
 
 SCENES = list(load_library("selection").scenes[:34])
-COMMANDS = tumbling(64, 22)
+COMMANDS = tumbling(22, 64)
 
 
 @pytest.fixture(scope="module")
@@ -152,12 +139,9 @@ FEW = list(load_library("selection").scenes[:6])
 
 def scattered(count: int) -> Tensor:
     """Points inside, outside and on lattice points of the scenes' arenas, `[3, B, N]`."""
-    draws = np.random.default_rng(3)
-    low = np.array([scene.bounds.low_m for scene in FEW]).T[:, :, None]
-    high = np.array([scene.bounds.high_m for scene in FEW]).T[:, :, None]
-    points = draws.uniform(low - 2, high + 2, (3, len(FEW), count))
-    points[..., ::7] = points[..., ::7].round(1)
-    return torch.from_numpy(points).float()
+    points = spread(FEW, count, margin=2.0)
+    points[..., ::7] = (10 * points[..., ::7]).round() / 10
+    return points.float()
 
 
 def asked(isa: str, points: Tensor, rows: list[int] | None = None) -> Tensor:

@@ -31,9 +31,7 @@ def drawn(isa: str, scenes: list[Scene], state: State, free_space: bool = False)
 
 @pytest.mark.parametrize("level", [True, False])
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_images_are_those_of_the_portable_path_silhouettes_included(
-    isa: str, level: bool, seed: int
-) -> None:
+def test_images_are_those_of_the_portable_path_silhouettes_included(isa, level, seed):
     state = flown(SCENES, seed)
     if level:
         state = replace(state, rotation=mounted(state.rotation))
@@ -50,6 +48,7 @@ def test_fused_sets_draw_the_same_bits() -> None:
     assert all(torch.equal(first, other) for other in others)
 
 
+@pytest.mark.parametrize("isa", [*native.available(), native.PORTABLE])
 def test_a_scene_s_image_does_not_depend_on_its_neighbours(isa: str) -> None:
     state = flown(SCENES)
     together = drawn(isa, SCENES, state)

@@ -55,16 +55,6 @@ def test_depth_ends_on_the_first_surface_of_the_contact_geometry(free_space: boo
         assert (distance(fraction) > -2e-5).all(), "no surface lies before it"
 
 
-def test_an_image_has_the_same_bits_in_a_batch_of_any_size():
-    scenes = list(load_library("selection").scenes[:40])
-    state = flown(scenes)
-    together = DepthRenderer(scenes).render(state)
-    for chosen in ([0], [39, 3], list(range(20, 37))):
-        few = DepthRenderer([scenes[i] for i in chosen]).render(state.take(torch.tensor(chosen)))
-        assert torch.equal(few, together[chosen])
-    assert torch.equal(DepthRenderer(scenes[:5]).render(state), together[:5]), "spare lanes"
-
-
 def test_boxes_look_the_same_to_mujocos_rays():
     mujoco = pytest.importorskip("mujoco")
     boxes = [

@@ -3,12 +3,12 @@
 import pytest
 import torch
 from faultpath_quadrotor.options import QuadrotorOptions
-from faultpath_quadrotor.planners import AutoregressiveSampler, SamplerSettings
-from faultpath_quadrotor.predictors import PredictorInputs
+from faultpath_quadrotor.planners import AutoregressiveSampler, SamplerSettings, Scored
+from faultpath_quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath_quadrotor.predictors.base import hover_thrust
+from faultpath_quadrotor.predictors.rollout import rolling
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
-from planning_toys import replan
+from faultpath_quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS, RATE_LIMIT_RADPS
 
 from faultpath.core.errors import UserError
 
@@ -19,10 +19,27 @@ def planner_inputs(scenes=4, mass=1.0):
     state = State.hover(torch.zeros(3, scenes, 1), torch.zeros(scenes, 1))
     column = torch.full((scenes, 1), mass)
     delivered = {("mass", place): column for place in ("trim", "dynamics", "wind_map")}
-    delivered |= {
-        ("thrust_scale", place): torch.ones_like(column) for place in ("trim", "dynamics")
-    }
+    one = torch.ones_like(column)
+    delivered |= {("thrust_scale", place): one for place in ("trim", "dynamics")}
     return PredictorInputs(state, delivered | {("wind", "wind_map"): torch.zeros(3, scenes, 1)})
+
+
+def free(positions):
+    return torch.ones_like(positions[0])
+
+
+def replan(planner, inputs, plan, scenes, goal, clearance=free, seen=lambda search: None):
+    """Return the plan `[H, 4, S]` that one step makes of another; `seen` gets each search."""
+    hover = hover_thrust(inputs.delivered, "trim")[:, 0]
+    roll = rolling(KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS))
+    search = planner.init(plan, hover)
+    for iteration in range(planner.iterations):
+        commands = planner.propose(search, planner.noise(scenes, 0, 0, iteration))
+        rollout = roll(inputs, commands)
+        near = clearance(rollout.positions)
+        search = planner.update(search, Scored(rollout, commands, near, goal, hover))
+        seen(search)
+    return search.plan
 
 
 def test_noise_is_standard_and_correlated_along_the_horizon():
@@ -69,12 +86,12 @@ def test_plan_moves_towards_the_goal_and_away_from_what_is_close(name):
     plan = planner.initial_plan(torch.full((4,), GRAVITY_MPS2))
     goal = torch.zeros(3, 4)
     goal[2] = torch.tensor([3.0, -3.0, 3.0, -3.0])
-    better = replan(planner, given, plan, SCENES, goal=goal)
+    better = replan(planner, given, plan, SCENES, goal)
     change = better[:, 0].mean(0) - GRAVITY_MPS2
     assert (change[[0, 2]] > 0.1).all()
     assert (change[[1, 3]] < -0.1).all()
     # A ceiling just above: the same goal no longer pulls the plan up.
-    kept = replan(planner, given, plan, SCENES, goal=goal, clearance=lambda at: 0.3 - at[2])
+    kept = replan(planner, given, plan, SCENES, goal, clearance=lambda at: 0.3 - at[2])
     assert (kept[:, 0].mean(0)[[0, 2]] < better[:, 0].mean(0)[[0, 2]]).all()
 
 
@@ -85,12 +102,11 @@ def test_the_cross_entropy_method_closes_in_with_as_many_candidates():
     goal = torch.tensor([[1.0], [0.5], [0.5]]).expand(3, 4)
     hover = torch.full((4,), GRAVITY_MPS2)
     searched = []
-    replan(planner, given, planner.initial_plan(hover), SCENES, goal=goal, seen=searched.append)
+    replan(planner, given, planner.initial_plan(hover), SCENES, goal, seen=searched.append)
     first, *_, last = [search.spread for search in searched]
     assert last.mean() < 0.7 * first.mean()
-    alone = replan(
-        planner, planner_inputs(1), planner.initial_plan(hover[:1]), SCENES[2:3], goal=goal[:, :1]
-    )
+    plan = planner.initial_plan(hover[:1])
+    alone = replan(planner, planner_inputs(1), plan, SCENES[2:3], goal[:, :1])
     assert torch.equal(alone[..., 0], searched[-1].plan[..., 2])
 
 

@@ -45,9 +45,8 @@ def test_hover_trim_stays_put():
 
 @pytest.mark.parametrize("scale", [0.6, 1.0, 1.4])
 def test_thrust_scale_multiplies_realised_thrust(scale):
-    parameters = VehicleParameters(
-        mass_kg=0.8, thrust_scale=scale, motor_time_constant_s=1e-9, drag_kgps=(1e-12,) * 3
-    )
+    instant = {"motor_time_constant_s": 1e-9, "drag_kgps": (1e-12,) * 3}
+    parameters = VehicleParameters(mass_kg=0.8, thrust_scale=scale, **instant)
     plant = TorchPlant(Vehicle.stack([parameters]))
     command = torch.tensor([[12.0], [0.0], [0.0], [0.0]], dtype=F64)
     end = plant.advance(plant.start(hovering(1)), command, calm(50, 1))
@@ -59,9 +58,8 @@ def test_commands_are_clipped_to_the_vehicle_s_limits():
     plant = TorchPlant(drawn_vehicles(2))
     start = plant.start(moving(2, 0))
     wild = torch.tensor([[900.0, -5.0], [70.0, -70.0], [-9.0, 9.0], [30.0, -4.0]], dtype=F64)
-    limit = torch.tensor(
-        [[COLLECTIVE_MAX_N, 0.0], [6.0, -6.0], [-6.0, 6.0], [3.0, -3.0]], dtype=F64
-    )
+    limits = [[COLLECTIVE_MAX_N, 0.0], [6.0, -6.0], [-6.0, 6.0], [3.0, -3.0]]
+    limit = torch.tensor(limits, dtype=F64)
     clipped = plant.advance(start, wild, calm(25, 2))
     assert torch.equal(clipped.state.rate, plant.advance(start, limit, calm(25, 2)).state.rate)
     inside = plant.advance(start, 0.9 * limit, calm(25, 2))

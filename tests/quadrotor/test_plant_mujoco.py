@@ -13,7 +13,7 @@ from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.vehicle import STEPS_PER_CONTROL
 from flights import bits as outcome_bits
 from flights import fly as fly_trials
-from flights import quadrotor
+from flights import quadrotor, tumbling
 from test_plant import drawn_vehicles, moving
 from torch import Tensor
 
@@ -56,10 +56,8 @@ def fly(plant: Plant, now: PlantState, commands: Tensor, winds: Tensor) -> Plant
 @pytest.mark.parametrize("kind", ["constant", "varying"])
 def test_both_plants_fly_the_same_trajectories(kind: str) -> None:
     vehicle, start = drawn_vehicles(LANES), moving(LANES, 17)
-    theirs, ours = (
-        fly(plant, plant.start(start), manoeuvres(), blowing(kind))
-        for plant in (TorchPlant(vehicle), MujocoPlant(vehicle))
-    )
+    plants = (TorchPlant(vehicle), MujocoPlant(vehicle))
+    theirs, ours = (fly(p, p.start(start), manoeuvres(), blowing(kind)) for p in plants)
     assert (theirs.state.position - start.position).norm(dim=0).min() > 1.0
     for name in PARTS:
         error = (getattr(ours.state, name) - getattr(theirs.state, name)).abs().max()
@@ -71,12 +69,9 @@ SCENES = load_library("selection").scenes[:34]
 
 
 def test_trials_end_alike_on_both_and_are_told_apart() -> None:
-    stream = torch.Generator().manual_seed(5)
-    commands = torch.randn(22, 4, 64, dtype=F64, generator=stream)
-    commands[:, 0] = 10 + 4 * commands[:, 0]
     worlds = [World(SCENES, "L2", False, plant=plant) for plant in (TorchPlant, MujocoPlant)]
     for world in worlds:
-        for command in commands:
+        for command in tumbling(22, 64):
             world.advance(command)
     theirs, ours = (world.progress for world in worlds)
     crashed = theirs.crashed[: len(SCENES)].sum()
@@ -93,16 +88,13 @@ def test_trials_end_alike_on_both_and_are_told_apart() -> None:
 def test_an_audit_s_trials_are_their_own_and_of_their_plant() -> None:
     scenes = [scene.id for scene in SCENES[:4]]
     system, other = (quadrotor(wind="L3", plant=plant) for plant in (f"{EXAMPLE}:create", "torch"))
-    whole, alone, torch_s = (
-        fly_trials(each, "dob", chosen, seed=3)[0]
-        for each, chosen in ((system, scenes), (system, scenes[2:3]), (other, scenes))
-    )
+    flights = ((system, scenes), (system, scenes[2:3]), (other, scenes))
+    whole, alone, torch_s = (fly_trials(each, "dob", some, seed=3)[0] for each, some in flights)
     assert outcome_bits(alone[0]) == outcome_bits(whole[2])
     for ours, theirs in zip(whole, torch_s, strict=True):
         assert ours.initial_hash != theirs.initial_hash
         assert ours.disturbance_hash == theirs.disturbance_hash
-        assert ours.metrics["terminal_distance_m"] == pytest.approx(
-            theirs.metrics["terminal_distance_m"], abs=1e-3
-        )
+        near, far = (each.metrics["terminal_distance_m"] for each in (ours, theirs))
+        assert near == pytest.approx(far, abs=1e-3)
     assert system.fingerprint() != other.fingerprint()
     assert system.backend.endswith("mujoco_plant.py:create")

@@ -1,5 +1,6 @@
 """The analytic predictors and the observer against closed forms, and batches of them."""
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -24,47 +25,27 @@ from faultpath_quadrotor.vehicle import (
     NOMINAL_MOTOR_TIME_CONSTANT_S,
 )
 
-HORIZON = 20
-DT = 0.05
+HORIZON, DT = 20, 0.05
+F64, REST = torch.float64, (0.0, 0.0, 0.0)
 
 
-def inputs(
-    scenes=1, mass=1.0, scale=1.0, wind=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0), thrust=9.81
-):
-    column = torch.ones(scenes, 1, dtype=torch.float64)
-    state = State.hover(torch.zeros(3, scenes, 1, dtype=torch.float64), 0 * column)
-    state = State(
-        state.position,
-        torch.tensor(velocity, dtype=torch.float64).view(3, 1, 1).expand(3, scenes, 1),
-        state.rotation,
-        state.rate,
-    )
+def inputs(scenes=1, mass=1.0, scale=1.0, wind=REST, velocity=REST, thrust=9.81, dtype=F64):
+    column = torch.ones(scenes, 1, dtype=dtype)
 
     def three(values):
-        return torch.tensor(values, dtype=torch.float64).view(3, 1, 1).expand(3, scenes, 1)
+        return torch.tensor(values, dtype=dtype).view(3, 1, 1).expand(3, scenes, 1)
 
-    physics = Physics(
-        three(NOMINAL_INERTIA_KGM2),
-        column,
-        NOMINAL_MOTOR_TIME_CONSTANT_S * column,
-        three(NOMINAL_DRAG_KGPS),
-        thrust * column,
-    )
+    state = replace(State.hover(three(REST), 0 * column), velocity=three(velocity))
+    inertia, drag = three(NOMINAL_INERTIA_KGM2), three(NOMINAL_DRAG_KGPS)
+    lag_s = NOMINAL_MOTOR_TIME_CONSTANT_S * column
+    physics = Physics(inertia, column, lag_s, drag, thrust * column)
     delivered = {("mass", place): mass * column for place in ("trim", "dynamics", "wind_map")}
     delivered |= {("thrust_scale", place): scale * column for place in ("trim", "dynamics")}
-    delivered |= {
-        ("wind", "wind_map"): three(wind),
-        ("physics", "physics"): physics.reading(),
-        ("history_code", "latent"): following(thrust, scenes),
-    }
+    code = torch.zeros(32, scenes, 1, dtype=dtype)
+    code[12:16] = thrust  # of motors that were told so for long
+    delivered |= {("wind", "wind_map"): three(wind), ("history_code", "latent"): code}
+    delivered |= {("physics", "physics"): physics.reading()}
     return PredictorInputs(state, delivered)
-
-
-def following(thrust, scenes):
-    """History code of motors that were told `thrust` for long."""
-    code = torch.zeros(32, scenes, 1, dtype=torch.float64)
-    code[12:16] = thrust
-    return code
 
 
 def commands(thrust, rates=(0.0, 0.0, 0.0), scenes=1, candidates=4):
@@ -72,11 +53,9 @@ def commands(thrust, rates=(0.0, 0.0, 0.0), scenes=1, candidates=4):
     return row.view(1, 4, 1, 1).expand(HORIZON, 4, scenes, candidates).contiguous()
 
 
-PREDICTORS = [
-    KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS),
-    KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS),
-    TrueParameter(),
-]
+STILL_AIR = KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS)
+DRAGGED = KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS)
+PREDICTORS = [STILL_AIR, DRAGGED, TrueParameter()]
 
 
 @pytest.mark.parametrize("predictor", PREDICTORS)
@@ -91,9 +70,7 @@ def test_hover_thrust_of_the_calibration_holds_the_vehicle(predictor):
 def test_calibration_error_scales_the_thrust_acceleration(error):
     """The implied thrust acceleration scales by (1 - e)/(1 + e) (paper, Section IV-B)."""
     given = inputs(mass=1 + error, scale=1 - error)
-    rolled = rollout(
-        KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS), given, commands(GRAVITY_MPS2)
-    )
+    rolled = rollout(STILL_AIR, given, commands(GRAVITY_MPS2))
     expected = GRAVITY_MPS2 * ((1 - error) / (1 + error) - 1)
     assert float(rolled.velocities[2, 0, -1, 0]) == pytest.approx(expected * HORIZON * DT)
 
@@ -101,33 +78,22 @@ def test_calibration_error_scales_the_thrust_acceleration(error):
 def test_wind_term_is_the_nominal_linear_map():
     """R (c o R^T w)/m~ without drag: constant acceleration (paper, Section IV-A)."""
     given = inputs(mass=1.5, wind=(2.0, -1.0, 4.0))
-    rolled = rollout(
-        KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS), given, commands(1.5 * GRAVITY_MPS2)
-    )
+    rolled = rollout(STILL_AIR, given, commands(1.5 * GRAVITY_MPS2))
     expected = 0.30 * torch.tensor([2.0, -1.0, 4.0], dtype=torch.float64) / 1.5
     torch.testing.assert_close(rolled.velocities[:, 0, -1, 0], expected * HORIZON * DT)
 
 
 def test_drag_slows_the_vehicle_as_the_closed_form_says():
-    given = inputs(velocity=(3.0, 0.0, 0.0))
-    rolled = rollout(
-        KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS), given, commands(GRAVITY_MPS2)
-    )
-    exact = 3.0 * torch.exp(torch.tensor(-0.30 * HORIZON * DT, dtype=torch.float64))
-    assert float(rolled.velocities[0, 0, -1, 0]) == pytest.approx(float(exact), rel=0.01)
+    rolled = rollout(DRAGGED, inputs(velocity=(3.0, 0.0, 0.0)), commands(GRAVITY_MPS2))
+    exact = 3.0 * math.exp(-0.30 * HORIZON * DT)
+    assert float(rolled.velocities[0, 0, -1, 0]) == pytest.approx(exact, rel=0.01)
 
 
 def test_rate_lag_turns_by_its_closed_form():
-    given = inputs()
-    end = rollout(
-        KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS),
-        given,
-        commands(GRAVITY_MPS2, (0.0, 0.0, 1.0)),
-    ).final
-    time = HORIZON * DT
-    lag = 0.05
-    angle = time - lag * (1 - torch.exp(torch.tensor(-time / lag, dtype=torch.float64)))
-    assert float(so3.log(end.rotation)[2, 0, 0]) == pytest.approx(float(angle))
+    end = rollout(STILL_AIR, inputs(), commands(GRAVITY_MPS2, (0.0, 0.0, 1.0))).final
+    time, lag = HORIZON * DT, 0.05
+    angle = time + lag * math.expm1(-time / lag)
+    assert float(so3.log(end.rotation)[2, 0, 0]) == pytest.approx(angle)
 
 
 def test_true_parameter_follows_a_thrust_step_with_the_motor_lag():
@@ -138,24 +104,16 @@ def test_true_parameter_follows_a_thrust_step_with_the_motor_lag():
     rolled = rollout(TrueParameter(), given, commands(GRAVITY_MPS2))
     # From still motors, gravity acts until the thrust is there: the loss of speed tends to
     # g times the motor time constant.
-    assert float(rolled.velocities[2, 0, 4, 0]) == pytest.approx(
-        -GRAVITY_MPS2 * NOMINAL_MOTOR_TIME_CONSTANT_S, rel=0.01
-    )
+    lost_mps = GRAVITY_MPS2 * NOMINAL_MOTOR_TIME_CONSTANT_S
+    assert float(rolled.velocities[2, 0, 4, 0]) == pytest.approx(-lost_mps, rel=0.01)
 
 
 @pytest.mark.parametrize("predictor", PREDICTORS)
 def test_a_scene_does_not_depend_on_its_neighbours(predictor):
     generator = torch.Generator().manual_seed(1)
+    given = inputs(scenes=4, mass=1.1, scale=0.9, dtype=torch.float32)
     wind = torch.randn(3, 4, 1, generator=generator)
-    one = inputs(scenes=4)
-    state = State(
-        *(getattr(one.state, n).float() for n in ("position", "velocity", "rotation", "rate"))
-    )
-    changed = {("mass", place): torch.full((4, 1), 1.1) for place in ("dynamics", "wind_map")}
-    changed |= {("thrust_scale", "dynamics"): torch.full((4, 1), 0.9), ("wind", "wind_map"): wind}
-    given = PredictorInputs(
-        state, {read: value.float() for read, value in one.delivered.items()} | changed
-    )
+    given = replace(given, delivered=given.delivered | {("wind", "wind_map"): wind})
     noise = torch.randn(HORIZON, 4, 4, 512, generator=generator)
     noise[:, 0] += GRAVITY_MPS2
     whole = rollout(predictor, given, noise)

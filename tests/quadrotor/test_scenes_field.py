@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pytest
 import torch
 from faultpath_quadrotor.scenes.field import DistanceField, Lattice, exact_on_lattice
@@ -10,6 +9,7 @@ from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.scenes.soundness import CELL_M
+from flights import spread
 
 HALF_DIAGONAL_M = CELL_M * math.sqrt(3) / 2
 
@@ -22,13 +22,6 @@ def scenes() -> list[Scene]:
 @pytest.fixture(scope="module")
 def field(scenes: list[Scene]) -> DistanceField:
     return DistanceField.bake(scenes)
-
-
-def spread(scenes: list[Scene], count: int, margin: float = 0.0) -> torch.Tensor:
-    rng = np.random.default_rng(11)
-    low = np.array([scene.bounds.low_m for scene in scenes]).T[:, :, None] - margin
-    high = np.array([scene.bounds.high_m for scene in scenes]).T[:, :, None] + margin
-    return torch.from_numpy(rng.uniform(low, high, (3, len(scenes), count))).float()
 
 
 @pytest.mark.parametrize("free_space", [False, True])
@@ -46,7 +39,7 @@ def test_lattice_points_inside_carry_the_exact_distance(scenes, free_space):
 
 
 def test_the_interpolation_error_is_as_documented(scenes, field):
-    points = spread(scenes, 20_000)
+    points = spread(scenes, 20_000).float()
     exact = Geometry.stack(scenes).distance(points.double())
     error = (field.query(points) - exact)[exact > 0]
     assert error.abs().max() <= HALF_DIAGONAL_M + 1e-5
@@ -55,7 +48,7 @@ def test_the_interpolation_error_is_as_documented(scenes, field):
 
 
 def test_outside_the_field_falls_by_the_distance_beyond_each_wall(scenes, field):
-    points = spread(scenes, 4000, margin=30.0)
+    points = spread(scenes, 4000, margin=30.0).float()
     bounds = [(scene.bounds.low_m, scene.bounds.high_m) for scene in scenes]
     low, high = torch.tensor(bounds).permute(1, 2, 0)[..., None]
     beyond = (low - points).clamp_min(0) + (points - high).clamp_min(0)

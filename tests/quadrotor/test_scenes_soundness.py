@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import torch
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import FROZEN, Library, as_text, frozen_file, load_library
 from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Scene
 from faultpath_quadrotor.scenes.soundness import MOST_OBSTACLES, clearance_m, unsound
+from flights import spread
 
 from faultpath.core.errors import UserError
 
@@ -48,15 +48,11 @@ def test_every_frozen_scene_is_sound(name: str) -> None:
 
 
 def test_clearance_is_that_of_the_geometry() -> None:
-    stream = torch.Generator().manual_seed(3)
     for scene in BASE[:20]:
-        low, high = (
-            torch.tensor(end).double() for end in (scene.bounds.low_m, scene.bounds.high_m)
-        )
-        points = low + (high - low) * torch.rand(50, 3, generator=stream, dtype=torch.float64)
-        exact = Geometry.stack([scene]).distance(points.T[:, None])[0]
-        for point, distance in zip(points.tolist(), exact.tolist(), strict=True):
-            found = clearance_m(scene, (point[0], point[1], point[2]))
+        points = spread([scene], 50)
+        exact = Geometry.stack([scene]).distance(points)[0]
+        for point, distance in zip(points[:, 0].T.tolist(), exact.tolist(), strict=True):
+            found = clearance_m(scene, tuple(point))
             assert (found > 0) == (distance > 0)
             assert distance < 0 or found == pytest.approx(distance, abs=1e-9)
 
@@ -67,14 +63,12 @@ PEBBLE = Box(centre_m=(0.0, 0.0, -5.0), half_extents_m=(0.01, 0.01, 0.01))
 VEHICLE, LOW, HIGH = BASE[1].vehicle, BASE[1].bounds.low_m, BASE[1].bounds.high_m
 PILLAR = Cylinder(centre_m=BASE[1].start_m[:2], radius_m=0.3, low_m=LOW[2], high_m=3)
 CRATE = Box(centre_m=BASE[1].goal_m, half_extents_m=(0.3, 0.3, 0.3), yaw_rad=1.0)
+THIN = VEHICLE.model_copy(update={"inertia_kgm2": (1.0, 0.1, 0.1)})
 FAR = (5e4, 0.0, 1.0)
 UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
     "bounds": ({"bounds": ArenaBounds(low_m=HIGH, high_m=LOW)}, "field bounds"),
     "flat": ({"bounds": ArenaBounds(low_m=LOW, high_m=(*HIGH[:2], LOW[2]))}, "along z"),
-    "huge": (
-        {"bounds": ArenaBounds(low_m=(-900,) * 3, high_m=(900,) * 3)},
-        "cells of 0.1 m are too",
-    ),
+    "huge": ({"bounds": ArenaBounds(low_m=(-900,) * 3, high_m=(900,) * 3)}, "cells of 0.1 m"),
     "far": ({"goal_m": FAR}, "field goal_m: lies beyond 1000 m"),
     "start outside": ({"start_m": (HIGH[0] + 1, 0.0, 1.0)}, "start_m: .*outside the bounds"),
     "goal below": ({"goal_m": (*BASE[1].goal_m[:2], LOW[2] - 1)}, "goal_m: .*outside the bounds"),
@@ -86,10 +80,7 @@ UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
     "crowded": ({"boxes": (PEBBLE,) * (MOST_OBSTACLES + 1)}, "257 obstacles are too many"),
     "heavy": ({"vehicle": VEHICLE.model_copy(update={"mass_kg": 1e4})}, "cannot lift itself"),
     "there already": ({"goal_m": BASE[1].start_m}, "goal_m: within 0.5 m of start_m"),
-    "no body": (
-        {"vehicle": VEHICLE.model_copy(update={"inertia_kgm2": (1.0, 0.1, 0.1)})},
-        "vehicle.inertia_kgm2",
-    ),
+    "no body": ({"vehicle": THIN}, "vehicle.inertia_kgm2"),
     "another's id": ({"id": "held-out/001"}, "field id: 'held-out/001' is not 'mine/001'"),
     "the same id": ({"id": "mine/000"}, "field id"),
     "another's library": ({"library": "other"}, "field library"),
@@ -98,9 +89,7 @@ UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
 
 
 @pytest.mark.parametrize(("changed", "says"), UNSOUND.values(), ids=UNSOUND)
-def test_a_scene_that_cannot_be_flown_is_refused(
-    tmp_path: Path, changed: dict[str, Any], says: str
-) -> None:
+def test_a_scene_that_cannot_be_flown_is_refused(tmp_path, changed, says):
     said = refused(tmp_path, mine(**changed))
     assert "scene 1" in said
     assert re.search(says, said), said

@@ -23,13 +23,8 @@ def _path(request: pytest.FixtureRequest) -> Iterator[None]:
 pytestmark = pytest.mark.usefixtures("short")
 
 
-FAULTS = (
-    "velocity:noise=0.2",
-    "attitude:noise=0.05",
-    "clearance:noise=0.1",
-    "action:dropout=0.3,onset=4",
-    "wind:delay=2",
-)
+NOISE = ("velocity:noise=0.2", "attitude:noise=0.05", "clearance:noise=0.1")
+FAULTS = (*NOISE, "action:dropout=0.3,onset=4", "wind:delay=2")
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +60,7 @@ def test_chunks_of_every_size_and_more_than_one_group_of_lanes_change_nothing(op
     """Scenes are planned in eights, fours, twos and ones, and flown in groups of 32 lanes."""
     monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 5)
     system = quadrotor(**options)
-    faults = [fault(text, system) for text in FAULTS[:3]]
+    faults = [fault(text, system) for text in NOISE]
     block = {o.scene: bits(o) for o in fly(system, "dob", MANY, faults)[0]}
     for chosen in (MANY[33:34], MANY[20:35], MANY[38:31:-1], MANY[::13]):
         outcomes, _ = fly(system, "dob", chosen, faults)
@@ -75,12 +70,9 @@ def test_chunks_of_every_size_and_more_than_one_group_of_lanes_change_nothing(op
 def test_neighbours_that_end_early_leave_the_others_alone(tmp_path):
     """Scenes are planned several at a time, and who flies with whom changes when one ends."""
     system = quadrotor(**STRONG_WIND)
-    near, under = with_halls(
-        system,
-        tmp_path,
-        hall(0, start=(0.0, 0.0, 1.5), goal=(0.0, 0.0, 0.995)),
-        hall(1, start=(0.0, 1.0, 0.3), goal=(4.0, 1.0, 1.5)),
-    )
+    fast = hall(0, start=(0.0, 0.0, 1.5), goal=(0.0, 0.0, 0.995))
+    low = hall(1, start=(0.0, 1.0, 0.3), goal=(4.0, 1.0, 1.5))
+    near, under = with_halls(system, tmp_path, fast, low)
     alone, _ = fly(system, "dob", HELD_OUT)
     mixed, _ = fly(system, "dob", [near, *HELD_OUT[:3], under, *HELD_OUT[3:]])
     assert mixed[0].time_s < min(o.time_s for o in alone)

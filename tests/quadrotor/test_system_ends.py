@@ -14,8 +14,6 @@ from faultpath.trials import Outcome, Status
 HOVER = f"action:erase={GRAVITY_MPS2}/0/0/0@vehicle"
 FALL = "action:erase=0/0/0/0@vehicle"
 TABLE = Box(centre_m=(0.0, 0.0, 0.5), half_extents_m=(0.5, 0.5, 0.5))
-
-
 pytestmark = pytest.mark.usefixtures("short")
 
 

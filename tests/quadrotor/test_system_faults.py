@@ -7,18 +7,10 @@ from flights import HELD_OUT, STEPS, bits, fault, fly, quadrotor, trace
 from faultpath.loop import Receipts
 from faultpath.trials import Outcome
 
-ALTERED_BY_CALIBRATION = {
-    ("mass", "predictor.dynamics"): 1,
-    ("mass", "predictor.wind_map"): 1,
-    ("mass", "predictor.trim"): 1,
-    ("mass", "reconstruction.nominal_model"): 1,
-    ("mass", "reconstruction.wind_map"): 1,
-    ("thrust_scale", "predictor.dynamics"): -1,
-    ("thrust_scale", "predictor.trim"): -1,
-    ("thrust_scale", "reconstruction.nominal_model"): -1,
-}
-
-
+READERS = ("predictor.dynamics", "predictor.trim", "reconstruction.nominal_model")
+WIND_MAPS = ("predictor.wind_map", "reconstruction.wind_map")
+ALTERED_BY_CALIBRATION = {("mass", reader): 1 for reader in (*READERS, *WIND_MAPS)}
+ALTERED_BY_CALIBRATION |= {("thrust_scale", reader): -1 for reader in READERS}
 pytestmark = pytest.mark.usefixtures("short")
 
 
@@ -31,21 +23,12 @@ def _altered(receipts: Receipts) -> set[tuple[str, str]]:
     return {(tap.channel, tap.consumer) for tap in receipts.taps if tap.steps_altered.any()}
 
 
-IDENTITIES = {
-    "scale": "scale=1",
-    "offset": "offset=0",
-    "noise": "noise=0",
-    "delay": "delay=0",
-    "dropout": "dropout=0",
-}
-
-
-@pytest.mark.parametrize("kind", IDENTITIES)
-def test_an_identity_on_every_channel_is_no_fault_to_the_bit(kind, plain):
+@pytest.mark.parametrize("identity", ["scale=1", "offset=0", "noise=0", "delay=0", "dropout=0"])
+def test_an_identity_on_every_channel_is_no_fault_to_the_bit(identity, plain):
     system = quadrotor(wind="L2")
     present = system.variants["dob"].consumers
     channels = [c.name for c in system.interface.channels if present & set(c.consumers)]
-    faults = [fault(f"{channel}:{IDENTITIES[kind]}", system) for channel in channels]
+    faults = [fault(f"{channel}:{identity}", system) for channel in channels]
     (faulted,), taps = fly(system, faults=faults)
     assert bits(faulted) == bits(plain)
     receipts = taps.receipts()
@@ -107,16 +90,11 @@ def test_a_fault_of_any_channel_flies_and_tells(text, plain):
     system = quadrotor(wind="L2")
     declared = fault(text, system)
     (faulted,), taps = fly(system, faults=[declared])
-    assert np.isfinite(trace(faulted)).all()
-    assert np.isfinite(
-        [faulted.metrics["terminal_distance_m"], faulted.metrics["min_clearance_m"]]
-    ).all()
+    ends = [faulted.metrics[name] for name in ("terminal_distance_m", "min_clearance_m")]
+    assert np.isfinite([*ends, *trace(faulted).flat]).all()
     assert bits(faulted)[-1] != bits(plain)[-1]
-    named = {
-        (each.channel, consumer)
-        for each in declared.resolved(system.interface)
-        for consumer in each.consumers
-    }
+    reached = declared.resolved(system.interface)
+    named = {(each.channel, consumer) for each in reached for consumer in each.consumers}
     assert set() < _altered(taps.receipts()) <= named
     for hashes in ("initial_hash", "disturbance_hash", "planner_noise_hash"):
         assert getattr(faulted, hashes) == getattr(plain, hashes)

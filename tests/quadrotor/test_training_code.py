@@ -1,7 +1,6 @@
 """What counts as the code of the data that models learn from."""
 
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -41,9 +40,7 @@ def _images(folder: Path) -> None:
     ],
     ids=["episodes", "images", "closed loop"],
 )
-def test_whatever_runs_while_data_are_made_counts(
-    make: Callable[[Path], None], roots: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_whatever_runs_while_data_are_made_counts(make, roots, tmp_path, monkeypatch):
     monkeypatch.setattr(flight, "EPISODE_STEPS", 10)
     monkeypatch.setattr(flight, "EPISODE_S", 0.5)
     ran: set[str] = set()
@@ -53,10 +50,7 @@ def test_whatever_runs_while_data_are_made_counts(
     finally:
         sys.setprofile(None)
     counted = read_code([Root(f"faultpath_quadrotor.{root}") for root in roots]).sources
-    ours = {
-        Path(file).resolve()
-        for file in ran
-        if "/src/faultpath" in file and Path(file).is_relative_to(ROOT)
-    }
+    files = [Path(file) for file in ran if "/src/faultpath" in file]
+    ours = {file.resolve() for file in files if file.is_relative_to(ROOT)}
     assert len(ours) > 5
     assert ours <= {path.resolve() for path in counted.values()}

@@ -1,7 +1,5 @@
 """Bootstrap effects: the laws that they must keep, against plain resampling, and their speed."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -19,12 +17,9 @@ from faultpath.statistics.resamples import Resamples
 
 N = 20
 RESAMPLES = Resamples.draw("laws", N, n_resamples=500)
-BINARY = hnp.arrays(np.bool_, st.tuples(st.just(2), st.just(N), st.integers(1, 4)))
-FLOATS = hnp.arrays(
-    np.float64,
-    st.tuples(st.just(2), st.just(N), st.integers(1, 4)),
-    elements=st.floats(-50, 50, width=32),
-)
+SHAPE = st.tuples(st.just(2), st.just(N), st.integers(1, 4))
+BINARY = hnp.arrays(np.bool_, SHAPE)
+FLOATS = hnp.arrays(np.float64, SHAPE, elements=st.floats(-50, 50, width=32))
 fewer = settings(max_examples=50, deadline=None)
 
 
@@ -34,10 +29,7 @@ def rows(resamples):
 
 
 def test_resamples_are_keyed_and_complete():
-    again, other = (
-        Resamples.draw("laws", N, n_resamples=500),
-        Resamples.draw("laws", N, seed=1, n_resamples=500),
-    )
+    again, other = (Resamples.draw("laws", N, seed=seed, n_resamples=500) for seed in (0, 1))
     assert RESAMPLES.same_as(again)
     assert not RESAMPLES.same_as(other)
     assert (RESAMPLES.counts.sum(axis=1) == N).all()
@@ -120,33 +112,12 @@ def test_newly_trained_models_without_discordance_are_not_known_to_be_equal():
 
 
 @fewer
-@given(BINARY, st.booleans())
-def test_swapping_the_arms_flips_the_sign_and_mirrors_the_interval(pair, as_floats):
-    pair = pair * 0.1 if as_floats else pair
-    forward, backward = (
-        mean_effect(*arms, RESAMPLES, "m") if as_floats else success_effect(*arms, RESAMPLES)
-        for arms in (pair, pair[::-1])
-    )
+@given(BINARY)
+def test_swapping_the_arms_flips_the_sign_and_mirrors_the_interval(pair):
+    forward, backward = (mean_effect(*arms, RESAMPLES, "m") for arms in (pair, pair[::-1]))
     low, high = forward.interval
     assert (backward.value, backward.interval) == (-forward.value, (-high, -low))
     assert backward.per_seed == tuple(-value for value in forward.per_seed)
-
-
-@fewer
-@given(BINARY, st.integers(2, 3))
-def test_duplicating_seeds_changes_neither_value_nor_interval(pair, times):
-    once = success_effect(*pair, RESAMPLES)
-    copied = success_effect(*np.tile(pair, (1, 1, times)), RESAMPLES)
-    assert (copied.value, copied.interval) == (once.value, once.interval)
-
-
-@fewer
-@given(BINARY, st.permutations(range(N)))
-def test_permuting_scenes_with_their_resamples_changes_nothing(pair, order):
-    order = np.array(order)
-    resamples = replace(RESAMPLES, counts=RESAMPLES.counts[:, order])
-    moved = success_effect(*pair[:, order], resamples)
-    assert moved.estimate() == success_effect(*pair, RESAMPLES).estimate()
 
 
 @fewer
@@ -170,11 +141,8 @@ def test_resampled_it_has_the_percentile_interval_and_else_stays():
     found = with_test(success_effect(first, second, RESAMPLES), "exact")
     as_draws = found.resampled()
     assert as_draws.interval == percentile_interval(found.draws) != found.interval
-    assert (as_draws.value, as_draws.test, as_draws.counts) == (
-        found.value,
-        found.test,
-        found.counts,
-    )
+    for name in ("value", "test", "counts"):
+        assert getattr(as_draws, name) == getattr(found, name)
     assert as_draws.estimate().method == "percentile bootstrap of scenes, 500 resamples"
     metres = mean_effect(first, second, RESAMPLES, "m")
     assert metres.resampled() is metres
@@ -188,13 +156,6 @@ def test_per_seed_values_and_counts():
     assert (estimate.value, str(estimate.counts)) == (25.0, "2:0/1:1")
     assert (estimate.n_scenes, estimate.n_seeds, estimate.unit) == (4, 2, "pp")
     assert estimate.method == "score on scene means (Tango's, cluster-robust)"
-
-
-def test_one_arm():
-    outcomes = np.arange(N) < 13
-    assert success_rate(outcomes, RESAMPLES).estimate().value == 65.0
-    with pytest.raises(ValueError, match="only 0 and 1"):
-        success_rate(outcomes * 2.0, RESAMPLES)
 
 
 @fewer
@@ -231,7 +192,9 @@ def test_effects_that_are_not_joint_are_refused():
 def test_wrong_input_is_refused():
     with pytest.raises(ValueError, match="19 scenes, the resamples 'laws' have 20"):
         success_effect(np.ones(19), np.ones(19), RESAMPLES)
-    with pytest.raises(ValueError, match="one seed says nothing"):
+    with pytest.raises(ValueError, match="only 0 and 1"):
+        success_rate(np.full(N, 2.0), RESAMPLES)
+    with pytest.raises(ValueError, match="one seed"):
         success_effect(np.ones(N), np.ones(N), RESAMPLES, models=True)
     with pytest.raises(ValueError, match="one shape"):
         mean_effect(np.ones((N, 1)), np.ones((N, 3)), RESAMPLES, "m")
@@ -250,11 +213,8 @@ def test_medians_are_those_of_the_resampled_joint_scenes(pair, data):
         (first - second)[seen].mean() if seen.any() else None
         for first, second, seen in zip(*pair, joint, strict=True)
     ]
-    expected = [
-        np.median([within[scene] for scene in row if within[scene] is not None])
-        for row in rows(RESAMPLES)
-        if any(within[scene] is not None for scene in row)
-    ]
+    seen = [[within[i] for i in row if within[i] is not None] for row in rows(RESAMPLES)]
+    expected = [np.median(values) for values in seen if values]
     np.testing.assert_allclose(effect.draws, expected, atol=1e-9)
     assert effect.value == pytest.approx(np.median([w for w in within if w is not None]))
     assert effect.n_scenes == joint.any(axis=1).sum()
@@ -288,10 +248,7 @@ def test_an_estimate_refuses_nonsense():
     base = {"method": "m", "estimand": SCENES, "n_scenes": 100, "n_seeds": 3, "unit": "pp"}
     estimate = Estimate(value=-9.67, low=-16.0, high=-4.0, **base)
     assert Estimate.model_validate_json(estimate.model_dump_json()) == estimate
-    for wrong in (
-        {"value": float("nan")},
-        {"value": 0.0, "low": 1.0},
-        {"value": 0.0, "low": 1.0, "high": -1.0},
-    ):
-        with pytest.raises(ValueError, match=r"finite|both ends|upside down"):
-            Estimate(**wrong, **base)
+    for ends, says in (((), "finite"), ((1.0,), "both ends"), ((1.0, -1.0), "upside down")):
+        wrong = dict(zip(("low", "high"), ends, strict=False))
+        with pytest.raises(ValueError, match=says):
+            Estimate(value=0.0 if ends else float("nan"), **wrong, **base)

@@ -32,49 +32,37 @@ def effect(wins, losses, first_scene=0):
     ],
 )
 def test_the_point_is_where_the_estimates_cross(delta_0, delta_f, expected):
-    wins, losses = (
-        tuple(int(max(0, sign * each)) for each in (delta_0, delta_f)) for sign in (1, -1)
-    )
-    assert break_even(*map(effect, wins, losses)).p_star == expected
+    effects = (effect(max(0, int(delta)), max(0, -int(delta))) for delta in (delta_0, delta_f))
+    assert break_even(*effects).p_star == expected
 
 
-def test_a_clear_crossing():
-    result = break_even(effect(2, 30), effect(60, 2))
+@pytest.mark.parametrize(
+    ("correct", "faulty", "p_star", "signs"),
+    [
+        (effect(2, 30), effect(60, 2), 28 / 86, [-1, 1]),
+        # No cost was seen: how rare a fault may be is open all the same.
+        (effect(0, 0), effect(30, 0), 0.0, [1]),
+        # Cost and gain on the same scenes cancel at one half and in no other place.
+        (effect(0, 40), effect(40, 0), 0.5, [-1, 1]),
+    ],
+)
+def test_around_a_crossing_lies_an_interval_with_decided_ends(correct, faulty, p_star, signs):
+    result = break_even(correct, faulty)
     ((low, high),) = result.pieces
     assert result.kind == "interval"
-    assert 0 < low < result.p_star < high < 1
-    assert result.p_star == pytest.approx(28 / 86)
-    assert [(r.low, r.high, r.sign) for r in result.regions] == [(0, low, -1), (high, 1, 1)]
+    assert result.p_star == pytest.approx(p_star)
+    assert low <= p_star < high < 1
+    ends = [(0.0, low, -1), (high, 1.0, 1)][-len(signs) :]
+    assert [(r.low, r.high, r.sign) for r in result.regions] == ends
 
 
-def test_ahead_at_both_ends_leaves_no_frequency_undecided():
+def test_ahead_at_both_ends_leaves_no_frequency_open_and_no_difference_leaves_all():
     result = break_even(effect(30, 2), effect(40, 1))
     assert (result.kind, result.pieces, result.p_star) == ("empty", (), None)
     assert [(r.low, r.high, r.sign) for r in result.regions] == [(0.0, 1.0, 1)]
-
-
-def test_no_difference_anywhere_decides_nothing():
     result = break_even(effect(0, 0), effect(0, 0))
     assert (result.kind, result.pieces, result.regions) == ("whole", ((0.0, 1.0),), ())
     assert result.p_star is None
-
-
-def test_no_cost_observed_is_not_a_repair_that_always_pays():
-    """Point estimates 0 and +30: formerly "always favoured"; how rare a fault may be is open."""
-    result = break_even(effect(0, 0), effect(30, 0))
-    ((low, high),) = result.pieces
-    assert (low, result.p_star) == (0.0, 0.0)
-    assert 0.05 < high < 0.3
-    assert [region.sign for region in result.regions] == [1]
-
-
-def test_opposite_effects_that_cancel_in_the_middle_leave_two_decided_ends():
-    """Cost and gain on the same scenes: the mixture is exactly 0 at one half, in no other place."""
-    result = break_even(effect(0, 40), effect(40, 0))
-    ((low, high),) = result.pieces
-    assert result.p_star == 0.5
-    assert low < 0.5 < high
-    assert [region.sign for region in result.regions] == [-1, 1]
 
 
 def test_a_set_may_have_two_pieces():

@@ -70,10 +70,10 @@ def test_interval_and_test_have_to_point_the_same_way():
 
 
 def test_what_has_no_test_is_refused():
-    with pytest.raises(ValueError, match="has no test"):
-        with_test(mean_effect(np.ones(N), np.zeros(N), RESAMPLES, "m"), "exact")
-    with pytest.raises(ValueError, match="has no test"):
-        with_test(success_rate(np.ones(N), RESAMPLES), "exact")
+    metres = mean_effect(np.ones(N), np.zeros(N), RESAMPLES, "m")
+    for untested in (metres, success_rate(np.ones(N), RESAMPLES)):
+        with pytest.raises(ValueError, match="has no test"):
+            with_test(untested, "exact")
 
 
 @settings(deadline=None)
@@ -110,9 +110,8 @@ def test_the_critical_p_is_where_the_decision_turns(p_values, data):
 def test_weighted_holm_is_the_closed_test_of_weighted_bonferroni(p_values, data):
     """One is rejected where every intersection that it is in has some p within its own part."""
     number = len(p_values)
-    weights = data.draw(
-        st.lists(st.sampled_from([0.5, 1.0, 3.0]), min_size=number, max_size=number)
-    )
+    weight = st.sampled_from([0.5, 1.0, 3.0])
+    weights = data.draw(st.lists(weight, min_size=number, max_size=number))
     names = [str(i) for i in range(number)]
     family = {name: contrast(p) for name, p in zip(names, p_values, strict=True)}
     decided = decide_family(family, weights=dict(zip(names, weights, strict=True)))

@@ -77,9 +77,8 @@ def test_of_scenes_that_differ_wholly_it_is_e_plus_m(first, second, seeds):
 @given(ARMS, ARMS)
 def test_power_and_changes_take_the_same_test(one, two):
     seeds = min(one.shape[2], two.shape[2])
-    pair = [
-        success_effect(*(a[:, :seeds] for a in arms), RESAMPLES, rule=RULE) for arms in (one, two)
-    ]
+    arms = (one[..., :seeds], two[..., :seeds])
+    pair = [success_effect(*pair, RESAMPLES, rule=RULE) for pair in arms]
     moved = with_test(change(*pair), RULE)
     assert moved.test.rejects() == (moved.side != 0)
     values = np.arange(-2 * seeds, 2 * seeds + 1) / seeds

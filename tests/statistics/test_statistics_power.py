@@ -1,5 +1,7 @@
 """Detectable differences: exact power against brute force, and its edges."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -48,9 +50,8 @@ def test_power_agrees_with_enumerating_every_table(n, rate, lean, alpha):
                 expected += binom.pmf(first + second, n, rate) * binom.pmf(
                     first, first + second, p_first / (p_first + p_second)
                 )
-    assert rule_power(n, rate, difference, alpha, rule="exact") == pytest.approx(
-        expected, abs=1e-10
-    )
+    found = rule_power(n, rate, difference, alpha, rule="exact")
+    assert found == pytest.approx(expected, abs=1e-10)
 
 
 @settings(deadline=None, max_examples=30)
@@ -59,9 +60,8 @@ def test_power_is_80_percent_at_the_detectable_difference_and_less_below(first, 
     least = found((first, second), alpha=alpha)
     difference, observed = least / 100, (first + second) / 100
     assumed = observed or beta.ppf(0.975, 1, 100)
-    assert rule_power(
-        100, max(assumed, difference), difference, alpha, rule="exact"
-    ) == pytest.approx(0.8, abs=2e-3)
+    power = rule_power(100, max(assumed, difference), difference, alpha, rule="exact")
+    assert power == pytest.approx(0.8, abs=2e-3)
     below = difference - 0.005
     assert rule_power(100, max(assumed, below), below, alpha, rule="exact") < 0.8
     assert found((second, first), alpha=alpha) == least
@@ -85,16 +85,17 @@ def test_the_number_to_plan_by_is_found_in_four_audits_of_five(rule, wins, losse
     planned = detectable(*arms, rule=rule, on_top=True) / 100.0
     assert 1.1 < planned / seen < 1.8
     stream, noise = np.random.default_rng(5), (wins + losses) / 100.0
+    resamples = Resamples.draw("planned", 100, n_resamples=1)
+
+    @cache
+    def detects(first, second):
+        effect = success_effect(*counted(first, second), resamples)
+        return with_test(effect, rule).detected != 0
 
     def power(difference):
         chances = [noise / 2 + difference, noise / 2, 1 - noise - difference]
-        first, second, _ = stream.multinomial(100, chances, size=300).T
-        resamples = Resamples.draw("planned", 100, n_resamples=1)
-        tested = (
-            with_test(success_effect(*counted(b, c), resamples), rule)
-            for b, c in zip(first.tolist(), second.tolist(), strict=True)
-        )
-        return np.mean([each.detected != 0 for each in tested])
+        drawn = stream.multinomial(100, chances, size=300)[:, :2].tolist()
+        return np.mean([detects(*counts) for counts in drawn])
 
     assert power(planned) == pytest.approx(0.8, abs=0.07)
     assert power(seen) < power(planned)

@@ -45,10 +45,14 @@ def arms(counts, *, overlap):
     return difference > 0, difference < 0
 
 
+def widest(counts):
+    """Return the effect of counts with the widest interval that they allow."""
+    return success_effect(*arms(counts, overlap=True), RESAMPLES)
+
+
 @pytest.mark.parametrize("name", CONTRASTS)
 def test_differences_and_counts_of_tables_2_and_4(name):
-    first, second = arms(CONTRASTS[name]["counts"], overlap=True)
-    effect = success_effect(first, second, RESAMPLES).estimate()
+    effect = widest(CONTRASTS[name]["counts"]).estimate()
     assert round(effect.value, 1) == CONTRASTS[name]["pp"]
     assert str(effect.counts) == "/".join(CONTRASTS[name]["counts"])
 
@@ -56,31 +60,22 @@ def test_differences_and_counts_of_tables_2_and_4(name):
 @pytest.mark.parametrize("name", CONTRASTS)
 def test_published_intervals_lie_between_the_widest_and_narrowest_possible(name):
     """Up to 0.7 pp, two steps of the resampled mean, for the paper's own resampling noise."""
-    widest, narrowest = (
-        percentile_interval(
-            success_effect(*arms(CONTRASTS[name]["counts"], overlap=overlap), RESAMPLES).draws
-        )
-        for overlap in (True, False)
-    )
-    low, high = CONTRASTS[name]["ci95"]
-    assert widest[0] - 0.7 <= low <= narrowest[0] + 0.7
-    assert narrowest[1] - 0.7 <= high <= widest[1] + 0.7
+    counts, (low, high) = CONTRASTS[name]["counts"], CONTRASTS[name]["ci95"]
+    narrowest = success_effect(*arms(counts, overlap=False), RESAMPLES)
+    outer, inner = (percentile_interval(each.draws) for each in (widest(counts), narrowest))
+    assert outer[0] - 0.7 <= low <= inner[0] + 0.7
+    assert inner[1] - 0.7 <= high <= outer[1] + 0.7
 
 
 @pytest.mark.parametrize("row", PUBLISHED["interactions"])
 def test_interaction_of_table_4(row):
-    a, b = (
-        success_effect(*arms(CONTRASTS[row[k]]["counts"], overlap=True), RESAMPLES) for k in "ab"
-    )
+    a, b = (widest(CONTRASTS[row[k]]["counts"]) for k in "ab")
     assert round(change(a, b).value, 1) == row["pp"]
 
 
 @pytest.mark.parametrize("row", PUBLISHED["decision_record"])
 def test_break_even_frequencies_of_table_5(row):
-    correct, faulty = (
-        success_effect(*arms(CONTRASTS[row[k]]["counts"], overlap=True), RESAMPLES)
-        for k in ("correct", "faulty")
-    )
+    correct, faulty = (widest(CONTRASTS[row[k]]["counts"]) for k in ("correct", "faulty"))
     result = break_even(correct, faulty)
     if row["p_star"] is None:
         assert result.p_star is None
@@ -97,14 +92,14 @@ def test_mcnemar_p_values_of_table_6(row):
     first_only, second_only = split(row["counts"])
     assert round(sign_p_value(first_only, second_only), 3) == row["p"]
     assert first_only - second_only == row["success"][0] - row["success"][1]
-    found = with_test(success_effect(*arms([row["counts"]], overlap=True), RESAMPLES), "exact")
+    found = with_test(widest([row["counts"]]), "exact")
     assert str(found.counts) == row["counts"]
     assert found.test.p_value == sign_p_value(first_only, second_only)
 
 
 def test_state_noise_cost_is_detected():
     row = PUBLISHED["state_noise"]
-    found = with_test(success_effect(*arms([row["counts"]], overlap=True), RESAMPLES), "exact")
+    found = with_test(widest([row["counts"]]), "exact")
     assert found.test.rejects() is row["detected"]
     assert found.value == pytest.approx(row["success"][0] - row["success"][1])
 

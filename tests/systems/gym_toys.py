@@ -4,10 +4,11 @@ import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Dict, Discrete
 
-from faultpath.faults import resolve
-from faultpath.loop import Module, Port, Taps
-from faultpath.systems import ComposedSystem, Parts
+from faultpath.loop import Module, Port
+from faultpath.systems import ComposedSystem, FunctionPlant
 from faultpath.systems.gymnasium import GymnasiumPlant
+from faultpath.trials import Arm
+from faultpath.trials.attempt import taps_of
 
 REAL = Box(-np.inf, np.inf, (1,), np.float64)
 SCENES = tuple(f"seed/{i}" for i in range(6))
@@ -75,21 +76,16 @@ def plant(environment=Walk, **given):
     return GymnasiumPlant(environment, action="push", **given)
 
 
+def functions(start, step, action="push", steps=2, succeeded=lambda episode: True, **given):
+    """Return a plant of plain functions in which every scene succeeds."""
+    given = {"dt_s": 0.1, "steps": steps, "succeeded": succeeded} | given
+    return FunctionPlant(start, step, action=action, **given)
+
+
 def system(made, modules=None, **given):
     units = {"place": "m", "push": "m", "slope": "m"} | given.pop("units", {})
-    return ComposedSystem(
-        "walk", made, {"only": Parts("One.", modules or [Steer()])}, units, **given
-    )
+    return ComposedSystem("walk", made, {"only": modules or [Steer()]}, units, **given)
 
 
-def fly(built, scenes=SCENES, variant="only", faults=(), seed=0):
-    wired = built.variants[variant]
-    taps = Taps(
-        built.interface,
-        resolve(faults, built.interface, wired.consumers),
-        scenes=tuple(scenes),
-        dt_s=built.control_dt_s,
-        bindings=wired.bindings,
-        consumers=wired.consumers,
-    )
-    return built.run(variant, scenes, taps, seed)
+def fly(built, scenes=SCENES, variant="only", seed=0):
+    return built.run(variant, scenes, taps_of(built, Arm(variant=variant), scenes), seed)

@@ -70,18 +70,15 @@ def test_what_is_not_as_declared_is_found(name, variant, broken, said):
 def test_a_privileged_read_without_permission_is_found():
     system, _ = trace(TOY, "calibrated")
     interface = system.interface
-    secret = interface.source("gain_estimate").model_copy(
-        update={"provenance": Provenance.PRIVILEGED}
-    )
+    known = interface.source("gain_estimate")
+    secret = known.model_copy(update={"provenance": Provenance.PRIVILEGED})
     sources = tuple(secret if each.name == secret.name else each for each in interface.sources)
     system.interface = interface.model_copy(update={"sources": sources})
     vars(system).pop("_variants", None)
     permitted = trace_system(system, SystemSpec(name=TOY), "calibrated", "carts")
     assert permitted.findings == ()
-    assert [each.split(" reads")[0] for each in permitted.privileged] == [
-        "observer.model",
-        "controller.inverse",
-    ]
+    readers = [each.split(" reads")[0] for each in permitted.privileged]
+    assert readers == ["observer.model", "controller.inverse"]
 
 
 @pytest.mark.parametrize(

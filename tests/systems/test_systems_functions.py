@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from gym_toys import SCENES, Steer, fly
+from gym_toys import SCENES, Steer, fly, functions
 
 import faultpath
 from faultpath.core.errors import SystemMistake
 from faultpath.loop import Port
-from faultpath.systems import ComposedSystem, FunctionPlant, Parts, writes
+from faultpath.systems import ComposedSystem, writes
 from faultpath.systems.observed import hashed
 from faultpath.trials import Status
 
@@ -41,6 +41,9 @@ def create() -> ComposedSystem:
 """
 
 
+UNITS = {"place": "m", "push": "m", "clock": "1"}
+
+
 def start(rng):
     return {"at": rng.uniform(-1, 1), "clock": 0}
 
@@ -58,17 +61,9 @@ def cart(**given):
         return not episode.terminated
 
     more = {"over": lambda state: abs(state["at"]) > 1.5, "succeeded": note} | given
-    plant = FunctionPlant(
-        start,
-        step,
-        observes={"place": "at", "clock": "clock"},
-        action="push",
-        steps=6,
-        dt_s=0.5,
-        **more,
-    )
-    units = {"place": "m", "push": "m", "clock": "1"}
-    built = ComposedSystem("cart", plant, {"only": Parts("One.", [Steer()])}, units)
+    observes = {"place": "at", "clock": "clock"}
+    plant = functions(start, step, steps=6, dt_s=0.5, observes=observes, **more)
+    built = ComposedSystem("cart", plant, {"only": [Steer()]}, UNITS)
     episodes.clear()
     return built, episodes
 
@@ -96,30 +91,17 @@ def test_noise_belongs_to_scene_seed_and_step_and_not_to_who_flies_beside():
 
 
 def test_a_module_that_reads_the_past_says_what_was_before():
-    class Late(Steer):
-        reads_past = frozenset({Port("push", "executed")})
-
-    built, _ = cart()
+    late = Steer()
+    late.reads_past = frozenset({Port("push", "executed")})
     with pytest.raises(SystemMistake, match="before the first step"):
-        ComposedSystem(
-            "late",
-            built.plant(),
-            {"only": Parts("", [Late()])},
-            {"place": "m", "push": "m", "clock": "1"},
-        )
+        ComposedSystem("late", cart()[0].plant(), {"only": [late]}, UNITS)
 
 
 def test_a_system_of_functions_is_audited(tmp_path):
     (tmp_path / "cart.py").write_text(SYSTEM)
+    question = {"baseline": "typical", "repair": "known", "fault": "gain:scale=0.2", "scenes": 30}
     run = faultpath.audit(
-        tmp_path / "cart.py",
-        baseline="typical",
-        repair="known",
-        fault="gain:scale=0.2",
-        scenes=30,
-        workers=0,
-        folder=tmp_path / "run",
-        progress=False,
+        tmp_path / "cart.py", **question, workers=0, folder=tmp_path / "run", progress=False
     )
     assert run.record.findings == ()
     assert [path.name for path in run.record.paths] == ["correct", "brake"]
@@ -129,14 +111,10 @@ def test_a_system_of_functions_is_audited(tmp_path):
 
 
 def test_a_module_stands_in_for_a_source_of_several_numbers():
-    plant = FunctionPlant(
+    plant = functions(
         lambda rng: {"pair": rng.uniform(size=2)},
         lambda state, push, rng: {"pair": state["pair"] + push},
         observes={"seen": "pair"},
-        action="push",
-        steps=3,
-        dt_s=0.5,
-        succeeded=lambda episode: True,
     )
 
     @writes("guessed")

@@ -6,12 +6,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from gym_toys import functions
 
 from faultpath import audit
 from faultpath.core.errors import SystemMistake
 from faultpath.faults import parse_fault
 from faultpath.loop import Batch, Inputs, NotDelivered, Port
-from faultpath.systems import ComposedSystem, FunctionPlant, shared_objects, tapped, writes
+from faultpath.systems import ComposedSystem, shared_objects, tapped, writes
 from faultpath.trials import Arm
 from faultpath.trials.attempt import Wrong, attempt
 
@@ -92,28 +93,16 @@ def test_a_mapping_is_delivered_however_it_is_read():
         return tapped({"mass": 1.0, "arm": 0.2}, "mass", at="control")
 
     def read(par):
-        seen.update(
-            item=par["mass"],
-            get=par.get("mass"),
-            missing=par.get("span", 7),
-            copied=dict(par),
-            spread={**par},
-            values=list(par.values()),
-        )
+        seen.update(item=par["mass"], get=par.get("mass"), missing=par.get("span", 7))
+        seen.update(copied=dict(par), spread={**par}, values=list(par.values()))
         return par["mass"]
 
     module = writes("out", of=make)(read)
     given = {Port("mass", "control.mass"): np.array([4.0])}
     module.step(Inputs("module", 0, given, {}), module.begin(Batch(("a",), 0, 0.1)))
     both = {"mass": 4.0, "arm": 0.2}
-    assert seen == {
-        "item": 4.0,
-        "get": 4.0,
-        "missing": 7,
-        "copied": both,
-        "spread": both,
-        "values": [4.0, 0.2],
-    }
+    assert (seen.pop("copied"), seen.pop("spread")) == (both, both)
+    assert seen == {"item": 4.0, "get": 4.0, "missing": 7, "values": [4.0, 0.2]}
 
 
 def test_a_consumer_is_named_in_small_letters():
@@ -166,9 +155,8 @@ def drive(gain, late=False):
     def make():
         par = Parameters()
         observer = Observer(tapped(copy.copy(par), "flux", at="observer"), gain)
-        return SimpleNamespace(
-            observer=observer, control=Controller(tapped(par, "flux", at="control")), t=0
-        )
+        control = Controller(tapped(par, "flux", at="control"))
+        return SimpleNamespace(observer=observer, control=control, t=0)
 
     def regulate(made, current):
         made.t += 1
@@ -180,13 +168,12 @@ def drive(gain, late=False):
 
 
 def system(**variants):
-    plant = FunctionPlant(
+    plant = functions(
         lambda rng: {"current": rng.normal(), "flux": 0.5},
         lambda state, action, rng: state | {"current": 0.5 * state["current"] - 0.1 * action},
         observes={"current": "current", "flux": "flux"},
         action="voltage",
         steps=10,
-        dt_s=0.1,
         succeeded=lambda episode: abs(float(episode["current"][-1])) < 0.2,
     )
     units = {"current": "A", "flux": "Vs", "voltage": "V"}
@@ -197,12 +184,8 @@ def test_parts_inside_one_module_are_consumers_of_their_own():
     made = system(fixed=drive(0.0), slow=drive(0.0, late=True))
     assert set(made.interface.channel("flux").consumers) == {"observer.flux", "control.flux"}
     found = audit(made, baseline="fixed", repair="slow", fault="flux:scale=3", scenes=8)
-    assert [path.name for path in found.record.paths] == [
-        "correct",
-        "control",
-        "observer",
-        "shared",
-    ]
+    paths = [path.name for path in found.record.paths]
+    assert paths == ["correct", "control", "observer", "shared"]
 
 
 def attempted(module, fault):
@@ -258,7 +241,5 @@ def test_what_parts_share_is_found_and_what_a_run_writes_is_named():
         "observer.par.resistance",
     ]
     apart = shared_objects({"a": Observer(Parameters(), 0.0), "b": Controller(Parameters())})
-    assert [(each.what, each.alias) for each in apart] == [
-        ("flux = 0.5", False),
-        ("resistance = 2.0", False),
-    ]
+    assert [each.what for each in apart] == ["flux = 0.5", "resistance = 2.0"]
+    assert not any(each.alias for each in apart)
