@@ -2,7 +2,6 @@
 
 import json
 import shutil
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -20,7 +19,7 @@ from faultpath.core.errors import UserError
 from faultpath.decisions.tables import MISSING
 from faultpath.trials.work.executor import Here
 
-PLAN = Plan((table_4.PAGE,), replace(QUICK, scenes=4))
+PLAN = Plan((table_4.PAGE,), QUICK)
 DISPLAY = Display(command=("faultpath", "reproduce"))
 
 
