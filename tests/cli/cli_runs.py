@@ -2,6 +2,7 @@
 
 import contextlib
 import io
+import json
 import os
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from faultpath.cli.main import main
 ROOT = Path(__file__).resolve().parents[2]
 TOY = f"{ROOT / 'examples' / 'toy.py'}:create"
 HERE = Path(__file__).resolve().parent
+COMMAND = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]
 
 
 @dataclass(frozen=True)
@@ -26,14 +28,15 @@ class Ended:
     out: str
     err: str
 
-    def refused(self) -> str:
-        """Return the one sentence of a mistake, after checking that it is one and only that."""
+    def refused(self, *names: str) -> str:
+        """Return the one sentence of a mistake, after checking that it is one and has the names."""
         assert self.status == 2, (self.status, self.out, self.err)
         assert "Traceback" not in self.out + self.err
         assert self.err.endswith("\n")
         (line,) = self.err.splitlines()
         assert line.startswith("faultpath: ")
         assert len(line) > 30
+        assert not [name for name in names if name not in line], (line, names)
         return line
 
 
@@ -55,10 +58,10 @@ def faultpath(*arguments: object) -> Ended:
 
 def audit(*arguments: object, **options: object) -> Ended:
     """Audit the toy in this process; an option given here replaces the default one."""
-    return faultpath(*_command(arguments, options))
+    return faultpath(*audit_line(*arguments, **options))
 
 
-def _command(arguments: tuple[object, ...], options: dict[str, object]) -> list[object]:
+def audit_line(*arguments: object, **options: object) -> list[object]:
     chosen: dict[str, object] = {
         "system": TOY,
         "baseline": "calibrated",
@@ -68,16 +71,19 @@ def _command(arguments: tuple[object, ...], options: dict[str, object]) -> list[
         "scenes": 6,
         "workers": 0,
     } | options
-    named = [part for k, v in chosen.items() if k != "system" for part in (f"--{k}", v)]
-    return ["audit", chosen["system"], *named, *arguments]
+    return ["audit", chosen.pop("system"), *flags(chosen), *arguments]
 
 
-def start(words: Path, /, *arguments: object, **options: object) -> subprocess.Popen[str]:
-    """Audit in a process of its own, in a session of its own, its words going into a file."""
-    command = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]
+def flags(values: dict[str, object]) -> list[object]:
+    """Return options as a line has them."""
+    return [part for name, value in values.items() for part in (f"--{name}", value)]
+
+
+def start(words: Path, *line: object) -> subprocess.Popen[str]:
+    """Run a command in a process and session of its own, its words going into a file."""
     with words.open("w") as file:
         return subprocess.Popen(
-            [*command, *map(str, _command(arguments, options))],
+            [*COMMAND, *map(str, line)],
             stdout=file,
             stderr=subprocess.STDOUT,
             text=True,
@@ -95,3 +101,10 @@ def until(condition: Callable[[], object], what: str, seconds: float = 60.0) -> 
 
 def shards(folder: Path) -> list[Path]:
     return sorted(folder.glob("shards/*.parquet"))
+
+
+def edit(path: Path, change: Callable[[dict], object]) -> None:
+    """Change what a JSON file holds."""
+    content = json.loads(path.read_text())
+    change(content)
+    path.write_text(json.dumps(content))

@@ -65,16 +65,8 @@ MAP_FILE = yaml.safe_load(MAP)
 COMMANDS = {
     "audit": ["audit", *RUN, "--scenes", 2, "--fault", "gain:scale=0.6"],
     "map": [
-        "map",
-        *RUN,
-        "--scenes",
-        1,
-        "--fault",
-        "gain",
-        "--against",
-        "controller,observer",
-        "--up-to",
-        0.4,
+        *("map", *RUN, "--scenes", 1, "--fault", "gain"),
+        *("--against", "controller,observer", "--up-to", 0.4),
     ],
     "search": ["search", *RUN, "--scenes", 2, "--candidates", 8, "--within", "bounds.yaml"],
     "sensitivity": [
@@ -221,13 +213,8 @@ def numbers(verb: str, base: Path, here: Path, rng: Random) -> list[object]:
     one = partial(rng.choice, NUMBERS)
     fault = rng.choice(FAULTS).format(one(), one())
     options = {
-        "audit": {
-            "--fault": fault,
-            "--scenes": one(),
-            "--margin": one(),
-            "--thresholds": one(),
-            "--time-limit": one(),
-        },
+        "audit": {"--fault": fault}
+        | {name: one() for name in ("--scenes", "--margin", "--thresholds", "--time-limit")},
         "plan": {"--fault": fault, "--scenes": one(), "--seeds": one()},
         "map": {
             "--up-to": one(),

@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import sys
 import warnings
 from pathlib import Path
 
@@ -22,8 +21,6 @@ pytestmark = pytest.mark.filterwarnings(
 
 @pytest.fixture(autouse=True)
 def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", list(sys.path))
     monkeypatch.setattr(module, "CONTROL_STEPS", 3)
     shutil.copy(PARTS, tmp_path / "mine.py")
 
@@ -75,21 +72,21 @@ def test_an_edited_part_is_other_code():
     again = _audit("wm-a", "mine.py:exact")
     assert "Kept 8 of 8" in again.out
     Path("mine.py").write_text(Path("mine.py").read_text().replace("drag=True", "drag=False"))
-    assert "mine.py" in _audit("wm-a", "mine.py:exact").refused()
+    _audit("wm-a", "mine.py:exact").refused("mine.py")
 
 
 @pytest.mark.parametrize(
-    ("repair", "says"),
+    ("repair", "name"),
     [
         ("mine.py", "'mine.py:create'"),
-        ("other.py:create", "there is no file 'other.py'"),
-        ("mine.py:absent", "mine.py has no function 'absent'"),
-        ("mine.py:OPTIONS", "mine.py has no function 'OPTIONS'"),
+        ("other.py:create", "'other.py'"),
+        ("mine.py:absent", "'absent'"),
+        ("mine.py:OPTIONS", "'OPTIONS'"),
         ("mine.py:exact/gur", "did you mean 'mine.py:exact/gru'"),
     ],
 )
-def test_a_mistake_is_one_sentence(repair, says):
-    assert says in _audit("wm-a", repair).refused()
+def test_a_mistake_is_one_sentence(repair, name):
+    _audit("wm-a", repair).refused(name)
 
 
 def test_help_says_where_a_part_is_named():

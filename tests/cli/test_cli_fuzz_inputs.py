@@ -18,7 +18,7 @@ from traceback import format_exception
 import pytest
 from cli_runs import Ended, faultpath
 from odd_commands import CASES, LONG, bases
-from test_cli_fuzz import OPTIONS
+from test_cli_fuzz import OPTIONS, misended
 
 pytestmark = pytest.mark.fuzz
 
@@ -71,15 +71,10 @@ def held(folder: Path) -> dict[str, str]:
 
 
 def wrong(line: list[str], ended: Ended, before: dict[str, str], here: Path) -> str:
-    """Return what is wrong with how a command ended, if anything is."""
-    said = ended.out + ended.err
-    if "Traceback" in said or ended.status not in (0, 1, 2):
-        return f"status {ended.status}: {said[-300:]}"
-    if not all(each.isprintable() for each in said.splitlines() if line[-1] != "--json"):
-        return "characters that steer the terminal"
+    """Return what is wrong with how a command ended and with what it left, if anything is."""
+    if fault := misended(line, ended):
+        return fault
     last = ended.err.splitlines()[-1:] or [""]
-    if ended.status == 2 and "Usage" not in ended.out and not last[0].startswith("faultpath: "):
-        return f"no sentence: {said[-300:]}"
     if ended.status == 2 and (len(last[0]) < 30 or INNER.search(last[0])):
         return f"nothing is said: {last}"
     after, verb = held(here), line[0]

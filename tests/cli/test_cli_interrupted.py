@@ -9,11 +9,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from cli_runs import HERE, audit, faultpath, shards, start, until
+from cli_runs import HERE, audit, audit_line, faultpath, shards, start, until
 
 from faultpath.cli.main import INTERRUPTED
 
-SCENES = 12
+SCENES, BLOCKS = 8, 24
 
 
 @pytest.fixture(scope="module")
@@ -58,19 +58,19 @@ def test_a_stop_says_what_is_kept_and_how_to_go_on(
     workers, sent, status, gate, tmp_path, undisturbed
 ):
     run, words = tmp_path / "run", tmp_path / "words"
-    process = start(words, **_options(gate, run), workers=workers)
+    process = start(words, *audit_line(**_options(gate, run), workers=workers))
     until(lambda: len(shards(run)) >= 2, "two blocks")
     process.send_signal(sent)
     assert process.wait(timeout=60) == status
     kept = len(shards(run))
-    assert kept < 36
+    assert kept < BLOCKS
     said = words.read_text()
     assert "Traceback" not in said
     last = said.splitlines()[-1]
-    told = re.match(r"faultpath: interrupted with (\d+) of 36 blocks done", last)
-    assert told is not None, last
+    count = re.match(rf"faultpath: interrupted with (\d+) of {BLOCKS} blocks done", last)
+    assert count is not None, last
     # A block whose file was just written may not be counted yet.
-    assert kept - 1 <= int(told[1]) <= kept
+    assert kept - 1 <= int(count[1]) <= kept
     assert str(run) in last
     assert "again to resume" in last
     assert not (run / "record.json").exists()
@@ -79,7 +79,7 @@ def test_a_stop_says_what_is_kept_and_how_to_go_on(
 
 def test_a_run_that_is_killed_goes_on_to_the_same_bytes(gate, tmp_path, undisturbed):
     run = tmp_path / "run"
-    process = start(tmp_path / "words", **_options(gate, run), workers=1)
+    process = start(tmp_path / "words", *audit_line(**_options(gate, run), workers=1))
     until(lambda: len(shards(run)) >= 2, "two blocks")
     process.kill()
     assert process.wait(timeout=60) == -signal.SIGKILL
@@ -89,9 +89,10 @@ def test_a_run_that_is_killed_goes_on_to_the_same_bytes(gate, tmp_path, undistur
 
 def test_two_processes_on_one_folder_take_turns(gate, tmp_path, undisturbed):
     run = tmp_path / "run"
-    first = start(tmp_path / "first", **_options(gate, run), workers=0)
+    line = audit_line(**_options(gate, run))
+    first = start(tmp_path / "first", *line)
     until(lambda: shards(run), "a block of the first")
-    second = start(tmp_path / "second", **_options(gate, run), workers=0)
+    second = start(tmp_path / "second", *line)
     until(lambda: "waiting for it" in (tmp_path / "second").read_text(), "the second to wait")
     assert f"another faultpath process (id {first.pid})" in (tmp_path / "second").read_text()
     gate.unlink()

@@ -8,21 +8,21 @@ from pathlib import Path
 import pytest
 from cli_runs import TOY
 
-ENGINE = {"jinja2", "numpy", "pyarrow", "scipy.special"}
-HEAVY = {"jinja2", "mujoco", "numpy", "pyarrow", "scipy.special", "torch"}
+ENGINE = {"jinja2", "numpy", "pyarrow", "scipy", "scipy.special"}
+HEAVY = {*ENGINE, "mujoco", "torch"}
 
 AUDIT = ["--baseline", "a", "--repair", "b", "--fault", "gain:scale=2"]
 
 MAY_LOAD = {
     "help": (["--help"], set[str]()),
     "help of a verb": (["audit", "--help"], set[str]()),
-    "models": (["train", "quadrotor", "--list"], {"numpy"}),
+    "models": (["train", "quadrotor", "--list"], {"numpy", "scipy"}),
     "no such run": (["report", "nowhere"], ENGINE),
     "help of the quadrotor": (["audit", "quadrotor", "--help"], {"numpy"}),
     "no such system": (["audit", "quadcopter", *AUDIT], ENGINE),
     "nothing to check": (["check", TOY, "--variants", "a"], ENGINE),
     "nothing to trace": (["trace", TOY, "--variant", "a"], ENGINE),
-    "claims": (["reproduce", "--judge"], {"numpy"}),
+    "claims": (["reproduce", "--judge"], {"numpy", "scipy"}),
 }
 
 CODE = """

@@ -20,8 +20,7 @@ def write_library(count):
     Path("mine.json").write_text(as_text(Library.of("mine", scenes)))
 
 
-def test_a_library_of_ones_own_is_flown_and_reported(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_library_of_ones_own_is_flown_and_reported(monkeypatch):
     monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 3)
     write_library(2)
     ended = audit(
@@ -35,18 +34,15 @@ def test_a_library_of_ones_own_is_flown_and_reported(tmp_path, monkeypatch):
         out="run",
     )
     assert (ended.status, ended.err) == (0, "")
-    question = open_run(tmp_path / "run").record.question
+    record = open_run("run").record
+    question = record.question
     assert question.n_scenes == 2
     assert question.options == {"wind": "L1"}
-    assert question.library_hash == json.loads((tmp_path / "mine.json").read_text())["content_hash"]
-    assert [path.name for path in open_run(tmp_path / "run").record.paths] == [
-        "correct",
-        "predictor",
-        "reconstruction",
-        "shared",
-    ]
+    assert question.library_hash == json.loads(Path("mine.json").read_text())["content_hash"]
+    names = [path.name for path in record.paths]
+    assert names == ["correct", "predictor", "reconstruction", "shared"]
 
-    page = tmp_path / "run" / "report.html"
+    page = Path("run/report.html")
     before = page.read_bytes()
     page.unlink()
     again = faultpath("report", "run")
@@ -56,13 +52,12 @@ def test_a_library_of_ones_own_is_flown_and_reported(tmp_path, monkeypatch):
 
     backend = native.describe()
     assert f"Computing with {backend}." in ended.out
-    assert json.loads((tmp_path / "run" / "provenance.json").read_text())["backend"] == backend
+    assert json.loads(Path("run/provenance.json").read_text())["backend"] == backend
     assert backend.encode() in before
 
 
-def test_a_worker_finds_a_library_file(tmp_path, monkeypatch):
+def test_a_worker_finds_a_library_file():
     """What a worker is told is the system and the library's name, and no more."""
-    monkeypatch.chdir(tmp_path)
     write_library(1)
     system = load_system(SystemSpec(name="quadrotor"))
     library = system.library("mine.json")

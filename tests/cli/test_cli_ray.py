@@ -11,39 +11,35 @@ pytestmark = pytest.mark.filterwarnings("ignore::FutureWarning", "ignore::Resour
 
 
 @pytest.mark.parametrize(
-    ("executor", "workers", "says"),
+    ("executor", "workers", "name"),
     [
-        ("slurm", 1, "there is no executor 'slurm': use 'local', 'ray', or 'ray:HOST:PORT'"),
-        ("ray", 0, "the number of workers is 0: on Ray use 1 or more"),
-        ("ray:10.0.0.1", 1, "no Ray cluster answers at '10.0.0.1'"),
-        ("ray:ray://head:10001", 1, "no Ray cluster answers at 'ray://head:10001'"),
-        ("ray:127.0.0.1:1", 1, "no Ray cluster answers at '127.0.0.1:1'"),
+        ("slurm", 1, "'slurm'"),
+        ("ray", 0, "1 or more"),
+        ("ray:10.0.0.1", 1, "'10.0.0.1'"),
+        ("ray:ray://head:10001", 1, "'ray://head:10001'"),
+        ("ray:127.0.0.1:1", 1, "'127.0.0.1:1'"),
     ],
 )
-def test_a_cluster_that_is_not_there_is_a_sentence(executor, workers, says, tmp_path):
+def test_a_cluster_that_is_not_there_is_a_sentence(executor, workers, name):
     pytest.importorskip("ray")
-    ended = audit(executor=executor, workers=workers, out=tmp_path / "run")
-    assert says in ended.refused()
+    audit(executor=executor, workers=workers, out="run").refused(name)
 
 
-def test_a_missing_extra_is_a_sentence(tmp_path):
+def test_a_missing_extra_is_a_sentence():
     with patch.dict(sys.modules, {"ray": None}):
         sys.modules.pop("faultpath.trials.work.ray_cluster", None)
-        ended = audit(executor="ray", workers=1, out=tmp_path / "run")
-    assert "pip install '.[ray]'" in ended.refused()
+        audit(executor="ray", workers=1, out="run").refused("pip install '.[ray]'")
 
 
-def test_another_version_on_the_cluster_is_a_sentence(tmp_path):
+def test_another_version_on_the_cluster_is_a_sentence():
     pytest.importorskip("ray")
     says = "Version mismatch: The cluster was started with:\n    Ray: 2.1\n    Python: 3.9\n"
     with patch("ray.init", side_effect=RuntimeError(says)):
-        ended = audit(executor="ray:auto", workers=1, out=tmp_path / "run")
-    assert (
-        "cluster auto: Version mismatch: The cluster was started with: Ray: 2.1" in ended.refused()
-    )
+        ended = audit(executor="ray:auto", workers=1, out="run")
+    ended.refused("Version mismatch: The cluster was started with: Ray: 2.1")
 
 
-def test_without_a_cluster_one_is_started_here_with_as_many_cpus_as_workers(tmp_path, monkeypatch):
+def test_without_a_cluster_one_is_started_here_with_as_many_cpus_as_workers(monkeypatch):
     pytest.importorskip("ray")
     monkeypatch.delenv("RAY_ADDRESS", raising=False)
     asked = []
@@ -53,9 +49,9 @@ def test_without_a_cluster_one_is_started_here_with_as_many_cpus_as_workers(tmp_
         raise ConnectionError("none runs") if address == "auto" else Exception("no room\n")
 
     with patch("ray.init", side_effect=init):
-        ended = audit(executor="ray", workers=3, out=tmp_path / "run")
+        ended = audit(executor="ray", workers=3, out="run")
     assert asked == [("auto", None), ("local", 3)]
-    assert "Ray does not start on this machine: no room" in ended.refused()
+    ended.refused("no room")
 
 
 def test_what_rays_threads_print_is_no_output_of_ours(capsys):

@@ -3,18 +3,18 @@
 import sys
 from pathlib import Path
 
+import pyarrow.parquet as pq
 import pytest
-from cli_runs import TOY, faultpath, shards
+from cli_runs import TOY, edit, faultpath, flags, shards
 
 import faultpath as library
-from faultpath.decisions.search.model import SearchRecord
 
 BOUNDS = "isolated: observer\nfaults:\n- {fault: gain, size: [0.6, 1.4]}\n"
 
 
 def line(folder: Path, **options: object) -> list[object]:
     (folder / "bounds.yaml").write_text(BOUNDS)
-    given = {
+    asked: dict[str, object] = {
         "baseline": "calibrated",
         "repair": "blind",
         "within": folder / "bounds.yaml",
@@ -23,12 +23,8 @@ def line(folder: Path, **options: object) -> list[object]:
         "scenes": 80,
         "workers": 0,
         "out": folder / "run",
-    } | options
-    return ["search", TOY, *(part for k, v in given.items() for part in (f"--{k}", v))]
-
-
-def record_of(folder: Path) -> SearchRecord:
-    return SearchRecord.model_validate_json((folder / "search.json").read_bytes())
+    }
+    return ["search", TOY, *flags(asked | options)]
 
 
 @pytest.fixture(scope="module")
@@ -43,20 +39,13 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_what_is_confirmed_is_an_audit_in_scenes_that_found_nothing(run: Path) -> None:
-    record = record_of(run)
+    record = library.open_run(run).record
     confirming = library.open_run(run / record.confirmation)
     assert confirming.record == record.confirmed
-    assert (
-        confirming.record.question.fault
-        == record.best
-        == max(record.tried, key=lambda each: each.regret_pp).fault
-    )
-    table, found = confirming.table(), library.open_run(run)
-    assert found.record == record
-    import pyarrow.parquet as parquet
-
-    tried = parquet.read_table(run / "outcomes.parquet")
-    ours, theirs = (set(each.column("scene").to_pylist()) for each in (table, tried))
+    assert confirming.record.question.fault == record.best
+    assert record.best == max(record.tried, key=lambda tried: tried.regret_pp).fault
+    tables = (confirming.table(), pq.read_table(run / "outcomes.parquet"))
+    ours, theirs = (set(table.column("scene").to_pylist()) for table in tables)
     assert (len(ours), len(theirs), len(ours & theirs)) == (40, 40, 0)
     page = (run / "report.html").read_text()
     assert record.headline in page
@@ -67,8 +56,8 @@ def test_what_is_confirmed_is_an_audit_in_scenes_that_found_nothing(run: Path) -
 def test_what_is_lost_is_run_again_to_the_same_bytes(run: Path) -> None:
     names = ("search.json", "outcomes.parquet", "table.md")
     before = [(run / name).read_bytes() for name in names]
-    lost = shards(run)[::2]
-    for shard in (*lost, *shards(run / record_of(run).confirmation)[:1], run / "search.json"):
+    lost, confirming = shards(run)[::2], run / library.open_run(run).record.confirmation
+    for shard in (*lost, *shards(confirming)[:1], run / "search.json"):
         shard.unlink()
     assert faultpath(*line(run.parent)).status == 0
     assert [(run / name).read_bytes() for name in names] == before
@@ -76,23 +65,20 @@ def test_what_is_lost_is_run_again_to_the_same_bytes(run: Path) -> None:
 
 
 def test_a_changed_record_is_refused(run: Path) -> None:
-    text = (run / "search.json").read_text()
+    before = (run / "search.json").read_bytes()
     try:
-        (run / "search.json").write_text(text.replace('"failed": 0', '"failed": 1'))
-        assert "search.json changed since the run" in faultpath("report", run).refused()
+        edit(run / "search.json", lambda record: record.update(failed=1))
+        faultpath("report", run).refused("search.json changed since the run")
     finally:
-        (run / "search.json").write_text(text)
+        (run / "search.json").write_bytes(before)
 
 
 def test_a_mistake_is_one_sentence_and_leaves_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for options, said in (
-        ({"within": tmp_path / "none.yaml"}, "none.yaml: cannot be read"),
-        ({"candidates": 3}, "--candidates: is 3, and must be a number of at least 8"),
-        ({"scenes": 1}, "give 2 --scenes or more"),
-    ):
-        assert said in faultpath(*line(tmp_path, **options)).refused()
+    faultpath(*line(tmp_path, within=tmp_path / "none.yaml")).refused("none.yaml")
+    faultpath(*line(tmp_path, candidates=3)).refused("--candidates", "3", "8")
+    faultpath(*line(tmp_path, scenes=1)).refused("2 --scenes")
     monkeypatch.setitem(sys.modules, "cmaes", None)
-    assert "pip install '.[search]'" in faultpath(*line(tmp_path)).refused()
+    faultpath(*line(tmp_path)).refused("pip install '.[search]'")
     assert not (tmp_path / "run").exists()

@@ -24,8 +24,7 @@ def create(
 
 
 @pytest.fixture(autouse=True)
-def _elsewhere(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def _mine(tmp_path):
     (tmp_path / "mine.py").write_text(MINE)
 
 
@@ -42,9 +41,7 @@ def _elsewhere(tmp_path, monkeypatch):
     ],
 )
 def test_a_misspelt_option_is_answered_with_the_one_that_was_meant(line, meant):
-    said = faultpath(*line).refused()
-    assert f"did you mean {meant}?" in said
-    assert "Possible" not in said
+    assert "Possible" not in faultpath(*line).refused(f"did you mean {meant}?")
 
 
 @pytest.mark.parametrize("verb", ["audit", "trace"])
@@ -79,7 +76,7 @@ def test_a_flag_of_the_verb_keeps_its_meaning():
 
 
 @pytest.mark.parametrize(
-    ("arguments", "options", "says"),
+    ("arguments", "options", "names"),
     [
         (["--wnd", "L3"], {"system": "quadrotor"}, ["--wnd", "--wind, --environment"]),
         (["--wind=L3"], {}, ["--wind", "toy.py:create", "takes none"]),
@@ -90,11 +87,6 @@ def test_a_flag_of_the_verb_keeps_its_meaning():
         (["--wind", "L3"], {"system": "quadcopter"}, ["no system 'quadcopter'"]),
     ],
 )
-def test_a_wrong_flag_is_told_in_a_sentence(arguments, options, says, tmp_path):
-    sentence = audit(*arguments, **options).refused()
-    for part in says:
-        assert part in sentence
-    assert [path.name for path in tmp_path.iterdir() if path.suffix != ".py"] in (
-        [],
-        ["__pycache__"],
-    )
+def test_a_wrong_flag_is_told_in_a_sentence(arguments, options, names, tmp_path):
+    audit(*arguments, **options).refused(*names)
+    assert {path.name for path in tmp_path.iterdir()} <= {"mine.py", "__pycache__"}

@@ -16,9 +16,8 @@ from fitting_toys import Toy, entry
 
 
 @pytest.fixture(autouse=True)
-def _toys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def _toys(monkeypatch: pytest.MonkeyPatch) -> None:
     """Put toys in the place of the quadrotor's models."""
-    monkeypatch.chdir(tmp_path)
     entries = (entry("one"), entry("one+dcc", seeds=(0, 1)), entry("bug"), entry("mistake"))
     monkeypatch.setattr(catalogue, "ALL", entries)
     monkeypatch.setattr(catalogue, "GROUPS", {"both": entries[:2], "all": entries[:2]})
@@ -79,22 +78,24 @@ def test_models_that_fail_are_told_and_change_the_status() -> None:
     assert Path("runs/train/one-0.safetensors").exists()
 
 
+def flying(name: str, pool: str, *after: str) -> catalogue.ModelEntry:
+    """Return a model that is fitted on a pool of flights, after other models."""
+    factory = entry("one").factory
+    return catalogue.ModelEntry(name, factory, (pool,), "", 9.0, seeds=(0,), after=after)
+
+
 def test_flights_that_are_missing_are_collected_first(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[tuple[Path, tuple[str, ...], int]] = []
+    calls: list[tuple[Path, tuple[str, ...], int]] = []
 
     def collect(folder: Path, pools, workers: int, progress) -> None:
         progress(1.0, 2.0)
-        asked.append((folder, pools, workers))
+        calls.append((folder, pools, workers))
 
     monkeypatch.setattr(jobs, "collect", collect)
-    monkeypatch.setattr(
-        catalogue,
-        "ALL",
-        (catalogue.ModelEntry("one", entry("one").factory, ("nominal",), "", 1.0, seeds=(0,)),),
-    )
+    monkeypatch.setattr(catalogue, "ALL", (flying("one", "nominal"),))
     ended = _train("one", "--data", "flights")
     assert ended.status == 0, ended.err
-    assert asked == [(Path("flights"), ["nominal"], 0)]
+    assert calls == [(Path("flights"), ["nominal"], 0)]
     assert "Collecting nominal" in ended.out
 
 
@@ -105,11 +106,8 @@ def test_data_that_models_fly_are_collected_when_those_are_fitted(
         assert Path("runs/train/one-0.safetensors").exists()
         progress(1.0, 1.0)
 
-    needy = catalogue.ModelEntry(
-        "needy", entry("needy").factory, ("flown",), "", 9.0, seeds=(0,), after=("one",)
-    )
     monkeypatch.setattr(jobs, "collect", collect)
-    monkeypatch.setattr(catalogue, "ALL", (needy, entry("one")))
+    monkeypatch.setattr(catalogue, "ALL", (flying("needy", "flown", "one"), entry("one")))
     ended = _train("needy", "one")
     assert ended.status == 0, ended.err
     assert Path("runs/train/needy-0.safetensors").exists()
@@ -119,12 +117,8 @@ def test_closed_loop_flights_without_their_predictor_are_refused_before_any_fit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path)
-    flown = catalogue.ModelEntry(
-        "flown", entry("one").factory, ("trajectory",), "", 9.0, seeds=(0,), after=("one",)
-    )
-    monkeypatch.setattr(catalogue, "ALL", (flown, entry("one")))
-    said = _train("flown", "one").refused()
-    assert "no checkpoint of 'one' with seed 0" in said
+    monkeypatch.setattr(catalogue, "ALL", (flying("flown", "trajectory", "one"), entry("one")))
+    _train("flown", "one").refused("no checkpoint of 'one' with seed 0")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -146,20 +140,18 @@ def test_ctrl_c_says_what_is_kept_and_how_to_go_on(monkeypatch: pytest.MonkeyPat
 
 
 @pytest.mark.parametrize(
-    ("arguments", "says"),
+    ("arguments", "names"),
     [
         (["two"], ["'two'", "one, one+dcc, bug, mistake", "both, all"]),
         (["one", "--seed", "x"], ["--seed", "`faultpath train quadrotor --help`"]),
-        (["one", "--seed", "-1"], ["--seed", "greater than or equal to 0"]),
-        (["one", "--out", "/proc/none"], ["/proc/none", "choose another path"]),
+        (["one", "--seed", "-1"], ["--seed", "0"]),
+        (["one", "--out", "/proc/none"], ["/proc/none"]),
         (["one", "--fast"], ["--fast"]),
     ],
     ids=" ".join,
 )
-def test_a_mistake_is_one_sentence(arguments, says, tmp_path: Path) -> None:
-    sentence = _train(*arguments).refused()
-    for part in says:
-        assert part in sentence
+def test_a_mistake_is_one_sentence(arguments, names, tmp_path: Path) -> None:
+    _train(*arguments).refused(*names)
     assert list(tmp_path.iterdir()) == []
 
 

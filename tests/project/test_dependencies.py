@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
+import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
@@ -44,20 +45,21 @@ def _declared(project: Path, *extras: str) -> set[str]:
     return {canonicalize_name(Requirement(line).name) for line in lines} - own
 
 
+def _files(folder: Path) -> list[Path]:
+    return sorted((folder / "src").rglob("*.py"))
+
+
 def test_the_engine_imports_what_is_declared_and_nothing_else(root: Path) -> None:
-    files = sorted((root / "src").rglob("*.py"))
     extras = ("gymnasium", "torch", "ray", "search", "sensitivity", "pytest")
-    assert _third_party(files) == _declared(root, *extras)
+    assert _third_party(_files(root)) == _declared(root, *extras)
 
 
-def test_the_quadrotor_imports_only_what_it_and_the_engine_declare(root: Path) -> None:
-    files = sorted((root / "quadrotor" / "src").rglob("*.py"))
-    assert _third_party(files) <= _declared(root) | _declared(root / "quadrotor", "ulog", "bags")
-
-
-def test_the_paper_imports_only_what_it_and_the_engine_declare(root: Path) -> None:
-    files = sorted((root / "paper" / "src").rglob("*.py"))
-    assert _third_party(files) <= _declared(root) | _declared(root / "quadrotor")
+@pytest.mark.parametrize(("name", "extras"), [("quadrotor", ("ulog", "bags")), ("paper", ())])
+def test_what_is_built_on_the_engine_imports_only_what_is_declared(
+    name: str, extras: tuple[str, ...], root: Path
+) -> None:
+    declared = _declared(root) | _declared(root / "quadrotor", *extras)
+    assert _third_party(_files(root / name)) <= declared
 
 
 def test_every_dependency_has_its_line_in_the_design_notes(root: Path) -> None:

@@ -2,6 +2,7 @@
 
 import os
 import re
+import subprocess
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -111,37 +112,47 @@ def plan(record: DecisionRecord, scenes: int | None = None) -> Audit:
     return replace(audit, question=audit.question.by_the_rule_of(asked))
 
 
+def recipe(target: str, given: str = "") -> list[str]:
+    """Return the words of the audit of the quadrotor that a target of make runs."""
+    line = ["make", "--no-print-directory", "--dry-run", "--always-make", target, f"ARGS={given}"]
+    shown = subprocess.run(line, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    (words,) = re.findall(r"faultpath audit quadrotor (.*)", shown.replace("\\\n", ""))
+    return words.split()
+
+
 @pytest.mark.parametrize(("name", "scenes"), [("quadrotor-L3", None), ("quadrotor-L3-20", 20)])
 def test_the_main_reference_is_what_make_audit_runs(name: str, scenes: int | None) -> None:
-    text = (ROOT / "Makefile").read_text()
-    recipe = re.search(r"faultpath audit (\S+) (.*?) \$\(ARGS\)", text, re.S)
-    assert recipe is not None
-    given = dict(re.findall(r"\$\(call unless_given,(\S+?),(\S+?)\)", recipe[2]))
-    asked = record_of(name).question
-    assert recipe[1] == asked.system
-    assert given.pop("--wind") == asked.options["wind"]
-    assert given == {
-        "--baseline": asked.baseline,
-        "--repair": asked.repair,
-        "--fault": asked.fault,
-        "--library": asked.library,
+    question, words = record_of(name).question, recipe("audit")
+    assert question.system == "quadrotor"
+    assert dict(zip(words[::2], words[1::2], strict=True)) == {
+        "--baseline": question.baseline,
+        "--repair": question.repair,
+        "--fault": question.fault,
+        "--library": question.library,
+        "--wind": question.options["wind"],
     }
-    assert asked.seeds == (0,)
-    assert scenes is None or asked.n_scenes == scenes
+    assert question.seeds == (0,)
+    assert scenes is None or question.n_scenes == scenes
 
 
 @pytest.mark.parametrize(
     ("target", "name"), [("audit", "quadrotor-L3"), ("confirm", "quadrotor-L3-confirmation")]
 )
 def test_the_page_of_the_quadrotor_shows_the_command_of_make(target: str, name: str) -> None:
-    text = (ROOT / "Makefile").read_text("utf-8").replace("\\\n", "")
-    recipe = re.search(rf"(?m)^{target}: .*\n\t\$\(BIN\)/(.*) \$\(ARGS\)$", text)
-    assert recipe is not None
-    command = re.sub(r"\$\(call unless_given,(\S+?),(\S+?)\)", r"\1 \2", recipe[1])
     page = (ROOT / "docs" / "quadrotor.md").read_text("utf-8")
     shown = re.search(rf"begin:command:{name}:not-run -->\n```[^\n]*\n\$ (.*?)\n```", page, re.S)
     assert shown is not None
-    assert command.split() == shown[1].replace("\\\n", "").split()
+    words = shown[1].replace("\\\n", "").split()
+    assert words == ["faultpath", "audit", "quadrotor", *recipe(target)]
+
+
+@pytest.mark.parametrize("given", ["--wind L0 --seeds 0,1", "--wind=L0", "--scenes 20"])
+def test_make_audit_gives_what_its_user_does_not(given: str) -> None:
+    words = recipe("audit", given)
+    assert " ".join(words).endswith(given)
+    options = [word.partition("=")[0] for word in words if word.startswith("--")]
+    assert sorted(options) == sorted(set(options))
+    assert {"--baseline", "--repair", "--fault", "--library", "--wind"} <= set(options)
 
 
 @pytest.mark.parametrize("folder", RUNS, ids=lambda path: path.name)
