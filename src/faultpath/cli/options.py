@@ -36,7 +36,7 @@ Trust = Annotated[
 Json = Annotated[
     bool,
     typer.Option(
-        "--json", help="Print JSON to standard output; other text goes to standard error."
+        "--json", help="Print JSON; other text goes to standard error."
     ),
 ]
 

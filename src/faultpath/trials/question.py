@@ -161,7 +161,7 @@ class AuditQuestion(Running):
 
     fault: Annotated[str, Flag(panel=RepairQuestion.panel)] = Field(
         description="`gain:scale=0.6`, `gain:delay=5@observer`, `gain:scale=2,onset=20`, ...; "
-        "several sizes, `gain:scale=0.9,1.1` or `gain:offset=-0.2..0.2/9`, make one audit per size."
+        "one audit per size: `gain:scale=0.9,1.1` or `gain:offset=-0.2..0.2/9`."
     )
     primary: str | None = Field(
         default=None, description="Path of the primary contrast, a module or shared (default)."
