@@ -88,9 +88,9 @@ def test_nothing_is_said_to_be_decided_of_ties() -> None:
         "At no correlation of the two errors does old or new do significantly better."
     )
     said = " ".join(made.sentences)
-    assert "old is ahead at 0 and new at 0; at" in said
+    assert "old is significantly ahead at 0 and new at 0; at" in said
     assert said.count("nothing is significant") == 6
-    assert not DECIDES.search(said.replace("old is ahead at 0 and new at 0", ""))
+    assert not DECIDES.search(said.replace("old is significantly ahead at 0 and new at 0", ""))
     assert [flip.estimate for flip in made.flips] == [None] * 6
 
 

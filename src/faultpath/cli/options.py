@@ -35,9 +35,7 @@ Trust = Annotated[
 ]
 Json = Annotated[
     bool,
-    typer.Option(
-        "--json", help="Print JSON; other text goes to standard error."
-    ),
+    typer.Option("--json", help="Print JSON; other text goes to standard error."),
 ]
 
 

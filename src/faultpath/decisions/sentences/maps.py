@@ -76,9 +76,8 @@ def sentences(record: MapRecord) -> tuple[str, ...]:
             texts.append(f"{where} no expected difference is significant {numbers}.")
     ahead = {sign: sum(point.sign == sign for point in record.points) for sign in (-1, 1)}
     texts.append(
-        f"Of {run} pairs of errors run, {question.baseline} is ahead at {ahead[-1]} and "
-        f"{question.repair} at {ahead[1]}; at {run - ahead[-1] - ahead[1]} neither is "
-        "significantly."
+        f"Of {run} pairs of errors run, {question.baseline} is significantly ahead at {ahead[-1]} "
+        f"and {question.repair} at {ahead[1]}; at {run - ahead[-1] - ahead[1]} neither."
     )
     return (*texts, *_reversals(record), *(_flipped(question, flip) for flip in record.flips))
 
