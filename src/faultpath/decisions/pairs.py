@@ -6,6 +6,7 @@ from enum import StrEnum
 
 from faultpath.decisions.model import DecisionRecord
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
+from faultpath.trials.pairing import unlike
 
 
 class PairKind(StrEnum):
@@ -56,7 +57,7 @@ class Pair:
                 return f"the {arm} did not run"
             if trial.failed:
                 return f"the {arm} failed: {trial.error or 'no message was kept'}"
-        if self.baseline and self.repair and _met(self.baseline) != _met(self.repair):
+        if self.baseline and self.repair and unlike(self.baseline, self.repair):
             return "the two arms differ in initial state, disturbance or planner noise"
         return None
 
@@ -113,7 +114,3 @@ def by_scene(pairs: Iterable[Pair]) -> dict[tuple[str, int], dict[str, Pair]]:
     for pair in pairs:
         groups.setdefault((pair.scene, pair.seed), {})[pair.path] = pair
     return groups
-
-
-def _met(outcome: Outcome) -> tuple[str, str, str]:
-    return outcome.initial_hash, outcome.disturbance_hash, outcome.planner_noise_hash
