@@ -141,7 +141,9 @@ def test_a_source_that_nobody_writes_is_looked_up_where_a_module_reads_it():
         dt_s=0.1,
         succeeded=lambda episode: True,
     )
-    sentence = "module 'controller': unknown source 'sped'; did you mean 'speed'"
+    line = controller._function.__code__.co_firstlineno
+    sentence = rf"test_checks_check\.py, line {line}: system 'cart': module 'controller': unknown "
+    sentence += "source 'sped'; did you mean 'speed'"
     with pytest.raises(SystemMistake, match=sentence):
         ComposedSystem("cart", plant, {"old": [controller]}, {"speed": "m/s", "push": "1"})
 

@@ -165,3 +165,17 @@ def test_the_hash_of_a_state_that_holds_an_object_does_not_depend_on_places() ->
     one, two = held("Craft", "faultpath_system_a1"), held("Craft", "faultpath_system_b2")
     assert hashed({"craft": one, "x": 1.0}) == hashed({"craft": two, "x": 1.0})
     assert hashed({"craft": one}) != hashed({"craft": held("Boat", "faultpath_system_a1")})
+
+
+def test_a_key_that_the_state_has_not_is_told_with_those_that_it_has():
+    sentence = "observes: source 'place': the state has no key 'plce'; it has at, clock"
+    with pytest.raises(SystemMistake, match=sentence):
+        FunctionPlant(
+            start,
+            step,
+            observes={"place": "plce"},
+            action="push",
+            steps=6,
+            dt_s=0.5,
+            succeeded=lambda episode: True,
+        )
