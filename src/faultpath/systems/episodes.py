@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from typing_extensions import override
@@ -166,13 +166,7 @@ class EpisodePlant(Plant):
                 part = at(batch) if callable(at) else batch
                 keys = () if callable(at) else at if isinstance(at, tuple) else (at,)
                 for key in keys:
-                    if isinstance(key, str) and isinstance(part, Mapping) and key not in part:
-                        there = listed(cast("Mapping[Any, Any]", part))
-                        raise SystemMistake(
-                            f"observes: source '{name}': {self.observed} has no key '{key}'; it "
-                            f"has {there}"
-                        )
-                    part = part[key] if isinstance(key, str) else part[:, key]
+                    part = self._part(name, part, key) if isinstance(key, str) else part[:, key]
                 sources[name] = np.array(part)
         except (LookupError, TypeError) as error:
             kind = type(batch).__name__ if not hasattr(batch, "shape") else list(batch.shape[1:])
@@ -183,6 +177,16 @@ class EpisodePlant(Plant):
         for name in self.facts:
             sources[name] = np.array([np.asarray(world.facts[name]) for world in worlds])
         return sources
+
+    def _part(self, source: str, observation: Any, key: str) -> Any:
+        """Return what a key of an observation holds."""
+        try:
+            return observation[key]
+        except KeyError:
+            raise SystemMistake(
+                f"observes: source '{source}': {self.observed} has no key '{key}'; it has "
+                f"{listed(observation)}"
+            ) from None
 
     @override
     def start(self, batch: Batch) -> _Batch:

@@ -121,9 +121,9 @@ def _attribute(module: ModuleType, place: str, attribute: str, kinds: Sequence[t
         raise UserError(f"{place} has no function {attribute!r} to build from: check the name")
     if kinds and not builds(factory, kinds):
         names = " or a ".join(kind.__name__ for kind in kinds)
-        code = getattr(inspect.unwrap(factory), "__code__", None)
-        own = code is not None and code.co_filename == getattr(module, "__file__", None)
-        line = f", line {code.co_firstlineno}," if own else ""
+        code, line = getattr(inspect.unwrap(factory), "__code__", None), ""
+        if isinstance(code, CodeType) and code.co_filename == getattr(module, "__file__", None):
+            line = f", line {code.co_firstlineno},"
         raise UserError(
             f"{place}{line} does not declare that {attribute!r} returns a {names}, and nothing "
             f"else is called: annotate it, as in `def {attribute}(...) -> "
