@@ -185,7 +185,7 @@ class EpisodePlant(Plant):
         except KeyError:
             raise SystemMistake(
                 f"observes: source '{source}': {self.observed} has no key '{key}'; it has "
-                f"{listed(observation)}"
+                f"{listed(map(str, observation))}"
             ) from None
 
     @override
