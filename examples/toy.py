@@ -76,6 +76,7 @@ class Carts:
 
 class Cart(Plant):
     name, steps = "cart", STEPS
+    # The source `gain_estimate` itself stays correct: a fault acts where a module reads it.
     senses = ("gain_estimate", "speedometer", "odometer", "goal")
     reads = frozenset({Port("push", "motor")})
 
@@ -84,31 +85,32 @@ class Cart(Plant):
         gain, slope, goal = made.T
         return Carts(draws, gain, slope, goal, *np.zeros((2, len(draws))))
 
-    def sense(self, now):
-        return dict(zip(self.senses, (now.gain, now.velocity, now.position, now.goal), strict=True))
+    def sense(self, carts):
+        values = carts.gain, carts.velocity, carts.position, carts.goal
+        return dict(zip(self.senses, values, strict=True))
 
-    def advance(self, now, inputs):
-        velocity = now.velocity + (now.gain * inputs["push", "motor"] + now.slope) * DT_S
-        position = now.position + velocity * DT_S
-        return replace(now, velocity=velocity, position=position, step=now.step + 1)
+    def advance(self, carts, inputs):
+        velocity = carts.velocity + (carts.gain * inputs["push", "motor"] + carts.slope) * DT_S
+        position = carts.position + velocity * DT_S
+        return replace(carts, velocity=velocity, position=position, step=carts.step + 1)
 
-    def progress(self, now):
-        missed = np.abs(now.goal - now.position)
-        running = np.full(len(missed), now.step < STEPS)
+    def progress(self, carts):
+        missed = np.abs(carts.goal - carts.position)
+        running = np.full(len(missed), carts.step < STEPS)
         return Progress(
             running=running,
             succeeded=~running & (missed < TOLERANCE_M),
             crashed=np.zeros(len(missed), bool),
-            time_s=np.full(len(missed), now.step * DT_S),
+            time_s=np.full(len(missed), carts.step * DT_S),
             metrics={"terminal_distance_m": missed},
         )
 
-    def conditions(self, now):
-        hashes = [hashlib.sha256(draw.tobytes()).hexdigest()[:16] for draw in now.draws]
-        return hashes, hashes
+    def conditions(self, carts):
+        hashes = [hashlib.sha256(draw.tobytes()).hexdigest()[:16] for draw in carts.draws]
+        return hashes, hashes  # one draw decides both the initial state and the disturbance
 
-    def position(self, now):
-        return np.stack([now.position, *np.zeros((2, len(now.position)))], axis=-1)
+    def position(self, carts):
+        return np.stack([carts.position, *np.zeros((2, len(carts.position)))], axis=-1)
 
 
 class Observer(Module):
@@ -120,15 +122,15 @@ class Observer(Module):
         self.reads = frozenset({Port("velocity", "difference"), *gauge})
 
     def step(self, inputs, memory):
-        now = inputs["velocity", "difference"]
+        velocity = inputs["velocity", "difference"]
         gain = inputs.get(Port("gain", "model"), 1.0)
         if memory is None:  # there is no finished interval yet at the first step
-            estimate = np.zeros_like(now)
+            estimate = np.zeros_like(velocity)
         else:
-            before, estimate = memory
-            acceleration = (now - before) / DT_S
+            last_velocity, estimate = memory
+            acceleration = (velocity - last_velocity) / DT_S
             estimate = 0.5 * estimate + 0.5 * (acceleration - gain * inputs["push", "executed"])
-        return {"observed_slope": estimate}, (now, estimate)
+        return {"observed_slope": estimate}, (velocity, estimate)
 
 
 class Controller(Module):

@@ -1,5 +1,7 @@
 """One loop: order, the past, time, queries, and what ran."""
 
+import re
+
 import numpy as np
 import pytest
 from loop_toys import DT_S, FACTS, SCENES, Guess, Line, Planner, execute, interface_of, wired
@@ -15,6 +17,7 @@ from faultpath.loop import (
     Module,
     Port,
     Taps,
+    UndeclaredReader,
     consumers,
     graph,
 )
@@ -51,8 +54,53 @@ def test_a_past_that_nobody_gives_is_named() -> None:
         def before(self, batch):
             return {}
 
-    with pytest.raises(SystemMistake, match=r"'observer' reads what channel 'action'.*before\(\)"):
+    sentence = (
+        "module 'observer' reads what channel 'action' held one step before, but nobody says what "
+        "source 'order' held before the first step: write `@writes(\"order\", before=0.0)`, or "
+        "return it from before() of its module"
+    )
+    with pytest.raises(SystemMistake, match=re.escape(sentence)):
         execute((Guess(), Silent()))
+
+
+def test_a_source_of_the_plant_has_no_past() -> None:
+    class Late(Guess):
+        reads, reads_past = frozenset[Port](), frozenset({Port("position", "seen")})
+
+    sentence = "source 'place' is the plant's: .* read 'place' at this step and keep its earlier"
+    with pytest.raises(SystemMistake, match=sentence):
+        execute((Late(), Planner()))
+
+
+@pytest.mark.parametrize(
+    ("lost", "sentence"),
+    [
+        ("true_place", "the plant shows the truth 'true_place', but at step 0 it returned no such"),
+        ("place", "the plant senses source 'place', but at step 0 it returned no such entry"),
+    ],
+)
+def test_a_plant_that_forgets_what_it_senses_is_named(lost, sentence) -> None:
+    class Mute(Line):
+        def sense(self, state):
+            return {name: value for name, value in super().sense(state).items() if name != lost}
+
+    modules = (Guess(), Planner())
+    interface = interface_of((*modules, Mute()))
+    taps = Taps(interface, scenes=SCENES, dt_s=DT_S, privileged=("field",))
+    with pytest.raises(SystemMistake, match=sentence):
+        list(Loop(interface, graph(interface, Mute(), modules)).execute(_batch(), taps))
+
+
+def test_a_plant_that_looks_for_a_port_too_many_is_called_the_plant() -> None:
+    class Nosy(Line):
+        def advance(self, state, inputs):
+            return inputs["action", "wheel"]
+
+    modules = (Guess(), Planner())
+    interface = interface_of((*modules, Nosy()))
+    taps = Taps(interface, scenes=SCENES, dt_s=DT_S, privileged=("field",))
+    with pytest.raises(UndeclaredReader, match="the plant looked for channel 'action' at 'wheel'"):
+        list(Loop(interface, graph(interface, Nosy(), modules)).execute(_batch(), taps))
 
 
 @pytest.mark.parametrize(

@@ -119,8 +119,10 @@ def test_a_fault_that_reached_another_is_an_error() -> None:
     receipts = taps.receipts()
     last = np.array([5, 5])
     with pytest.raises(FaultedElsewhere, match=re.escape("tap mass -> observer.model altered a")):
-        check_delivered(receipts, frozenset(), last)
-    named = frozenset({("mass", "observer.model")})
+        check_delivered(receipts, {}, last)
+    named = {
+        ("mass", "observer.model"): [receipts.at("mass", "observer.model").corruptions[0].fault]
+    }
     check_delivered(receipts, named, last)
     once = {"mass": {}, "wind": {"steps_altered": np.array([1, 0])}}
     strange = tuple(replace(receipt, **once[receipt.channel]) for receipt in receipts.taps)
@@ -129,6 +131,49 @@ def test_a_fault_that_reached_another_is_an_error() -> None:
 
 
 def test_a_named_tap_where_nothing_acts_is_an_error() -> None:
-    named = frozenset({("mass", "predictor.dynamics")})
-    with pytest.raises(NotDelivered, match="a fault names it, but none acted there"):
+    named = {("mass", "predictor.dynamics"): ["mass scaled by 2"]}
+    with pytest.raises(NotDelivered, match="'mass scaled by 2' names it, but did not act there"):
         check_delivered(make().receipts(), named, np.array([5, 5]))
+
+
+@pytest.mark.parametrize(
+    ("reached", "error", "sentence"),
+    [
+        ((), NotDelivered, "tap mass -> observer.model: '.*' names it, but did not act there"),
+        (
+            ("predictor.dynamics",),
+            FaultedElsewhere,
+            "tap mass -> predictor.dynamics altered a reading, but no fault names it",
+        ),
+        (
+            ("predictor.dynamics", "observer.model"),
+            FaultedElsewhere,
+            "tap mass -> predictor.dynamics altered a reading, but no fault names it",
+        ),
+    ],
+)
+def test_taps_that_attach_a_fault_elsewhere_are_told_by_the_faults(
+    monkeypatch: pytest.MonkeyPatch, reached: tuple[str, ...], error: type[Exception], sentence: str
+) -> None:
+    attach = Taps._add  # pyright: ignore[reportPrivateUsage]
+
+    def misplaced(self: Taps, faults: Any, dt_s: float, seed: int) -> None:
+        moved = [fault.model_copy(update={"consumers": reached}) for fault in faults]
+        attach(self, moved, dt_s, seed)
+
+    monkeypatch.setattr(Taps, "_add", misplaced)
+    taps = make([LATE])
+    run(taps)
+    with pytest.raises(error, match=sentence):
+        taps.verify(5)
+
+
+def test_one_of_two_faults_that_is_not_attached_is_an_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    attach = Taps._add  # pyright: ignore[reportPrivateUsage]
+    monkeypatch.setattr(Taps, "_add", lambda self, faults, *more: attach(self, faults[:1], *more))
+    taps = make([LATE.model_copy(update={"onset_step": 0}), LATE])
+    run(taps)
+    with pytest.raises(NotDelivered, match=r"from step 3 .* names it, but did not act there"):
+        taps.verify(5)

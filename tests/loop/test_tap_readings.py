@@ -99,9 +99,10 @@ def test_what_is_no_reading_is_told_how_to_be_one(given: Any) -> None:
         make().deliver("mass", "observer.model", given, 0)
 
 
-def test_a_step_before_the_first_is_refused() -> None:
-    with pytest.raises(MalformedReading, match="step -1 is before the first"):
-        make().deliver("mass", "observer.model", mass(-1, np.zeros(2)), -1)
+@pytest.mark.parametrize("step", [-1, -2])
+def test_a_step_before_the_first_is_refused(step: int) -> None:
+    with pytest.raises(MalformedReading, match=f"step {step} is before the first"):
+        make().deliver("mass", "observer.model", mass(step, np.zeros(2)), step)
 
 
 class TestGuard:

@@ -15,14 +15,14 @@ from faultpath_quadrotor.vehicle import VehicleParameters
 
 from faultpath.core.arrays import Array
 from faultpath.faults import AnyFault, parse_fault, resolve
-from faultpath.loop import Observer, Query, Reading, Tap, Taps
+from faultpath.loop import DeliveryListener, Query, Reading, Tap, Taps
 from faultpath.trials import Outcome, SystemSpec, load_system
 
 STEPS = 12
 HELD_OUT = tuple(f"held-out/{i:03d}" for i in range(5))
 
 
-class Log(Observer):
+class Log(DeliveryListener):
     """Keeps each reading and what was delivered of it."""
 
     def __init__(self) -> None:

@@ -22,7 +22,7 @@ from simulated_gpu import GPU, SimulatedGPU, simulated_gpu
 from faultpath.core import arrays
 from faultpath.core.errors import UserError
 from faultpath.faults import resolve
-from faultpath.loop import Batch, Observer, Query, Reading, Tap, Taps
+from faultpath.loop import Batch, DeliveryListener, Query, Reading, Tap, Taps
 from faultpath.trials import Arm
 from faultpath.trials.attempt import taps_of
 
@@ -36,7 +36,7 @@ FLIGHTS = [
 ]
 
 
-class Placed(Observer):
+class Placed(DeliveryListener):
     """Looks where every reading is, and where what is delivered is."""
 
     def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
@@ -75,7 +75,7 @@ def _wired(
     variant: str,
     texts: Sequence[str],
     scenes: Sequence[str],
-    observer: Observer | None = None,
+    observer: DeliveryListener | None = None,
 ) -> Taps:
     consumers = built.variants[variant].consumers
     faults = resolve([fault(text, built) for text in texts], built.interface, consumers)

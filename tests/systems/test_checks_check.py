@@ -10,6 +10,7 @@ from gym_toys import functions
 
 from faultpath.cli.main import main
 from faultpath.core.errors import SystemMistake, UserError
+from faultpath.loop import Taps
 from faultpath.systems import ComposedSystem, writes
 from faultpath.systems.checks.check import check_system
 from faultpath.systems.checks.judging import remedy
@@ -55,6 +56,8 @@ SAID = {
     "shape": ("shape and unit", "'laser' declares `shape: []`"),
     "millimetres": ("shape and unit", "its largest reading is 2.78e+03; give it in m"),
 }
+NONE_ENDS = ("of the future", "another source", "shape")
+"""Ways to be broken in which no trial of any variant ends."""
 
 
 @pytest.mark.parametrize("broken", SAID)
@@ -63,6 +66,7 @@ def test_a_broken_system_fails_its_check_and_no_other(broken):
         pytest.importorskip("torch")
     found = failed(check(broken=broken))
     name, sentence = SAID[broken]
+    found.pop("trials end", None) if broken in NONE_ENDS else None
     assert set(found) == {name}, found
     assert any(sentence in said for said in found[name]), found[name]
     assert all(said.endswith(".") for said in found[name])
@@ -76,6 +80,44 @@ def test_a_sound_system_passes(name, library):
     report = check(name if name == BROKEN else f"{ROOT / name}", library=library)
     assert failed(report) == {}
     assert {each.status for each in report.checks} == {"passed"}
+
+
+def test_where_no_trial_ends_that_check_fails_and_names_the_one_to_see():
+    trials = check(broken="shape").checks[0]
+    assert (trials.status, trials.says) == ("failed", "none did; see *shape and unit*")
+    assert trials.failures == (
+        "No trial of any variant ended: correct first what *shape and unit* says.",
+    )
+    both = check(broken="raises").checks[0]
+    assert (both.status, both.says) == ("failed", "none did")
+
+
+@pytest.mark.parametrize("also", [(), ("pilot.approach",)], ids=["instead", "too"])
+def test_a_fault_that_alters_another_tap_is_seen_without_the_taps_own_counts(monkeypatch, also):
+    attach = Taps._add
+
+    def misplaced(self, faults, dt_s, seed):
+        here = {"pilot.approach": ("guard.limit", *also)}
+        attach(
+            self,
+            [
+                fault.model_copy(update={"consumers": here.get(*fault.consumers, fault.consumers)})
+                if ("range", "guard.limit") in self._taps and len(fault.consumers) == 1
+                else fault
+                for fault in faults
+            ],
+            dt_s,
+            seed,
+        )
+
+    monkeypatch.setattr(Taps, "_add", misplaced)
+    monkeypatch.setattr(Taps, "verify", lambda self, last_step: None)
+    delivery = next(c for c in check(broken="").checks if c.name == "fault delivery")
+    lead = "Tap range -> pilot.approach of variant 'guarded', faulted in 4 trials, altered "
+    assert any(
+        t.startswith(f"{lead}a reading at tap range -> guard.limit too") for t in delivery.failures
+    )
+    assert delivery.says.endswith(" at other taps")
 
 
 def test_an_error_is_told_with_its_line_and_an_if_on_a_reading_with_what_to_take():
@@ -92,7 +134,9 @@ def test_a_source_that_nobody_writes_is_looked_up_where_a_module_reads_it():
     plant = functions(
         lambda rng: {"speed": 1.0}, lambda state, push, rng: state, observes={"speed": "speed"}
     )
-    sentence = "module 'controller': unknown source 'sped'; did you mean 'speed'"
+    line = controller._function.__code__.co_firstlineno
+    sentence = rf"test_checks_check\.py, line {line}: system 'cart': module 'controller': unknown "
+    sentence += "source 'sped'; did you mean 'speed'"
     with pytest.raises(SystemMistake, match=sentence):
         ComposedSystem("cart", plant, {"old": [controller]}, {"speed": "m/s", "push": "1"})
 
@@ -201,7 +245,7 @@ def test_a_consumer_that_ignores_its_reading_is_remarked_and_not_failed():
 )
 def test_a_modules_ports_are_what_it_looks_at(broken, says):
     found = failed(check(LOOPS, broken=broken))
-    assert set(found) == {"declared reads"}
+    assert set(found) == {"trials end", "declared reads"}
     assert any("'pilot'" in each and says in each for each in found["declared reads"]), found
 
 
@@ -246,6 +290,7 @@ def test_a_file_that_is_read_undeclared_fails_a_check_of_its_own(tmp_path) -> No
         "        return super().run(*asked)\ndef create() -> Mine:\n    return Mine()\n"
     )
     os.utime(tmp_path / "gain.txt", (0, 0))
-    ((name, (said,)),) = failed(check(f"{tmp_path}/mine.py:create", library="carts")).items()
-    assert name == "data files"
+    found = failed(check(f"{tmp_path}/mine.py:create", library="carts"))
+    assert set(found) == {"trials end", "data files"}
+    (said,) = found["data files"]
     assert "reads gain.txt, which it does not declare" in said

@@ -7,13 +7,13 @@ from gym_toys import SCENES, Steer, fly, functions
 import faultpath
 from faultpath.core.errors import SystemMistake
 from faultpath.loop import Port
-from faultpath.systems import ComposedSystem, writes
+from faultpath.systems import ComposedSystem, FunctionPlant, writes
 from faultpath.systems.observed import hashed
 from faultpath.trials import Status
 
 SYSTEM = """
 from faultpath.loop import Module, Port
-from faultpath.systems import ComposedSystem, FunctionPlant, Parts
+from faultpath.systems import FunctionPlant, ComposedSystem, FunctionPlant, Parts
 
 class Brake(Module):
     name, writes = "brake", ("push",)
@@ -143,3 +143,17 @@ def test_the_hash_of_a_state_that_holds_an_object_does_not_depend_on_places() ->
     one, two = held("Craft", "faultpath_system_a1"), held("Craft", "faultpath_system_b2")
     assert hashed({"craft": one, "x": 1.0}) == hashed({"craft": two, "x": 1.0})
     assert hashed({"craft": one}) != hashed({"craft": held("Boat", "faultpath_system_a1")})
+
+
+def test_a_key_that_the_state_has_not_is_told_with_those_that_it_has():
+    sentence = "observes: source 'place': the state has no key 'plce'; it has at, clock"
+    with pytest.raises(SystemMistake, match=sentence):
+        FunctionPlant(
+            start,
+            step,
+            observes={"place": "plce"},
+            action="push",
+            steps=6,
+            dt_s=0.5,
+            succeeded=lambda episode: True,
+        )

@@ -14,6 +14,7 @@ from faultpath.systems import ComposedSystem, Parts
 from faultpath.systems.checks.blocks import BlockSpec, run_block
 from faultpath.systems.episodes import EpisodePlant
 from faultpath.trials import Arm, SystemSpec
+from faultpath.trials.checks import UNNAMED
 from faultpath.trials.code import system_code
 from faultpath.trials.registry import load_parts
 from faultpath.trials.store.signals import DRAWN
@@ -180,8 +181,17 @@ def test_libraries_are_seeds():
     assert [scene.id for scene in library.scenes] == ["seed/5", "seed/6", "seed/7"]
     other = system(plant(), scenes={"some": range(6, 9)}).library("some")
     assert library.content_hash != other.content_hash
-    with pytest.raises(UserError, match="unknown library 'held-out'; known: some"):
-        built.library("held-out")
+    with pytest.raises(UserError, match="unknown library 'training'; known: some"):
+        built.library("training")
+
+
+@pytest.mark.parametrize("default", UNNAMED)
+def test_a_single_library_is_the_one_where_none_is_named(default):
+    built = system(plant(), scenes={"some": range(5, 8)})
+    assert built.library(default) == built.library("some")
+    several = system(plant(), scenes={"some": range(5, 8), "more": range(9)})
+    with pytest.raises(UserError, match=f"unknown library '{default}'; known: more, some"):
+        several.library(default)
 
 
 class Ahead(Steer):
@@ -199,9 +209,17 @@ class Whole(Steer):
     [
         (lambda: plant(observes={"place": 7}), "holds no such part"),
         (lambda: plant(observes={"place": "at"}), "holds no such part"),
+        (
+            lambda: plant(Keyed, observes={"place": "to"}),
+            "observes: source 'place': the observation has no key 'to'; it has ",
+        ),
         (lambda: plant(dt_s=None, environment="CartPole-v1"), "does not say dt_s: give it"),
         (lambda: plant(steps=None), "does not say steps: give it"),
         (lambda: ComposedSystem("walk", plant(), {"only": [Steer()]}, {}), "'place' has no unit"),
+        (
+            lambda: ComposedSystem("walk", plant(), {"only": [Steer()]}, {"plce": "m"}),
+            "units names 'plce', which is no source; did you mean 'place'",
+        ),
         (lambda: system(plant(), modules=[Choose()]), "'choose': unknown source 'eye'; known:"),
         (lambda: fly(system(plant(), [Whole()])), r"shape \[1\], and.* of shape \[2\]"),
         (

@@ -44,6 +44,29 @@ def test_the_audit_that_a_template_suggests_shows_a_reversal(kind, tmp_path, mon
     assert decided["observer"] > 0 > decided["shared"]
 
 
+def test_the_first_command_that_is_suggested_is_the_check(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    init("my_rover", "numpy")
+    _, *lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "  faultpath check my_rover.py:create"
+    assert lines[1].startswith("  faultpath audit my_rover.py:create ")
+    assert lines[2] == "  python -m pytest test_my_rover.py  (needs `pip install pytest`)"
+
+
+def test_a_single_library_is_taken_and_named_where_none_is_asked_for(tmp_path, monkeypatch, caplog):
+    monkeypatch.chdir(tmp_path)
+    file, _ = write_system("my_rover", "numpy", tmp_path)
+    code = file.read_text().replace("variants, units)", 'variants, units, scenes={"few": [1, 2]})')
+    file.write_text(code)
+    system, how = f"{file}:create", {"workers": 0, "progress": False}
+    assert faultpath.check(system, scenes=1, **how).library == "few"
+    versions = {"baseline": "calibrated", "repair": "typical", "fault": "gain:scale=0.6"}
+    run = faultpath.audit(system, **versions, signals=False, **how)
+    assert run.record.question.library == "few"
+    assert "-few-" in run.folder.name
+    assert "Scenes of 'few', the only library of this system." in caplog.messages
+
+
 def test_an_audit_of_an_environment_takes_forty_lines():
     pytest.importorskip("ruff")
     text = (files("faultpath.systems") / "templates" / "gymnasium.py.txt").read_bytes()

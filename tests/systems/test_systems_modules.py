@@ -57,6 +57,19 @@ def test_a_number_that_is_given_is_one_value_for_every_scene():
         columns.given(scale=1.0).step(Inputs("columns", 1, {at: np.ones(3)}, {}, running), None)
 
 
+def test_a_module_with_a_number_that_writes_into_its_input_is_not_told_of_the_number():
+    @writes("sum")
+    def scaled(now, scale):
+        now *= scale
+        return now
+
+    now = np.ones(3)
+    now.flags.writeable = False
+    inputs = Inputs("scaled", 0, {Port("now", "now"): now}, {}, np.ones(3, bool))
+    with pytest.raises(ValueError, match=r"^output array is read-only$"):
+        scaled.given(scale=1.0).step(inputs, None)
+
+
 def test_rows_are_computed_one_at_a_time():
     sizes = []
 

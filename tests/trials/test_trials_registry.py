@@ -286,6 +286,28 @@ def test_only_what_is_declared_to_build_a_system_is_called(factory, builds, tmp_
 
 
 @pytest.mark.parametrize(
+    ("imports", "annotation"),
+    [
+        ("from faultpath.systems import ComposedSystem", "ComposedSystem"),
+        ("from faultpath.systems import ComposedSystem\nfrom faultpath import System", "System"),
+        ("import faultpath.systems", '"System"'),
+    ],
+)
+def test_the_annotation_that_is_advised_works_in_that_file(imports, annotation, tmp_path):
+    file = tmp_path / "mine.py"
+    file.write_text(f"{imports}\n\ndef create():\n    raise OSError\n")
+    line = file.read_text().splitlines().index("def create():") + 1
+    spec = SystemSpec(name=f"{file}:create")
+    with pytest.raises(UserError) as refused:
+        load_system(spec)
+    assert str(refused.value).startswith(f"{file}, line {line}, does not declare that 'create'")
+    assert str(refused.value).endswith(f"as in `def create(...) -> {annotation}:`")
+    file.write_text(file.read_text().replace("create()", f"create() -> {annotation}"))
+    with pytest.raises(OSError, match=r"^$"):
+        load_system(spec)
+
+
+@pytest.mark.parametrize(
     ("name", "option"),
     [("os:system", "command"), ("subprocess:getoutput", "cmd"), ("signal:pause", "")],
 )

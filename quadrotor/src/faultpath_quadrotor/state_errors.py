@@ -8,7 +8,7 @@ import torch
 from typing_extensions import override
 
 from faultpath.faults import Address, AnyFault, Record, resolve
-from faultpath.loop import Observer, Reading, Tap
+from faultpath.loop import DeliveryListener, Reading, Tap
 from faultpath.plugin.recording import taps_of
 from faultpath.plugin.system import UserError
 from faultpath.trials import Arm
@@ -24,7 +24,7 @@ TURNING = ("attitude",)
 _FILTER, _PRESENT = f"{ErrorStateFilter.name}.{AT}", "predictor.initial_state"
 
 
-class _Seen(Observer):
+class _Seen(DeliveryListener):
     """Keeps the filter's readings before any fault, and its estimates of the state."""
 
     def __init__(self) -> None:

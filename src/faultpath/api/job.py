@@ -78,6 +78,8 @@ def begin(
     shown = display(progress, call, fields | {"options": chosen.spec.options})
     if chosen.notice:
         shown.say(chosen.notice)
+    if library.name != question.library:
+        shown.say(f"Scenes of '{library.name}', the only library of this system.")
     return question, chosen, library, shown
 
 

@@ -24,9 +24,10 @@ def init(
     baseline, parameter = TEMPLATES[kind]
     typer.echo(
         f"Wrote {system} and {test}. Next:\n"
+        f"  faultpath check {system}:create\n"
         f"  faultpath audit {system}:create --baseline {baseline} "
         f"--repair typical --fault {parameter}:scale=0.6\n"
-        f"  python -m pytest {test}"
+        f"  python -m pytest {test}  (needs `pip install pytest`)"
     )
     return 0
 

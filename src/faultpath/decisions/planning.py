@@ -138,7 +138,7 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         stop=stop,
         rule=RULE,
     )
-    named = [study.name, request.fault, PurePath(request.library).stem]
+    named = [study.name, request.fault, PurePath(library.name).stem]
     if request.stop_when is not None:
         small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
         named.append(f"until-{request.stop_when}{small}")

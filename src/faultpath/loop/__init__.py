@@ -29,12 +29,13 @@ from faultpath.loop.reading import (
     WrittenTo,
 )
 from faultpath.loop.receipts import Receipts, TapCount, added
-from faultpath.loop.tap import Observer, Tap
+from faultpath.loop.tap import DeliveryListener, Tap
 from faultpath.loop.taps import Taps
 
 __all__ = [
     "Batch",
     "Deliverer",
+    "DeliveryListener",
     "FaultedElsewhere",
     "Graph",
     "IllegalRead",
@@ -46,7 +47,6 @@ __all__ = [
     "Module",
     "NotDelivered",
     "NotFinite",
-    "Observer",
     "Outputs",
     "Part",
     "Plant",

@@ -7,7 +7,7 @@ from typing import Any
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import listed
 from faultpath.interface import Interface, read_interface
-from faultpath.loop.parts import Graph, Module, Part, Plant
+from faultpath.loop.parts import Graph, Module, Part, Plant, label_of
 
 
 def graph(
@@ -58,7 +58,7 @@ def _check_ports(
     if twice:
         port = min(twice)
         raise SystemMistake(
-            f"module '{part.name}' reads channel '{port.channel}' at '{port.place}' both now and "
+            f"{label_of(part)} reads channel '{port.channel}' at '{port.place}' both now and "
             "one step before: keep one of the two, or give them two places"
         )
     for port in sorted(part.ports):
@@ -66,7 +66,7 @@ def _check_ports(
         declared = interface.channel(port.channel).consumers
         if consumer not in declared:
             raise SystemMistake(
-                f"module '{part.name}' reads channel '{port.channel}' at '{port.place}', but the "
+                f"{label_of(part)} reads channel '{port.channel}' at '{port.place}', but the "
                 f"interface does not list {consumer} among its consumers: {listed(declared)}"
             )
         if bound[port.channel] not in writers:
@@ -92,7 +92,7 @@ def _ordered(
             names = " -> ".join(dict.fromkeys(module.name for module in waiting))
             raise SystemMistake(
                 f"modules wait for each other within one step: {names}; let one of them read what "
-                "its channel held one step before, in reads_past"
+                "its channel held one step before: by `past=` of @writes, or in reads_past"
             )
         ordered.append(ready)
         waiting.remove(ready)

@@ -11,7 +11,18 @@ from faultpath.core.arrays import Array
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import listed
 from faultpath.interface import Interface, Source
-from faultpath.loop.parts import Batch, Graph, Inputs, Module, Outputs, Part, Port, State
+from faultpath.loop.parts import (
+    Batch,
+    Graph,
+    Inputs,
+    Module,
+    Outputs,
+    Part,
+    Plant,
+    Port,
+    State,
+    label_of,
+)
 from faultpath.loop.reading import Reading
 
 _SLACK = 1e-6
@@ -114,7 +125,7 @@ class _Execution:
             self._past, self._now = self._now, {}
             sensed = plant.sense(state)
             self._hold(plant, sensed, step, plant.senses)
-            truths = {name: sensed[name] for name in plant.shows}
+            truths = {name: _returned(plant, sensed, name, step) for name in plant.shows}
             for index, module in enumerate(modules):
                 inputs = self._inputs(module, step, truths, running)
                 outputs, memories[index] = module.step(inputs, memories[index])
@@ -128,14 +139,9 @@ class _Execution:
     def _hold(self, part: Part, outputs: Outputs, step: int, names: tuple[str, ...]) -> None:
         """Take in what a part's sources hold at a step, as far as somebody reads them."""
         for name in names:
-            if name not in self._clocks:
-                continue
-            if name not in outputs:
-                raise SystemMistake(
-                    f"module '{part.name}' writes source '{name}', but at step {step} it returned "
-                    f"no such entry; it returned: {listed(outputs)}"
-                )
-            self._now[name] = self._clocks[name].read(outputs[name], step)
+            if name in self._clocks:
+                value = _returned(part, outputs, name, step)
+                self._now[name] = self._clocks[name].read(value, step)
 
     def _inputs(self, part: Part, step: int, truths: Mapping[str, Any], running: Array) -> Inputs:
         delivered: dict[tuple[str, str], Any] = {}
@@ -145,9 +151,8 @@ class _Execution:
             reading = self._now[source] if port in part.reads else self._past.get(source)
             if reading is None:
                 raise SystemMistake(
-                    f"module '{part.name}' reads what channel '{port.channel}' held one step "
-                    f"before, but nobody says what source '{source}' held before the first step: "
-                    "return it from the writing module's before()"
+                    f"{label_of(part)} reads what channel '{port.channel}' held one step before, "
+                    f"but {self._no_past(source)}"
                 )
             tap = port.channel, part.consumer(port)
             if port in part.at_read:
@@ -156,4 +161,29 @@ class _Execution:
                 delivered[port] = self._taps.deliver(*tap, reading, step)
         declared = part.truths if isinstance(part, Module) else ()
         shown = {name: truths[name] for name in declared}
-        return Inputs(part.name, step, delivered, shown, running, at_read)
+        return Inputs(part.name, step, delivered, shown, running, at_read, label_of(part))
+
+    def _no_past(self, source: str) -> str:
+        """Say why nothing is known of a source before the first step, and what to do."""
+        if source in self._graph.plant.senses:
+            return (
+                f"source '{source}' is the plant's: `past=` and reads_past are for sources that a "
+                f"module writes; read '{source}' at this step and keep its earlier value in memory"
+            )
+        return (
+            f"nobody says what source '{source}' held before the first step: write "
+            f'`@writes("{source}", before=0.0)`, or return it from before() of its module'
+        )
+
+
+def _returned(part: Part, outputs: Outputs, name: str, step: int) -> Any:
+    """Return an entry that a part promised; `SystemMistake` where it did not return it."""
+    if name not in outputs:
+        verb = "writes source"
+        if isinstance(part, Plant):
+            verb = "shows the truth" if name in part.shows else "senses source"
+        raise SystemMistake(
+            f"{label_of(part)} {verb} '{name}', but at step {step} it returned no such entry; it "
+            f"returned: {listed(outputs)}"
+        )
+    return outputs[name]

@@ -45,9 +45,11 @@ class Inputs(dict[tuple[str, str], Any]):
         truths: Mapping[str, Any],
         running: Array = None,
         at_read: Mapping[Port, Callable[[], Any]] | None = None,
+        label: str = "",
     ) -> None:
         super().__init__(delivered)
         self.module = module
+        self._label = label or f"module '{module}'"
         self.step = step
         """Control step, from 0."""
         self.running = running
@@ -62,7 +64,7 @@ class Inputs(dict[tuple[str, str], Any]):
             self[port] = got = deliver()
             return got
         raise UndeclaredReader(
-            f"module '{self.module}' looked for channel '{channel}' at '{place}', a port that it "
+            f"{self._label} looked for channel '{channel}' at '{place}', a port that it "
             f"does not declare: add Port('{channel}', '{place}') to its reads"
         )
 
@@ -70,7 +72,7 @@ class Inputs(dict[tuple[str, str], Any]):
         """Return what the plant shows of its own state; `IllegalRead` for an undeclared one."""
         if name not in self._truths:
             raise IllegalRead(
-                f"module '{self.module}' looked for the plant's truth '{name}', which it does not "
+                f"{self._label} looked for the plant's truth '{name}', which it does not "
                 "declare: add it to its truths"
             )
         return self._truths[name]
@@ -110,7 +112,7 @@ class Part(ABC):
 
     @property
     def ports(self) -> frozenset[Port]:
-        """All that it may know."""
+        """All ports that it reads."""
         return self.reads | self.reads_past
 
     def consumer(self, port: Port) -> str:
@@ -221,6 +223,11 @@ class Graph:
     def parts(self) -> tuple[Part, ...]:
         """All that read: the modules, and the plant last."""
         return (*self.modules, self.plant)
+
+
+def label_of(part: Part) -> str:
+    """Return what messages call a part."""
+    return "the plant" if isinstance(part, Plant) else f"module '{part.name}'"
 
 
 def consumers(parts: Iterable[Part]) -> frozenset[str]:

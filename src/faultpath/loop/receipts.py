@@ -1,6 +1,7 @@
 """Receipts of deliveries: to whom, when, and altered or not."""
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -84,11 +85,12 @@ class TapCount:
     channel: str
     consumer: str
     deliveries: int
-    """Control steps at which the consumer got the channel, once a scene of the block."""
+    """Control steps at which the consumer got the channel, once for each scene of the block, also
+    for scenes that have ended."""
     faulted_steps: int
-    """Those with a fault in force while the scene ran."""
+    """Those with a fault in force; scenes that have ended do not count."""
     altered_steps: int
-    """Those in which what was delivered differed from the reading."""
+    """Those in which the value delivered differed from the reading; likewise."""
 
 
 def added(counts: Iterable[TapCount]) -> tuple[TapCount, ...]:
@@ -165,22 +167,26 @@ class Receipts:
 
 
 def check_delivered(
-    receipts: Receipts, faulted: frozenset[tuple[str, str]], last_step: NDArray[np.int64]
+    receipts: Receipts,
+    named: Mapping[tuple[str, str], Sequence[str]],
+    last_step: NDArray[np.int64],
 ) -> None:
-    """Compare receipts with the taps `(channel, consumer)` that the faults name.
+    """Compare receipts with the faults.
 
-    `last_step` `[B]` is the last control step at which each scene ran. Raises `NotDelivered` where
-    a fault missed every scene of a tap although one ran past the onset, and `FaultedElsewhere`
-    where another tap altered a reading.
+    `named` holds, by channel and consumer, the words of the faults that name this tap: taken from
+    the faults, not from the taps. `last_step` `[B]` is the last control step at which each scene
+    ran. Raises `NotDelivered` where a fault missed every scene of a tap although one ran past the
+    onset, and `FaultedElsewhere` where another tap altered a reading.
     """
     for receipt in receipts.taps:
         tap = f"{receipt.channel} -> {receipt.consumer}"
-        if (receipt.channel, receipt.consumer) not in faulted:
-            if receipt.corruptions or receipt.steps_faulted.any() or receipt.steps_altered.any():
-                raise FaultedElsewhere(f"tap {tap} altered a reading, but no fault names it")
-            continue
-        if not receipt.corruptions:
-            raise NotDelivered(f"tap {tap}: a fault names it, but none acted there")
+        expected = Counter(named.get((receipt.channel, receipt.consumer), ()))
+        acting = Counter(corruption.fault for corruption in receipt.corruptions)
+        altered = receipt.steps_faulted.any() or receipt.steps_altered.any()
+        if acting - expected or (altered and not expected):
+            raise FaultedElsewhere(f"tap {tap} altered a reading, but no fault names it")
+        if missing := expected - acting:
+            raise NotDelivered(f"tap {tap}: '{min(missing)}' names it, but did not act there")
         for one in receipt.corruptions:
             ran = last_step >= one.onset_step
             if ran.any() and not one.steps_in_force.any():

@@ -51,10 +51,10 @@ class Corruption:
         if ask not in self._memories:
             self._memories[ask] = doing.begin(reading, at)
         value, self._memories[ask] = doing.apply(reading, self._memories[ask], at)
-        refused = f"fault on channel '{fault.channel}': {doing.kind}"
+        prefix = f"fault on channel '{fault.channel}': {doing.kind}"
         if value is not reading and (value.dtype != reading.dtype or value.shape != reading.shape):
             raise UserError(
-                f"{refused} turns {reading.dtype} {list(reading.shape)} into {value.dtype} "
+                f"{prefix} turns {reading.dtype} {list(reading.shape)} into {value.dtype} "
                 f"{list(value.shape)}; choose one that keeps them"
             )
         weight = fault.weight(step)
@@ -62,7 +62,7 @@ class Corruption:
             return (value, True) if weight else (reading, False)
         if not namespace(reading).isdtype(reading.dtype, "real floating"):
             raise UserError(
-                f"{refused} cannot recover step by step in {reading.dtype}; leave recovery out"
+                f"{prefix} cannot recover step by step in {reading.dtype}; leave recovery out"
             )
         return reading + (value - reading) * weight, True
 
@@ -74,7 +74,7 @@ class Tap:
     channel: str
     consumer: str
     source: str
-    legal: bool
+    permitted: bool
     shape: tuple[int, ...]
     """Shape of every reading, scenes first."""
     corruptions: tuple[Corruption, ...] = ()
@@ -177,8 +177,6 @@ class Tap:
 
         On an accelerator the two are not compared, because no delivery waits for it.
         """
-        if step < 0:
-            raise MalformedReading(f"tap {self}: step {step} is before the first, which is 0")
         alike = is_array(value) and tuple(value.shape) == self.shape
         if alike and device_kind(value) == device_kind(self.value) == "cpu":
             alike = not to_numpy(differs(value, self.value)).any()
@@ -222,15 +220,15 @@ def wire(
         shape = (n_scenes, *source.shape)
         for name in channel.consumers:
             if consumers is None or name in consumers:
-                legal = bound in privileged or not secret
-                taps[channel.name, name] = Tap(channel.name, name, bound, legal, shape)
+                permitted = bound in privileged or not secret
+                taps[channel.name, name] = Tap(channel.name, name, bound, permitted, shape)
     return taps
 
 
-class Observer:
+class DeliveryListener:
     """Sees what passes the taps of one run; a subclass overrides what it wants to see.
 
-    Readings are those of the run itself: an observer copies what it keeps and writes to nothing.
+    Readings are those of the run itself: a listener copies what it keeps and writes to nothing.
     """
 
     def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:

@@ -24,7 +24,7 @@ from faultpath.loop.reading import (
     WrittenTo,
 )
 from faultpath.loop.receipts import Guard, Receipts, Tally, check_delivered
-from faultpath.loop.tap import Corruption, Observer, Tap, wire
+from faultpath.loop.tap import Corruption, DeliveryListener, Tap, wire
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class Taps:
         consumers: Collection[str] | None = None,
         privileged: Collection[str] = (),
         guard: bool = False,
-        observer: Observer | None = None,
+        observer: DeliveryListener | None = None,
     ) -> None:
         self._interface = interface
         self._observer = observer
@@ -85,6 +85,11 @@ class Taps:
         first = {channel.name: channel.sources[0] for channel in interface.channels}
         self.bindings: Mapping[str, str] = MappingProxyType(first | dict(bindings or {}))
         """The source that feeds each channel here."""
+        faults = tuple(faults)
+        self._named: Mapping[tuple[str, str], list[str]] = {}
+        for fault in faults:
+            for consumer in fault.consumers:
+                self._named.setdefault((fault.channel, consumer), []).append(fault.describe())
         self._add(faults, dt_s, seed)
 
     def _add(self, faults: Iterable[Fault], dt_s: float, seed: int) -> None:
@@ -128,7 +133,9 @@ class Taps:
             raise self._refused(channel, consumer, reading, step)
         try:
             value = reading.value
-            if reading.source != tap.source or not tap.legal or reading.step > step:
+            if step < 0:
+                raise MalformedReading(f"tap {tap}: step {step} is before the first, which is 0")
+            if reading.source != tap.source or not tap.permitted or reading.step > step:
                 raise self._refused(channel, consumer, reading, step)
         except AttributeError:
             raise self._refused(channel, consumer, reading, step) from None
@@ -251,9 +258,8 @@ class Taps:
                     f"tap {tap}: the consumer wrote into the reading, which others may read too; "
                     "copy it before writing"
                 )
-        faulted = frozenset(name for name, tap in self._taps.items() if tap.corruptions)
         last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
-        check_delivered(self.receipts(), faulted, last)
+        check_delivered(self.receipts(), self._named, last)
 
     def _refused(self, channel: str, consumer: str, reading: Any, step: int) -> TapError:
         """Return what is wrong with a delivery that the interface or the variant does not allow."""
@@ -279,7 +285,7 @@ class Taps:
                 f"{here}: the reading is of source '{reading.source}', but the channel is bound to "
                 f"'{tap.source}'; deliver that one, or bind the channel in the variant"
             )
-        if not tap.legal:
+        if not tap.permitted:
             return IllegalRead(
                 f"{here}: source '{tap.source}' is privileged and this arm does not permit it; "
                 "read another one, or name it in the variant's privileged sources"

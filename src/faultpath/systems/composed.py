@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from hashlib import sha256
 from os import PathLike
 from typing import Any, cast
@@ -14,7 +15,9 @@ from faultpath.core.text import unknown
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Loop, Module, Reading, graph, interface_of
 from faultpath.systems.episodes import SCENE, EpisodePlant
+from faultpath.systems.modules import FunctionModule
 from faultpath.trials import Library, LoopSystem, SceneRef, Wiring
+from faultpath.trials.checks import UNNAMED
 
 SCENES: Mapping[str, Sequence[int]] = {
     "training": range(100),
@@ -56,7 +59,8 @@ class ComposedSystem(LoopSystem):
         channels: Those that several sources may feed, with these sources; every other source is a
             channel of its own. In a variant the first that one of its modules writes feeds it, else
             the first that the plant gives.
-        scenes: Seeds of the scenes of each library.
+        scenes: Seeds of the scenes of each library. A single one is what a command runs that names
+            none.
         data_files: Files and folders whose contents decide a result; see `System.data_files`.
 
     Raises:
@@ -129,6 +133,8 @@ class ComposedSystem(LoopSystem):
 
     @override
     def library(self, name: str) -> Library:
+        if name in UNNAMED and len(self._scenes) == 1:
+            (name,) = self._scenes
         if name not in self._scenes:
             raise UserError(f"{self.name}: {unknown('library', name, self._scenes)}")
         seeds = [int(seed) for seed in self._scenes[name]]
@@ -169,8 +175,13 @@ class ComposedSystem(LoopSystem):
                 if not {*feeds[port.channel]} & {*plant.senses, *plant.facts, *written}:
                     there = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
                     wrong = unknown("source", port.channel, there)
-                    raise SystemMistake(f"system '{self.name}': module '{module.name}': {wrong}")
+                    mistake = SystemMistake(
+                        f"system '{self.name}': module '{module.name}': {wrong}"
+                    )
+                    mistake.place = module.place if isinstance(module, FunctionModule) else ""
+                    raise mistake
         names = (*plant.senses, *written, *(n for fed in feeds.values() for n in fed))
+        self._check_units(units, names)
         sources = {
             name: {
                 "name": name,
@@ -194,6 +205,22 @@ class ComposedSystem(LoopSystem):
         except UserError as error:
             raise SystemMistake(f"system '{self.name}': {error}") from None
 
+    def _check_units(self, units: Mapping[str, Any], sources: Sequence[str]) -> None:
+        """Refuse sources without a unit, after a look at whether it stands under another name."""
+        spare = [name for name in units if name not in sources]
+        for source in sources:
+            if source in units:
+                continue
+            if misspelt := get_close_matches(source, spare, n=1):
+                raise SystemMistake(
+                    f"system '{self.name}': units names '{misspelt[0]}', which is no source; did "
+                    f"you mean '{source}'?"
+                )
+            raise SystemMistake(
+                f"system '{self.name}': source '{source}' has no unit: add it to units, '1' for a "
+                "number without one"
+            )
+
     def _facts(
         self,
         source: str,
@@ -202,10 +229,6 @@ class ComposedSystem(LoopSystem):
     ) -> dict[str, Any]:
         """Return what `units` says of a source, and note what its numbers are called."""
         label = f"system '{self.name}': source '{source}'"
-        if source not in units:
-            raise SystemMistake(
-                f"{label} has no unit: add it to units, '1' for a number without one"
-            )
         entry = units[source]
         facts = {"unit": entry} if isinstance(entry, str) else dict(entry)
         if named := facts.pop("components", ()):

@@ -10,7 +10,7 @@ from typing_extensions import override
 
 from faultpath.core.arrays import HostArray, to_numpy
 from faultpath.core.errors import SystemMistake
-from faultpath.core.text import unknown
+from faultpath.core.text import listed, unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
 from faultpath.systems.observed import stacked
 from faultpath.trials import Metric
@@ -121,6 +121,8 @@ class EpisodePlant(Plant):
     """
 
     name = "plant"
+    observed: str = "the observation"
+    """Name in messages of where `observes` looks."""
     identity: str = ""
     """Facts that decide a trial and stand in no file that the system imports."""
     code: Sequence[str] = ()
@@ -164,17 +166,27 @@ class EpisodePlant(Plant):
                 part = at(batch) if callable(at) else batch
                 keys = () if callable(at) else at if isinstance(at, tuple) else (at,)
                 for key in keys:
-                    part = part[key] if isinstance(key, str) else part[:, key]
+                    part = self._part(name, part, key) if isinstance(key, str) else part[:, key]
                 sources[name] = np.array(part)
         except (LookupError, TypeError) as error:
             kind = type(batch).__name__ if not hasattr(batch, "shape") else list(batch.shape[1:])
             raise SystemMistake(
-                f"observes: the observation ({kind}) holds no such part ({error}): give a key, an "
+                f"observes: {self.observed} ({kind}) holds no such part ({error}): give a key, an "
                 "index or a slice of it"
             ) from error
         for name in self.facts:
             sources[name] = np.array([np.asarray(world.facts[name]) for world in worlds])
         return sources
+
+    def _part(self, source: str, observation: Any, key: str) -> Any:
+        """Return what a key of an observation holds."""
+        try:
+            return observation[key]
+        except KeyError:
+            raise SystemMistake(
+                f"observes: source '{source}': {self.observed} has no key '{key}'; it has "
+                f"{listed(map(str, observation))}"
+            ) from None
 
     @override
     def start(self, batch: Batch) -> _Batch:

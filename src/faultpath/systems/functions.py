@@ -59,6 +59,8 @@ class FunctionPlant(EpisodePlant):
             render=render,
         )
 
+    observed = "the state"
+
     @override
     def world(self, scene: str, seed: int) -> SceneInstance:
         state = self._start(generator("plant/start", scene, 0))

@@ -1,16 +1,16 @@
 """Functions as modules: what one is called with is what it reads."""
 
 from collections.abc import Callable, Iterable, Sequence
-from inspect import Parameter, signature
+from inspect import Parameter, signature, unwrap
 from typing import Any, cast
 
 import numpy as np
 from typing_extensions import override
 
 from faultpath.core.arrays import is_array, namespace
-from faultpath.core.error_source import described, place
+from faultpath.core.error_source import described, ours, place
 from faultpath.core.errors import SystemMistake
-from faultpath.core.text import unknown
+from faultpath.core.text import near, unknown
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
 from faultpath.systems.tapped import Made
 
@@ -117,6 +117,15 @@ class FunctionModule(Module):
         return f"{self.name} ({', '.join(words)})" if words else self.name
 
     @property
+    def place(self) -> str:
+        """File and line of the function; nothing for what is not a user's own function."""
+        function: Any = unwrap(self._function)
+        code = getattr(function, "__code__", None)
+        if code is None or ours(function.__module__):
+            return ""
+        return f"{near(code.co_filename)}, line {code.co_firstlineno}"
+
+    @property
     def _numbers(self) -> dict[str, int | float]:
         return {n: v for n, v in self._values.items() if isinstance(v, int | float)}
 
@@ -155,7 +164,8 @@ class FunctionModule(Module):
         try:
             pair: Any = self._function(**rows, **self._values, **more)
         except (TypeError, ValueError, AttributeError, LookupError) as error:
-            if inputs.step == 0 and (numbers := self._numbers):
+            writes_input = "read-only" in str(error)
+            if inputs.step == 0 and not writes_input and (numbers := self._numbers):
                 raise self._refused(numbers, error) from error
             raise
         if not self._remembers:

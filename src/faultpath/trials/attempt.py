@@ -9,7 +9,7 @@ import numpy as np
 
 from faultpath.core.error_source import described, located
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.loop import Observer, TapCount, Taps
+from faultpath.loop import DeliveryListener, TapCount, Taps
 from faultpath.trials.arm import Arm
 from faultpath.trials.outcome import Outcome, checked
 from faultpath.trials.system import System
@@ -57,7 +57,7 @@ def taps_of(
     arm: Arm,
     scenes: Sequence[str],
     guard: bool = False,
-    observer: Observer | None = None,
+    observer: DeliveryListener | None = None,
 ) -> Taps:
     """Return new taps for an arm over some scenes."""
     variant = system.variants[arm.variant]
@@ -80,7 +80,7 @@ def attempt(
     arm: Arm,
     scenes: Sequence[str],
     guard: bool = False,
-    observer: Observer | None = None,
+    observer: DeliveryListener | None = None,
 ) -> Done | Raised | Wrong:
     """Run an arm over some scenes; an error comes back as a value.
 

@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import inspect
 import os
 import sys
 from collections.abc import Generator, Iterable, Sequence
@@ -120,11 +121,24 @@ def _attribute(module: ModuleType, place: str, attribute: str, kinds: Sequence[t
         raise UserError(f"{place} has no function {attribute!r} to build from: check the name")
     if kinds and not builds(factory, kinds):
         names = " or a ".join(kind.__name__ for kind in kinds)
+        code, line = getattr(inspect.unwrap(factory), "__code__", None), ""
+        if isinstance(code, CodeType) and code.co_filename == getattr(module, "__file__", None):
+            line = f", line {code.co_firstlineno},"
         raise UserError(
-            f"{place} does not declare that {attribute!r} returns a {names}, and nothing else is "
-            f"called: annotate it, as in `def {attribute}(...) -> {kinds[0].__name__}:`"
+            f"{place}{line} does not declare that {attribute!r} returns a {names}, and nothing "
+            f"else is called: annotate it, as in `def {attribute}(...) -> "
+            f"{_annotation(module, kinds)}:`"
         )
     return factory
+
+
+def _annotation(module: ModuleType, kinds: Sequence[type]) -> str:
+    """Return the annotation to advise: a class of the module, or a name in quotes, which needs no
+    import."""
+    classes = {name: value for name, value in vars(module).items() if isinstance(value, type)}
+    fitting = [name for name, value in classes.items() if issubclass(value, tuple(kinds))]
+    first = kinds[0].__name__
+    return first if first in fitting else next(iter(fitting), f'"{first}"')
 
 
 def _module(place: str, name: str) -> ModuleType:

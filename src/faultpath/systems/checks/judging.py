@@ -1,7 +1,7 @@
 """Verdicts on a system from the runs of a check: eight checks, each with its sentences."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -114,7 +114,18 @@ def judged(seen: Seen) -> tuple[Check, ...]:
             for error, name in stopped.items()
         )
         checks[at] = check.model_copy(update={"failures": (*errors, *check.failures)})
+    if not count:
+        checks[0] = _none_ended(checks[0], [check.name for check in checks[1:] if check.failures])
     return tuple(checks)
+
+
+def _none_ended(trials: Check, failed: Sequence[str]) -> Check:
+    """Return the check that trials end where none did, which names the failed checks to see."""
+    see = " and ".join(f"*{name}*" for name in failed)
+    says = f"none did; see {see}" if see else "none did"
+    sentence = f"No trial of any variant ended: correct first what {see} says."
+    failures = trials.failures or (sentence,)
+    return trials.model_copy(update={"says": says, "failures": failures})
 
 
 def remedy(error: str) -> str:
@@ -207,14 +218,23 @@ def _reads(name: str, seen: Seen) -> Check:
 
 def _delivery(name: str, seen: Seen) -> Check:
     """Check that a fault at a tap alters what its consumer gets, and has an effect."""
-    failures, remarks, altered, dt_s = list[str](), list[str](), 0, seen.system.control_dt_s
+    failures, remarks, dt_s = list[str](), list[str](), seen.system.control_dt_s
+    altered, elsewhere = 0, 0
     alone = {key: run for key, run in seen.runs.items() if key[1] == "tap"}
     for (variant, _, tap), run in alone.items():
         lead = f"Tap {tap[0]} -> {tap[1]} of variant '{variant}', faulted in {len(seen.scenes)} "
         lead += "trials,"
         here = [read for read in run.reads if read.tap == tap]
-        count = sum(read.clean[scene] != read.got[scene] for read in here for scene in read.clean)
+        count = sum(read.altered for read in here)
         altered += count
+        others = [read for read in run.reads if read.tap != tap and read.altered]
+        elsewhere += sum(read.altered for read in others)
+        for channel, consumer in dict.fromkeys(read.tap for read in others):
+            failures.append(
+                f"{lead} altered a reading at tap {channel} -> {consumer} too, which "
+                "the fault does not name; trust no result of this version of faultpath, and report "
+                "it."
+            )
         first = seen.of(variant, "first")
         clean = first.readings(dt_s)
         faulted = {key: value for key, value in run.readings(dt_s).items() if key in clean}
@@ -241,7 +261,8 @@ def _delivery(name: str, seen: Seen) -> Check:
                 "that were looked at; its module may use it later, or not at all, or may use "
                 "something else than it was handed."
             )
-    says = f"{len(alone)} taps, each faulted alone: {altered} readings altered, at no other tap"
+    says = f"{len(alone)} taps, each faulted alone: {altered} readings altered, "
+    says += f"{elsewhere} at other taps" if elsewhere else "at no other tap"
     return Check(name=name, says=says, failures=tuple(failures), remarks=tuple(remarks))
 
 

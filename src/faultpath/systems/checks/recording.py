@@ -21,7 +21,7 @@ from faultpath.core.error_source import described
 from faultpath.core.errors import SystemMistake
 from faultpath.core.results import Result
 from faultpath.interface import Provenance
-from faultpath.loop import Observer, Query, Reading, Tap
+from faultpath.loop import DeliveryListener, Query, Reading, Tap
 from faultpath.systems.composed import ComposedSystem
 from faultpath.trials import System
 from faultpath.trials.attempt import Done
@@ -73,8 +73,13 @@ class Read(Result):
         """Channel and consumer."""
         return self.channel, self.consumer
 
+    @property
+    def altered(self) -> int:
+        """Number of scenes in which the consumer got something else than the source held."""
+        return sum(self.clean[scene] != self.got[scene] for scene in self.clean)
 
-class Recording(Observer):
+
+class Recording(DeliveryListener):
     """The deliveries of the taps of a run.
 
     Args:

@@ -86,9 +86,7 @@ def trace_system(
         steps=steps,
         fault="" if fault is None else fault.describe(),
         reads=tuple(
-            read.model_copy(update={"altered_by": (words[read.tap],)})
-            if read.clean != read.got
-            else read
+            read.model_copy(update={"altered_by": (words[read.tap],)}) if read.altered else read
             for read in run.reads
         ),
         reconstructed=_reconstructed(system, run.reads),
