@@ -13,7 +13,7 @@ from faultpath.trials import Status
 
 SYSTEM = """
 from faultpath.loop import Module, Port
-from faultpath.systems import FunctionPlant, ComposedSystem, FunctionPlant, Parts
+from faultpath.systems import ComposedSystem, FunctionPlant, Parts
 
 class Brake(Module):
     name, writes = "brake", ("push",)
