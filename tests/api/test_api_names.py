@@ -45,7 +45,7 @@ def test_a_name_that_there_is_none_of():
     with pytest.raises(AttributeError, match="no attribute 'octopus'"):
         faultpath.octopus  # noqa: B018 - the look itself raises
     with pytest.raises(AttributeError, match=r"'faultpath\.api' has no attribute 'octopus'"):
-        faultpath.api.octopus  # noqa: B018
+        faultpath.api.octopus  # noqa: B018 - likewise
 
 
 def test_importing_loads_nothing_heavy():

@@ -155,7 +155,7 @@ def test_a_named_tap_where_nothing_acts_is_an_error() -> None:
 def test_taps_that_attach_a_fault_elsewhere_are_told_by_the_faults(
     monkeypatch: pytest.MonkeyPatch, reached: tuple[str, ...], error: type[Exception], sentence: str
 ) -> None:
-    attach = Taps._add  # pyright: ignore[reportPrivateUsage]
+    attach = Taps._add  # pyright: ignore[reportPrivateUsage] - what is made wrong here
 
     def misplaced(self: Taps, faults: Any, dt_s: float, seed: int) -> None:
         moved = [fault.model_copy(update={"consumers": reached}) for fault in faults]
@@ -171,7 +171,7 @@ def test_taps_that_attach_a_fault_elsewhere_are_told_by_the_faults(
 def test_one_of_two_faults_that_is_not_attached_is_an_error(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    attach = Taps._add  # pyright: ignore[reportPrivateUsage]
+    attach = Taps._add  # pyright: ignore[reportPrivateUsage] - what is made wrong here
     monkeypatch.setattr(Taps, "_add", lambda self, faults, *more: attach(self, faults[:1], *more))
     taps = make([LATE.model_copy(update={"onset_step": 0}), LATE])
     run(taps)

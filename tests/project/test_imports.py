@@ -1,4 +1,4 @@
-"""What gets loaded, and what may import what: the core works without torch."""
+"""Imports: what loads what, and what may; the core works without torch."""
 
 import ast
 import json

@@ -18,8 +18,9 @@ from faultpath.trials import Library, Study, System, library_of
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import Failure, RunResult, run_study
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.question import Asked, Request, ask
+from faultpath.trials.question import Asked, Request
 from faultpath.trials.store.atomic import write_text
+from faultpath.trials.validation import ask
 from faultpath.trials.work.executor import Executor, Progress
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])

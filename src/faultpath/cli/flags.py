@@ -13,7 +13,8 @@ from typer.models import OptionInfo
 
 from faultpath.cli.options import literal, path
 from faultpath.core.errors import UserError
-from faultpath.trials.question import ADVANCED, Asked, Flag, flag
+from faultpath.trials.question import ADVANCED, Asked, Flag
+from faultpath.trials.validation import flag
 
 _Verb = TypeVar("_Verb", bound=Callable[..., Any])
 _KEYWORD = inspect.Parameter.KEYWORD_ONLY
