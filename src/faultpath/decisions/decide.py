@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from faultpath.core.errors import UserError
 from faultpath.decisions.compared import ComparedTrials
 from faultpath.decisions.descriptive import cells_of, percent, secondary, untested_paths
-from faultpath.decisions.family import Family, family_of, led
+from faultpath.decisions.family import Family, change_name, effect_name, family_of, led
 from faultpath.decisions.model import (
     AS_RUN,
     CORRECT,
@@ -132,7 +132,7 @@ def _effect(
             against_pp=against.value,
             favour_pp=favour.value,
             uneven=voids.uneven,
-            unsettled=f"effect/{path}" in family.unsettled,
+            unsettled=effect_name(path) in family.unsettled,
         )
     # None is known for newly trained models, whose spread a few seeds do not give, and of an audit
     # that stops where it has decided.
@@ -173,7 +173,7 @@ def _change(question: Question, path: str, family: Family) -> Change:
         test=contrast.test.name,
         p_value=contrast.test.p_value,
         adjusted_p_value=contrast.decision.adjusted_p,
-        unsettled=f"change/{path}" in family.unsettled,
+        unsettled=change_name(path) in family.unsettled,
         turn=family.turns[path],
     )
 

@@ -135,9 +135,9 @@ def decide_paths(
         decision = decided[name].decision
         decided[name] = replace(decided[name], decision=decision and decision._replace(sign=0))
     effects = {
-        path: decided.get(_effect_name(path), with_test(e, rule)) for path, e in effects.items()
+        path: decided.get(effect_name(path), with_test(e, rule)) for path, e in effects.items()
     }
-    changes = {path: decided[_change_name(path)] for path in _isolated(tested)}
+    changes = {path: decided[change_name(path)] for path in _isolated(tested)}
     uneven = {path for path, void in voids.items() if void.uneven}
     turns: dict[str, Turn] = {}
     for path, moved in changes.items():
@@ -164,9 +164,9 @@ def _named(
 ) -> dict[str, Contrast]:
     """Return the effects, and their changes from those `alone` to the shared one, by name."""
     changes = {
-        _change_name(path): change(alone[path], effects[SHARED]) for path in _isolated(tested)
+        change_name(path): change(alone[path], effects[SHARED]) for path in _isolated(tested)
     }
-    return {_effect_name(path): effects[path] for path in tested} | changes
+    return {effect_name(path): effects[path] for path in tested} | changes
 
 
 def _nearest(against: Contrast, favour: Contrast, rule: RuleName) -> Contrast:
@@ -191,17 +191,19 @@ def alpha_shares(paths: Collection[str], primary: str) -> dict[str, float]:
     The effect on the primary path, for which sequential audits stop, has a half; all others share
     the rest. Where that path has none, the others' shares are equal.
     """
-    named = [*map(_effect_name, paths), *map(_change_name, _isolated(paths))]
-    others = [name for name in named if name != _effect_name(primary)]
+    named = [*map(effect_name, paths), *map(change_name, _isolated(paths))]
+    others = [name for name in named if name != effect_name(primary)]
     shares = dict.fromkeys(others, 0.5 / max(1, len(others)))
-    return {_effect_name(primary): 0.5 if others else 1.0, **shares}
+    return {effect_name(primary): 0.5 if others else 1.0, **shares}
 
 
-def _effect_name(path: str) -> str:
+def effect_name(path: str) -> str:
+    """Name the effect on a path among the contrasts of a family."""
     return f"effect/{path}"
 
 
-def _change_name(path: str) -> str:
+def change_name(path: str) -> str:
+    """Name the change from an isolated path to the shared one, likewise."""
     return f"change/{path}"
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Sequence
 
-from faultpath.decisions.family import alpha_shares
+from faultpath.decisions.family import alpha_shares, change_name, effect_name
 from faultpath.decisions.model import DecisionRecord
 from faultpath.statistics.decisions import holm
 from faultpath.statistics.estimate import ALPHA, RULES, Sign
@@ -11,8 +11,8 @@ from faultpath.statistics.estimate import ALPHA, RULES, Sign
 def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
     """Return p and weight of every contrast that a record tested, by its name."""
     tested = [effect for effect in record.effects if effect.adjusted_p_value is not None]
-    p_values = {f"effect/{effect.path}": effect.p_value for effect in tested}
-    p_values |= {f"change/{change.isolated}": change.p_value for change in record.changes}
+    p_values = {effect_name(effect.path): effect.p_value for effect in tested}
+    p_values |= {change_name(change.isolated): change.p_value for change in record.changes}
     question = record.question
     parts = alpha_shares([effect.path for effect in tested], question.primary)
     weighted = RULES[question.rule].weighted or question.stop is not None
@@ -46,7 +46,7 @@ def decide_sizes(
         family: dict[str, tuple[Sign, float]] = {}
         for effect in record.effects:
             if effect.adjusted_p_value is not None:
-                p = adjusted[key(size, f"effect/{effect.path}")]
+                p = adjusted[key(size, effect_name(effect.path))]
                 family[effect.path] = effect.sign if p <= ALPHA else 0, p
         families.append(family)
     return families

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from faultpath.decisions.family import effect_name
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
 from faultpath.decisions.question import Question
 from faultpath.decisions.sentences import wording
@@ -168,6 +169,6 @@ def together(runs: Sequence[Compared]) -> tuple[Compared, ...]:
     """
     if swept(runs) is None:
         return tuple(runs)
-    once = (f"effect/{CORRECT}",) if same_correct_trials(runs) else ()
+    once = (effect_name(CORRECT),) if same_correct_trials(runs) else ()
     families = decide_sizes([run.record for run in runs], once)
     return tuple(replace(run, family=of) for run, of in zip(runs, families, strict=True))
