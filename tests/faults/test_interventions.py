@@ -111,14 +111,6 @@ def test_uniform_scale_is_one_draw_a_scene(to: Any) -> None:
 
 
 @LIBRARIES
-def test_drift_ramps_from_the_onset(to: Any) -> None:
-    values = play(Drift(rate_per_s=4.0), ramp(to), onset=2)
-    for step, value in enumerate(values):
-        expected = np.array([step, 100 + step]) + 4.0 * (max(step - 2, 0) * DT_S)
-        np.testing.assert_array_equal(value, expected)
-
-
-@LIBRARIES
 def test_random_walk_adds_up_the_draws_since_the_onset(to: Any) -> None:
     values = play(Drift(walk_per_sqrt_s=0.3), ramp(to), onset=2)
     for step, value in enumerate(values):
@@ -135,23 +127,21 @@ def test_random_walk_does_not_depend_on_how_often_a_tap_delivers(to: Any) -> Non
 
 
 @LIBRARIES
-@pytest.mark.parametrize("steps", [0, 1, 3, 20])
-def test_delay_returns_the_reading_of_then(to: Any, steps: int) -> None:
-    values = play(Delay(steps=steps), ramp(to))
-    assert [value[0] for value in values] == [max(step - steps, 0) for step in range(8)]
-    assert [value[1] for value in values] == [100 + max(step - steps, 0) for step in range(8)]
-
-
-@LIBRARIES
-def test_hold_refreshes_from_the_onset_on(to: Any) -> None:
-    values = play(Hold(every=3), ramp(to), onset=1)
-    assert [value[0] for value in values] == [0, 1, 1, 1, 4, 4, 4, 7]
-
-
-@LIBRARIES
-def test_freeze_keeps_the_reading_of_the_onset(to: Any) -> None:
-    values = play(Freeze(), ramp(to), onset=3)
-    assert [value[0] for value in values] == [0, 1, 2, 3, 3, 3, 3, 3]
+@pytest.mark.parametrize(
+    ("intervention", "onset", "expected"),
+    [
+        (Drift(rate_per_s=4.0), 2, [0, 1, 2, 3.2, 4.4, 5.6, 6.8, 8.0]),
+        (Delay(steps=0), 0, [0, 1, 2, 3, 4, 5, 6, 7]),
+        (Delay(steps=3), 0, [0, 0, 0, 0, 1, 2, 3, 4]),
+        (Delay(steps=20), 0, [0] * 8),
+        (Hold(every=3), 1, [0, 1, 1, 1, 4, 4, 4, 7]),
+        (Freeze(), 3, [0, 1, 2, 3, 3, 3, 3, 3]),
+    ],
+    ids=str,
+)
+def test_a_ramp_comes_late_or_not_or_steeper(to, intervention, onset, expected) -> None:
+    values = play(intervention, ramp(to), onset)
+    np.testing.assert_allclose(values, np.add.outer(expected, [0, 100]), rtol=1e-15)
 
 
 @LIBRARIES

@@ -1,7 +1,5 @@
 """Basilisk, untouched: it flies in our loop as in its own, and a fault reaches who reads."""
 
-from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -21,23 +19,19 @@ from Basilisk.fswAlgorithms import (
 )
 from Basilisk.simulation import reactionWheelStateEffector, simpleNav, spacecraft, starTracker
 from Basilisk.utilities import SimulationBaseClass
+from foreign_trials import ROOT, attempted, faulted, loaded
 
 from faultpath import audit, generator
-from faultpath.faults import parse_fault
 from faultpath.systems import FunctionPlant, shared_objects
-from faultpath.trials import Arm
-from faultpath.trials.attempt import attempt
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "basilisk_attitude.py"
+EXAMPLE = ROOT / "examples" / "basilisk_attitude.py"
 SCENE, STEPS = "seed/7", 300
 
 
 @pytest.fixture
 def example(monkeypatch):
     """The example, flown for a shorter time and without errors of its sensors."""
-    spec = spec_from_file_location("example", EXAMPLE)
-    made = module_from_spec(spec)
-    spec.loader.exec_module(made)
+    made = loaded(EXAMPLE)
     made.TRACKER = made.BIAS = made.NOISE = 0.0
     made.episodes = []
 
@@ -117,7 +111,7 @@ def theirs(example, variant):
 
 @pytest.mark.parametrize("variant", ["gyro", "filtered"])
 def test_it_flies_in_our_loop_as_in_its_own(example, variant):
-    attempt(example.create(), Arm(variant=variant), (SCENE,))
+    attempted(example.create(), variant, (SCENE,))
     own = theirs(example, variant)
     assert np.allclose(example.episodes[0]["sensed"], own.flown, rtol=0, atol=1e-12)
 
@@ -131,21 +125,12 @@ def test_the_messages_that_they_share_are_found(example):
 
 
 def test_a_fault_reaches_who_reads(example):
-    system = example.create()
     fault = "wheel_speeds:freeze@filter,onset_s=50"
-    faults = parse_fault(fault, system.interface, {}, 0.5).resolved(system.interface)
-    attempted = attempt(system, Arm(variant="filtered", faults=faults), (SCENE,))
-    faulted = {tap.consumer: tap.faulted_steps for tap in attempted.taps}
-    assert faulted["filter.wheel_speeds"] == STEPS - 100
-    assert faulted["control.wheel_speeds"] == 0
+    trial = attempted(example.create(), "filtered", (SCENE,), fault)
+    assert faulted(trial) == {"filter.wheel_speeds": STEPS - 100}
 
 
 def test_it_is_audited(example):
-    found = audit(
-        example.create(),
-        baseline="gyro",
-        repair="filtered",
-        fault="wheel_speeds:freeze,onset_s=50",
-        scenes=2,
-    )
+    asked = {"baseline": "gyro", "repair": "filtered", "fault": "wheel_speeds:freeze,onset_s=50"}
+    found = audit(example.create(), **asked, scenes=2)
     assert [path.name for path in found.record.paths] == ["correct", "control", "filter", "shared"]

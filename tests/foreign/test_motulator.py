@@ -1,22 +1,18 @@
 """motulator's drive, untouched: our loop is its own, and a fault reaches who reads."""
 
 from importlib import import_module
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 pytest.importorskip("motulator")
 
+from foreign_trials import ROOT, attempted, faulted
 from motulator.common.utils import abc2complex
 
 from faultpath import audit, generator
-from faultpath.faults import parse_fault
 from faultpath.systems import shared_objects
-from faultpath.trials import Arm
-from faultpath.trials.attempt import attempt
 
-ROOT = Path(__file__).resolve().parents[2]
 EXAMPLE = "motulator_drive.py"
 SCENE, STEPS = "seed/3", 240
 PARTS = ("reference_gen", "current_ctrl", "observer")
@@ -62,7 +58,7 @@ def own_loop(example, adapts):
 def test_without_a_fault_our_loop_is_theirs_bit_for_bit(example, monkeypatch, variant) -> None:
     episodes = []
     monkeypatch.setattr(example, "error_percent", lambda episode: episodes.append(episode) or 0.0)
-    attempt(example.create(), Arm(variant=variant, faults=()), (SCENE, "seed/4"))
+    attempted(example.create(), variant, (SCENE, "seed/4"))
     currents, torque = own_loop(example, variant == "adapted")
     assert np.ptp(torque) > 5
     assert np.array_equal(torque, episodes[0]["torque"][:STEPS])
@@ -80,13 +76,11 @@ def test_a_fault_at_one_part_changes_what_that_part_reads(example, monkeypatch, 
     monkeypatch.setattr(example, "drive", noted)
     system = example.create()
     reads.clear()  # of the steps in which shapes are found
-    fault = parse_fault(f"psi_f:scale=1.11@{struck}", system.interface, {}, example.T_S)
-    done = attempt(system, Arm(variant="fixed", faults=fault.resolved(system.interface)), (SCENE,))
+    trial = attempted(system, "fixed", (SCENE,), f"psi_f:scale=1.11@{struck}")
     flux = example.simulation(generator("plant/start", SCENE, 0), None)[0].mdl.machine.par.psi_f
     at_fault = {at: flux * (1.11 if at == struck else 1.0) for at in PARTS}
     assert reads == [at_fault] * STEPS
-    faulted = {tap.consumer for tap in done.taps if tap.faulted_steps}
-    assert faulted == {f"{struck}.psi_f"}
+    assert set(faulted(trial)) == {f"{struck}.psi_f"}
 
 
 def test_what_its_parts_share_is_found(example) -> None:
@@ -100,17 +94,9 @@ def test_what_its_parts_share_is_found(example) -> None:
 
 
 def test_it_is_audited_with_a_path_for_each_part(example, tmp_path) -> None:
-    run = audit(
-        example.create(),
-        baseline="fixed",
-        repair="adapted",
-        fault="psi_f:scale=1.11",
-        scenes=2,
-        library="training",
-        workers=0,
-        signals=False,
-        folder=tmp_path,
-    )
+    asked = {"baseline": "fixed", "repair": "adapted", "fault": "psi_f:scale=1.11"}
+    how = {"workers": 0, "signals": False, "folder": tmp_path}
+    run = audit(example.create(), **asked, scenes=2, library="training", **how)
     paths = [path.name for path in run.record.paths]
     assert paths == ["correct", "current_ctrl", "observer", "reference_gen", "shared"]
     assert sum(effect.void_pairs for effect in run.record.effects) == 0

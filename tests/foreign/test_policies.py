@@ -1,6 +1,5 @@
 """A policy of Stable-Baselines3 and the same one in ONNX: both run as modules, untouched."""
 
-import importlib.util
 from pathlib import Path
 from types import ModuleType
 
@@ -10,22 +9,13 @@ import pytest
 pytest.importorskip("onnxruntime")
 pytest.importorskip("stable_baselines3")
 
-import faultpath
-from faultpath.faults import parse_fault
-from faultpath.trials import Arm
-from faultpath.trials.attempt import attempt
+from foreign_trials import ROOT, attempted, faulted, loaded
 
-ROOT = Path(__file__).resolve().parents[2]
+import faultpath
+
 EXAMPLE = ROOT / "examples" / "guarded_policy.py"
 FREEZE = "pole:freeze,onset_s=2,for_s=0.3"
 RUNTIMES = ("onnx", "sb3")
-
-
-def loaded(path: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location("guarded_policy", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
@@ -66,24 +56,18 @@ def test_the_guard_helps_only_where_the_policy_alone_is_faulted(example, tmp_pat
 
 @pytest.mark.parametrize("variant", ["plain", "guarded"])
 def test_trials_end_alike_with_both(example, variant: str) -> None:
-    ends = []
-    for runtime in RUNTIMES:
-        system = example.create(runtime)
-        text = FREEZE.replace("freeze", "freeze@policy")
-        fault = parse_fault(text, system.interface, {}, system.control_dt_s)
-        arm = Arm(variant=variant, faults=fault.resolved(system.interface))
-        ends.append(attempt(system, arm, ("seed/3",)).outcomes)
-    assert ends[0] == ends[1]
+    fault = FREEZE.replace("freeze", "freeze@policy")
+    onnx, sb3 = (
+        attempted(example.create(runtime), variant, ("seed/3",), fault) for runtime in RUNTIMES
+    )
+    assert onnx.outcomes == sb3.outcomes
 
 
 @pytest.mark.parametrize("module", ["policy", "guard"])
 def test_a_fault_at_one_reader_reaches_that_reader_alone(example, module: str) -> None:
-    system = example.create()
-    text = FREEZE.replace("freeze", f"freeze@{module}")
-    faults = parse_fault(text, system.interface, {}, system.control_dt_s).resolved(system.interface)
-    done = attempt(system, Arm(variant="guarded", faults=faults), ("seed/3",))
-    faulted = {tap.consumer: tap.faulted_steps for tap in done.taps if tap.faulted_steps}
-    assert faulted == {f"{module}.pole": 15}
+    fault = FREEZE.replace("freeze", f"freeze@{module}")
+    trial = attempted(example.create(), "guarded", ("seed/3",), fault)
+    assert faulted(trial) == {f"{module}.pole": 15}
 
 
 @pytest.mark.parametrize("runtime", RUNTIMES)

@@ -9,6 +9,7 @@ import pytest
 
 pytest.importorskip("rotorpy")
 
+from foreign_trials import ROOT, attempted, faulted
 from rotorpy.controllers.quadrotor_control import SE3Control
 from rotorpy.estimators.wind_ukf import WindUKF
 from rotorpy.sensors.external_mocap import MotionCapture
@@ -21,12 +22,8 @@ from rotorpy.world import World
 from scipy.spatial.transform import Rotation
 
 from faultpath import audit, generator
-from faultpath.faults import parse_fault
 from faultpath.systems import shared_objects
-from faultpath.trials import Arm
-from faultpath.trials.attempt import attempt
 
-ROOT = Path(__file__).resolve().parents[2]
 SCENE, STEPS = "seed/7", 60
 
 
@@ -107,18 +104,10 @@ def by_themselves(example, fed):
     return state["x"][: STEPS + 1]
 
 
-def attempted(system, variant, fault=None):
-    faults = ()
-    if fault:
-        faults = parse_fault(fault, system.interface, {}, 0.01).resolved(system.interface)
-    done = attempt(system, Arm(variant=variant, faults=faults), (SCENE,))
-    return done.outcomes[0], {tap.consumer: tap for tap in done.taps}
-
-
 @pytest.mark.parametrize(("variant", "fed"), [("alone", False), ("fed-forward", True)])
 def test_it_flies_in_our_loop_as_in_its_own(example, variant, fed):
     kept = np.random.get_state()[1].copy()
-    outcome, _ = attempted(example.create(), variant)
+    (outcome,) = attempted(example.create(), variant, (SCENE,)).outcomes
     assert np.array_equal(np.random.get_state()[1], kept)
     theirs = by_themselves(example, fed)
     assert outcome.metrics["offset_m"] == example.offset_m({"place": theirs})
@@ -129,12 +118,11 @@ def test_a_fault_at_one_object_reaches_its_reads_alone(example):
     system = example.create()
     readers = {"controller.mass", "feedforward.mass", "filter.mass"}
     assert set(system.interface.channel("mass").consumers) == readers
-    exact, _ = attempted(system, "fed-forward")
+    exact = attempted(system, "fed-forward", (SCENE,))
     for struck in ("controller", "feedforward", "filter"):
-        outcome, taps = attempted(system, "fed-forward", f"mass:scale=0.8@{struck}")
-        faulted = {name for name, tap in taps.items() if tap.faulted_steps}
-        assert faulted == {f"{struck}.mass"}
-        assert outcome.metrics != exact.metrics
+        trial = attempted(system, "fed-forward", (SCENE,), f"mass:scale=0.8@{struck}")
+        assert set(faulted(trial)) == {f"{struck}.mass"}
+        assert trial.outcomes[0].metrics != exact.outcomes[0].metrics
 
 
 def test_it_is_audited(example, monkeypatch):
@@ -142,13 +130,8 @@ def test_it_is_audited(example, monkeypatch):
     system = example.create()
     asked = {"baseline": "alone", "repair": "fed-forward", "fault": "mass:scale=0.8"}
     found = audit(system, **asked, library="training", scenes=2, workers=0)
-    assert {path.name for path in found.record.paths} == {
-        "correct",
-        "controller",
-        "feedforward",
-        "filter",
-        "shared",
-    }
+    paths = [path.name for path in found.record.paths]
+    assert paths == ["correct", "controller", "feedforward", "filter", "shared"]
 
 
 def test_what_their_objects_share_is_what_the_page_says():

@@ -8,16 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from foreign_trials import ROOT, attempted, faulted
 
 if find_spec("stable_worldmodel") is None:  # importing it is the example's, which knows how
     pytest.skip("stable-worldmodel is not installed", allow_module_level=True)
 
 from faultpath import audit
-from faultpath.faults import parse_fault
-from faultpath.trials import Arm
-from faultpath.trials.attempt import attempt
 
-ROOT = Path(__file__).resolve().parents[2]
 SCENES = ("seed/20", "seed/21")
 
 
@@ -34,13 +31,6 @@ def example():
 @pytest.fixture
 def model(example):
     return import_module(Path("stable_worldmodel_model.py").stem)
-
-
-def attempted(system, variant, fault=None):
-    faults = ()
-    if fault:
-        faults = parse_fault(fault, system.interface, {}, 1.0).resolved(system.interface)
-    return attempt(system, Arm(variant=variant, faults=faults, seed=0), SCENES)
 
 
 def closest_px(example, scene):
@@ -71,25 +61,18 @@ def closest_px(example, scene):
 
 @pytest.mark.filterwarnings("ignore")  # theirs, of Gymnasium and NumPy
 def test_without_a_fault_the_loop_is_theirs(example):
-    outcomes = attempted(example.create(), "plain").outcomes
+    outcomes = attempted(example.create(), "plain", SCENES).outcomes
     distances = [outcome.metrics["closest_px"] for outcome in outcomes]
     assert distances == [closest_px(example, scene) for scene in SCENES]
-
-
-def test_a_calibrated_camera_changes_no_pixel(model):
-    picture = np.random.default_rng(0).integers(0, 256, (1, 64, 64, 3)).astype(np.uint8)
-    assert np.array_equal(model.Camera().transform(picture), picture)
 
 
 @pytest.mark.parametrize("fault", ["exposure:scale=0.85", "shift:offset=2/0"])
 def test_an_error_at_one_picture_reaches_that_picture_alone(example, fault):
     system, channel = example.create(), fault.partition(":")[0]
-    clean = attempted(system, "plain").outcomes
-    for struck, spared in (("observation", "goal"), ("goal", "observation")):
-        result = attempted(system, "plain", f"{fault}@{struck}")
-        taps = {tap.consumer: tap for tap in result.taps}
-        assert taps[f"{struck}.{channel}"].faulted_steps > 0
-        assert taps[f"{spared}.{channel}"].faulted_steps == 0
+    clean = attempted(system, "plain", SCENES).outcomes
+    for struck in ("observation", "goal"):
+        result = attempted(system, "plain", SCENES, f"{fault}@{struck}")
+        assert set(faulted(result)) == {f"{struck}.{channel}"}
         assert result.outcomes != clean
 
 
@@ -106,8 +89,8 @@ def test_the_cost_of_plans_gets_the_pictures_that_the_taps_struck(example, monke
     monkeypatch.setattr(world_model, "get_cost", seen)
     monkeypatch.setattr(example, "STEPS", 1)
     fault, last = "exposure:scale=0.7", []
-    for where in (None, fault, f"{fault}@observation", f"{fault}@goal"):
-        attempted(example.create(), "plain", where)
+    for where in ("", fault, f"{fault}@observation", f"{fault}@goal"):
+        attempted(example.create(), "plain", SCENES, where)
         last.append(pictures[-1])
     right, shared, observation, goal = last
     assert not any(map(torch.equal, right, shared))
@@ -117,9 +100,10 @@ def test_the_cost_of_plans_gets_the_pictures_that_the_taps_struck(example, monke
     assert torch.equal(goal[1], shared[1])
 
 
-def test_a_rectified_picture_is_that_of_a_calibrated_camera(example, model):
+def test_a_calibrated_camera_changes_no_pixel_and_a_rectified_picture_is_its(example, model):
     camera = model.Camera(rectifies=True)
     picture = example.Rooms().reset(seed=20)[0]["picture"][None]
+    assert np.array_equal(model.Camera().transform(picture), picture)
     assert np.array_equal(camera.transform(picture), picture)
     camera.exposure, camera.shift = 0.7, np.array([2.0, -1.0])
     apart = np.abs(camera.transform(picture).astype(int) - picture)
@@ -128,15 +112,8 @@ def test_a_rectified_picture_is_that_of_a_calibrated_camera(example, model):
 
 def test_it_is_audited(example, monkeypatch):
     monkeypatch.setattr(example, "STEPS", 10)
-    run = audit(
-        example.create(),
-        baseline="plain",
-        repair="rectified",
-        fault="exposure:scale=0.85",
-        library="training",
-        scenes=2,
-        workers=0,
-    )
+    asked = {"baseline": "plain", "repair": "rectified", "fault": "exposure:scale=0.85"}
+    run = audit(example.create(), **asked, library="training", scenes=2, workers=0)
     names = [path.name for path in run.record.paths]
     assert names == ["correct", "goal", "observation", "shared"]
 

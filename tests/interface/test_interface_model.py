@@ -1,11 +1,13 @@
-"""What an interface accepts, and the sentence for what it refuses."""
+"""Interfaces as models and as YAML: what is accepted, and the sentence for what is refused."""
 
 import re
+from pathlib import Path
 
 import pytest
 from pydantic import ValidationError
 
-from faultpath.interface import Channel, Interface, Source, Uncertainty
+from faultpath.core.errors import UserError
+from faultpath.interface import Channel, Interface, Source, Uncertainty, read_interface
 
 MASS = Source(name="mass_estimate", unit="kg", provenance="estimated")
 WIND = Source(name="observed_wind", unit="m/s", shape=(3,), provenance="reconstructed")
@@ -22,66 +24,33 @@ def build(**fields: object) -> Interface:
     return Interface.model_validate(given)
 
 
+STRANGE = channel(sources=("mass_estimate", "zero_wind"))
+TWICE = {"predictor": ["observed_wind"] * 2}
+GROUPED = MASS.model_copy(update={"correlation_group": "mass"})
+
+
 @pytest.mark.parametrize(
     ("fields", "sentence"),
     [
-        ({"sources": (MASS, MASS)}, "source 'mass_estimate' is declared twice; drop one"),
-        ({"channels": (channel(), channel())}, "channel 'mass' is declared twice; drop one"),
-        (
-            {"channels": (channel(consumers=("a.b", "a.b")),)},
-            "channel 'mass': consumer 'a.b' is declared twice; drop one",
-        ),
-        (
-            {"channels": (channel(sources=("mass_estimat",)),)},
-            "channel 'mass': unknown source 'mass_estimat'; did you mean 'mass_estimate'? "
-            "known: mass_estimate",
-        ),
-        (
-            {
-                "sources": (MASS, ZERO),
-                "channels": (channel(sources=("mass_estimate", "zero_wind")),),
-            },
-            "channel 'mass': source 'zero_wind' ([3], m/s) cannot stand in for 'mass_estimate' "
-            "([], kg); sources of one channel share shape and unit",
-        ),
-        (
-            {"channels": (channel(erasure_default=(1.0, 2.0)),)},
-            "channel 'mass': erasure_default has shape [2] and the reading of one scene has []",
-        ),
-        (
-            {"sources": (MASS.model_copy(update={"correlation_group": "mass"}),)},
-            "correlation group 'mass' has the name of a channel; rename one, because a fault may "
-            "name either",
-        ),
-        (
-            {"reconstructs": {"observer": "mass_estimate"}},
-            "reconstructs: module 'observer' reads no channel; name its consumers in the channels "
-            "that it reads, known modules: predictor",
-        ),
-        (
-            {"sources": (MASS, WIND), "reconstructs": {"predictor": ["observed_wind"] * 2}},
-            "reconstructs: module 'predictor': source 'observed_wind' is declared twice; drop one",
-        ),
-        (
-            {"reconstructs": {"predictor": "wind"}},
-            "reconstructs: unknown source 'wind'; known: mass_estimate",
-        ),
-        (
-            {"reconstructs": {"predictor": "mass_estimate"}},
-            "reconstructs: module 'predictor' produces source 'mass_estimate', whose provenance is "
-            "estimated; make it reconstructed",
-        ),
-        (
-            {"sources": (MASS, WIND)},
-            "source 'observed_wind' is reconstructed but no module produces it; add it to "
-            "reconstructs",
-        ),
+        ({"sources": (MASS, MASS)}, "source 'mass_estimate' is declared twice"),
+        ({"channels": (channel(), channel())}, "channel 'mass' is declared twice"),
+        ({"channels": (channel(consumers=("a.b", "a.b")),)}, "consumer 'a.b' is declared twice"),
+        ({"channels": (channel(sources=("mass_estimat",)),)}, "did you mean 'mass_estimate'?"),
+        ({"sources": (MASS, ZERO), "channels": (STRANGE,)}, "'zero_wind' ([3], m/s) cannot stand"),
+        ({"channels": (channel(erasure_default=(1.0, 2.0)),)}, "erasure_default has shape [2]"),
+        ({"sources": (GROUPED,)}, "correlation group 'mass' has the name of a channel"),
+        ({"reconstructs": {"observer": "mass_estimate"}}, "module 'observer' reads no channel"),
+        ({"sources": (MASS, WIND), "reconstructs": TWICE}, "'observed_wind' is declared twice"),
+        ({"reconstructs": {"predictor": "wind"}}, "reconstructs: unknown source 'wind'"),
+        ({"reconstructs": {"predictor": "mass_estimate"}}, "provenance is estimated"),
+        ({"sources": (MASS, WIND)}, "source 'observed_wind' is reconstructed but no module"),
     ],
 )
 def test_refuses_what_does_not_fit(fields: dict[str, object], sentence: str) -> None:
     with pytest.raises(ValidationError) as caught:
         build(**fields)
-    assert [error["msg"] for error in caught.value.errors()] == [sentence]
+    (error,) = caught.value.errors()
+    assert sentence in error["msg"]
 
 
 def test_refuses_reconstructions_in_a_circle() -> None:
@@ -115,3 +84,82 @@ def test_expected_uncertainty_is_relative_to_the_typical_value() -> None:
     assert expected(uncertainty=Uncertainty(half_range=0.3, relative=True)) == pytest.approx(
         0.3 / 3**0.5
     )
+
+
+GOOD = """\
+name: toy
+sources:
+- name: mass_estimate
+  unit: kg
+  provenance: estimated
+channels:
+- name: mass
+  sources: [mass_estimate]
+  consumers:
+  - predictor.dynamics
+  - planner.hover
+"""
+
+
+CONTROLS = "".join(map(chr, (*range(32), *range(127, 160), 0x2028, 0x2029)))
+
+
+@pytest.mark.parametrize("character", CONTROLS, ids=lambda c: f"U+{ord(c):04X}")
+def test_control_characters_are_refused_and_line_breaks_come_back(character: str) -> None:
+    """NEL once came back from YAML as a space."""
+    described = read_interface(GOOD).model_dump(mode="json")
+    described["sources"][0]["description"] = f"a{character}b"
+    if character == "\n":
+        interface = Interface.model_validate(described)
+        assert Interface.model_validate_json(interface.model_dump_json()) == interface
+        return
+    with pytest.raises(ValidationError, match=rf"control character U\+{ord(character):04X}"):
+        Interface.model_validate(described)
+    escaped = GOOD.replace("unit: kg", f'unit: "\\u{ord(character):04x}"')
+    with pytest.raises(UserError, match=r"line 4: sources\[0\]\.unit: holds the control character"):
+        read_interface(escaped)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("unit: kg", "unit: [kg", "line 5: is not plain YAML ("),
+        ("unit: kg", "unit: !!python/object:os.system {}", "line 4: tags are not read; drop '!!py"),
+        ("unit: kg", "unit: \x07", "is not plain YAML (unacceptable character"),
+        ("unit: kg", "unit: kg\n  unit: g", "line 5: key 'unit' appears twice; drop one"),
+        ("[mass_estimate]", "&a [mass_estimate]\n  extra: *a", "line 9: aliases are not read"),
+        ("  unit: kg\n", "", "line 3: sources[0].unit: is missing: add it"),
+        ("provenance: estimated", "provenance: guessed", "line 5: sources[0].provenance: is 'gue"),
+        ("unit: kg", "unti: kg", "line 4: sources[0].unti: is no field; did you mean 'unit'?"),
+        (
+            "- planner.hover",
+            "- planner.hover\n  gapp: none",
+            "line 12: channels[0].gapp: is no field",
+        ),
+        (
+            "[mass_estimate]",
+            "[mass]",
+            "line 8: channel 'mass': unknown source 'mass'; known: mass_",
+        ),
+        (
+            "- planner.hover",
+            "- predictor.dynamics",
+            "line 11: channel 'mass': consumer 'predictor.",
+        ),
+        ("name: toy\n", "name: toy\nreconstructs: {gru: mass_estimate}\n", "line 2: reconstructs:"),
+        ("- planner.hover", "- planner", "line 11: channels[0].consumers[1]: is 'planner'"),
+    ],
+)
+def test_a_mistake_is_told_with_its_line(old: str, new: str, sentence: str, tmp_path: Path) -> None:
+    assert old in GOOD
+    path = tmp_path / "toy.yaml"
+    path.write_text(GOOD.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(UserError, match=re.escape(sentence)) as caught:
+        read_interface(path)
+    assert str(caught.value).startswith(str(path))
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_file_is_told(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="cannot be read \\(No such file or directory\\); give the"):
+        read_interface(tmp_path / "none.yaml")

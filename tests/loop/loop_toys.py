@@ -98,9 +98,9 @@ def interface_of(parts, place=""):
     return derived(FACTS % place, parts)
 
 
-def execute(modules, faults=(), place="", trace=None, guard=False):
+def execute(modules, faults=(), place="", trace=None, guard=False, plant=None):
     """Return the instants and the taps of one execution."""
-    interface, parts = wired(modules, place)
+    interface, parts = wired(modules, place, plant)
     asked = {"scenes": SCENES, "dt_s": DT_S, "privileged": ("field",), "guard": guard}
     taps = Taps(interface, resolve(faults, interface), **asked, observer=trace)
     with contextlib.suppress(Enough):
@@ -108,9 +108,10 @@ def execute(modules, faults=(), place="", trace=None, guard=False):
     return [], taps
 
 
-def wired(modules, place="") -> tuple[Interface, Graph]:
-    interface = interface_of((*modules, Line()), place)
-    return interface, graph(interface, Line(), modules)
+def wired(modules, place="", plant=None) -> tuple[Interface, Graph]:
+    plant = plant or Line()
+    interface = interface_of((*modules, plant), place)
+    return interface, graph(interface, plant, modules)
 
 
 __all__ = ["At", "Guess", "Line", "Planner", "execute", "interface_of", "wired"]

@@ -7,9 +7,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from libraries import to_torch
+from pydantic import TypeAdapter
 from tap_toys import INTERVENTIONS, make, play
 
-from faultpath.faults import Coupled, Delay, Fault, Intervention, Noise, Offset, Scale, Sequence
+from faultpath.faults import (
+    AnyFault,
+    Coupled,
+    Delay,
+    Fault,
+    Intervention,
+    Noise,
+    Offset,
+    Scale,
+    Sequence,
+)
 from faultpath.loop import Reading
 
 SCENES = ("a", "b", "c", "d")
@@ -24,6 +35,16 @@ WINDOWS = pytest.mark.parametrize(
 def fault(intervention: Intervention, window: dict[str, Any], *consumers: str) -> Fault:
     given = {"channel": "wind", "intervention": intervention} | window
     return Fault.model_validate(given).aimed_at(*consumers)
+
+
+@EACH
+@WINDOWS
+def test_json_round_trip_is_exact(intervention: Intervention, window: dict[str, Any]) -> None:
+    alone = fault(intervention, window, "predictor").model_copy(update={"cause": "storm"})
+    for faulted in (alone, Coupled(name="two", faults=(alone, fault(intervention, {})))):
+        again = TypeAdapter(AnyFault).validate_json(faulted.model_dump_json())
+        assert again == faulted
+        assert hash(again) == hash(faulted)
 
 
 @EACH

@@ -12,7 +12,7 @@ from statsmodels.stats.proportion import proportion_confint
 from faultpath.statistics.contrast import change
 from faultpath.statistics.effects import success_effect, success_rate
 from faultpath.statistics.resamples import Resamples
-from faultpath.statistics.score import SceneValues, interval, reach, rejects
+from faultpath.statistics.score import SceneValues, reach, rejects
 
 Z = float(norm.ppf(0.975))
 N = 30
@@ -60,14 +60,6 @@ def test_no_discordance_has_an_interval_with_width(n, n_seeds):
     assert whole.estimate().low == pytest.approx(100 - 2 * expected)
 
 
-@laws
-@given(ARMS)
-def test_swapping_the_arms_mirrors_the_interval_to_the_bit(arms):
-    forward, backward = (success_effect(*pair, RESAMPLES) for pair in (arms, arms[::-1]))
-    low, high = forward.interval
-    assert (backward.value, backward.interval) == (-forward.value, (-high, -low))
-
-
 def test_sums_of_sizes_that_round_do_not_break_the_mirror():
     """Sizes of a third and of two: their sum depends on the order in its last bit."""
     stream = np.random.default_rng(0)
@@ -78,40 +70,22 @@ def test_sums_of_sizes_that_round_do_not_break_the_mirror():
 
 
 @laws
-@given(ARMS, st.integers(2, 3), st.randoms(use_true_random=False))
-def test_copies_of_seeds_and_the_order_of_scenes_change_nothing(arms, times, random):
-    once = success_effect(*arms, RESAMPLES)
-    copied = success_effect(*(np.tile(arm, times) for arm in arms), RESAMPLES)
-    assert (copied.value, copied.interval) == (once.value, once.interval)
-    order = random.sample(range(N), N)
-    assert success_effect(*(arm[order] for arm in arms), RESAMPLES).estimate() == once.estimate()
-
-
-@laws
-@given(ARMS)
-def test_the_interval_holds_exactly_the_means_that_the_test_does_not_reject(arms):
+@given(ARMS, st.sampled_from([0.5, 0.95, 0.999]))
+def test_the_interval_holds_exactly_the_means_that_the_test_does_not_reject(arms, level):
     values = (arms[0].astype(float) - arms[1]).mean(axis=1)
     scenes = SceneValues.paired(values, 1.0)
-    low, high = scenes.interval()
+    low, high = scenes.interval(level)
     assert -1 <= low < high <= 1
     assert low <= values.mean() <= high
     nulls = np.linspace(-1, 1, 101)
     kinds, counts = np.unique(values, return_counts=True)
     often = np.broadcast_to(counts.astype(float), (len(nulls), len(counts)))
-    rejected = rejects(np.broadcast_to(kinds, often.shape), often, nulls, scenes.far, Z)
+    z = float(norm.ppf(0.5 + level / 2.0))
+    rejected = rejects(np.broadcast_to(kinds, often.shape), often, nulls, scenes.far, z)
     outside = (nulls < low - 1e-9) | (nulls > high + 1e-9)
     inside = (nulls > low + 1e-9) & (nulls < high - 1e-9)
     assert rejected[outside].all()
     assert not rejected[inside].any()
-
-
-@laws
-@given(ARMS, st.floats(0.5, 0.99), st.floats(0.0, 0.009))
-def test_a_higher_level_is_wider(arms, level, more):
-    effect = success_effect(*arms, RESAMPLES)
-    narrow, wide = effect.ends(level), effect.ends(level + more)
-    assert wide[0] <= narrow[0] + 1e-9
-    assert wide[1] >= narrow[1] - 1e-9
 
 
 def test_what_was_not_seen_is_assumed_larger_than_what_was():
@@ -141,20 +115,3 @@ def test_one_arms_rate_has_wilsons_interval(successes):
     assert found.method == "score (Wilson)"
     seeds = success_rate(np.tile(outcomes[:, None], 3), RESAMPLES)
     assert seeds.interval == pytest.approx(found.interval)
-
-
-def test_batches_agree_with_single_samples():
-    rng = np.random.default_rng(0)
-    counts = rng.integers(0, 20, size=(50, 7)).astype(float)
-    kinds = np.arange(-3.0, 4.0)
-    values = np.broadcast_to(kinds, counts.shape)
-    low, high = interval(values, counts, reach(values, counts, 3.0), Z)
-    for row, *ends in zip(counts, low, high, strict=True):
-        scenes = SceneValues.paired(np.repeat(kinds, row.astype(int)), 3.0)
-        assert scenes.interval() == pytest.approx(ends, abs=1e-12)
-
-
-@pytest.mark.parametrize("level", [0.0, 1.0, 95.0])
-def test_a_level_outside_0_and_1_is_refused(level):
-    with pytest.raises(ValueError, match="level of an interval"):
-        SceneValues.paired(np.zeros(3), 1.0).interval(level)

@@ -33,10 +33,6 @@ def failed(report) -> dict[str, tuple[str, ...]]:
     return {check.name: check.failures for check in report.checks if check.status == "failed"}
 
 
-def named(broken: str):
-    return {outcome.name: outcome for outcome in check(broken=broken).checks}
-
-
 INDEPENDENCE = "scene independence"
 SAID = {
     "raises": ("trials end", "Variant 'bare': ValueError: no air"),
@@ -85,11 +81,8 @@ def test_a_sound_system_passes(name, library):
 def test_where_no_trial_ends_that_check_fails_and_names_the_one_to_see():
     trials = check(broken="shape").checks[0]
     assert (trials.status, trials.says) == ("failed", "none did; see *shape and unit*")
-    assert trials.failures == (
-        "No trial of any variant ended: correct first what *shape and unit* says.",
-    )
-    both = check(broken="raises").checks[0]
-    assert (both.status, both.says) == ("failed", "none did")
+    (said,) = trials.failures
+    assert said.startswith("No trial of any variant ended: correct first what *shape and unit*")
 
 
 @pytest.mark.parametrize("also", [(), ("pilot.approach",)], ids=["instead", "too"])
@@ -97,31 +90,29 @@ def test_a_fault_that_alters_another_tap_is_seen_without_the_taps_own_counts(mon
     attach = Taps._add
 
     def misplaced(self, faults, dt_s, seed):
-        here = {"pilot.approach": ("guard.limit", *also)}
-        attach(
-            self,
-            [
-                fault.model_copy(update={"consumers": here.get(*fault.consumers, fault.consumers)})
-                if ("range", "guard.limit") in self._taps and len(fault.consumers) == 1
-                else fault
-                for fault in faults
-            ],
-            dt_s,
-            seed,
-        )
+        moved = {"consumers": ("guard.limit", *also)}
+        guarded = ("range", "guard.limit") in self._taps
+        at = [
+            fault.model_copy(update=moved)
+            if guarded and fault.consumers == ("pilot.approach",)
+            else fault
+            for fault in faults
+        ]
+        attach(self, at, dt_s, seed)
 
     monkeypatch.setattr(Taps, "_add", misplaced)
     monkeypatch.setattr(Taps, "verify", lambda self, last_step: None)
-    delivery = next(c for c in check(broken="").checks if c.name == "fault delivery")
-    lead = "Tap range -> pilot.approach of variant 'guarded', faulted in 4 trials, altered "
-    assert any(
-        t.startswith(f"{lead}a reading at tap range -> guard.limit too") for t in delivery.failures
+    lead = (
+        "Tap range -> pilot.approach of variant 'guarded', faulted in 4 trials, altered a reading"
     )
-    assert delivery.says.endswith(" at other taps")
+    failures = failed(check(broken=""))["fault delivery"]
+    assert any(said.startswith(f"{lead} at tap range -> guard.limit too") for said in failures)
 
 
 def test_an_error_is_told_with_its_line_and_an_if_on_a_reading_with_what_to_take():
-    (said,) = failed(check(broken="raises"))["trials end"]
+    trials = check(broken="raises").checks[0]
+    assert (trials.status, trials.says) == ("failed", "none did")
+    (said,) = trials.failures
     assert re.search(r"ValueError: no air \(\S*broken\.py, line \d+\); let every trial", said)
     assert "np.where" in remedy("ValueError: The truth value of an array is ambiguous")
 
@@ -149,10 +140,7 @@ def test_a_baseline_that_always_ends_alike_leaves_an_audit_no_room():
     crashes = ends(ENOUGH, *[Status.CRASH] * ENOUGH)
     above, below = without_room({"bare": ends(ENOUGH), "guarded": ends(ENOUGH), "lost": crashes})
     assert above.startswith("Variants 'bare', 'guarded' succeed in all of 20 checked scenes")
-    assert "no repair of such a baseline to be better" in above
     assert below.startswith("Variant 'lost' succeeds in none of 20 checked scenes")
-    assert "harder scenes" in above
-    assert "easier scenes" in below
     assert without_room({"bare": ends(ENOUGH - 1)}) == ()  # too few to say so
     for odd in (Status.CRASH, Status.FAILED):
         assert without_room({"bare": ends(ENOUGH, odd)}) == ()
@@ -199,27 +187,24 @@ def test_modules_that_stand_for_each_other_under_two_names_are_a_remark():
     (said,) = other_names(cart("nominal"), ["old", "new"])
     assert said.startswith("Modules 'observer' of old and 'nominal' of new read speed and write")
     assert other_names(cart("observer"), ["old", "new"]) == ()
-    assert {p.split(".")[0] for p in cart("observer").variants["new"].consumers} >= {"observer"}
 
 
-def test_rounding_is_told_from_dependence_by_its_size():
+@pytest.mark.parametrize(
+    ("kind", "status", "remark"),
+    [
+        ("rounds", "passed", "differs by rounding alone, at most [1-9]e-1[5-7]"),
+        ("last digit", "not judged", "rounding cannot be told from dependence"),
+        ("network", "passed", "differs by rounding alone"),
+        ("network row by row", "passed", "^$"),
+    ],
+)
+def test_rounding_is_told_from_dependence_by_its_size(kind, status, remark):
     """A sum over scenes beside it may change a last digit; that is no shared state."""
-    assert (found := named("rounds")[INDEPENDENCE]).status == "passed"
-    assert re.search(r"differs by rounding alone, at most [1-9]e-1[5-7]", found.remarks[0])
-    assert "the same to rounding" in found.says
-
-
-def test_where_a_last_digit_decides_dependence_is_not_judged():
-    assert (found := named("last digit")[INDEPENDENCE]).status == "not judged"
-    assert "rounding cannot be told from dependence" in found.remarks[0]
-
-
-def test_a_network_rounds_by_its_batch_unless_it_takes_row_by_row():
-    pytest.importorskip("torch")
-    batched, by_row = (named(kind)[INDEPENDENCE] for kind in ("network", "network row by row"))
-    assert (batched.status, by_row.status) == ("passed", "passed")
-    assert "differs by rounding alone" in batched.remarks[0]
-    assert by_row.remarks == ()
+    if "network" in kind:
+        pytest.importorskip("torch")
+    (found,) = (each for each in check(broken=kind).checks if each.name == INDEPENDENCE)
+    assert found.status == status
+    assert re.search(remark, " ".join(found.remarks))
 
 
 def test_a_system_that_takes_one_scene_at_a_time_flies_all_that_are_asked_for():
@@ -259,10 +244,8 @@ def test_what_differs_from_process_to_process_takes_workers_to_see():
     [({"variants": ("bear",)}, "did you mean 'bare'"), ({"scenes": 7}, "1 to 6")],
 )
 def test_what_cannot_be_checked_is_refused(question, says):
-    spec = SystemSpec(name=BROKEN)
-    question = CheckQuestion(workers=0, **question)
     with pytest.raises(UserError, match=says):
-        check_system(load_system(spec), spec, question, lambda done, known: None)
+        check(**question)
 
 
 def test_the_command_says_it_in_lines_and_as_json(capsys, monkeypatch):

@@ -44,15 +44,6 @@ def test_the_audit_that_a_template_suggests_shows_a_reversal(kind, tmp_path, mon
     assert decided["observer"] > 0 > decided["shared"]
 
 
-def test_the_first_command_that_is_suggested_is_the_check(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    init("my_rover", "numpy")
-    _, *lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "  faultpath check my_rover.py:create"
-    assert lines[1].startswith("  faultpath audit my_rover.py:create ")
-    assert lines[2] == "  python -m pytest test_my_rover.py  (needs `pip install pytest`)"
-
-
 def test_a_single_library_is_taken_and_named_where_none_is_asked_for(tmp_path, monkeypatch, caplog):
     monkeypatch.chdir(tmp_path)
     file, _ = write_system("my_rover", "numpy", tmp_path)

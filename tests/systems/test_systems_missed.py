@@ -42,14 +42,6 @@ def audit(system: ComposedSystem, fault: str, folder: Path) -> faultpath.Run:
     return faultpath.audit(system, **options, fault=fault, signals=False, progress=False)
 
 
-def test_a_fault_on_what_no_module_reads_is_refused(system, tmp_path) -> None:
-    with pytest.raises(faultpath.UserError) as refused:
-        audit(system, "copy:noise=0.1", tmp_path / "run")
-    sentence = "unknown channel 'copy'; known: cart, pole, push"
-    assert sentence in str(refused.value)
-    assert sentence in PAGE
-
-
 def test_a_fault_that_changes_no_reading_never_acted(system, tmp_path) -> None:
     run = audit(system, "pole:scale=1", tmp_path / "run")
     assert run.record.headline == "The fault never acted: nothing was tested."

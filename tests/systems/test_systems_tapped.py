@@ -67,6 +67,8 @@ def test_what_is_read_is_delivered_and_all_else_stays_shared():
     outputs, _ = module.step(Inputs("module", 0, given, {}), memory)
     assert outputs["voltage"].tolist() == [0.25 * 1.0, 0.25 * 2.1]
     assert par.flux == 0.5
+    small = writes("out", of=lambda: tapped({"c_Dx": 1.0}, c_Dx="drag", at="filter"))
+    assert small(lambda par: par["c_Dx"]).reads == {Port("drag", "filter.c_dx")}
 
 
 def test_an_ended_scene_is_not_asked_any_more():
@@ -103,15 +105,6 @@ def test_a_mapping_is_delivered_however_it_is_read():
     both = {"mass": 4.0, "arm": 0.2}
     assert (seen.pop("copied"), seen.pop("spread")) == (both, both)
     assert seen == {"item": 4.0, "get": 4.0, "missing": 7, "values": [4.0, 0.2]}
-
-
-def test_a_consumer_is_named_in_small_letters():
-    made = writes("out", of=lambda: tapped({"c_Dx": 1.0}, c_Dx="drag", at="filter"))
-    module = made(lambda par: par["c_Dx"])
-    assert module.reads == {Port("drag", "filter.c_dx")}
-    given = delivered(drag=("filter.c_dx", [4.0]))
-    outputs, _ = module.step(Inputs("module", 0, given, {}), module.begin(Batch(("a",), 0, 0.1)))
-    assert outputs["out"].tolist() == [4.0]
 
 
 def test_mistakes_are_told_in_a_sentence():
@@ -194,16 +187,12 @@ def attempted(module, fault):
     return attempt(made, Arm(variant="only", faults=faults), ("seed/1", "seed/2"))
 
 
-def test_receipts_count_what_was_read():
-    taps = {tap.consumer: tap for tap in attempted(drive(0.0, late=True), "flux:scale=3").taps}
-    assert taps["control.flux"].deliveries == 2 * 6
-    assert taps["control.flux"].faulted_steps == 2 * 6
-
-
-def test_what_a_part_wrote_is_its_own_and_a_later_fault_does_not_pass_for_delivered():
+def test_receipts_count_what_was_read_and_a_fault_after_a_write_is_not_delivered():
     taps = {tap.consumer: tap for tap in attempted(drive(0.1), "flux:scale=3").taps}
     assert taps["observer.flux"].deliveries == 2
-    assert taps["control.flux"].deliveries == 2 * 10
+    assert taps["control.flux"].deliveries == taps["control.flux"].faulted_steps == 2 * 10
+    taps = {tap.consumer: tap for tap in attempted(drive(0.0, late=True), "flux:scale=3").taps}
+    assert taps["control.flux"].deliveries == taps["control.flux"].faulted_steps == 2 * 6
     late = attempted(drive(0.1), "flux:scale=3,onset=5")
     assert isinstance(late, Wrong)
     assert isinstance(late.error, NotDelivered)

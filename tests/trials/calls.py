@@ -1,4 +1,4 @@
-"""Calls for workers; they are module-level functions, as any call that is sent away has to be."""
+"""Calls for workers, at module level as all that is sent away, and how to wait for their ends."""
 
 import os
 import signal
@@ -9,6 +9,33 @@ from pathlib import Path
 from faultpath.trials.work.executor import tell
 
 _seen: list[int] = []
+
+
+def alive(pid: int) -> bool:
+    """Return whether a process lives, and is not only still listed."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def until(condition, what="", seconds=60.0):
+    limit = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < limit, f"waited in vain for {what}"
+        time.sleep(0.02)
+
+
+def end_of(executor, call, told=lambda message: None, seconds=120.0):
+    """Run one call and return its end."""
+    (worker, *_) = executor.free()
+    executor.submit(worker, call, told)
+    limit = time.monotonic() + seconds
+    while time.monotonic() < limit:
+        for ended, end in executor.completions(0.5):
+            assert ended == worker
+            return end
+    raise AssertionError("waited in vain")
 
 
 def double(number: int) -> int:

@@ -3,7 +3,7 @@
 from itertools import count
 from pathlib import Path
 
-from toy_study import rows, study
+from toy_study import study_of
 
 from faultpath.trials.arm import Study
 
@@ -45,5 +45,4 @@ class Mine:
         self.data.write_text("0.0")
 
     def study(self, **options: str) -> Study:
-        spec = study(**options).system.model_copy(update={"name": f"{self.file}:create"})
-        return study().model_copy(update={"system": spec, "rows": rows()[:1]})
+        return study_of(f"{self.file}:create", **options)

@@ -5,13 +5,13 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
-from toy_study import UNITS, study
+from calls import alive, until
+from toy_study import SCENES, SYSTEM, UNITS, study, study_of
+from toy_system import STEPS
 
-from faultpath.core.errors import Stopped
 from faultpath.trials.arm import Study
 from faultpath.trials.execution.runner import run_study
 
@@ -57,27 +57,12 @@ def _start(study: Study, folder: Path, out: Path) -> subprocess.Popen[str]:
         )
 
 
-def _until(condition, what: str, seconds: float = 60.0) -> None:
-    limit = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < limit, f"waited in vain for {what}"
-        time.sleep(0.02)
-
-
 def _shards(folder: Path) -> int:
     return len(list(folder.glob("shards/*.parquet")))
 
 
 def _calls(log: Path) -> list[list[str]]:
     return [line.split() for line in log.read_text().splitlines()]
-
-
-def _alive(pid: int) -> bool:
-    try:
-        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except FileNotFoundError:
-        return False
-    return state != "Z"
 
 
 @pytest.fixture(scope="module")
@@ -96,15 +81,15 @@ def test_a_run_killed_at_any_moment_resumes_to_the_same_bytes(undisturbed, tmp_p
     folder = tmp_path / "run"
     slow, gate, log = _slow(tmp_path)
     process = _start(slow, folder, tmp_path / "out")
-    _until(lambda: _shards(folder) >= 3, "three shards")
+    until(lambda: _shards(folder) >= 3, "three shards")
     hang = tmp_path / "hang"
     hang.touch()
-    _until(lambda: len(_calls(log)) >= _shards(folder) + 2, "workers in the middle of a block")
+    until(lambda: len(_calls(log)) >= _shards(folder) + 2, "workers in the middle of a block")
     process.kill()
     process.wait()
     workers = {int(call[-1]) for call in _calls(log)}
     assert process.pid not in workers
-    _until(lambda: not any(map(_alive, workers)), "the workers' end")
+    until(lambda: not any(map(alive, workers)), "the workers' end")
     hang.unlink()
     gate.unlink()
     kept = _shards(folder)
@@ -121,13 +106,13 @@ def test_ctrl_c_stops_the_workers_and_keeps_what_is_done(undisturbed, tmp_path):
     folder = tmp_path / "run"
     slow, gate, log = _slow(tmp_path)
     process = _start(slow, folder, tmp_path / "out")
-    _until(lambda: _shards(folder) >= 2, "two shards")
+    until(lambda: _shards(folder) >= 2, "two shards")
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: parent and workers alike
     assert process.wait(timeout=60) == 130
     gate.unlink()
     kept = _shards(folder)
     assert f"interrupted with {kept} of {UNITS} blocks done" in (tmp_path / "out").read_text()
-    assert not any(_alive(int(call[-1])) for call in _calls(log))
+    assert not any(alive(int(call[-1])) for call in _calls(log))
     assert run_study(slow, folder, workers=2).blocks_kept == kept
     assert _same_tables(undisturbed, folder)
 
@@ -138,7 +123,7 @@ def test_two_processes_in_one_folder_do_each_block_once(undisturbed, tmp_path):
     told = [tmp_path / "one", tmp_path / "two"]
     processes = [_start(slow, folder, out) for out in told]
     waiting = f"works in {folder}; waiting for it"
-    _until(lambda: any(waiting in out.read_text() for out in told), "one to wait for the other")
+    until(lambda: any(waiting in out.read_text() for out in told), "one to wait for the other")
     gate.unlink()
     assert [process.wait(timeout=60) for process in processes] == [0, 0]
     outputs = [out.read_text() for out in told]
@@ -149,9 +134,8 @@ def test_two_processes_in_one_folder_do_each_block_once(undisturbed, tmp_path):
     assert _same_tables(undisturbed, folder)
 
 
-@pytest.mark.parametrize("workers", [0, 2])
-def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path, workers):
-    result = run_study(study(raises="s05"), tmp_path, workers=workers)
+def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path):
+    result = run_study(study(raises="s05"), tmp_path, workers=2)
     sound = run_study(study(), undisturbed, workers=0)
     for row, expected in zip(result.outcomes.rows, sound.outcomes.rows, strict=True):
         if row.outcome.scene == "s05":
@@ -159,6 +143,8 @@ def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path, workers):
             assert row.outcome.error == "ValueError: no air in s05"
         else:
             assert row.outcome.metrics == expected.outcome.metrics
+    (planner,) = result.deliveries.at("plain", "correct")
+    assert planner.deliveries == 2 * STEPS * (len(SCENES) - 1)
     assert len(result.failures) == len(study().arms())
     for failure in result.failures:
         assert failure.scene == "s05"
@@ -186,23 +172,8 @@ def test_what_failed_is_tried_again_and_nothing_else(undisturbed, tmp_path):
     assert not list((tmp_path / "run" / "failures").iterdir())
     assert _shards(tmp_path / "run") == UNITS
     (notice,) = notices
-    assert notice.startswith("Kept 72 of 120 trials, from 20"), (
-        "of the table, in which an arm stands twice"
-    )
+    assert notice.startswith("Kept 72 of 120 trials, from 20")  # an arm stands twice in the table
     assert "10 that failed are tried again" in notice
-
-
-def test_a_damaged_shard_is_named_and_run_again(undisturbed, tmp_path):
-    run_study(study(), tmp_path, workers=0)
-    damaged = sorted(tmp_path.glob("shards/*.parquet"))[3]
-    damaged.write_bytes(damaged.read_bytes()[:-20])
-    notices: list[str] = []
-    result = run_study(study(), tmp_path, workers=0, notice=notices.append)
-    assert (result.blocks_computed, result.blocks_kept) == (1, UNITS - 1)
-    notice, kept = notices
-    assert str(damaged) in notice
-    assert kept.startswith("Kept ")
-    assert _same_tables(undisturbed, tmp_path)
 
 
 def test_a_worker_that_dies_once_costs_nothing(undisturbed, tmp_path):
@@ -215,22 +186,11 @@ def test_a_worker_that_dies_once_costs_nothing(undisturbed, tmp_path):
 
 
 def test_a_scene_that_kills_its_worker_loses_itself_alone(tmp_path):
-    one_arm = study(dies="s05").model_copy(update={"rows": study().rows[:1]})
-    result = run_study(one_arm, tmp_path, workers=2)
+    result = run_study(study_of(SYSTEM, dies="s05"), tmp_path, workers=2)
     assert [row.outcome.scene for row in result.outcomes.failed()] == ["s05"]
     (failure,) = result.failures
     assert "SIGKILL" in failure.error
     assert "SIGKILL" in failure.details.read_text()
-
-
-def test_ctrl_c_in_this_process_says_how_far_it_got(tmp_path):
-    def stop(progress):
-        if progress.done == 8:
-            raise KeyboardInterrupt
-
-    with pytest.raises(Stopped, match=f"interrupted with 2 of {UNITS} blocks done"):
-        run_study(study(), tmp_path, workers=0, progress=stop)
-    assert run_study(study(), tmp_path, workers=0).blocks_kept == 2
 
 
 def test_a_system_that_takes_one_scene_at_a_time_is_found_again_by_the_second_call(tmp_path):

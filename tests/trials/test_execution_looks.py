@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from toy_study import SCENES, study
+from toy_study import SCENES, rows, study
 
 from faultpath.core.errors import Stopped, UserError
 from faultpath.trials.arm import Study
@@ -15,7 +15,7 @@ ORDER = ("s07", "s02", "s09", "s00", "s05", "s01", "s08", "s03", "s06", "s04")
 
 
 def sequential(scenes: tuple[str, ...] = ORDER, look: int = 2, **options: str) -> Study:
-    return study(scenes, **options).model_copy(update={"look": look})
+    return study(scenes, **options).model_copy(update={"look": look, "rows": rows()[::3]})
 
 
 def seen(table: OutcomeTable) -> set[str]:
@@ -40,7 +40,7 @@ def stopped(tmp_path_factory: pytest.TempPathFactory) -> tuple[RunResult, Path]:
 def test_it_holds_the_first_scenes_of_its_order_and_no_others(stopped, tmp_path):
     result, _ = stopped
     assert seen(result.outcomes) == set(ORDER[:6])
-    plain = run_study(study(tuple(sorted(ORDER[:6]))), tmp_path, workers=0)
+    plain = run_study(sequential(tuple(sorted(ORDER[:6])), look=0), tmp_path, workers=0)
     assert result.outcomes_sha256 == plain.outcomes_sha256
     assert [row.taps for row in result.deliveries.rows] == [r.taps for r in plain.deliveries.rows]
 
@@ -57,14 +57,7 @@ def test_every_look_is_taken_once_and_holds_all_scenes_before_it(tmp_path):
     assert seen(result.outcomes) == set(SCENES)
 
 
-@pytest.mark.parametrize("workers", [1, 3])
-def test_workers_give_the_same_files(stopped, tmp_path, workers):
-    _, folder = stopped
-    run_study(sequential(), tmp_path, workers=workers, stop=after(6))
-    assert same(folder, tmp_path)
-
-
-@pytest.mark.parametrize("blocks", [1, 7, 20])
+@pytest.mark.parametrize("blocks", [1, 8])
 def test_an_interrupted_run_stops_where_a_whole_one_does(stopped, tmp_path, blocks):
     _, folder = stopped
 
@@ -74,7 +67,7 @@ def test_an_interrupted_run_stops_where_a_whole_one_does(stopped, tmp_path, bloc
 
     with pytest.raises(Stopped):
         run_study(sequential(), tmp_path, workers=2, progress=cut, stop=after(6))
-    run_study(sequential(), tmp_path, workers=2, stop=after(6))
+    run_study(sequential(), tmp_path, workers=3, stop=after(6))
     assert same(folder, tmp_path)
 
 
@@ -109,4 +102,4 @@ def test_a_failed_trial_is_tried_again_before_its_look_is_taken(tmp_path):
 def test_a_folder_is_not_both_of_a_fixed_number_and_sequential(stopped):
     _, folder = stopped
     with pytest.raises(UserError, match="number of scenes from look to look"):
-        run_study(study(), folder, workers=0)
+        run_study(sequential(look=0), folder, workers=0)

@@ -6,11 +6,9 @@ import sys
 from datetime import UTC, datetime
 
 from stale_toys import Mine
-from toy_study import UNITS, study
 
 from faultpath.trials.execution.provenance import checkout, run_provenance
 from faultpath.trials.execution.runner import run_study
-from faultpath.trials.work.executor import Here
 from faultpath.trials.work.processes import local
 
 
@@ -38,20 +36,7 @@ def test_a_checkout_knows_its_commit_and_its_changes(tmp_path):
     assert checkout(main, [package]) == (commit, True)
 
 
-def test_provenance_tells_the_run(tmp_path):
-    started = datetime.now(UTC)
-    result = run_study(study(), tmp_path, workers=0)
-    told = run_provenance(tmp_path, [], result, started, ["faultpath", "audit"], Here())
-    assert (told.blocks_computed, told.blocks_kept) == (UNITS, 0)
-    assert told.outcomes_sha256 == result.outcomes_sha256
-    assert told.command == ("faultpath", "audit")
-    assert {"numpy", "pyarrow"} <= told.packages.keys()
-    assert told.processor
-    assert 0 < told.wall_s < 60
-    assert told.started <= told.finished
-
-
-def test_provenance_tells_the_users_own_repository_and_every_file_that_flew(tmp_path, monkeypatch):
+def test_provenance_tells_the_run_its_repository_and_every_file_that_flew(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "path", list(sys.path))
     mine = Mine(tmp_path / "mine")
 
@@ -60,7 +45,12 @@ def test_provenance_tells_the_users_own_repository_and_every_file_that_flew(tmp_
         started = datetime.now(UTC)
         return run_provenance(tmp_path / name, [], result, started, ["faultpath"], local(1))
 
-    assert (told("untracked").system_commit, told("untracked").system_dirty) == (None, None)
+    untracked = told("untracked")
+    assert (untracked.system_commit, untracked.system_dirty) == (None, None)
+    assert untracked.command == ("faultpath",)
+    assert untracked.processor
+    assert 0 < untracked.wall_s < 60
+    assert untracked.started <= untracked.finished
     _git(tmp_path / "mine", "init", "-q")
     _git(tmp_path / "mine", "add", ".")
     _git(tmp_path / "mine", "commit", "-qm", "one")
@@ -70,8 +60,11 @@ def test_provenance_tells_the_users_own_repository_and_every_file_that_flew(tmp_
     assert {"my.py", mine.helper.name, "faultpath/loop/taps.py"} <= clean.sources.keys()
     assert clean.sources["my.py"] == hashlib.sha256(mine.file.read_bytes()).hexdigest()
     assert clean.data.keys() == {"push.txt"}
-    assert "pydantic-core" in clean.packages
+    assert {"numpy", "pyarrow", "pydantic-core"} <= clean.packages.keys()
     (tmp_path / "mine" / "notes").write_text("beside what flies")
-    assert told("notes").system_dirty is False
+    again = told("clean")
+    assert again.system_dirty is False
+    assert [(run.blocks_computed, run.blocks_kept) for run in (clean, again)] == [(3, 0), (0, 3)]
+    assert again.outcomes_sha256 == clean.outcomes_sha256
     mine.data.write_text("1.0")
     assert told("dirty").system_dirty is True

@@ -12,8 +12,9 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from calls import alive, end_of, until
 from ray_nodes import cluster, node
-from toy_study import SYSTEM, UNITS, study
+from toy_study import SYSTEM, UNITS, study, study_of
 
 import faultpath
 from faultpath.cli.main import INTERRUPTED
@@ -53,25 +54,6 @@ def here(tmp_path_factory):
     return run_study(study(), tmp_path_factory.mktemp("here"), workers=0)
 
 
-def end_of(executor, call, told=lambda message: None):
-    (worker, *_) = executor.free()
-    executor.submit(worker, call, told)
-    limit = time.monotonic() + 120
-    while time.monotonic() < limit:
-        for ended, end in executor.completions(0.5):
-            assert ended == worker
-            return end
-    raise AssertionError("waited in vain")
-
-
-def _runs(pid):
-    """Return whether a process of this machine lives, and is not only still listed."""
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
-
-
 def test_a_study_that_loses_a_node_ends_with_the_same_bytes(head, here, tmp_path):
     """Two nodes of one CPU each hold a unit when one of them is killed."""
     lost = head.add_node(**node())
@@ -83,10 +65,8 @@ def test_a_study_that_loses_a_node_ends_with_the_same_bytes(head, here, tmp_path
         if gate.exists() and len(log.read_text().splitlines()) == 2:
             head.remove_node(lost, allow_graceful=False)
             workers = [int(line.split()[3]) for line in log.read_text().splitlines()]
-            deadline = time.monotonic() + 60
             # Until a worker has noticed that its node is gone, it would go on and finish its unit.
-            while all(map(_runs, workers)) and time.monotonic() < deadline:
-                time.sleep(0.05)
+            until(lambda: not all(map(alive, workers)), "a worker's end")
             gate.unlink()
 
     asked = study(hang_while=str(gate), log=str(log))
@@ -138,11 +118,12 @@ def command(asked, folder, address):
             [*main, "audit", asked["system"], *line], stdout=words, stderr=words
         ) as process,
     ):
-        limit = time.monotonic() + 180
-        while len(shards(folder)) < stored + 2:
-            assert process.poll() is None
-            assert time.monotonic() < limit, "waited in vain"
-            time.sleep(0.02)
+        until(
+            lambda: len(shards(folder)) >= stored + 2 or process.poll() is not None,
+            "two units",
+            seconds=180,
+        )
+        assert process.poll() is None
         yield process
 
 
@@ -218,9 +199,7 @@ def test_a_unit_that_is_its_workers_end_or_takes_too_much_loses_itself_alone(
     hands, tmp_path, does, limit, says
 ):
     """One is killed in the moment in which its flight begins, each time."""
-    asked = study(("s00", "s05"), does=does, where="s05", dies="s05")
-    system = asked.system.model_copy(update={"name": f"{UNRULY}:unruly"})
-    asked = asked.model_copy(update={"system": system, "rows": asked.rows[:1]})
+    asked = study_of(f"{UNRULY}:unruly", ("s00", "s05"), does=does, where="s05", dies="s05")
     found = run_study(asked, tmp_path, executor=hands, recheck=False, **limit)
     (failure,) = found.failures
     assert (failure.scene, found.blocks_computed) == ("s05", 2)

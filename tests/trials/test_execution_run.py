@@ -6,11 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from toy_study import FAULT, SCENES, UNITS, rows, study
+from toy_system import STEPS
 
 from faultpath.core.errors import UserError
-from faultpath.loop import NotDelivered, UndeclaredReader
+from faultpath.core.files import parquet
+from faultpath.loop import NotDelivered, TapCount, UndeclaredReader
+from faultpath.trials import Deliveries
 from faultpath.trials.arm import Arm, Row, Study
+from faultpath.trials.declared import Library, SceneRef
 from faultpath.trials.execution.runner import RunResult, run_study
+from faultpath.trials.execution.schedule import plan
+from faultpath.trials.store import tables
 from faultpath.trials.store.folder import read_outcomes
 from faultpath.trials.store.tables import decode_traces
 from faultpath.trials.table import TrialRow
@@ -55,11 +61,10 @@ def test_the_fault_changes_what_it_should(whole):
 
 def test_worker_processes_give_the_same_bytes(whole, tmp_path):
     result, folder = whole
-    for workers in (1, 2):
-        other = run_study(study(), tmp_path / str(workers), workers=workers)
-        assert other.outcomes_sha256 == result.outcomes_sha256
-        for name in ("outcomes.parquet", "traces.parquet"):
-            assert (tmp_path / str(workers) / name).read_bytes() == (folder / name).read_bytes()
+    other = run_study(study(), tmp_path, workers=2)
+    assert other.outcomes_sha256 == result.outcomes_sha256
+    for name in ("outcomes.parquet", "traces.parquet", "deliveries.json"):
+        assert (tmp_path / name).read_bytes() == (folder / name).read_bytes()
 
 
 def test_the_tables_read_back(whole):
@@ -74,43 +79,64 @@ def test_the_tables_read_back(whole):
         np.testing.assert_array_equal(trace, result.traces[address])
 
 
-@pytest.mark.parametrize("scenes", [("s03",), ("s01", "s02", "s05"), SCENES[:4], SCENES[2:9]])
-def test_a_selection_gives_the_rows_of_the_whole(whole, tmp_path, scenes):
+@pytest.mark.parametrize("scenes", [("s03",), SCENES[2:9], SCENES[::-1]])
+def test_a_selection_in_any_order_gives_the_rows_of_the_whole(whole, tmp_path, scenes):
     result, _ = whole
     part = run_study(study(scenes), tmp_path, workers=0)
     expected = tuple(r for r in result.outcomes.rows if r.outcome.scene in scenes)
     assert _comparable(part.outcomes.rows) == _comparable(expected)
 
 
-def test_the_order_of_selection_does_not_matter(whole, tmp_path):
+def test_a_quick_look_grows_into_the_whole_and_then_nothing_is_computed(whole, tmp_path):
     result, _ = whole
-    backwards = run_study(study(SCENES[::-1]), tmp_path, workers=0)
-    assert backwards.outcomes_sha256 == result.outcomes_sha256
-
-
-def test_a_quick_look_grows_into_the_whole_and_shares_its_blocks(whole, tmp_path):
-    result, _ = whole
-    look = run_study(study(SCENES[:4]), tmp_path, workers=0)
-    grown = run_study(study(), tmp_path, workers=0)
+    log, folder = tmp_path / "log", tmp_path / "run"
+    look, grown = (
+        run_study(study(scenes, log=str(log)), folder, workers=0) for scenes in (SCENES[:4], SCENES)
+    )
     assert grown.blocks_kept == look.blocks_computed
     assert grown.blocks_computed == UNITS - look.blocks_computed
     assert grown.outcomes_sha256 == result.outcomes_sha256
+    assert grown.deliveries == result.deliveries != look.deliveries
 
-
-def test_running_again_computes_nothing(whole, tmp_path):
-    log = tmp_path / "log"
-    run_study(study(log=str(log)), tmp_path / "run", workers=0)
     before = log.read_text()
-    again = run_study(study(log=str(log)), tmp_path / "run", workers=2)
+    again = run_study(study(log=str(log)), folder, workers=2)
     assert log.read_text() == before
     assert (again.blocks_computed, again.blocks_kept) == (0, UNITS)
-    assert again.outcomes_sha256 == whole[0].outcomes_sha256
+    assert again.outcomes_sha256 == result.outcomes_sha256
+    assert again.deliveries == result.deliveries
+    stored = (folder / "deliveries.json").read_bytes()
+    assert Deliveries.model_validate_json(stored) == result.deliveries
 
 
-def test_an_arm_that_two_rows_share_runs_once(tmp_path):
-    log = tmp_path / "log"
-    run_study(study(log=str(log)), tmp_path / "run", workers=0, recheck=False)
-    assert len(log.read_text().splitlines()) == UNITS
+def test_every_row_brings_what_its_taps_did(whole):
+    deliveries = whole[0].deliveries
+    every = STEPS * len(SCENES)
+    faulted = (STEPS - FAULT.onset_step) * len(SCENES)
+    planner = TapCount("mass", "planner.thrust", every, faulted, faulted)
+    struck = TapCount("mass", "observer.balance", every, faulted, faulted)
+    spared = TapCount("mass", "observer.balance", every, 0, 0)
+    taps = {(row.variant, row.path, row.seed): row.taps for row in deliveries.rows}
+    assert taps["observed", "planner", 1] == (planner, spared)
+    assert taps["observed", "shared", 0] == (planner, struck)
+    assert taps["plain", "shared", 0] == (planner,)
+    assert taps["plain", "correct", 0] == (TapCount("mass", "planner.thrust", every, 0, 0),)
+    both = TapCount("mass", "planner.thrust", 2 * every, 2 * faulted, 2 * faulted)
+    assert deliveries.at("observed", "shared")[0] == both
+    with pytest.raises(KeyError):
+        deliveries.at("observed", "elsewhere")
+
+
+def test_a_shard_without_receipts_is_named_and_run_again(whole, tmp_path, monkeypatch):
+    with monkeypatch.context() as patch:
+        encode = parquet.encode
+        patch.setattr(tables, "encode", lambda columns, values, notes=None: encode(columns, values))
+        run_study(study(), tmp_path, workers=0)
+    notices: list[str] = []
+    after = run_study(study(), tmp_path, workers=0, notice=notices.append)
+    assert after.blocks_kept == 0
+    assert len(notices) == after.blocks_computed
+    assert all("kept no receipts" in notice for notice in notices)
+    assert after.deliveries == whole[0].deliveries
 
 
 def test_progress_reaches_the_end_and_never_goes_back(tmp_path):
@@ -150,12 +176,26 @@ def test_an_audit_that_is_wrong_stops(tmp_path, variant, consumer, error, worker
         (study(("s00", "s01", "s00")), "selects scene 's00' twice"),
         (study(()), "selects no scene"),
         (_study_of(rows()[0], rows()[0]), "two rows"),
-        (
-            _study_of(Row(variant="x", path="p", seed=0, arm=Arm(variant="absent"))),
-            "has no variant 'absent'",
-        ),
+        (_study_of(Row(variant="x", path="p", seed=0, arm=Arm(variant="no"))), "no variant 'no'"),
     ],
 )
 def test_a_study_that_cannot_be_run_is_refused(tmp_path, wrong, sentence):
     with pytest.raises(UserError, match=sentence):
         run_study(wrong, tmp_path, workers=0)
+
+
+def test_a_key_names_everything_that_decides_a_result():
+    arms = [Arm(variant="v", seed=seed) for seed in (0, 1)]
+    scenes = [SceneRef(f"s{i}", i) for i in (0, 1)]
+    here, other = (Library("ten", tuple(scenes), digest) for digest in ("hash", "other"))
+    cases = (
+        (arms[:1], scenes[:1], 4, here, "fingerprint"),
+        (arms[:1], scenes[:1], 1, here, "fingerprint"),  # the size of blocks decides none
+        (arms[1:], scenes[:1], 4, here, "fingerprint"),
+        (arms[:1], scenes[1:], 4, here, "fingerprint"),
+        (arms[:1], scenes[:1], 4, other, "fingerprint"),
+        (arms[:1], scenes[:1], 4, here, "another"),
+    )
+    keys = [plan(*case)[0].key for case in cases]
+    assert keys[0] == keys[1]
+    assert len(set(keys)) == 5

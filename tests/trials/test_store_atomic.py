@@ -1,8 +1,12 @@
-"""Files are whole or absent, and one process at a time writes them."""
+"""Files are whole or absent, replace files alone, and one process at a time writes them."""
 
 import os
+import socket
+import stat
 import subprocess
 import sys
+from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
@@ -52,9 +56,80 @@ def test_the_lock_of_a_killed_process_is_free(tmp_path):
     assert f"(id {process.pid}) works in {tmp_path}" in told[0]
 
 
-def test_a_lock_is_free_after_use(tmp_path):
-    told: list[str] = []
-    for _ in range(2):
-        with locked(tmp_path, told.append):
-            pass
-    assert not told
+def _socket(path: Path) -> None:
+    with socket.socket(socket.AF_UNIX) as endpoint, pytest.MonkeyPatch.context() as patch:
+        patch.chdir(path.parent)  # the path of a socket may be a hundred bytes long
+        endpoint.bind(path.name)
+
+
+def _device(path: Path) -> None:
+    try:
+        os.mknod(path, 0o600 | stat.S_IFCHR, os.makedev(1, 3))
+    except PermissionError:
+        pytest.skip("only root makes devices")
+
+
+THINGS: dict[str, Callable[[Path], None]] = {
+    "a pipe": os.mkfifo,
+    "a socket": _socket,
+    "a device": _device,
+    "a folder": Path.mkdir,
+}
+
+
+@pytest.mark.parametrize("linked", [False, True], ids=["itself", "linked"])
+@pytest.mark.parametrize("what", THINGS)
+def test_what_is_no_file_stays_as_it_is(what: str, linked: bool, tmp_path: Path):
+    place, link = tmp_path / "place", tmp_path / "link"
+    THINGS[what](place)
+    before = place.lstat()
+    if linked:
+        link.symlink_to("place")
+    names = sorted(os.listdir(tmp_path))
+    with pytest.raises(UserError, match=f"it is {what}"):
+        write_text(link if linked else place, "new")
+    after = place.lstat()
+    assert (after.st_ino, after.st_mode) == (before.st_ino, before.st_mode)
+    assert sorted(os.listdir(tmp_path)) == names
+    assert link.is_symlink() == linked
+
+
+@pytest.mark.parametrize("there", [True, False], ids=["to a file", "to nothing yet"])
+def test_a_link_is_followed_and_kept(there: bool, tmp_path: Path):
+    (tmp_path / "deep").mkdir()
+    target = tmp_path / "deep" / "file"
+    if there:
+        target.write_text("old")
+    (tmp_path / "second").symlink_to("deep/file")
+    (tmp_path / "first").symlink_to(tmp_path / "second")
+    write_text(tmp_path / "first", "new")
+    assert target.read_text() == "new"
+    assert [path.is_symlink() for path in (target, tmp_path / "first", tmp_path / "second")] == [
+        False,
+        True,
+        True,
+    ]
+    assert os.listdir(tmp_path / "deep") == ["file"]
+
+
+def test_a_path_that_leads_nowhere_is_a_mistake(tmp_path: Path):
+    (tmp_path / "one").symlink_to("two")
+    (tmp_path / "two").symlink_to("one")
+    with pytest.raises(UserError, match="levels of symbolic links"):
+        write_text(tmp_path / "one", "new")
+    with pytest.raises(UserError, match="null"):
+        write_text(tmp_path / "a\0b", "new")
+
+
+def test_a_link_out_of_a_run_folder_is_not_followed(tmp_path: Path):
+    """A run folder may come from anybody, and the names of its files are ours."""
+    mine, run = tmp_path / "mine", tmp_path / "run"
+    mine.write_text("mine")
+    run.mkdir()
+    (run / "out").symlink_to(mine)
+    (run / "in").symlink_to("inside")
+    with pytest.raises(UserError, match="link out of"):
+        write_text(run / "out", "new", inside=run)
+    write_text(run / "in", "new", inside=run)
+    assert mine.read_text() == "mine"
+    assert (run / "inside").read_text() == "new"

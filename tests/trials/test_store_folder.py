@@ -64,23 +64,16 @@ def test_a_shard_reads_back(folder):
     assert folder.load_shard("another", SCENES, _unexpected) is None
 
 
-def _flip(data: bytes, at: int) -> bytes:
-    return data[:at] + bytes([data[at] ^ 1]) + data[at + 1 :]
-
-
 @pytest.mark.parametrize(
     "damage",
     [
         lambda data: data[: len(data) // 2],
-        lambda data: b"",
-        lambda data: _flip(data, 40),
-        lambda data: _flip(data, len(data) - 9),
-        lambda data: data + b"\0",
+        lambda data: data[:40] + bytes([data[40] ^ 1]) + data[41:],
         lambda data: encode_shard(
             "k", Shard(tuple(replace(o, time_s=9.0) for o in _outcomes()), TAPS)
         ),
     ],
-    ids=["truncated", "empty", "flipped in the data", "flipped in the footer", "longer", "edited"],
+    ids=["truncated", "flipped", "edited"],
 )
 def test_a_damaged_shard_is_named_and_removed(folder, damage):
     (shard,) = folder.shards.iterdir()
@@ -107,21 +100,14 @@ def test_of_two_shards_of_a_block_the_one_that_failed_less_is_taken(folder):
     assert not any(outcome.failed for outcome in found.outcomes)
 
 
-def test_a_shard_of_other_scenes_is_not_taken(folder):
-    notices: list[str] = []
-    assert folder.load_shard("k", SCENES[:2], notices.append) is None
-    assert "other scenes" in notices[0]
-
-
-def test_a_shard_under_the_name_of_another_unit_is_not_taken(folder):
+def test_a_shard_of_another_unit_or_of_other_scenes_is_not_taken(folder):
     (shard,) = folder.shards.iterdir()
     digest = shard.stem.partition("-")[2]
-    false = shard.with_name(f"other-{digest}.parquet")
-    false.write_bytes(shard.read_bytes())
+    shard.with_name(f"other-{digest}.parquet").write_bytes(shard.read_bytes())
     notices: list[str] = []
     assert folder.load_shard("other", SCENES, notices.append) is None
-    assert "another key" in notices[0]
-    assert folder.load_shard("k", SCENES, _unexpected) is not None
+    assert folder.load_shard("k", SCENES[:2], notices.append) is None
+    assert ["another key" in notices[0], "other scenes" in notices[1]] == [True, True]
 
 
 @pytest.mark.parametrize(
@@ -141,26 +127,18 @@ def test_another_study_is_refused(folder, other, what):
     assert folder.manifest.read_bytes() == before
 
 
-def test_another_selection_of_scenes_goes_on(folder):
-    with folder.open(_manifest(scenes=("s0", "s1")), _unexpected):
-        assert json.loads(folder.manifest.read_text())["study"]["scenes"] == ["s0", "s1"]
-        assert folder.load_shard("k", SCENES, _unexpected) is not None
-
-
-def test_another_format_is_refused(folder):
-    content = json.loads(folder.manifest.read_text())
-    folder.manifest.write_text(json.dumps({**content, "format": FORMAT + 1, "new": 1}))
-    with (
-        pytest.raises(UserError, match=f"format {FORMAT + 1}"),
-        folder.open(_manifest(), _unexpected),
-    ):
-        pass
-
-
-@pytest.mark.parametrize("text", ["", "{", "[]", "{}", json.dumps({"format": FORMAT})])
-def test_a_damaged_manifest_is_refused(folder, text):
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("{", r"manifest\.json"),
+        ("[]", r"manifest\.json"),
+        (json.dumps({"format": FORMAT}), r"manifest\.json"),
+        (json.dumps({"format": FORMAT + 1}), f"format {FORMAT + 1}"),
+    ],
+)
+def test_a_damaged_manifest_and_one_of_another_format_are_refused(folder, text, says):
     folder.manifest.write_text(text)
-    with pytest.raises(UserError, match=r"manifest\.json"), folder.open(_manifest(), _unexpected):
+    with pytest.raises(UserError, match=says), folder.open(_manifest(), _unexpected):
         pass
 
 
@@ -173,13 +151,6 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
             RunFolder(path).open(_manifest(), _unexpected),
         ):
             pass
-
-
-def test_what_a_killed_writer_left_is_swept(folder):
-    leftover = folder.shards / ".partial-abc"
-    leftover.write_bytes(b"half")
-    with folder.open(_manifest(), _unexpected):
-        assert not leftover.exists()
 
 
 def test_tables_that_cannot_be_read_say_so(folder, tmp_path):

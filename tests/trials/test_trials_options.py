@@ -54,7 +54,7 @@ def needy(path: str):
     return path
 
 
-def test_a_signature_says_what_there_is():
+def test_a_signature_and_a_model_say_what_there_is():
     assert options_of(typed) == (
         Option("gear", "Gear of the cart.", ("low", "high"), "low"),
         Option("carts", default="1"),
@@ -65,9 +65,6 @@ def test_a_signature_says_what_there_is():
     )
     kinds = [option.kind for option in options_of(typed)]
     assert kinds == ["str", "int", "str", "float", "str", "str"]
-
-
-def test_a_model_says_what_there_is():
     assert options_of(modelled) == (
         Option("gear", "Gear of the cart.", ("low", "high"), "low"),
         Option("carts", "", ("1", "2"), "1"),
@@ -88,20 +85,11 @@ def test_text_becomes_what_the_factory_takes():
     ("factory", "given", "says"),
     [
         (typed, {"gear": "third"}, r"^unknown gear 'third'; choose one of low, high\.$"),
-        (
-            typed,
-            {"carts": "three"},
-            r"^it cannot have the carts 'three': it is 'three', and must be .*[^.]\.$",
-        ),
+        (typed, {"carts": "three"}, r"^it cannot have the carts 'three': .*[^.]\.$"),
         (typed, {"fast": "perhaps"}, "unknown fast 'perhaps'; choose one of true, false"),
-        (
-            typed,
-            {"colour": "red"},
-            "of it do not include 'colour': it takes gear, carts, fast, mass",
-        ),
+        (typed, {"colour": "red"}, "do not include 'colour': it takes gear, carts, fast, mass"),
         (modelled, {"carts": "3"}, "unknown carts '3'; choose one of 1, 2"),
         (modelled, {"gear": "high", "carts": "2"}, "of it do not fit: two carts have only a low"),
-        (modelled, {"colour": "red"}, "do not include 'colour': it takes gear, carts"),
         (lambda: None, {"colour": "red"}, "'colour': it takes none"),
         (needy, {}, "needs the option 'path'"),
     ],

@@ -1,14 +1,24 @@
-"""What a system declares is looked at before anything flies, whatever its objects do when asked."""
+"""What a system declares is looked at before anything flies, and what of it a run keeps."""
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.trials import Metric, SystemSpec, load_system
+from faultpath.trials import (
+    FloorPlan,
+    Metric,
+    Pillar,
+    Prism,
+    System,
+    SystemShown,
+    SystemSpec,
+    load_system,
+    system_shown,
+)
 from faultpath.trials.checks import check_system, library_of, paths_of
-from faultpath.trials.shown import system_shown
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 
@@ -81,25 +91,56 @@ def test_paths_that_are_none_are_named(toy: type, attribute: str, value: object)
         paths_of(type("Mine", (toy,), {attribute: value})(), attribute)
 
 
-def test_a_floor_plan_that_is_none_is_refused(toy: type) -> None:
-    mine = type("Mine", (toy,), {"floor_plan": lambda self, scene: Mute()})()
-    with pytest.raises(SystemMistake, match="a Mute"):
-        system_shown(mine, ("blind",), ("cart/000",))
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        *("builtins:dict", "builtins:exit", "builtins:object", "builtins:type", "json:loads"),
-        *("math:sqrt", "typing:Any", "enum:Enum", "threading:Thread", "abc:ABC"),
-    ],
-)
-def test_what_builds_no_system_is_a_sentence(name: str) -> None:
-    with pytest.raises(UserError):
-        load_system(SystemSpec(name=name))
-
-
 def test_a_library_is_the_one_that_was_asked_for(toy: type) -> None:
     assert library_of(toy(), "carts").name == "carts"
     with pytest.raises(UserError, match="no library 'cartz'"):
         library_of(toy(), "cartz")
+
+
+PLAN = FloorPlan(
+    low=(0.0, 0.0, 0.0),
+    high=(4.0, 3.0, 2.0),
+    prisms=(Prism(((1.0, 1.0), (2.0, 1.0), (2.0, 2.0)), 0.0, 1.5),),
+    pillars=(Pillar(3.0, 1.0, 0.2, 0.0, 2.0),),
+    start=(0.5, 0.5, 1.0),
+    goal=(3.5, 2.5, 1.0),
+    title="<corner>",
+)
+
+
+@pytest.fixture
+def planned(monkeypatch: pytest.MonkeyPatch) -> System:
+    system = load_system(SystemSpec(name=f"{EXAMPLES / 'toy.py'}:create"))
+    monkeypatch.setattr(system, "floor_plan", lambda scene: PLAN if scene == "cart/001" else None)
+    return system
+
+
+def test_nothing_is_lost_on_the_way_through_the_file(planned: System) -> None:
+    shown = system_shown(planned, ("calibrated", "blind"), ("cart/000", "cart/001"))
+    assert SystemShown.model_validate_json(shown.model_dump_json()) == shown
+    assert shown.interface == planned.interface
+    assert shown.control_dt_s == planned.control_dt_s
+    assert shown.plans == {"cart/001": PLAN}
+    for variant in shown.variants:
+        declared = planned.variants[variant.name]
+        assert set(variant.consumers) == declared.consumers
+        assert variant.bindings == dict(declared.bindings)
+
+
+@pytest.mark.parametrize(
+    ("plan", "says"),
+    [
+        (replace(PLAN, goal=(1.0, float("nan"), 0.0)), r"plans\.cart/000\..*goal"),
+        (replace(PLAN, pillars=(replace(PLAN.pillars[0], radius=float("inf")),)), "radius"),
+        (replace(PLAN, low="left"), "low"),
+        (replace(PLAN, title=7), "title"),
+        (Mute(), "a Mute"),
+    ],
+    ids=["not a number", "infinite", "text", "number", "no plan"],
+)
+def test_a_plan_that_cannot_be_drawn_is_the_systems_mistake(
+    plan, says, planned, monkeypatch
+) -> None:
+    monkeypatch.setattr(planned, "floor_plan", lambda scene: plan)
+    with pytest.raises(UserError, match=says):
+        system_shown(planned, ("calibrated",), ("cart/000",))

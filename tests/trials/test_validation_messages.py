@@ -29,7 +29,7 @@ PYDANTIC = re.compile(
 
 
 @pytest.mark.parametrize("model", [Deliveries, MapRecord, SearchRecord, Plan])
-@pytest.mark.parametrize("number", [-1, 0, 2])
+@pytest.mark.parametrize("number", [0, 2])
 def test_a_format_that_no_version_wrote_is_refused(model: type, number: int) -> None:
     with pytest.raises(ValidationError) as caught:
         TypeAdapter(model).validate_python({"format": number})
@@ -47,10 +47,7 @@ def misfit(model: type, given: object) -> Misfit:
     [
         ({"frame": "UP"}, "frame: is 'UP', and must be 'NED' or 'ENU'"),
         ({"fram": "NED"}, "fram: is no field; did you mean 'frame'?"),
-        (
-            {"attitude": {"columns": ["q"], "order": "wxyz"}},
-            "attitude.columns[1]: is missing: add it",
-        ),
+        ({"attitude": {"columns": ["q"], "order": "wxyz"}}, "attitude.columns[1]: is missing"),
         ({"attitude": {"columns": [*"abcde"], "order": "wxyz"}}, "of at most 4 values, and has 5"),
         ({"attitude": {"colums": [*"abcd"], "order": "wxyz"}}, "did you mean 'columns'?"),
         ({"thrust": {"column": ["x"]}}, "thrust.column: is ['x'], and must be text"),
@@ -70,10 +67,8 @@ def test_a_field_what_is_wrong_and_what_is_allowed(changed: dict[str, object], s
 
 def test_the_whole() -> None:
     assert str(misfit(ColumnMap, None)).startswith("is empty, and must be")
-    text = str(
-        misfit(Fault, {"channel": "c", "intervention": Scale(factor=2), "recovery_steps": 3})
-    )
-    assert text.startswith("recovery_steps needs an end")
+    endless = {"channel": "c", "intervention": Scale(factor=2), "recovery_steps": 3}
+    assert str(misfit(Fault, endless)).startswith("recovery_steps needs an end")
 
 
 def test_no_kind_of_misfit_is_told_in_pydantic_s_words() -> None:

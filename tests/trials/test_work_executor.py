@@ -5,44 +5,18 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from functools import partial
 from pathlib import Path
 
 import calls
 import pytest
+from calls import alive, end_of, until
 
 from faultpath.core.errors import UserError
 from faultpath.trials.work.executor import Failed, Here, Lost, Returned, WorkerLost, run_all
 from faultpath.trials.work.processes import Processes, local
 
 BOTH = pytest.mark.parametrize("workers", [0, 2])
-
-
-def end_of(executor, call, told=lambda message: None):
-    """Run one call and return its end."""
-    (worker, *_) = executor.free()
-    executor.submit(worker, call, told)
-    limit = time.monotonic() + 60
-    while time.monotonic() < limit:
-        for ended, end in executor.completions(0.5):
-            assert ended == worker
-            return end
-    raise AssertionError("waited in vain")
-
-
-def alive(pid: int) -> bool:
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
-        return False
-
-
-def until(condition, seconds: float = 60.0):
-    limit = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < limit
-        time.sleep(0.02)
 
 
 @BOTH
@@ -71,15 +45,10 @@ def test_an_error_is_an_end_with_its_traceback_and_the_next_call_runs(workers):
         assert repr(end.error) == "ValueError('no air')"
         if workers:
             assert 'raise ValueError("no air")' in end.error.__notes__[0]
+        left = end_of(executor, partial(calls.leave, "exit"))
+        assert isinstance(left, Failed)
+        assert str(left.error) == "it called sys.exit(3)"
         assert end_of(executor, partial(calls.double, 1)) == Returned(2)
-
-
-@BOTH
-def test_a_call_that_leaves_has_failed(workers):
-    with local(workers) as executor:
-        end = end_of(executor, partial(calls.leave, "exit"))
-        assert isinstance(end, Failed)
-        assert str(end.error) == "it called sys.exit(3)"
 
 
 @pytest.mark.parametrize(("how", "says"), [("kill", "SIGKILL.*memory"), ("_exit", "status 0")])
@@ -106,7 +75,7 @@ def test_the_first_error_of_many_is_raised_here():
         list(run_all(executor, [partial(calls.leave, "raise"), calls.hang]))
 
 
-def test_a_worker_keeps_its_memory_and_a_cancelled_one_is_another():
+def test_a_worker_keeps_its_memory_until_it_is_cancelled_or_the_context_is_left():
     with Processes(2) as executor:
         one = end_of(executor, calls.settings)
         assert end_of(executor, partial(calls.remember, 1)) == Returned([1])
@@ -117,6 +86,9 @@ def test_a_worker_keeps_its_memory_and_a_cancelled_one_is_another():
         assert list(executor.free()) == [0, 1]
         assert not alive(one.value[0])
         assert end_of(executor, partial(calls.remember, 3)) == Returned([3])
+        pid = end_of(executor, calls.settings).value[0]
+        executor.submit(1, calls.hang)
+    assert not alive(pid)
 
 
 def test_a_worker_that_dies_between_two_calls_is_replaced():
@@ -147,14 +119,6 @@ def test_workers_have_one_thread_and_the_caller_keeps_its_own(monkeypatch):
     assert os.environ["OMP_NUM_THREADS"] == "2"
     assert signal.getsignal(signal.SIGINT) is handler
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
-
-
-def test_leaving_the_context_ends_the_workers():
-    with Processes(2) as executor:
-        pid = end_of(executor, calls.settings).value[0]
-        executor.submit(1, calls.hang)
-        assert alive(pid)
-    assert not alive(pid)
 
 
 PARENT = """

@@ -44,3 +44,12 @@ def study(scenes: tuple[str, ...] = SCENES, name: str = "toy", **options: str) -
         scenes=scenes,
         rows=rows(),
     )
+
+
+def study_of(
+    factory: str, scenes: tuple[str, ...] = SCENES, count: int = 1, **options: str
+) -> Study:
+    """Return the first rows of a study whose system this factory, `FILE:NAME`, builds."""
+    whole = study(scenes, **options)
+    system = whole.system.model_copy(update={"name": factory})
+    return whole.model_copy(update={"system": system, "rows": whole.rows[:count]})

@@ -1,0 +1,32 @@
+"""An example on a package of other people: loading it, one trial of it, whom a fault reached."""
+
+from collections.abc import Sequence
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from typing import Any
+
+from faultpath.faults import parse_fault
+from faultpath.trials import Arm, System
+from faultpath.trials.attempt import attempt
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def loaded(path: Path) -> Any:
+    spec = spec_from_file_location(path.stem, path)
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def attempted(system: System, variant: str, scenes: Sequence[str], fault: str = "") -> Any:
+    faults = ()
+    if fault:
+        parsed = parse_fault(fault, system.interface, {}, system.control_dt_s)
+        faults = parsed.resolved(system.interface)
+    return attempt(system, Arm(variant=variant, faults=faults), scenes)
+
+
+def faulted(trial: Any) -> dict[str, int]:
+    """Return in how many steps the fault acted, by the consumers in which it did."""
+    return {tap.consumer: tap.faulted_steps for tap in trial.taps if tap.faulted_steps}
