@@ -4,6 +4,7 @@ import os
 import signal
 import socket
 from collections.abc import Callable, Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -22,41 +23,19 @@ from faultpath.trials.store.folder import RunFolder, read_manifest, read_outcome
 Read = Callable[[Path], object]
 
 
-def _columns(path: Path) -> object:
-    from faultpath_quadrotor.flightlog.reading import read_columns
-
-    return read_columns(str(path))
+def _named(place: str) -> Any:
+    """Return a function of a package that may be missing, by `module:name`."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)
 
 
 def _log(path: Path) -> object:
-    from faultpath_quadrotor.flightlog.flight import read_flight
-    from faultpath_quadrotor.flightlog.reading import read_columns
-
-    return read_flight(path, read_columns("px4").model_copy(update={"mass_kg": 1.0}))
-
-
-def _library(path: Path) -> object:
-    from faultpath_quadrotor.scenes.library import load_library
-
-    return load_library(path)
+    columns = _named(COLUMNS)("px4").model_copy(update={"mass_kg": 1.0})
+    return _named("faultpath_quadrotor.flightlog.flight:read_flight")(path, columns)
 
 
 def _card(path: Path) -> object:
-    from faultpath_quadrotor.checkpoint import ModelCard
-
-    return read_card(path, ModelCard)
-
-
-def _evidence(path: Path) -> object:
-    from faultpath_paper.evidence.table import read_evidence
-
-    return read_evidence(path)
-
-
-def _reproduction(path: Path) -> object:
-    from faultpath_paper.run import read_results
-
-    return read_results(path.parent)
+    return read_card(path, _named("faultpath_quadrotor.checkpoint:ModelCard"))
 
 
 def _shard(path: Path) -> object:
@@ -64,22 +43,26 @@ def _shard(path: Path) -> object:
     return folder.load_shard(path.name.partition("-")[0], (), lambda said: None)
 
 
+COLUMNS = "faultpath_quadrotor.flightlog.reading:read_columns"
+SCENES = "faultpath_quadrotor.scenes.library:load_library"
+EVIDENCE = "faultpath_paper.evidence.table:read_evidence"
+RESULTS = "faultpath_paper.run:read_results"
 READERS: dict[str, tuple[str, Read]] = {
-    "columns of a log": ("map.yaml", _columns),
+    "columns of a log": ("map.yaml", lambda path: _named(COLUMNS)(str(path))),
     "log as text": ("flight.csv", _log),
     "log as a table": ("flight.parquet", _log),
     "log as ULog": ("flight.ulg", _log),
     "log as a bag": ("flight.mcap", _log),
     "interface": ("toy.yaml", read_interface),
     "study": ("study.yaml", read_study),
-    "library of scenes": ("mine.json", _library),
+    "library of scenes": ("mine.json", lambda path: _named(SCENES)(path)),
     "card of a model": ("model.json", _card),
     "record of a fit": ("fit.json", lambda path: read_card(path, FitRecord)),
     "manifest": ("manifest.json", read_manifest),
     "any file of a run": ("record.json", read_regular),
     "outcomes": ("outcomes.parquet", read_outcomes),
-    "evidence": ("evidence.parquet", _evidence),
-    "reproduction": ("reproduction.json", _reproduction),
+    "evidence": ("evidence.parquet", lambda path: _named(EVIDENCE)(path)),
+    "reproduction": ("reproduction.json", lambda path: _named(RESULTS)(path.parent)),
     "shard": ("shards/key-digest.parquet", _shard),
 }
 """By what it reads: the name of the file, and the reader."""

@@ -139,7 +139,7 @@ def test_random_walk_does_not_depend_on_how_often_a_tap_delivers(to: Any) -> Non
     ],
     ids=str,
 )
-def test_a_ramp_comes_late_or_not_or_steeper(to, intervention, onset, expected) -> None:
+def test_a_ramp_is_steeper_delayed_held_or_frozen(to, intervention, onset, expected) -> None:
     values = play(intervention, ramp(to), onset)
     np.testing.assert_allclose(values, np.add.outer(expected, [0, 100]), rtol=1e-15)
 

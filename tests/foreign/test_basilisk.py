@@ -132,5 +132,5 @@ def test_a_fault_reaches_who_reads(example):
 
 def test_it_is_audited(example):
     asked = {"baseline": "gyro", "repair": "filtered", "fault": "wheel_speeds:freeze,onset_s=50"}
-    found = audit(example.create(), **asked, scenes=2)
+    found = audit(example.create(), **asked, scenes=2, signals=False)
     assert [path.name for path in found.record.paths] == ["correct", "control", "filter", "shared"]

@@ -59,7 +59,8 @@ def test_the_audit_strikes_mhe_and_mpc_alone_and_together(masses, monkeypatch):
     monkeypatch.setattr(masses, "STEPS", 4)
     monkeypatch.setattr(masses, "JUDGED", 2)
     asked = {"baseline": "fixed", "repair": "estimated", "fault": "inertia:scale=1.1"}
-    found = audit(masses.create(), **asked, library="training", scenes=2, workers=0)
+    how = {"scenes": 2, "workers": 0, "signals": False}
+    found = audit(masses.create(), **asked, library="training", **how)
     names = [path.name for path in found.record.paths]
     assert names == ["correct", "controller", "estimator", "shared"]
     assert not found.record.findings

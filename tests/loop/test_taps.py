@@ -122,9 +122,8 @@ class TestModuleView:
 
 
 NULL = Fault(channel="mass", intervention=Scale(factor=1.0), consumers=("observer",))
-STRONG = NULL.model_copy(update={"intervention": Scale(factor=2.0)})
 FROZEN = NULL.model_copy(update={"intervention": Freeze()})
-ANY_FAULT = pytest.mark.parametrize("faults", [(), (NULL,), (STRONG,), (FROZEN,)])
+ANY_FAULT = pytest.mark.parametrize("faults", [(), (NULL,), (SCALE,), (FROZEN,)])
 CLEAN_OR_NULL = pytest.mark.parametrize("faults", [(), (NULL,)])
 
 

@@ -25,6 +25,11 @@ from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import reach, rejects
 
 PAIR = hnp.arrays(np.bool_, st.tuples(st.just(2), st.integers(1, 30), st.integers(1, 4)))
+N = 40
+RESAMPLES = Resamples.draw("degrees", N, n_resamples=1)
+ARMS = hnp.arrays(np.bool_, st.tuples(st.just(2), st.just(N), st.integers(1, 5)))
+laws = settings(max_examples=80, deadline=None)
+UNCONDITIONAL = "unconditional"
 
 
 def test_p_values_are_the_exact_fractions_of_every_table_up_to_60_discordant_pairs():
@@ -89,9 +94,6 @@ def test_swapped_arms_mirror_to_the_bit_and_copies_and_orders_change_nothing(
     scenes, seeds = (random.sample(range(size), size) for size in pair.shape[1:])
     moved = found(*pair[:, scenes][:, :, seeds], rule)
     assert (moved.test, moved.interval) == (once.test, once.interval)
-
-
-UNCONDITIONAL = "unconditional"
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -165,12 +167,6 @@ def test_power_takes_the_test_that_decides(alpha, rule):
         far = reach(values, counts, 1.0, 12.0)
         expected = effect.test.p_value <= alpha and effect.side != 0
         assert detected(values, counts, far, alpha, rule)[0] == expected
-
-
-N = 40
-RESAMPLES = Resamples.draw("degrees", N, n_resamples=1)
-ARMS = hnp.arrays(np.bool_, st.tuples(st.just(2), st.just(N), st.integers(1, 5)))
-laws = settings(max_examples=80, deadline=None)
 
 
 def power(scenes, population, runs=6000):

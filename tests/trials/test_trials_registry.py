@@ -55,13 +55,6 @@ def test_two_edits_within_a_second_are_two(tmp_path, edited):
     assert sorted(done.stdout.strip()) == ["a", "b"]
 
 
-def test_a_module_of_the_working_directory_is_found(tmp_path, monkeypatch):
-    monkeypatch.setattr(sys, "path", [p for p in sys.path if p not in ("", os.getcwd())])
-    (tmp_path / "module_of_mine.py").write_text(FILE.read_text())
-    monkeypatch.chdir(tmp_path)
-    assert load_system(SystemSpec(name="module_of_mine:create")).name == "toy"
-
-
 @pytest.mark.parametrize(
     ("name", "sentence"),
     [
