@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from loop_toys import SCENES, Guess, Line, Planner, execute, interface_of, wired
+from loop_toys import FACTS, SCENES, Guess, Line, Planner, execute, interface_of, wired
 
 from faultpath.core.errors import SystemMistake
-from faultpath.faults import parse_fault
+from faultpath.faults import parse_fault, resolve
+from faultpath.interface import transitive_consumers
 from faultpath.loop import (
     Batch,
     IllegalRead,
@@ -17,6 +18,7 @@ from faultpath.loop import (
     consumers,
     graph,
 )
+from faultpath.loop import interface_of as derived
 from faultpath.systems.checks.recording import Recording
 
 
@@ -190,6 +192,34 @@ def test_the_interface_follows_from_the_ports() -> None:
     other.reads = frozenset({Port("position", "other")})
     with pytest.raises(SystemMistake, match=r"does not list observer\.other"):
         graph(interface, Line(), (other, Planner()))
+
+
+def test_a_fault_reaches_the_readers_of_all_that_a_module_writes() -> None:
+    class Filter(Guess):
+        writes = ("guess", "speed")
+
+        def step(self, inputs, memory):
+            seen = inputs["position", "seen"]
+            return {"guess": seen, "speed": 3.0 * seen}, memory
+
+    class Pilot(Planner):
+        reads = frozenset({Port("guessed", "start"), Port("velocity", "feedback")})
+
+        def step(self, inputs, memory):
+            self.answers.append(inputs["velocity", "feedback"].tolist())
+            return {"order": np.zeros(2)}, memory
+
+    facts = FACTS % "}\n- {name: speed, unit: m, provenance: reconstructed"
+    facts = facts.replace("clearance, sources: [field]", "velocity, sources: [speed]")
+    observer, pilot = Filter(), Pilot()
+    interface = derived(facts, (observer, pilot, Line()))
+    assert interface.reconstructs == {"observer": ("guess", "speed")}
+    reached = ("observer.seen", "planner.start", "planner.feedback")
+    assert transitive_consumers(interface, "position") == reached
+    taps = Taps(interface, resolve([fault("position:scale=2")], interface), scenes=SCENES, dt_s=0.1)
+    parts = graph(interface, Line(), (observer, pilot))
+    list(Loop(interface, parts).execute(_batch(), taps))
+    assert pilot.answers == [[6.0, 12.0]] * Line.steps
 
 
 def test_a_loop_is_executed_as_often_as_wanted_and_ends_where_nothing_runs():

@@ -128,7 +128,7 @@ CLEAN_OR_NULL = pytest.mark.parametrize("faults", [(), (NULL,)])
 
 
 def deliver(taps: Taps, value: Any, step: int = 0, place: str = "observer.model") -> Any:
-    return taps.deliver("mass", place, mass(step, value), step)
+    return taps.deliver("mass", place, Reading(value, "scale", step), step)
 
 
 @ANY_FAULT
