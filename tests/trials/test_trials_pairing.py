@@ -122,6 +122,8 @@ def test_sides_of_different_extent_are_refused():
         pair(short, ONE, TWO)
     with pytest.raises(PairingRefused, match="no trial of baseline under correct with seed 3"):
         pair(_table(), ONE, Side("baseline", "correct"))
+    with pytest.raises(PairingRefused, match="repair under correct"):
+        pair(_table(), Side("repair", "correct"), TWO)
 
 
 def test_what_was_run_once_is_paired_with_every_seed_of_the_other_side():
