@@ -147,6 +147,10 @@ class Ahead(Steer):
         return {"push": 0.1 * inputs["place", "feedback"][:, 0]}, memory
 
 
+def measured(units):
+    return ComposedSystem("walk", plant(), {"only": [Steer()]}, units)
+
+
 @writes("push")
 def whole(place):
     return np.zeros((len(place), 2))
@@ -168,8 +172,8 @@ def look(eye):
         ),
         (lambda: plant(dt_s=None, environment="CartPole-v1"), "does not say dt_s: give it"),
         (lambda: plant(steps=None), "does not say steps: give it"),
-        (lambda: ComposedSystem("walk", plant(), {"only": [Steer()]}, {}), "'place' has no unit"),
-        (lambda: system(plant(), units={"plce": "m"}), "units names 'plce'.*did you mean 'place'"),
+        (lambda: measured({}), "'place' has no unit"),
+        (lambda: measured({"plce": "m"}), "units names 'plce', which is no .*did you mean 'place'"),
         (lambda: system(plant(), [look]), "'look': unknown source 'eye'; known:"),
         (lambda: fly(system(plant(), [whole])), r"shape \[1\], and.* of shape \[2\]"),
         (lambda: fly(system(plant(Keyed, observes={"place": ("at", 0)}))), "whole numbers.*float"),
