@@ -75,7 +75,7 @@ def test_wrong_input_is_refused(first, second, message):
 
 
 @pytest.mark.parametrize("rule", ["exact", RULE])
-@settings(deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(PAIR, st.integers(2, 4), st.randoms(use_true_random=False))
 def test_swapped_arms_mirror_to_the_bit_and_copies_and_orders_change_nothing(
     rule, pair, times, random
