@@ -213,7 +213,7 @@ def test_a_fault_reaches_the_readers_of_all_that_a_module_writes() -> None:
     facts = facts.replace("clearance, sources: [field]", "velocity, sources: [speed]")
     observer, pilot = Filter(), Pilot()
     interface = derived(facts, (observer, pilot, Line()))
-    assert interface.reconstructs == {"observer": ("guess", "speed")}
+    assert interface.reconstructs == {"observer": ("speed", "guess")}
     reached = ("observer.seen", "planner.start", "planner.feedback")
     assert transitive_consumers(interface, "position") == reached
     taps = Taps(interface, resolve([fault("position:scale=2")], interface), scenes=SCENES, dt_s=0.1)
