@@ -26,6 +26,11 @@ def fault(text):
     return parse_fault(text, interface_of((Guess(), Planner(), Line())), {}, 0.1)
 
 
+def test_modules_run_in_the_order_of_what_they_read() -> None:
+    _, parts = wired((Planner(), Guess()))
+    assert [module.name for module in parts.modules] == ["observer", "planner"]
+
+
 def test_the_plant_moves_by_what_came_through_the_tap() -> None:
     instants, _ = execute((Guess(), Planner()), [fault("action:scale=2")])
     moved = np.diff([instant.state.x for instant in instants], axis=0)
