@@ -124,6 +124,11 @@ def test_a_fault_that_reached_another_is_an_error() -> None:
         ("mass", "observer.model"): [receipts.at("mass", "observer.model").corruptions[0].fault]
     }
     check_delivered(receipts, named, last)
+    early = LATE.model_copy(update={"onset_step": 0})
+    both = make([early, LATE])
+    run(both)
+    with pytest.raises(FaultedElsewhere, match=re.escape("tap mass -> observer.model altered a")):
+        check_delivered(both.receipts(), named, last)
     once = {"mass": {}, "wind": {"steps_altered": np.array([1, 0])}}
     strange = tuple(replace(receipt, **once[receipt.channel]) for receipt in receipts.taps)
     with pytest.raises(FaultedElsewhere, match=re.escape("tap wind -> predictor.wind altered a")):
