@@ -161,6 +161,11 @@ def look(eye):
     return eye[:, 0]
 
 
+@writes("push", past="push")
+def again(place, push):
+    return push
+
+
 @pytest.mark.parametrize(
     ("make", "said"),
     [
@@ -175,6 +180,7 @@ def look(eye):
         (lambda: measured({}), "'place' has no unit"),
         (lambda: measured({"plce": "m"}), "units names 'plce', which is no .*did you mean 'place'"),
         (lambda: system(plant(), [look]), "'look': unknown source 'eye'; known:"),
+        (lambda: system(plant(), [again]), "before the first step"),
         (lambda: fly(system(plant(), [whole])), r"shape \[1\], and.* of shape \[2\]"),
         (lambda: fly(system(plant(Keyed, observes={"place": ("at", 0)}))), "whole numbers.*float"),
         (lambda: fly(system(plant(succeeded=lambda e: None))), "returned None of an episode"),

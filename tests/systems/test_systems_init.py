@@ -82,3 +82,15 @@ def test_what_cannot_be_written_is_said(tmp_path):
     with pytest.raises(UserError, match=r"rover\.py is there already"):
         write_system("rover", "torch", tmp_path)
     assert (tmp_path / "rover.py").read_text() == "mine"
+
+
+def test_a_full_disk_leaves_nothing_behind(tmp_path):
+    code = (
+        "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500))\n"
+        "from faultpath.cli.main import main; main()"
+    )
+    line = [sys.executable, "-c", code, "init", "rover"]
+    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "rover.py" in done.stderr
+    assert not list(tmp_path.iterdir())

@@ -101,6 +101,15 @@ def test_a_failed_trial_voids_its_pair_and_leaves_its_scene_out():
     np.testing.assert_array_equal(pairs.first.time_s, [[5.0, 7.0]] * 2)
 
 
+def test_when_every_scene_is_void_nothing_is_left():
+    def fail(row: TrialRow) -> TrialRow:
+        return replace(row, outcome=replace(row.outcome, status=Status.FAILED))
+
+    pairs = pair(_table(fail), ONE, TWO)
+    assert (pairs.void, pairs.scenes) == (6, ())
+    assert pairs.first.success.shape == pairs.first.time_s.shape == (0, 2)
+
+
 def test_pairs_can_be_cut_to_common_scenes():
     pairs = pair(_table(), ONE, TWO).only(("c", "b"))
     assert pairs.scenes == ("b", "c")

@@ -261,7 +261,12 @@ def test_the_annotation_that_is_advised_works_in_that_file(imports, annotation, 
 
 @pytest.mark.parametrize(
     ("name", "option"),
-    [("os:system", "command"), ("signal:pause", ""), ("builtins:exit", ""), ("abc:ABC", "")],
+    [
+        ("os:system", "command"),
+        ("signal:pause", ""),
+        *((f"builtins:{name}", "") for name in ("dict", "exit", "object", "type")),
+        *((name, "") for name in ("abc:ABC", "math:sqrt", "threading:Thread", "typing:Any")),
+    ],
 )
 def test_what_is_pythons_own_is_never_called(name, option, tmp_path):
     options = {option: f"touch {tmp_path}/ran"} if option else {}
