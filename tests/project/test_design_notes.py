@@ -8,7 +8,6 @@ from pkgutil import resolve_name
 from typing import Any
 
 import pytest
-from faultpath_paper.pages import in_text
 from faultpath_quadrotor.models import PREDICTORS, predictor
 from faultpath_quadrotor.perception import labels
 from faultpath_quadrotor.planners import CostWeights
@@ -30,7 +29,6 @@ from faultpath.trials.question import SensitivityQuestion
 DESIGN = ROOT / "docs" / "design"
 PAGES = {path.stem: path for path in (ROOT / "CONTRIBUTING.md", *sorted(DESIGN.glob("*.md")))}
 PROJECT: Any = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
-NATIVE = ROOT / "quadrotor/src/faultpath_quadrotor/native/source"
 
 SMALL = ["zero", "one", "two", "three", "four", "five", "six"]
 WORDS = [*SMALL, "seven", "eight", "nine", "ten", "eleven", "twelve"]
@@ -42,13 +40,6 @@ COUNTED = re.compile(rf"\b(?:\d+|{'|'.join(WORDS[3:])})(?: [a-z]+)? (?:{THINGS})
 
 def distributions() -> int:
     return len([*ROOT.glob("pyproject.toml"), *ROOT.glob("*/pyproject.toml")])
-
-
-def tiles() -> tuple[int, ...]:
-    """Return the candidates of a tile for AVX-512, AVX2 and the baseline, from the C++ sources."""
-    width = [int(n) for n in re.findall(r"LANES = (\d+);", (NATIVE / "simd.hpp").read_text())]
-    wide = [int(n) for n in re.findall(r"WIDE = (\d+);", (NATIVE / "layers.hpp").read_text())]
-    return width[0] * wide[0], width[1] * wide[1], width[2] * wide[1]
 
 
 def lightest() -> float:
@@ -82,7 +73,6 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("CONTRIBUTING", "a test fails at # lines", lambda: MAX_LINES),
     ("CONTRIBUTING", "# distributions in one", distributions),
     ("CONTRIBUTING", "Python # or newer", lambda: float(PROJECT["project"]["requires-python"][2:])),
-    ("README", "# distributions,", distributions),
     ("architecture", "# distributions - **", distributions),
     ("analyses", "multiples of 1/#", "faultpath.decisions.map.lattice:UNITS"),
     ("analyses", "starts with # by #", lambda: (2 * UNITS // COARSE + 1,) * 2),
@@ -97,8 +87,6 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("claims", "above # pp", "faultpath_paper.quantities.differences:TELLING_PP"),
     ("claims", "less than # % success", "faultpath_paper.quantities.summaries:PEAK_PERCENT"),
     ("claims", "# predictors in free space", "faultpath_paper.claims.statement:ALL_SEEDS"),
-    ("claims", "all # configurations", lambda: len(in_text.CEILING)),
-    ("claims", "the # steps of each history", "faultpath_quadrotor.predictors.history:STEPS"),
     ("conventions", "a multiple of #;", "faultpath_quadrotor.state:LANE_MULTIPLE"),
     ("conventions", "planner's # candidates", lambda: PLATFORM.planner.sampler.candidates),
     ("conventions", "gravity # m/s", "faultpath_quadrotor.vehicle:GRAVITY_MPS2"),
@@ -108,8 +96,6 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("execution", "the first # trials", "faultpath.trials.execution.state:FEW"),
     ("kernels", "rolls # candidates", lambda: PLATFORM.planner.sampler.candidates),
     ("kernels", "more than # hidden units", "faultpath_quadrotor.predictors.compiled:MOST_HIDDEN"),
-    ("kernels", "A tile is # candidates under AVX-512, # to # otherwise", tiles),
-    ("kernels", "over all # steps", lambda: PLATFORM.planner.sampler.horizon),
     ("learning", "weights by #", lambda: Schedule().weight_decay),
     ("perception", "range (# m)", "faultpath_quadrotor.perception.camera:RANGE_M"),
     ("perception", "; # x 36", "faultpath_quadrotor.perception.camera:WIDTH"),
@@ -153,7 +139,6 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("systems", "matters # times as much", "faultpath.systems.checks.judging:_SEVERAL"),
     ("verdict", "succeed below # %", "faultpath.decisions.decide:FLOOR_PERCENT"),
     ("verdict", "or above # %, the", "faultpath.decisions.decide:CEILING_PERCENT"),
-    ("verdict", "a caution below #.", "faultpath.decisions.sentences.answers:_FEW_TRAININGS"),
 ]
 """Page, words around a number (`#`), and the constant or function that gives it."""
 
