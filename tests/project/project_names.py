@@ -50,7 +50,7 @@ PATH = re.compile(r"[\w.-]*/[\w./-]*|[\w-]+\.(?:py|md|toml|txt|j2|json|yaml)")
 PROGRAM = re.compile(r"(?:\.?[\w./-]*/)?(?:make|faultpath|python|pytest|pre-commit)\b(?= )")
 
 
-def faults(page: str, folder: Path = ROOT) -> Iterator[str]:
+def mistakes(page: str, folder: Path = ROOT) -> Iterator[str]:
     """Yield what a page names that is not there, in words."""
     text = re.sub(r"^<!-- begin:(\S+) -->.*?^<!-- end:\1 -->$", "", page, flags=re.M | re.S)
     blocks, prose = "\n".join(FENCED.findall(text)), FENCED.sub("", text)
@@ -59,12 +59,12 @@ def faults(page: str, folder: Path = ROOT) -> Iterator[str]:
             yield f"a link to {target}"
     for line in blocks.splitlines():
         if PROGRAM.match(line.strip()):
-            yield from faults_of_command(line)
+            yield from mistakes_of_command(line)
     for span in SPAN.findall(prose):
         if span in EXEMPT or HASH.fullmatch(span):
             continue
         if PROGRAM.match(span) or span.startswith("--"):
-            yield from faults_of_command(span)
+            yield from mistakes_of_command(span)
         elif PATH.fullmatch(span):
             if not any((base / span).exists() for base in (folder, *map(ROOT.joinpath, BASES))):
                 yield f"the path {span}"
@@ -90,7 +90,7 @@ def leads(target: str, page: str, folder: Path) -> bool:
     return place.exists() and anchor in slugs
 
 
-def faults_of_command(line: str) -> Iterator[str]:
+def mistakes_of_command(line: str) -> Iterator[str]:
     """Yield the targets, verbs, flags and files of a command that do not exist."""
     command, _, comment = line.partition("  #")
     for target in re.findall(r"\bmake ([a-z-]+)", line):

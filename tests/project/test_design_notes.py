@@ -8,7 +8,9 @@ from pkgutil import resolve_name
 from typing import Any
 
 import pytest
+from faultpath_quadrotor.choices import DeviceName
 from faultpath_quadrotor.models import PREDICTORS, predictor
+from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.perception import labels
 from faultpath_quadrotor.planners import CostWeights
 from faultpath_quadrotor.platform import PLATFORM
@@ -17,7 +19,7 @@ from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE
 from faultpath_quadrotor.training.reconstruction_task import MODELS, ReconstructionTask
 from faultpath_quadrotor.training.windows import COUNTS
 from faultpath_quadrotor.vehicle import VehicleParameters
-from project_names import EXEMPT, ROOT, faults
+from project_names import EXEMPT, ROOT, mistakes
 from test_files import MAX_LINES
 
 import faultpath
@@ -52,6 +54,10 @@ def lightest() -> float:
 def thousands(name: str) -> int:
     network: Any = predictor(name, None)
     return sum(part.numel() for part in network.network.parameters()) // 1000
+
+
+def block(device: str) -> int:
+    return Quadrotor(QuadrotorOptions(device=DeviceName(device))).block_size
 
 
 def gru() -> tuple[float, ...]:
@@ -91,7 +97,7 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("conventions", "planner's # candidates", lambda: PLATFORM.planner.sampler.candidates),
     ("conventions", "gravity # m/s", "faultpath_quadrotor.vehicle:GRAVITY_MPS2"),
     ("device", "checked every # steps", "faultpath_quadrotor.plant.module:LOOK_EVERY"),
-    ("device", "scenes instead of #", lambda: Quadrotor.parse().block_size),
+    ("device", "Blocks hold # scenes instead of #", lambda: (block("cuda"), block("cpu"))),
     ("execution", ": # scenes of one unit", "faultpath.trials.execution.recheck:SAMPLE"),
     ("execution", "the first # trials", "faultpath.trials.execution.state:FEW"),
     ("kernels", "rolls # candidates", lambda: PLATFORM.planner.sampler.candidates),
@@ -179,7 +185,7 @@ def uncompared(page: str, text: str) -> Iterator[str]:
 
 @pytest.mark.parametrize("page", PAGES)
 def test_a_page_names_only_what_is_there(page: str) -> None:
-    assert list(faults(PAGES[page].read_text("utf-8"), PAGES[page].parent)) == []
+    assert list(mistakes(PAGES[page].read_text("utf-8"), PAGES[page].parent)) == []
     assert list(uncompared(page, text_of(page))) == []
 
 
@@ -194,7 +200,7 @@ def test_a_number_on_a_page_is_that_of_the_code(page: str, words: str, number: N
 
 
 @pytest.mark.parametrize(
-    ("sentence", "fault"),
+    ("sentence", "mistake"),
     [
         ("See [there](docs/nowhere.md).", "a link to docs/nowhere.md"),
         ("See [there](CONTRIBUTING.md#no-such-part).", "a link to CONTRIBUTING.md#no-such-part"),
@@ -213,8 +219,8 @@ def test_a_number_on_a_page_is_that_of_the_code(page: str, words: str, number: N
         ("Run:\n\n```console\nfaultpath audit --nothing\n```\n", "the flag --nothing"),
     ],
 )
-def test_what_is_not_there_is_reported(sentence: str, fault: str) -> None:
-    assert list(faults(sentence)) == [fault]
+def test_what_is_not_there_is_reported(sentence: str, mistake: str) -> None:
+    assert list(mistakes(sentence)) == [mistake]
 
 
 def test_a_wrong_number_is_reported() -> None:
