@@ -4,8 +4,9 @@ import ast
 import builtins
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from functools import cache
+from importlib.metadata import PackageNotFoundError, distribution
 from keyword import kwlist
 from pathlib import Path
 from pkgutil import resolve_name
@@ -24,15 +25,11 @@ EXEMPT = {
     "eta_R": "symbol of the paper",
     "eta_P": "symbol of the paper",
     "theta": "symbol of the paper",
-    "alpha": "symbol of a formula",
     "path/to/file.py:factory": "stands for a user's file",
     "<!-- begin:KIND:ARGUMENT -->": "stands for any block",
-    "state:recorded=FILE@reconstruction": "stands for any file of recorded errors",
     "-march=native": "option of compilers",
     "-ffast-math": "option of compilers",
-    "kill -9": "command of the shell",
-    "git": "program",
-    "make": "program",
+    "not-run": "word after the language of a block of Markdown",
     "nodejs": "extra of pyright",
     "HATCH_BUILD_HOOK_ENABLE_CUSTOM=true": "variable of hatch",
 }
@@ -41,7 +38,7 @@ OF_PYTEST = {"--ignore"}
 
 SPAN = re.compile(r"`([^`\n]+)`")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-FENCED = re.compile(r"^```.*?^```$|^ {4,}(?=\S).*$", re.M | re.S)
+FENCED = re.compile(r"^```.*?^```$|^ {4,}(?=\S)[^\n]*$", re.M | re.S)
 WORD = re.compile(r"[A-Za-z_]\w\w+(?:\.\w+)*")
 NAME = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*(?:\(\))?")
 VALUE = re.compile(r"[a-z]+(?:[-+][a-z]+)+")
@@ -50,7 +47,7 @@ PATH = re.compile(r"[\w.-]*/[\w./-]*|[\w-]+\.(?:py|md|toml|txt|j2|json|yaml)")
 PROGRAM = re.compile(r"(?:\.?[\w./-]*/)?(?:make|faultpath|python|pytest|pre-commit)\b(?= )")
 
 
-def mistakes(page: str, folder: Path = ROOT) -> Iterator[str]:
+def mistakes(page: str, folder: Path = ROOT, exempt: Collection[str] = EXEMPT) -> Iterator[str]:
     """Yield what a page names that is not there, in words."""
     text = re.sub(r"^<!-- begin:(\S+) -->.*?^<!-- end:\1 -->$", "", page, flags=re.M | re.S)
     blocks, prose = "\n".join(FENCED.findall(text)), FENCED.sub("", text)
@@ -61,7 +58,7 @@ def mistakes(page: str, folder: Path = ROOT) -> Iterator[str]:
         if PROGRAM.match(line.strip()):
             yield from mistakes_of_command(line)
     for span in SPAN.findall(prose):
-        if span in EXEMPT or HASH.fullmatch(span):
+        if span in exempt or HASH.fullmatch(span):
             continue
         if PROGRAM.match(span) or span.startswith("--"):
             yield from mistakes_of_command(span)
@@ -72,7 +69,7 @@ def mistakes(page: str, folder: Path = ROOT) -> Iterator[str]:
             if not is_defined(span):
                 yield f"the name {span}"
         elif VALUE.fullmatch(span):
-            if span not in strings():
+            if span not in strings() and not is_installed(span):
                 yield f"the value {span}"
         else:
             yield from (f"{word} in {span}" for word in WORD.findall(span) if not is_used(word))
@@ -102,6 +99,9 @@ def mistakes_of_command(line: str) -> Iterator[str]:
     for flag in re.findall(r"(?<![\w-])--[a-z][a-z-]*", command + comment):
         if flag not in flags():
             yield f"the flag {flag}"
+    for choice in re.findall(r"(?<![\w-])--[a-z-]+[ =]([a-z][\w-]*)(?![\w/-])", command):
+        if choice not in strings():
+            yield f"the value {choice}"
     for path in re.findall(r"(?<=[ =])(?:tests|tools|docs|examples)/[\w./-]*", command):
         if not (ROOT / path).exists():
             yield f"the path {path}"
@@ -153,6 +153,14 @@ def is_defined(name: str) -> bool:
 def is_used(word: str) -> bool:
     """Return whether a word of a formula or of a line of code is used in the project's code."""
     return is_defined(word) or word in uses()
+
+
+def is_installed(name: str) -> bool:
+    """Return whether a distribution of this name is installed."""
+    try:
+        return bool(distribution(name))
+    except PackageNotFoundError:
+        return False
 
 
 @cache
