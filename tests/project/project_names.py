@@ -89,14 +89,14 @@ def leads(target: str, page: str, folder: Path) -> bool:
 
 def mistakes_of_command(line: str) -> Iterator[str]:
     """Yield the targets, verbs, flags and files of a command that do not exist."""
-    command, _, comment = line.partition("  #")
+    command = line.partition("  #")[0]
     for target in re.findall(r"\bmake ([a-z-]+)", line):
         if target not in targets():
             yield f"make {target}"
     for verb in re.findall(r"\bfaultpath ([a-z]+)", line):
         if verb not in verbs():
             yield f"faultpath {verb}"
-    for flag in re.findall(r"(?<![\w-])--[a-z][a-z-]*", command + comment):
+    for flag in re.findall(r"(?<![\w-])--[a-z][a-z-]*", line):
         if flag not in flags():
             yield f"the flag {flag}"
     for choice in re.findall(r"(?<![\w-])--[a-z-]+[ =]([a-z][\w-]*)(?![\w/-])", command):
