@@ -10,7 +10,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from flown_code import ROOT, flown_by
+from flown_code import ROOT, changed, flown_by
 from pydantic import BaseModel, ValidationError
 from rich.console import Console, RenderableType
 
@@ -51,10 +51,20 @@ class Run:
     @property
     def flown(self) -> str:
         """By which code it was flown, in a sentence, and whether that is the code that is here."""
+        return flown_by(self.provenance, *self._system)
+
+    @property
+    def stale(self) -> bool:
+        """Whether the code or the data that it was flown with are not those that are here."""
+        return changed(self.provenance, *self._system)
+
+    @property
+    def _system(self) -> tuple[str, dict[str, str]]:
+        """Name and options of the system that was flown."""
         question = getattr(self.record, "question", None)
         if question is not None:
-            return flown_by(self.provenance, question.system, question.options)
-        return flown_by(self.provenance, "quadrotor", getattr(self.record, "options", {}))
+            return question.system, question.options
+        return "quadrotor", getattr(self.record, "options", {})
 
 
 def kind_of(folder: Path) -> str:

@@ -26,11 +26,18 @@ def flown_by(origin: RunProvenance, system: str, options: Mapping[str, str]) -> 
     text = f"{done} at {commit}{' with uncommitted changes' if origin.dirty else ''}"
     if not origin.sources:
         return f"{text}, before runs kept digests of their code: by older code than today's."
-    here = _state(system, tuple(sorted(options.items())), tuple(origin.data))
-    flown = {name: sha for name, sha in origin.sources.items() if name in here.files or _here(name)}
-    if (here.files, here.data) == (flown, origin.data):
+    if not changed(origin, system, options):
         return f"{text}; its code has not changed since."
     return f"{text}; its code{' or weights' if origin.data else ''} changed since."
+
+
+def changed(origin: RunProvenance, system: str, options: Mapping[str, str]) -> bool:
+    """Return whether sources or data files are other ones than a run kept, or it kept none."""
+    if not origin.sources:
+        return True
+    here = _state(system, tuple(sorted(options.items())), tuple(origin.data))
+    flown = {name: sha for name, sha in origin.sources.items() if name in here.files or _here(name)}
+    return (here.files, here.data) != (flown, origin.data)
 
 
 @cache

@@ -22,7 +22,6 @@ from blocks import PROVENANCE, REFERENCE, ROOT, Run, load
 
 TREE = ROOT / "build" / "references"
 APART = ("carry-over", "paper")
-STALE = "changed since"
 SYSTEMS = {
     "basilisk": "Basilisk",
     "do_mpc": "do_mpc",
@@ -41,10 +40,10 @@ def main() -> None:
     runs = by_time()
     if unknown := sorted({*options.names} - {*runs}):
         parser.error(f"no reference run is called {unknown[0]}: there are {', '.join(runs)}")
-    chosen = options.names or [name for name, run in runs.items() if STALE in run.flown]
+    chosen = options.names or [name for name, run in runs.items() if run.stale]
     if options.list:
         for name, run in runs.items():
-            state = "stale" if STALE in run.flown else "as it was flown"
+            state = "stale" if run.stale else "as it was flown"
             print(f"{name:36s}{run.provenance.wall_s:6.0f} s  {state}")
         return
     commit = checkout()

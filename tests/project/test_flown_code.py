@@ -35,6 +35,7 @@ def made() -> RunProvenance:
 def test_a_run_by_the_code_that_is_here_says_so(made: RunProvenance) -> None:
     said = flown_code.flown_by(made, TOY, {})
     assert said == "Run at commit `0123456789ab`; its code has not changed since."
+    assert not flown_code.changed(made, TOY, {})
 
 
 def other(digests: dict[str, str]) -> dict[str, str]:
@@ -42,16 +43,18 @@ def other(digests: dict[str, str]) -> dict[str, str]:
 
 
 @pytest.mark.parametrize(
-    ("change", "says"),
+    ("change", "says", "changed"),
     [
-        (lambda made: {"sources": other(made.sources)}, "; its code changed since."),
-        (lambda made: {"sources": made.sources | {"absent/code.py": "0"}}, "its code has not"),
-        (lambda made: {"data": {"a": "0"}}, "; its code or weights changed since."),
-        (lambda made: {"sources": {}}, "before runs kept digests of their code"),
+        (lambda made: {"sources": other(made.sources)}, "; its code changed since.", True),
+        (lambda made: {"sources": made.sources | {"absent/a.py": "0"}}, "its code has not", False),
+        (lambda made: {"data": {"a": "0"}}, "; its code or weights changed since.", True),
+        (lambda made: {"sources": {}}, "before runs kept digests of their code", True),
     ],
 )
-def test_what_else_is_to_be_known_is_said(made: RunProvenance, change, says: str) -> None:
-    assert says in flown_code.flown_by(made.model_copy(update=change(made)), TOY, {})
+def test_what_else_is_to_be_known_is_said(made, change, says: str, changed: bool) -> None:
+    run = made.model_copy(update=change(made))
+    assert says in flown_code.flown_by(run, TOY, {})
+    assert flown_code.changed(run, TOY, {}) == changed
 
 
 def test_what_flies_is_known_without_its_package(

@@ -1,7 +1,10 @@
 """Stored runs are flown again: which of them, in which order, and in which environment."""
 
 import sys
+from dataclasses import replace
 
+import flown_code
+import pytest
 import references
 
 
@@ -33,3 +36,30 @@ def test_a_run_keeps_to_the_instruction_set_by_which_it_was_flown() -> None:
         by_avx2 = run.provenance.backend == "compiled kernels (avx2)"
         kernels = references.instructions(run).get("FAULTPATH_KERNELS", "auto")
         assert kernels == ("avx2" if by_avx2 else "auto")
+
+
+def test_only_a_run_of_other_code_is_stale_and_flown_again(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Both sentences about a run end with "changed since": only the digests tell them apart."""
+    toy, here = references.load("toy"), flown_code._state("examples/toy.py:create", ())
+    ours = toy.provenance.model_copy(update={"sources": here.files, "data": here.data})
+    theirs = ours.model_copy(update={"sources": dict.fromkeys(here.files, "0" * 64)})
+    runs = {
+        name: replace(toy, name=name, provenance=of)
+        for name, of in (("same", ours), ("other", theirs))
+    }
+    flown: list[str] = []
+    monkeypatch.setattr(references, "by_time", lambda: runs)
+    monkeypatch.setattr(references, "checkout", lambda: "0" * 40)
+    monkeypatch.setattr(references, "fly", lambda run, _: flown.append(run.name))
+    monkeypatch.setattr(references.documents, "main", lambda _: 0)
+    monkeypatch.setattr(sys, "argv", ["references.py", "--list"])
+    references.main()
+    same, other = capsys.readouterr().out.splitlines()
+    assert same.endswith("  as it was flown")
+    assert other.endswith("  stale")
+    monkeypatch.setattr(sys, "argv", ["references.py"])
+    with pytest.raises(SystemExit):
+        references.main()
+    assert flown == ["other"]
