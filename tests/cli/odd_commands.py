@@ -180,7 +180,7 @@ def log(base: Path, here: Path, rng: Random) -> list[object]:
     (here / "map.yaml").write_text(said, "utf-8", "surrogatepass")
     where = ["px4", "--mass", 1.5] if kind.endswith("ulg") else ["map.yaml"]
     errors = rng.choice(("0.1", "0.1,-0.1", "1e-13", "0.999999", "1e308", "nan", ","))
-    return ["log", kind, "--columns", *where, "--errors", errors, "--out", "found"]
+    return ["log", kind, "--columns", *where, "--errors", errors, "--json"]
 
 
 def study(base: Path, here: Path, rng: Random) -> list[object]:

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from itertools import combinations as pairs_of
-from itertools import pairwise, product
+from itertools import pairwise
 from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import correlate
 
 from faultpath.plugin.results import N_RESAMPLES, Contrast, Estimate, WindowQuantiles, t_quantile
 from faultpath.plugin.system import Frozen, UserError
@@ -100,7 +101,7 @@ def compensation(flight: Flight, sizes: tuple[float, ...] = (0.1, -0.1)) -> Comp
     correct = (0.0, 0.0)
     pairs = [correct]
     for size in sizes:
-        pairs += [pair for pair in product((0.0, size), repeat=2) if pair != correct]
+        pairs += [(0.0, size), (size, 0.0), (size, size)]
     errors = {pair: _error(flight, settled, *pair) for pair in pairs}
     medians = Medians(flight.stretch[settled], list(errors.values()))
     ratios = {pair: medians.log_ratio(errors[pair], errors[correct]) for pair in pairs[1:]}
@@ -188,8 +189,7 @@ class Medians:
     def value(self, errors: Floats, unit: str) -> Estimate:
         """Return the median of positive errors `[N]`."""
         median = self._windows.value(errors, 0.5, unit)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            factor = np.exp(self._half(np.log(median.draws)))
+        factor = np.exp(self._half(np.log(median.draws)))
         return self._estimate(median, median.value / factor, median.value * factor)
 
     def log_ratio(self, one: Floats, two: Floats) -> Estimate:
@@ -229,8 +229,7 @@ def correlation_time(series: Floats, stretch: Floats) -> float:
     sums = np.zeros(len(series))
     for begin, end in pairwise(edges):
         part = above[begin:end] - above.mean()
-        spectrum = np.abs(np.fft.rfft(part, 2 * len(part))) ** 2
-        sums[: len(part)] += np.fft.irfft(spectrum)[: len(part)]
+        sums[: len(part)] += correlate(part, part, method="fft")[len(part) - 1 :]
     if not sums[0] > 0.0:
         return 1.0
     summed: NDArray[np.float64] = 2.0 * np.cumsum(sums / sums[0]) - 1.0

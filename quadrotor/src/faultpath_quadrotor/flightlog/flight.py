@@ -1,6 +1,6 @@
 """A recorded flight on a grid of control intervals."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -59,85 +59,52 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
     if columns.mass_kg is None:
         raise UserError("the mass of the vehicle is not given: add mass_kg to the map, or --mass")
     series = read_series(path, columns)
-    grids, gaps = _grids(path, series)
-    attitude = _attitude(path, columns, series)
-    # NED: half turns about x on both sides, so that z is up in world and body.
-    up = np.array([1.0, -1.0, -1.0]) if columns.frame == "NED" else np.ones(3)
+    grids, gaps = _grids(path, list(series.values()))
+    begin = np.concatenate([grid[:-1] for grid in grids])
+    end = np.concatenate([grid[1:] for grid in grids])
+    attitude = _attitude(path, columns, [series[name] for name in columns.attitude.columns])
     speed = [series[name] for name in columns.velocity.columns]
+    before, after = (_velocity(columns, speed, attitude, time_s) for time_s in (begin, end))
     command = series[columns.thrust.column]
-    # A command holds until the next one: its integral is known at every time.
-    done = np.concatenate([[0.0], np.cumsum(np.diff(command.time_s) * command.values[:-1])])
-    parts: list[tuple[Floats, ...]] = []
-    for number, grid in enumerate(grids):
-        velocity = _on(grid, speed)
-        velocity *= SPEED_UNITS[columns.velocity.unit] * up
-        if columns.velocity.axes == "body":
-            # Rounding may put the grid's end just beyond the last reading.
-            velocity = attitude(np.clip(grid, *attitude.times[[0, -1]])).apply(velocity)
-        middle = 0.5 * (grid[1:] + grid[:-1])
-        last = np.clip(np.searchsorted(command.time_s, grid, side="right") - 1, 0, None)
-        integral = done[last] + (grid - command.time_s[last]) * command.values[last]
-        parts.append(
-            (
-                np.full(len(middle), float(number)),
-                grid[:-1],
-                attitude(middle).as_quat(),
-                np.diff(velocity, axis=0) / INTERVAL_S,
-                0.5 * (velocity[1:] + velocity[:-1]),
-                np.diff(integral) / INTERVAL_S,
-            )
-        )
-    stretch, time_s, quaternion, acceleration, speeds, thrust = (
-        np.concatenate(column) for column in zip(*parts, strict=True)
-    )
-    rotation = Rotation.from_quat(quaternion)
-    needed = acceleration + np.array([0.0, 0.0, GRAVITY_MPS2])
-    explaining = columns.mass_kg * (needed * rotation.apply([0.0, 0.0, 1.0])).sum(1)
-    factor = columns.thrust.newton_per_unit
-    if factor == "fit":
-        power = float((thrust**2).sum())
-        factor = float((thrust * explaining).sum()) / power if power else 0.0
-    carried = float(np.median(factor * thrust)) / (columns.mass_kg * GRAVITY_MPS2)
-    if not 0.5 <= carried <= 2.0:
-        raise UserError(
-            f"{path}: the median thrust is {carried:.3g} times the weight: correct mass_kg, or "
-            "newton_per_unit of the thrust (a factor, or fit)"
-        )
+    # A command holds until the next one: its integral is a straight line up to there.
+    integral = np.concatenate([[0.0], np.cumsum(np.diff(command.time_s) * command.values[:-1])])
+    done, more = (np.interp(time_s, command.time_s, integral) for time_s in (begin, end))
     flight = Flight(
-        stretch=stretch,
-        time_s=time_s,
-        rotation=rotation,
-        acceleration_mps2=acceleration,
-        velocity_mps=speeds,
-        thrust_n=factor * thrust,
+        stretch=np.repeat(np.arange(float(len(grids))), [len(grid) - 1 for grid in grids]),
+        time_s=begin,
+        rotation=attitude(0.5 * (begin + end)),
+        acceleration_mps2=(after - before) / INTERVAL_S,
+        velocity_mps=0.5 * (before + after),
+        thrust_n=(more - done) / INTERVAL_S,
         mass_kg=columns.mass_kg,
         drag_kgps=columns.drag_kgps,
-        newton_per_unit=factor,
+        newton_per_unit=1.0,
         gaps=gaps,
     )
+    factor = _newton_per_unit(path, columns, flight)
+    flight = replace(flight, thrust_n=factor * flight.thrust_n, newton_per_unit=factor)
     _check_order(path, columns, flight)
     if columns.check_frame:
         _check_frame(path, columns.frame, flight)
     return flight
 
 
-def _grids(path: Path, series: Mapping[str, LogColumn]) -> tuple[list[Floats], int]:
+def _grids(path: Path, columns: Sequence[LogColumn]) -> tuple[list[Floats], int]:
     """Return the ends of the control intervals of each stretch, and how many pauses there are."""
-    columns = list(series.values())
     pauses: list[tuple[float, float]] = []
     for column in columns:
         steps = np.diff(column.time_s)
         long = steps > max(_GAP * float(np.median(steps)), 2 * INTERVAL_S)
         pauses += zip(column.time_s[:-1][long], column.time_s[1:][long], strict=True)
-    merged: list[tuple[float, float]] = []
-    for before, after in sorted(pauses):
-        if merged and before < merged[-1][1]:
-            merged[-1] = merged[-1][0], max(merged[-1][1], after)
-        else:
-            merged.append((before, after))
-    starts = [max(float(column.time_s[0]) for column in columns), *(after for _, after in merged)]
     end = min(float(column.time_s[-1]) for column in columns)
-    stops = [*(before for before, _ in merged), end]
+    starts, stops = [max(float(column.time_s[0]) for column in columns)], list[float]()
+    for before, after in sorted(pauses):
+        if before < starts[-1]:  # that is within another pause, or before the flight
+            starts[-1] = max(starts[-1], after)
+        elif before < end:
+            stops.append(before)
+            starts.append(after)
+    stops.append(end)
     grids = [
         start + INTERVAL_S * np.arange(int((stop - start) / INTERVAL_S) + 1, dtype=np.float64)
         for start, stop in zip(starts, stops, strict=True)
@@ -148,7 +115,20 @@ def _grids(path: Path, series: Mapping[str, LogColumn]) -> tuple[list[Floats], i
             f"{path}: no two seconds of flight in which all columns have readings: look for gaps, "
             "and whether the columns are of one flight"
         )
-    return grids, len(merged)
+    return grids, len(starts) - 1
+
+
+def _velocity(
+    columns: ColumnMap, speed: Sequence[LogColumn], attitude: Slerp, time_s: Floats
+) -> Floats:
+    """Return the velocity in the world, z up, at some times `[T, 3]`."""
+    velocity = _on(time_s, speed) * SPEED_UNITS[columns.velocity.unit]
+    if columns.frame == "NED":
+        velocity *= np.array([1.0, -1.0, -1.0])
+    if columns.velocity.axes == "world":
+        return velocity
+    # Rounding may put the grid's end just beyond the last reading.
+    return attitude(np.clip(time_s, *attitude.times[[0, -1]])).apply(velocity)
 
 
 def _on(time_s: Floats, columns: Sequence[LogColumn]) -> Floats:
@@ -156,27 +136,40 @@ def _on(time_s: Floats, columns: Sequence[LogColumn]) -> Floats:
     return np.stack([np.interp(time_s, column.time_s, column.values) for column in columns], axis=1)
 
 
-def _attitude(path: Path, columns: ColumnMap, series: Mapping[str, LogColumn]) -> Slerp:
-    components = [series[name] for name in columns.attitude.columns]
+def _attitude(path: Path, columns: ColumnMap, components: Sequence[LogColumn]) -> Slerp:
     time_s = components[0].time_s
     quaternion = _on(time_s, components)
-    lengths = np.linalg.norm(quaternion, axis=1)
-    if abs(float(np.median(lengths)) - 1) > 0.02:
+    off = np.abs(np.linalg.norm(quaternion, axis=1) - 1)
+    if np.median(off) > 0.02 or off.max() > 0.5:
+        worst = int(off.argmax())
+        length = np.linalg.norm(quaternion[worst])
         raise UserError(
-            f"{path}: the attitude has the length {np.median(lengths):.3g}, and a unit quaternion "
-            "has 1: correct its columns"
-        )
-    if (odd := np.flatnonzero(abs(lengths - 1) > 0.5)).size:
-        raise UserError(
-            f"{path}: the attitude has the length {lengths[odd[0]]:.3g} at its reading {odd[0]}, "
-            "and a unit quaternion has 1: leave such cells empty"
+            f"{path}: the attitude has the length {length:.3g} at its reading {worst}, and a unit "
+            "quaternion has 1: correct its columns, or leave such cells empty"
         )
     if columns.attitude.order == "wxyz":
         quaternion = quaternion[:, [1, 2, 3, 0]]
-    if columns.frame == "NED":
-        x, y, z, w = quaternion.T
-        quaternion = np.stack([x, -y, -z, w], axis=1)
+    if columns.frame == "NED":  # half turns about x on both sides: z is up in world and body
+        quaternion = quaternion * np.array([1.0, -1.0, -1.0, 1.0])
     return Slerp(time_s, Rotation.from_quat(quaternion))
+
+
+def _newton_per_unit(path: Path, columns: ColumnMap, flight: Flight) -> float:
+    """Return the thrust of one unit of the command, N."""
+    factor = columns.thrust.newton_per_unit
+    if factor == "fit":
+        needed = flight.acceleration_mps2 + np.array([0.0, 0.0, GRAVITY_MPS2])
+        axis = flight.rotation.apply([0.0, 0.0, 1.0])
+        explaining = flight.mass_kg * (needed * axis).sum(1)
+        power = float((flight.thrust_n**2).sum())
+        factor = float((flight.thrust_n * explaining).sum()) / power if power else 0.0
+    carried = float(np.median(factor * flight.thrust_n)) / (flight.mass_kg * GRAVITY_MPS2)
+    if not 0.5 <= carried <= 2.0:
+        raise UserError(
+            f"{path}: the median thrust is {carried:.3g} times the weight: correct mass_kg, or "
+            "newton_per_unit of the thrust (a factor, or fit)"
+        )
+    return factor
 
 
 def _check_order(path: Path, columns: ColumnMap, flight: Flight) -> None:

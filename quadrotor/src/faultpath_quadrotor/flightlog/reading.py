@@ -5,26 +5,20 @@ from dataclasses import dataclass
 from importlib import resources
 from io import BytesIO
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeAlias, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.csv as csv
-from pydantic import Field
+from pydantic import PositiveFloat
 
 from faultpath.plugin.data import Unreadable, read_table
 from faultpath.plugin.system import Frozen, Misread, UserError, contents, read_yaml, unknown
 from faultpath_quadrotor.flightlog.bags import SUFFIXES, Floats, read_bag, why
 
-_LONGEST_S = 1e12
-"""A time of more seconds is no time; those since 1970 are a thousandth of it."""
-_LARGEST = 1e9
-"""A million metres a second, in the smallest unit."""
-_NO_BRACKETS = str.maketrans("[],", "   ")
-HEAVIEST_KG = 1e6
-Mass: TypeAlias = Annotated[float, Field(ge=1e-6, le=HEAVIEST_KG)]
-Drag: TypeAlias = Annotated[float, Field(ge=1e-9, le=1e6)]
-Factor: TypeAlias = Annotated[float, Field(ge=-1e9, le=1e9)]
+_LARGEST = 1e12
+"""No time in s and no value is larger; seconds since 1970 are a thousandth of it."""
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 SPEED_UNITS = {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3}
 PX4 = "px4"
@@ -61,7 +55,7 @@ class Thrust(Frozen):
     """The collective thrust that was commanded."""
 
     column: str
-    newton_per_unit: Factor | Literal["fit"] = 1.0
+    newton_per_unit: float | Literal["fit"] = 1.0
     """`fit` chooses the factor with which thrust explains the motion best, as for normalised
     commands; the sign is then found as well."""
 
@@ -77,8 +71,8 @@ class ColumnMap(Frozen):
     check_frame: bool = True
     """NED with a body whose z axis points down, or ENU with one whose z axis points up; with
     `check_frame` only where the motion does not contradict it."""
-    mass_kg: Mass | None = None
-    drag_kgps: tuple[Drag, Drag, Drag] | None = None
+    mass_kg: PositiveFloat | None = None
+    drag_kgps: tuple[PositiveFloat, PositiveFloat, PositiveFloat] | None = None
     """Linear drag along the body's axes; `None`: what thrust and weight leave is one force."""
 
     @property
@@ -127,35 +121,44 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, LogColumn]:
             "bag: convert it to one"
         )
     series: dict[str, LogColumn] = {}
-    for name, (time_s, values) in reader(path, columns).items():
-        for what, numbers, most in (("times", time_s, _LONGEST_S), ("values", values, _LARGEST)):
-            if (odd := np.flatnonzero(np.abs(numbers) > most)).size:  # infinite ones too
-                raise UserError(
-                    f"{path}: the {what} of column '{name}' reach {numbers[odd[0]]:g} at its "
-                    f"reading {odd[0]}, which no flight does: correct the log, or leave the cell "
-                    "empty"
-                )
-        there = np.isfinite(time_s) & np.isfinite(values)  # what is empty is not a number
-        times, values = time_s[there], values[there]
-        if len(times) < 2:
-            raise UserError(f"{path}: column '{name}' has fewer than two numbers: name another")
-        if (back := np.flatnonzero(np.diff(times) < 0)).size:
-            raise UserError(
-                f"{path}: the times of column '{name}' go back at its reading {back[0] + 1}: sort "
-                "the rows, name the column of time, or for a bag leave time out of the map"
-            )
-        times, first = np.unique(times, return_index=True)
-        rate_hz = (len(times) - 1) / max(float(times[-1] - times[0]), 1e-9)
-        if not 2 <= rate_hz <= 20_000:
-            raise UserError(
-                f"{path}: column '{name}' has {rate_hz:.3g} readings a second, which no flight log "
-                "has: correct the unit of time"
-            )
-        series[name] = LogColumn(times, values[first])
+    for name, (times, values) in reader(path, columns).items():
+        there = ~np.isnan(times) & ~np.isnan(values)  # what is empty is not a number
+        column = LogColumn(times[there], values[there])
+        if wrong := _wrong(column):
+            raise UserError(f"{path}: column '{name}' {wrong}")
+        time_s, first = np.unique(column.time_s, return_index=True)
+        series[name] = LogColumn(time_s, column.values[first])
     return series
 
 
+def _wrong(column: LogColumn) -> str:
+    """Return in words what no log of a flight has; empty where there is nothing of that."""
+    times, values = column.time_s, column.values
+    if len(times) < 2:
+        return "has fewer than two numbers: name another"
+    for numbers in (times, values):
+        if (odd := np.flatnonzero(np.abs(numbers) > _LARGEST)).size:  # infinite ones too
+            return (
+                f"reaches {numbers[odd[0]]:g} at its reading {odd[0]}, which no flight does: "
+                "correct the log, or leave the cell empty"
+            )
+    if (back := np.flatnonzero(np.diff(times) < 0)).size:
+        return (
+            f"has times that go back at its reading {back[0] + 1}: sort the rows, name the column "
+            "of time, or for a bag leave time out of the map"
+        )
+    rate_hz = (len(times) - 1) / max(float(times[-1] - times[0]), 1e-9)
+    if not 2 <= rate_hz <= 20_000:
+        return (
+            f"has {rate_hz:.3g} readings a second, which no flight log has: correct the unit of "
+            "time"
+        )
+    return ""
+
+
 def _table(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
+    if columns.time is None:
+        raise UserError(f"{path}: the map names no time column: add time: {{column: …, unit: s}}")
     try:
         data = contents(path)
         parquet = path.suffix.lower() == ".parquet"
@@ -168,53 +171,30 @@ def _table(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
             f"{path}, line {odd}: a quote opens a cell that does not end on the line, and would "
             "swallow the rows below: correct the line"
         )
-    if columns.time is None:
-        raise UserError(f"{path}: the map names no time column: add time: {{column: …, unit: s}}")
-    numbers: dict[str, Floats] = {}
-    for name in (columns.time.column, *columns.names):
-        whole, _, place = name.removesuffix("]").rpartition("[")
-        listed = (
-            name not in table.column_names and place.isdecimal() and whole in table.column_names
-        )
-        of = whole if listed else name
-        if of not in table.column_names:
-            raise UserError(f"{path}: {unknown('column', of, table.column_names)}")
-        if table.column_names.count(of) > 1:
-            raise UserError(f"{path}: two columns are called '{of}': give each a name of its own")
-        try:
-            numbers[name] = _listed(table[of], int(place)) if listed else _plain(table[of])
-        except (pa.ArrowException, ValueError) as error:
-            raise UserError(
-                f"{path}: column '{of}' holds {error}: name another, or correct it"
-            ) from None
-    time_s = numbers[columns.time.column] * TIME_UNITS[columns.time.unit]
-    return {name: (time_s, numbers[name]) for name in columns.names}
+    time_s = _numbers(path, table, columns.time.column) * TIME_UNITS[columns.time.unit]
+    return {name: (time_s, _numbers(path, table, name)) for name in columns.names}
 
 
-def _plain(column: Any) -> Floats:
+def _numbers(path: Path, table: pa.Table, name: str) -> Floats:
+    """Return a column, or with a name such as `v[2]` the third number of each of its lists."""
+    whole, _, place = name.removesuffix("]").rpartition("[")
+    listed = name not in table.column_names and place.isdecimal() and whole in table.column_names
+    of = whole if listed else name
+    if of not in table.column_names:
+        raise UserError(f"{path}: {unknown('column', of, table.column_names)}")
+    if table.column_names.count(of) > 1:
+        raise UserError(f"{path}: two columns are called '{of}': give each a name of its own")
+    kind = table[of].type
     try:
-        if pa.types.is_boolean(column.type):
+        if pa.types.is_boolean(kind):
             raise pa.ArrowInvalid
+        column = pc.list_element(table[of], int(place)) if listed else table[of]
         return column.cast(pa.float64()).to_numpy()
     except pa.ArrowException:
-        raise ValueError(f"{column.type} and no numbers (of a list give one, as v[0])") from None
-
-
-def _listed(column: Any, place: int) -> Floats:
-    """Return a number of each cell, such as `[1.0, 2.0]` or, row after row, `[[1, 0], [0, 1]]`.
-
-    `ValueError` says what is there instead.
-    """
-    cells = [str(cell or "").translate(_NO_BRACKETS).split() for cell in column.to_pylist()]
-    length = max(map(len, cells), default=0)
-    if lengths := {len(cell) for cell in cells} - {0, length}:
-        raise ValueError(f"lists of {length} and of {min(lengths)} numbers")
-    if place >= length:
-        raise ValueError(f"lists of {length} numbers, of which none is [{place}], counted from 0")
-    try:
-        return np.array([cell[place] if cell else "nan" for cell in cells], np.float64)
-    except ValueError as error:
-        raise ValueError(f"no lists of numbers ({error})") from None
+        raise UserError(
+            f"{path}: column '{of}' holds {kind} and no numbers for {name}: name another, or "
+            "correct it"
+        ) from None
 
 
 def _bag(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
@@ -238,17 +218,13 @@ def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         raise UserError(
             f"{path}: cannot be read as a ULog file ({why(error)}): give a whole log"
         ) from None
-    # Of several messages with one name the first counts.
-    messages = {message.name: message.data for message in reversed(log.data_list)}
     series: dict[str, tuple[Floats, Floats]] = {}
+    for message in reversed(log.data_list):  # of several messages with one name the first counts
+        if "timestamp" in message.data:
+            time_s = np.asarray(message.data["timestamp"], np.float64) * TIME_UNITS["us"]
+            for field, values in message.data.items():
+                series[f"{message.name}.{field}"] = time_s, np.asarray(values, np.float64)
     for name in columns.names:
-        topic, _, field = name.partition(".")
-        if topic not in messages:
-            raise UserError(f"{path}: {unknown('message', topic, sorted(messages))}")
-        if field not in messages[topic]:
-            raise UserError(f"{path}: {unknown('field', name, sorted(messages[topic]))}")
-        if "timestamp" not in messages[topic]:
-            raise UserError(f"{path}: message '{topic}' has no timestamp: record it with its times")
-        time_s = np.asarray(messages[topic]["timestamp"], dtype=np.float64) * TIME_UNITS["us"]
-        series[name] = time_s, np.asarray(messages[topic][field], dtype=np.float64)
-    return series
+        if name not in series:
+            raise UserError(f"{path}: {unknown('field', name, sorted(series))}")
+    return {name: series[name] for name in columns.names}
