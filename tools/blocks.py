@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from flown_code import ROOT, changed, flown_by
 from pydantic import BaseModel, ValidationError
@@ -38,6 +38,14 @@ RUNS: dict[str, tuple[type[BaseModel], tuple[str, ...]]] = {
 
 class Wrong(Exception):
     """A mistake that the editor of the documents has to correct."""
+
+
+class Picture(NamedTuple):
+    """A picture that follows from numbers: name of its file, its text for readers, content."""
+
+    name: str
+    text: str
+    svg: str
 
 
 @dataclass(frozen=True)

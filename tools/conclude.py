@@ -61,19 +61,9 @@ def reversal_map(folder: Path) -> MapRecord:
     place = str(ROOT / question.system) if ".py:" in question.system else question.system
     spec = SystemSpec(name=place, options=question.options)
     system = load_system(spec)
-    request = MapQuestion(
-        baseline=question.baseline,
-        repair=question.repair,
-        fault=question.fault,
-        against=question.against,
-        up_to=question.up_to,
-        points=question.points,
-        mean=question.means,
-        spread=question.spreads,
-        correlation=question.correlation,
-        scenes=question.n_scenes,
-        seeds=question.seeds,
-    )
+    # What a map was asked is in `question`: the request only makes a plan of this system.
+    same = question.model_dump(include={*MapQuestion.model_fields})
+    request = MapQuestion(**same, scenes=question.n_scenes)
     plan = plan_map(system, spec, request, library_of(system, question.library))
     points = [
         (round(x / question.up_to * UNITS), round(y / question.up_to * UNITS))

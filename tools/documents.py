@@ -3,12 +3,12 @@
     python tools/documents.py                          write what is stale
     python tools/documents.py --check                  exit 1 when something is
     python tools/documents.py --take NAME=RUN_FOLDER   make a run folder a reference run first
-    python tools/documents.py --paper RUN_FOLDER       ship a run of the whole paper first
+    python tools/documents.py --take paper=RUN_FOLDER  ship a run of the whole paper first
     python tools/documents.py --conclude               decide all reference runs anew first
     python tools/documents.py --images                 make the pictures too, with Chromium
 
 A block stands between `<!-- begin:KIND:ARGUMENT -->` and `<!-- end:KIND:ARGUMENT -->`, each on a
-line of its own; `BLOCKS` lists the kinds. `DRAWINGS` and `PAGES` are files that are made whole.
+line of its own; `BLOCKS` and `PICTURES` list the kinds. `PAGES` are files that are made whole.
 `docs/reference/README.md` says what a reference run is.
 """
 
@@ -26,7 +26,7 @@ import model_blocks
 import paper_blocks
 import run_blocks
 import state_blocks
-from blocks import IMAGES, REFERENCE, ROOT, RUNS, Wrong, copied, kind_of, load
+from blocks import IMAGES, REFERENCE, ROOT, RUNS, Picture, Wrong, copied, kind_of, load
 from pictures import digest, made_from, make_images, name_of
 
 from faultpath.trials.store.signals import SIGNALS
@@ -43,10 +43,7 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
     "picture": run_blocks.picture,
     "times": run_blocks.times,
     "map:command": run_blocks.command,
-    "map:terminal": run_blocks.map_terminal,
-    "map:picture": run_blocks.map_picture_of,
     "map:said": run_blocks.map_sentences,
-    "map:turns": run_blocks.map_turns,
     "code": run_blocks.code,
     "template": run_blocks.template,
     "found": found_blocks.table,
@@ -61,13 +58,11 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
     "paper:apart": paper_blocks.not_confirmed,
     "paper:facts": paper_blocks.facts_in_short,
     "paper:origin": paper_blocks.origin,
-    "paper:picture": paper_blocks.picture,
     "carry:said": carry_blocks.verdicts,
     "carry:matrix": carry_blocks.matrix,
     "carry:factors": carry_blocks.factors,
     "carry:cost": carry_blocks.cost,
     "state:reading": state_blocks.reading,
-    "state:picture": state_blocks.picture,
     "state:effects": state_blocks.effects,
     "state:rest": state_blocks.rest,
     "state:success": state_blocks.success,
@@ -82,12 +77,12 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
 }
 """Functions that return the text of a block from the other words of its name, by its kind."""
 
-DRAWINGS: Mapping[str, Callable[..., tuple[str, str]]] = {
-    "map:picture": run_blocks.map_drawing,
-    "paper:picture": paper_blocks.drawing,
-    "state:picture": state_blocks.drawing,
+PICTURES: Mapping[str, Callable[..., Picture]] = {
+    "map:picture": run_blocks.map_picture_of,
+    "paper:picture": paper_blocks.picture,
+    "state:picture": state_blocks.picture,
 }
-"""Functions that return file name and content of the picture that a block shows."""
+"""Functions that return the picture that a block shows."""
 
 PAGES: Sequence[Callable[[], Mapping[Path, str]]] = (
     paper_blocks.elsewhere,
@@ -112,15 +107,21 @@ def split(name: str) -> tuple[str, list[str]]:
     words = name.split(":")
     for count in (1, 2):
         kind = ":".join(words[:count])
-        if kind in BLOCKS:
+        if kind in BLOCKS or kind in PICTURES:
             return kind, words[count:]
-    raise Wrong(f"there is no block '{words[0]}' in '{name}': use {', '.join(BLOCKS)}")
+    raise Wrong(
+        f"there is no block '{words[0]}' in '{name}': use {', '.join([*BLOCKS, *PICTURES])}"
+    )
 
 
 def fill(name: str, document: Path) -> str:
     """Return the text of the block `name` of a document."""
     kind, words = split(name)
-    text = BLOCKS[kind](*words)
+    if kind in PICTURES:
+        picture = PICTURES[kind](*words)
+        text = f"![{picture.text}]({{images}}/{picture.name})"
+    else:
+        text = BLOCKS[kind](*words)
     folders = {"{docs}": ROOT / "docs", "{images}": IMAGES, "{reference}": REFERENCE}
     for word, folder in folders.items():
         text = text.replace(word, Path(os.path.relpath(folder, document.parent)).as_posix())
@@ -155,8 +156,8 @@ def photographs() -> list[tuple[str, str]]:
 def generated() -> Mapping[Path, str]:
     """Return every file that follows from numbers, by its path."""
     files = {path: filled(path.read_text("utf-8"), path) for path in documents()}
-    drawn = [DRAWINGS[kind](*words) for kind, words in blocks_shown() if kind in DRAWINGS]
-    files |= {IMAGES / name: content for name, content in drawn}
+    drawn = (PICTURES[kind](*words) for kind, words in blocks_shown() if kind in PICTURES)
+    files |= {IMAGES / picture.name: picture.svg for picture in drawn}
     for page in PAGES:
         files |= page()
     return files
@@ -201,6 +202,9 @@ def take(argument: str) -> None:
     if not separator or not name:
         raise Wrong(f"--take {argument}: give NAME=FOLDER of a finished run")
     source = Path(folder)
+    if name == "paper":
+        paper_blocks.take(source)
+        return
     signals = (SIGNALS,) if (source / SIGNALS).is_file() else ()
     copied((*RUNS[kind_of(source)][1], *signals), source, REFERENCE / name)
     load.cache_clear()
@@ -214,7 +218,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--check", action="store_true", help="exit 1 when something is stale")
     parser.add_argument("--images", action="store_true", help="make the pictures too")
     parser.add_argument("--conclude", action="store_true", help="decide stored runs anew first")
-    parser.add_argument("--paper", type=Path, metavar="RUN_FOLDER")
     parser.add_argument("--take", action="append", default=[], metavar="NAME=RUN_FOLDER")
     options = parser.parse_args(arguments)
     try:
@@ -225,8 +228,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return 1 if problems else 0
         for argument in options.take:
             take(argument)
-        if options.paper is not None:
-            paper_blocks.take(options.paper)
         if options.conclude:
             from conclude import conclude_all
 

@@ -1,17 +1,14 @@
 """Blocks of the page about a latent world model with one camera."""
 
-import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-from blocks import ROOT, Wrong
+from blocks import effect_entry, figures_of, words_grid
 
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.wording import counted
-from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
-from faultpath.decisions.tables.markdown import grid
+from faultpath.decisions.tables import MISSING, Line, line
 
-PLACE = ROOT / "experiments" / "latent-camera"
 SHARED, ALONE = "shared", "observation"
 PATHS = {
     "correct": "no fault",
@@ -39,21 +36,7 @@ SIDES = {1: "ahead", -1: "behind", 0: "no difference detected"}
 
 
 def _read(name: str) -> Any:
-    file = PLACE / f"{name}.json"
-    if not file.is_file():
-        raise Wrong(f"{file.relative_to(ROOT)} is missing: fly it as {PLACE.name}/README.md says")
-    return json.loads(file.read_text("utf-8"))
-
-
-def _effect(effect: Sequence[float]) -> Entry:
-    """Return a difference in percentage points with its interval, and whether it is significant."""
-    value, low, high, sign = effect
-    ends = ", ".join(wording.signed(end, 1) for end in (low, high))
-    return Entry(text=f"{wording.signed(value, 1)} [{ends}]", detected=bool(sign))
-
-
-def _grid(corner: str, columns: Sequence[str], lines: Sequence[Line]) -> str:
-    return grid(Table(corner=corner, columns=tuple(columns), words=tuple(columns), lines=(*lines,)))
+    return figures_of("latent-camera", f"{name}.json")
 
 
 def _percent(share: float) -> str:
@@ -78,7 +61,7 @@ def success(rooms: str) -> str:
         line(FAULTS.get(fault, ""), PATHS[path], *(_percent(row[n]) for n in ("plain", *repairs)))
         for (fault, path), row in rates.items()
     ]
-    return _grid("error of the camera", ("in", "plain", *repairs), lines)
+    return words_grid("error of the camera", ("in", "plain", *repairs), lines)
 
 
 def cancelled(rooms: str) -> str:
@@ -86,18 +69,18 @@ def cancelled(rooms: str) -> str:
     lines: list[Line] = []
     for row in _read(f"{rooms}-held-out")["baseline"]:
         rates = map(_percent, reversed(row["success"]))
-        lines.append(line(FAULTS[row["fault"]], *rates, _effect(row["effect"])))
+        lines.append(line(FAULTS[row["fault"]], *rates, effect_entry(row["effect"])))
     columns = (f"{PATHS[ALONE]}, %", f"{PATHS[SHARED]}, %", "difference, pp")
-    return _grid("error of the camera", columns, lines)
+    return words_grid("error of the camera", columns, lines)
 
 
 def effects(rooms: str) -> str:
     """Return repair minus baseline, audit by audit and path by path."""
     lines: list[Line] = []
     for audit in audits_of(rooms):
-        differences = (_effect(audit["effects"][path]) for path in PATHS)
+        differences = (effect_entry(audit["effects"][path]) for path in PATHS)
         lines.append(line(audit["repair"], FAULTS[audit["fault"]], *differences))
-    return _grid("repair", ("error of the camera", *PATHS.values()), lines)
+    return words_grid("repair", ("error of the camera", *PATHS.values()), lines)
 
 
 def said(rooms: str) -> str:
@@ -158,7 +141,7 @@ def stops(library: str) -> str:
         "by how often the live picture alone is wrong",
         "by how often both are",
     )
-    return _grid("repair", columns, lines)
+    return words_grid("repair", columns, lines)
 
 
 def flown(rooms: str) -> str:
@@ -188,7 +171,7 @@ def moves(rooms: str) -> str:
         *MISSED.values(),
         *IMAGINED.values(),
     )
-    return _grid("variant", columns, lines)
+    return words_grid("variant", columns, lines)
 
 
 KIND = {

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 import blocks
-from blocks import REFERENCE, ROOT, Run, Wrong, copied, parsed, read_run
+from blocks import REFERENCE, ROOT, Picture, Run, Wrong, copied, parsed, read_run
 from faultpath_paper.answers import RUN, Reproduction
 from faultpath_paper.cells import Setting
 from faultpath_paper.central import (
@@ -145,17 +145,10 @@ def not_confirmed() -> str:
     )
 
 
-def picture(part: str) -> str:
+def picture(part: str) -> Picture:
     """Return the picture of one of the paper's figures."""
-    record = load().record
-    titles = {exhibit.name: exhibit.title for exhibit in (*record.tables, *record.figures)}
-    return f"![{titles[part]}]({{images}}/paper-{part}.svg)"
-
-
-def drawing(part: str) -> tuple[str, str]:
-    """Return file name and content of that picture."""
     figure = next(figure for figure in load().record.figures if figure.name == part)
-    return f"paper-{part}.svg", standalone(sweep_plot(figure))
+    return Picture(f"paper-{part}.svg", figure.title, standalone(sweep_plot(figure)))
 
 
 def standalone(drawing: str) -> str:

@@ -4,8 +4,7 @@ import hashlib
 import json
 import shutil
 from base64 import b64encode
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -13,7 +12,7 @@ from blocks import IMAGES, REFERENCE, Wrong
 from run_blocks import PARTS
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser
 
 MARGIN = 12.0
 SCHEMES: tuple[Literal["light"], Literal["dark"]] = ("light", "dark")
@@ -75,37 +74,30 @@ def picture(browser: "Browser", run: str, part: str) -> str:
     shots: list[str] = []
     size = (0.0, 0.0)
     for scheme in SCHEMES:
-        with _opened(browser, run, scheme) as page:
-            elements = page.query_selector_all(PARTS[part][1])
-            areas = [box for element in elements if (box := element.bounding_box())]
-            areas = [box for box in areas if box["height"] > 0]
-            if not areas:
-                raise Wrong(f"the report of {run} has no {part}")
-            clip = _around(areas, MARGIN)
-            shot = b64encode(page.screenshot(full_page=True, clip=clip)).decode()
-            shots.append(page.evaluate(_SMALL, shot))
-            size = clip["width"], clip["height"]
+        page = browser.new_page(
+            viewport={"width": 1080, "height": 900},
+            color_scheme=scheme,
+            reduced_motion="reduce",
+            offline=True,
+            device_scale_factor=2,
+            bypass_csp=True,  # the page's policy refuses the style that is added below
+        )
+        page.goto(report(run).as_uri())
+        if page.query_selector("#viewer-failed"):  # the viewer unpacks its data first
+            page.wait_for_selector("#viewer[data-ready]")
+        # What stays at the window's edge would lie across the picture.
+        page.add_style_tag(content=".contents { position: static }")
+        elements = page.query_selector_all(PARTS[part][1])
+        areas = [box for element in elements if (box := element.bounding_box())]
+        areas = [box for box in areas if box["height"] > 0]
+        if not areas:
+            raise Wrong(f"the report of {run} has no {part}")
+        clip = _around(areas, MARGIN)
+        shot = b64encode(page.screenshot(full_page=True, clip=clip)).decode()
+        shots.append(page.evaluate(_SMALL, shot))
+        size = clip["width"], clip["height"]
+        page.close()
     return twice(size, *shots)
-
-
-@contextmanager
-def _opened(browser: "Browser", run: str, scheme: Literal["light", "dark"]) -> "Iterator[Page]":
-    context = browser.new_context(
-        viewport={"width": 1080, "height": 900},
-        color_scheme=scheme,
-        reduced_motion="reduce",
-        offline=True,
-        device_scale_factor=2,
-        bypass_csp=True,  # the page's policy refuses the style that is added below
-    )
-    page = context.new_page()
-    page.goto(report(run).as_uri())
-    if page.query_selector("#viewer-failed"):  # the viewer unpacks its data first
-        page.wait_for_selector("#viewer[data-ready]")
-    # What stays at the window's edge would lie across the picture.
-    page.add_style_tag(content=".contents { position: static }")
-    yield page
-    context.close()
 
 
 def twice(size: tuple[float, float], light: str, dark: str) -> str:

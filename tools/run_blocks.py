@@ -5,12 +5,11 @@ import shlex
 from pathlib import Path
 from typing import Any
 
-from blocks import ROOT, Run, Wrong, difference, fence, load, printed
+from blocks import ROOT, Picture, Run, Wrong, difference, fence, load, printed
 
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.markdown import grid
-from faultpath.report import map as map_report
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.tables import DIFFERENCE, by_quantity
 from faultpath.report.terminal import decision
@@ -152,26 +151,11 @@ def map_sentences(name: str) -> str:
     return "\n>\n".join(lines) + f"\n\n{run.flown}"
 
 
-def map_turns(name: str) -> str:
-    """Return where the ranking of a map reverses."""
-    flips = next(table for table in map_report.tables(load(name).record) if table.name == "flips")
-    return "\n\n".join([grid(flips), *flips.notes])
-
-
-def map_terminal(name: str) -> str:
-    """Return a map as the command line prints it."""
-    return printed(map_report.shown(load(name).record))
-
-
-def map_picture_of(name: str, part: str) -> str:
+def map_picture_of(name: str, part: str) -> Picture:
     """Return the picture of a map, or of its success by correlation."""
-    return f"![{load(name).record.headline}]({{images}}/{name}-{part}.svg)"
-
-
-def map_drawing(name: str, part: str) -> tuple[str, str]:
-    """Return file name and content of that picture."""
-    drawing = MAP_PICTURES[part](load(name).record)
-    return f"{name}-{part}.svg", drawing.render(standalone=True) + "\n"
+    record = load(name).record
+    svg = MAP_PICTURES[part](record).render(standalone=True) + "\n"
+    return Picture(f"{name}-{part}.svg", record.headline, svg)
 
 
 def code(place: str, part: str, *words: str) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from blocks import effect_entry, figures_of, words_grid
+from blocks import Picture, effect_entry, figures_of, words_grid
 
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.wording import counted
@@ -125,13 +125,8 @@ def _isolated(audits: Sequence[Mapping[str, Any]], place: str) -> str:
     )
 
 
-def picture() -> str:
+def picture() -> Picture:
     """Return the picture of the audits on fresh scenes."""
-    return f"![Repairs under faults of sensors, on fresh scenes]({{images}}/{STUDY}.svg)"
-
-
-def drawing() -> tuple[str, str]:
-    """Return file name and content of that picture."""
     audits = audits_of("sensors")
     rows = [
         (audit, name) for audit in audits for name in (SHARED, *audit["turns"]) if name != "correct"
@@ -156,7 +151,8 @@ def drawing() -> tuple[str, str]:
         side = {1: " repair", -1: " baseline", 0: ""}[sign]
         svg.line((axis(low), y), (axis(high), y), f"range{side}")
         svg.circle((axis(value), y), 4.5, f"dot{side}" if side else "dot open")
-    return f"{STUDY}.svg", svg.render(standalone=True) + "\n"
+    text = "Repairs under faults of sensors, on fresh scenes"
+    return Picture(f"{STUDY}.svg", text, svg.render(standalone=True) + "\n")
 
 
 def errors(library: str) -> str:

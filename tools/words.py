@@ -1,22 +1,16 @@
 """Count words that the project does not use, and fail where there are more than there were.
 
-    python tools/words.py               compare with the numbers in tools/words.json
-    python tools/words.py --files       list the files that have most of them
-    python tools/words.py --lower       write the numbers of today, where they are lower
-
 Local names are nouns of what they hold, and docstrings begin with a verb or the noun itself.
 """
 
-import argparse
 import ast
 import json
 import sys
-from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-MOST = ROOT / "tools" / "words.json"
+MOST = json.loads((ROOT / "tools" / "words.json").read_text("utf-8"))
 ROOMS = ("src", "quadrotor/src", "paper/src", "tools", "benchmarks")
 NAMES = {"each", "found", "asked", "given", "held", "said", "told", "made", "wanted", "now"}
 OPENINGS = ("What", "Of")
@@ -38,30 +32,17 @@ def occurrences(path: Path) -> Iterator[tuple[str, int, str]]:
 
 def main() -> int:
     """Compare the counts with the most that there may be; return the exit status."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--files", action="store_true", help="list files with their counts")
-    parser.add_argument("--lower", action="store_true", help="write lower numbers")
-    options = parser.parse_args()
-    places = [
-        (path.relative_to(ROOT), *occurrence)
-        for room in ROOMS
-        for path in sorted((ROOT / room).rglob("*.py"))
-        for occurrence in occurrences(path)
-    ]
-    counts = Counter(kind for _, kind, _, _ in places)
-    if options.files:
-        for path, count in Counter(path for path, *_ in places).most_common():
-            print(f"{count:5} {path}")
-    most: dict[str, int] = json.loads(MOST.read_text("utf-8"))
-    if options.lower:
-        most = {kind: min(number, counts[kind]) for kind, number in most.items()}
-        MOST.write_text(json.dumps(most) + "\n", "utf-8")
-    for kind, number in most.items():
-        print(f"{kind}: {counts[kind]}, at most {number}")
-    if more := [kind for kind, number in most.items() if counts[kind] > number]:
-        words = ", ".join(sorted(NAMES))
-        print(f"More {' and '.join(more)} than before: name what is held, not {words}.")
-    return bool(more)
+    places: dict[str, list[str]] = {kind: [] for kind in MOST}
+    for path in (path for room in ROOMS for path in sorted((ROOT / room).rglob("*.py"))):
+        for kind, number, word in occurrences(path):
+            places[kind].append(f"{path.relative_to(ROOT)}:{number}: {word}")
+    status = 0
+    for kind, most in MOST.items():
+        print(f"{kind}: {len(places[kind])}, at most {most}")
+        if len(places[kind]) > most:
+            print(*places[kind], f"Name what is held, not {', '.join(sorted(NAMES))}.", sep="\n")
+            status = 1
+    return status
 
 
 if __name__ == "__main__":

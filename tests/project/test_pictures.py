@@ -38,7 +38,7 @@ def test_labels_fit_and_colours_follow_the_reader() -> None:
 
 
 def test_a_figure_of_the_paper_stands_alone_under_its_title() -> None:
-    _, text = paper_blocks.drawing("figure-3")
+    text = paper_blocks.picture("figure-3").svg
     root = ElementTree.fromstring(text)
     heads = [label.text for label in root.iter(f"{SVG}text") if label.get("class") == "head"]
     assert heads == [root.findtext(f"{SVG}title")]
