@@ -3,7 +3,7 @@
 import json
 import shutil
 import sys
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from io import StringIO
@@ -140,6 +140,14 @@ def words_grid(corner: str, columns: Sequence[str], lines: Sequence[Line]) -> st
     """Return a table in Markdown whose columns all stand to the left."""
     heads = tuple(columns)
     return grid(Table(corner=corner, columns=heads, words=heads, lines=tuple(lines)))
+
+
+def pipes(
+    columns: Sequence[str], rows: Iterable[Sequence[str]], words: Collection[int] = (0,)
+) -> str:
+    """Return a table of cells that are Markdown already; columns of `words` stand to the left."""
+    sides = [":--" if index in words else "--:" for index in range(len(columns))]
+    return "\n".join(f"| {' | '.join(row)} |" for row in (columns, sides, *rows))
 
 
 def printed(shown: RenderableType) -> str:

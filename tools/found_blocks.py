@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from blocks import Wrong, difference, load
+from blocks import Wrong, difference, load, pipes
 from latent_blocks import FAULTS
 from latent_blocks import audits_of as audits_of_rooms
 from state_blocks import PLACES, audits_of
@@ -97,13 +97,8 @@ def verdict(alone: Effect, shared: Effect, turn: str) -> str:
 
 def table() -> str:
     """Return all audits: without a fault, at the module that tells most, and shared."""
-    return "\n".join(
-        [
-            "| system, repair | no fault | fault at one module | fault shared | isolated test |",
-            "| :-- | --: | --: | --: | :-- |",
-            *map(_row, grouped()),
-        ]
-    )
+    columns = ("system, repair", "no fault", "fault at one module", "fault shared", "isolated test")
+    return pipes(columns, map(_row, grouped()), words=(0, 4))
 
 
 def counts() -> str:
@@ -113,11 +108,11 @@ def counts() -> str:
         system = f"[{audit.title.partition(', ')[0]}]({{docs}}/{audit.page}.md)"
         words.setdefault(system, []).append(audit.word)
     words["**all**"] = [word for those in words.values() for word in those]
-    lines = [f"| system | audits | {' | '.join(WORDS)} |", f"| :-- |{' --: |' * (1 + len(WORDS))}"]
-    for system, those in words.items():
-        numbers = [str(those.count(word) or "") for word in WORDS]
-        lines.append(f"| {system} | {len(those)} | {' | '.join(numbers)} |")
-    return "\n".join(lines)
+    rows = [
+        (system, str(len(those)), *(str(those.count(word) or "") for word in WORDS))
+        for system, those in words.items()
+    ]
+    return pipes(("system", "audits", *WORDS), rows)
 
 
 def grouped() -> list[list[Audit]]:
@@ -164,20 +159,19 @@ def _of_study(title: str, page: str, audit: Mapping[str, Any]) -> Audit:
     return Audit(title, page, audit["fault"], audit["repair"], effects, audit["turns"])
 
 
-def _row(audits: Sequence[Audit]) -> str:
+def _row(audits: Sequence[Audit]) -> tuple[str, ...]:
     first, word = audits[0], audits[0].word
     page = f"[{first.title}]({{docs}}/{first.page}.md)"
     faults, repairs = (audit.fault for audit in audits), (audit.repair for audit in audits)
     modules = dict.fromkeys(PLACES.get(audit.module, audit.module) for audit in audits)
     alone = [audit.effects[audit.module] for audit in audits]
-    cells = (
+    return (
         ", ".join(filter(None, dict.fromkeys((page, *faults, *repairs)))),
         _shown([audit.effects["correct"] for audit in audits]).partition(" [")[0],
         f"{' or '.join(modules)} {_shown(alone)}",
         _shown([audit.effects["shared"] for audit in audits]),
         f"**{word}**" if word == REVERSAL else word,
     )
-    return f"| {' | '.join(cells)} |"
 
 
 def _shown(effects: Sequence[Effect]) -> str:
@@ -194,11 +188,11 @@ def audits(page: str) -> str:
     """Return success of baseline and repair, and their difference, for each audit of a page."""
     runs = [load(name) for name, (_, place) in PAGES.items() if place == page]
     titles = [effect.title for effect in runs[0].record.paths]
-    rows = [f"| repair, fault | {' | '.join(titles)} |", f"| :-- |{' --: |' * len(titles)}"]
+    rows = []
     for run in runs:
         question, cells = run.record.question, map(_success, run.record.effects)
-        rows.append(f"| `{question.repair}`, `{question.fault}` | {' | '.join(cells)} |")
-    return "\n".join([*rows, "", runs[0].flown])
+        rows.append((f"`{question.repair}`, `{question.fault}`", *cells))
+    return f"{pipes(('repair, fault', *titles), rows)}\n\n{runs[0].flown}"
 
 
 def _success(effect: model.Effect) -> str:

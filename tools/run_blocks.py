@@ -3,9 +3,8 @@
 import re
 import shlex
 from pathlib import Path
-from typing import Any
 
-from blocks import ROOT, Picture, Run, Wrong, difference, fence, load, printed
+from blocks import ROOT, Picture, Run, Wrong, difference, fence, load, pipes, printed
 
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Table, line
@@ -65,22 +64,19 @@ def contrast(name: str) -> str:
     if not shared.detected or len(opposed) != 1:
         raise Wrong(f"{run.name} has not decided one reversal: the block has nothing to say")
 
-    def row(reach: str, success: Any) -> str:
+    minus = f"success of `{question.repair}` minus `{question.baseline}`, pp"
+    places = {
+        f"the {opposed[0].path} alone, as in a test of one module": opposed[0].success,
+        "every module that reads the estimate, as in deployment": shared.success,
+    }
+    rows = []
+    for place, success in places.items():
         ahead = question.repair if success.value > 0 else question.baseline
-        shown = difference(success.value, *success.interval, bold=True)
-        return f"| {reach} | {shown} | `{ahead}` |"
-
-    return "\n".join(
-        [
-            f"| The fault reaches | success of `{question.repair}` minus "
-            f"`{question.baseline}`, pp | ahead |",
-            "| :-- | --: | :-- |",
-            row(f"the {opposed[0].path} alone, as in a test of one module", opposed[0].success),
-            row("every module that reads the estimate, as in deployment", shared.success),
-            "",
-            f"{run.record.scenes} scenes, {wording.seeds(question.seeds)}; bold: significant at "
-            f"5 % after Holm's correction. Run at commit `{run.provenance.commit[:12]}`.",
-        ]
+        rows.append((place, difference(success.value, *success.interval, bold=True), f"`{ahead}`"))
+    return (
+        f"{pipes(('The fault reaches', minus, 'ahead'), rows, words=(0, 2))}\n\n"
+        f"{run.record.scenes} scenes, {wording.seeds(question.seeds)}; bold: significant at "
+        f"5 % after Holm's correction. Run at commit `{run.provenance.commit[:12]}`."
     )
 
 
