@@ -7,14 +7,20 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
 import pytest
 from rich.console import Console
 
 import faultpath
 from faultpath.api.display import Display
+from faultpath.core.files.parquet import read_table
+from faultpath.report.html import report_page
 from faultpath.report.tables import markdown_table
 from faultpath.report.terminal import decision
+from faultpath.trials.store.folder import OUTCOMES
+from faultpath.trials.store.signals import encode_signals
+from faultpath.trials.store.tables import encode_outcomes
 
 ROOT = Path(__file__).resolve().parents[2]
 FILE = ROOT / "examples" / "toy.py"
@@ -82,10 +88,20 @@ def test_the_rule_is_in_the_record_and_no_verdict_is_redone_by_another(run, tmp_
     assert "Tests: exact McNemar" in markdown_table(again.record)
 
 
-def test_a_folder_opens_again(run):
+def test_what_is_read_back_is_what_was_held(run):
     again = faultpath.open_run(str(run.folder))
     assert again.record == run.record
-    assert again.table() == run.table()
+    assert again.provenance == run.provenance
+    held, read = run.held, again.held
+    assert read.system == held.system
+    assert (run.folder / OUTCOMES).read_bytes() == encode_outcomes(held.outcomes)
+    assert encode_outcomes(read.outcomes) == encode_outcomes(held.outcomes)
+    assert list(read.traces) == list(held.traces)
+    assert all(np.array_equal(read.traces[at], held.traces[at]) for at in held.traces)
+    assert list(read.signals) == list(held.signals) != []
+    assert encode_signals(read.signals) == encode_signals(held.signals)
+    assert report_page(read) == report_page(held)
+    assert again.table() == run.table() == read_table((run.folder / OUTCOMES).read_bytes())
     with pytest.raises(faultpath.UserError, match=r"nowhere holds no provenance\.json"):
         faultpath.open_run("nowhere")
 

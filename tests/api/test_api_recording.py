@@ -30,7 +30,7 @@ def run(tmp_path_factory):
 
 
 def test_signals_of_the_first_scene_are_there_without_being_asked_for(run) -> None:
-    recorded = read_run(run.folder)[0].signals
+    recorded = read_run(run.folder).signals
     assert len({at.scene for at in recorded}) == 1
     assert {(at.variant, at.path) for at in recorded} == {
         (variant, path)
@@ -40,7 +40,7 @@ def test_signals_of_the_first_scene_are_there_without_being_asked_for(run) -> No
 
 
 def test_two_errors_add_up_to_what_the_acceleration_differs_by(run) -> None:
-    for at, named in read_run(run.folder)[0].signals.items():
+    for at, named in read_run(run.folder).signals.items():
         value = {each.name: each.values[:, 0].astype(float) for each in named}
         wanted = value["goal"] - value["odometer"] - 2.0 * value["speedometer"]
         had = np.diff(value["speedometer"], append=np.nan) / 0.1

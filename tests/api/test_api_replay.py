@@ -37,7 +37,7 @@ def folder(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def found(folder):
-    return replay(read_run(folder)[0], (SCENE,), trust=True)
+    return replay(read_run(folder), (SCENE,), trust=True)
 
 
 def _signals(found, variant: str, path: str) -> dict[str, Signal]:
@@ -66,21 +66,21 @@ def test_a_replay_is_the_run_and_hears_what_the_fault_did(found) -> None:
 def test_signals_stay_with_the_run_and_a_changed_file_is_refused(folder, found, tmp_path) -> None:
     run = tmp_path / "run"
     shutil.copytree(folder, run)
-    held, _ = read_run(run)
+    held = read_run(run)
     few = [each for each in found if each.address.path == "shared"]
     written = keep_signals(run, held, few)
     assert written[0] == run / SIGNALS
-    more = read_run(run)[0]
+    more = read_run(run)
     assert len(more.signals) == 2
     keep_signals(run, more, found)
-    assert len(read_run(run)[0].signals) == 8
+    assert len(read_run(run).signals) == 8
     (run / SIGNALS).write_bytes((run / SIGNALS).read_bytes()[:-1] + b"x")
     with pytest.raises(UserError, match=r"signals.parquet changed since the run"):
         read_run(run)
 
 
 def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
-    held, _ = read_run(folder)
+    held = read_run(folder)
     rows = tuple(
         replace(row, outcome=replace(row.outcome, time_s=9.0)) if row.path == "shared" else row
         for row in held.outcomes.rows
@@ -97,7 +97,7 @@ def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
 
 
 def test_scenes_and_paths_are_those_of_the_run(folder) -> None:
-    held, _ = read_run(folder)
+    held = read_run(folder)
     assert len(chosen_scenes(held, (), ())) == 3
     assert chosen_scenes(held, (SCENE, SCENE), ("shared",)) == (SCENE,)
     with pytest.raises(UserError, match=r"unknown scene"):
@@ -107,7 +107,7 @@ def test_scenes_and_paths_are_those_of_the_run(folder) -> None:
 
 
 def test_an_object_cannot_be_flown_again(folder) -> None:
-    held, _ = read_run(folder)
+    held = read_run(folder)
     question = held.record.question.model_copy(update={"system": "Toy object"})
     lost = replace(held, record=held.record.model_copy(update={"question": question}))
     with pytest.raises(UserError, match="is of a Toy object, which only its own process had"):

@@ -11,6 +11,8 @@ from judged_files import HEADER, Successes, inspect_log, lerobot, lm_eval, table
 import faultpath
 from faultpath import Run, UserError
 from faultpath.decisions.model import AS_RUN, SHARED
+from faultpath.report.html import report_page
+from faultpath.trials.store.tables import encode_outcomes
 
 TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
 WON: Successes = {
@@ -56,6 +58,8 @@ def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None
 
     opened = faultpath.open_run(folder)
     assert opened.record == again.record
+    assert encode_outcomes(opened.held.outcomes) == encode_outcomes(again.held.outcomes)
+    assert report_page(opened.held) == report_page(again.held)
     page = (folder / "report.html").read_text()
     assert "Other tools ran the trials" in page
     assert "Only what a tap delivers" not in page

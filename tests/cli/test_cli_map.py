@@ -43,8 +43,10 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_map_leaves_its_record_pictures_and_page(run: Path) -> None:
     assert {path.name for path in run.iterdir()} >= {*FILES, "provenance.json", "manifest.json"}
-    record = library.open_run(run).record
-    assert record.headline in (run / "report.html").read_text()
+    record, page = library.open_run(run).record, (run / "report.html").read_text()
+    assert record.headline in page
+    library.open_run(run).report()
+    assert (run / "report.html").read_text() == page
     for name in ("map.svg", "correlation.svg"):
         assert ElementTree.fromstring((run / name).read_text()).tag.endswith("svg")
     circles = (run / "map.svg").read_text().count("<circle")

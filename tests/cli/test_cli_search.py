@@ -39,7 +39,9 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_what_is_confirmed_is_an_audit_in_scenes_that_found_nothing(run: Path) -> None:
-    record = library.open_run(run).record
+    record, page = library.open_run(run).record, (run / "report.html").read_text()
+    library.open_run(run).report()
+    assert (run / "report.html").read_text() == page
     confirming = library.open_run(run / record.confirmation)
     assert confirming.record == record.confirmed
     assert confirming.record.question.fault == record.best

@@ -42,6 +42,8 @@ def test_what_is_written_is_what_was_decided(run: Path) -> None:
     assert speed.low > max(0.5, gain.high)
     assert len(record.values) == 64 * 4
     page, rows = (run / "report.html").read_text(), (run / "sensitivity.csv").read_text()
+    opened.report()
+    assert (run / "report.html").read_text() == page
     assert record.headline in page
     assert page.count('class="dot open"') == 2
     assert rows.splitlines()[0] == "Source,Error,Alone (first-order),With others (total)"

@@ -17,8 +17,8 @@ from faultpath.decisions.decide import decide
 from faultpath.decisions.model import FaultedTap, Path
 from faultpath.decisions.question import Question
 from faultpath.interface import Interface, read_interface
-from faultpath.report.inputs import ReportInput, Traces
-from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown
+from faultpath.report.inputs import ReportInput
+from faultpath.trials import Outcome, OutcomeTable, Status, SystemShown, TrialRow, VariantShown
 from faultpath.trials.declared import FloorPlan, Pillar, Prism
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.tables import TrialAddress
@@ -104,11 +104,14 @@ def make_input(
     return ReportInput(
         record=record,
         provenance=_provenance(),
-        interface=interface(),
-        variants=(_variant(BASELINE), _variant(REPAIR)),
+        system=SystemShown(
+            control_dt_s=0.05,
+            interface=interface(),
+            variants=(_variant(BASELINE), _variant(REPAIR)),
+            plans={_scene(i): _plan(i) for i in range(n_scenes)},
+        ),
         outcomes=outcomes,
-        traces=Traces(tracks, dt_s=0.05),
-        plans={_scene(i): _plan(i) for i in range(n_scenes)},
+        traces=tracks,
     )
 
 

@@ -11,7 +11,7 @@ from playwright.sync_api import Browser
 
 from faultpath import compare, open_run
 from faultpath.report.html import write_report
-from faultpath.report.inputs import ReportInput, Traces
+from faultpath.report.inputs import ReportInput
 from faultpath.trials import FloorPlan
 from faultpath.trials.store.signals import DRAWN, Signal
 from faultpath.trials.store.tables import TrialAddress
@@ -52,10 +52,10 @@ def test_a_cart_has_its_goal(
     make: Callable[..., ReportInput], browser: Browser, tmp_path: Path
 ) -> None:
     source = make(n_scenes=4, void=False)
-    line = {at: track * [1, 0, 0] for at, track in source.traces.positions.items()}
+    line = {at: track * [1, 0, 0] for at, track in source.traces.items()}
     rail = FloorPlan((0, 0, 0), (9, 0, 0), (), (), (0, 0, 0), (9.2, 0, 0), "")
-    plans = dict.fromkeys(source.plans, rail)
-    flat = replace(source, traces=Traces(line, 0.05), plans=plans)
+    plans = dict.fromkeys(source.system.plans, rail)
+    flat = replace(source, traces=line, system=source.system.model_copy(update={"plans": plans}))
     opened = browser.new_page()
     folder = tmp_path / "my cart"
     opened.goto(write_report(flat, folder)[0].as_uri())
@@ -69,7 +69,9 @@ def test_a_picture_moves_with_the_clock_and_lifts_its_pen(
     make: Callable[..., ReportInput], browser: Browser, tmp_path: Path
 ) -> None:
     """Without positions: a cart that drives on, and a mark that stays."""
-    source = replace(make(n_scenes=4, void=False), traces=Traces({}, 0.5), plans={})
+    source = make(n_scenes=4, void=False)
+    system = source.system.model_copy(update={"plans": {}, "control_dt_s": 0.5})
+    source = replace(source, traces={}, system=system)
     steps, lift = np.arange(9.0, dtype=np.float32)[:, None], np.full((9, 2), np.nan, np.float32)
     cart = np.hstack([steps, steps * 0, steps + 2, steps * 0, lift, steps * 0 + 5, steps * 0 + 1])
     named = (

@@ -11,7 +11,7 @@ from page_reader import Page, unpack
 
 from faultpath.decisions.pairs import PairKind, read_pairs
 from faultpath.report.html import report_page
-from faultpath.report.inputs import ReportInput, Traces
+from faultpath.report.inputs import ReportInput
 
 FIGURE_NAMESPACE = "http://www.w3.org/2000/svg"
 
@@ -118,7 +118,7 @@ def test_viewer_data_cannot_close_its_element(html: str) -> None:
 
 def test_page_without_flights_and_void_pairs(make: Callable[..., ReportInput]) -> None:
     source = make(void=False, n_scenes=60)
-    bare = replace(source, traces=Traces({}, dt_s=0.05), plans={})
+    bare = replace(source, traces={}, system=source.system.model_copy(update={"plans": {}}))
     page = Page(report_page(bare))
     ids = {attributes.get("id") for _, attributes in page.tags}
     assert ids.isdisjoint({"flights", "viewer", "viewer-data"})

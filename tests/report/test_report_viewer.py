@@ -8,7 +8,7 @@ from page_reader import unpack
 
 from faultpath.decisions.pairs import read_pairs
 from faultpath.report.html import report_page
-from faultpath.report.inputs import ReportInput, Traces
+from faultpath.report.inputs import ReportInput
 from faultpath.report.viewer import pack, viewer_data
 from faultpath.trials.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
 from faultpath.trials.store.tables import TrialAddress
@@ -29,12 +29,12 @@ def test_every_trial_is_there_to_the_centimetre(three_seeds: ReportInput) -> Non
                 at = TrialAddress(variant, pair["path"], scene["seed"], scene["scene"])
                 place = pair[arm]["track"]
                 if place is None:
-                    assert at not in three_seeds.traces.positions
+                    assert at not in three_seeds.traces
                     continue
                 kept = np.stack(series[place : place + 2], axis=1) / 100
-                assert np.abs(kept - three_seeds.traces.positions[at][:, :2]).max() < 0.0051
+                assert np.abs(kept - three_seeds.traces[at][:, :2]).max() < 0.0051
                 seen += 1
-    assert seen == len(three_seeds.traces.positions)
+    assert seen == len(three_seeds.traces)
     void = [p for s in data["scenes"] for p in s["pairs"] if p["void"]]
     assert len(void) == 1
     assert "no</b> candidate" in void[0]["void"]
@@ -51,11 +51,12 @@ def test_numbers_come_out_of_a_page_as_they_went_in() -> None:
 
 def test_a_player_with_nothing_to_play_is_not_shown(one_seed: ReportInput) -> None:
     """Without positions only scenes of which signals were recorded can be played."""
-    still = replace(one_seed, traces=Traces({}, 0.05), plans={})
+    system = one_seed.system.model_copy(update={"plans": {}})
+    still = replace(one_seed, traces={}, system=system)
     page = report_page(still)
     assert 'id="flights"' not in page
     assert 'href="#scene=' not in page
-    scene = next(iter(one_seed.plans))
+    scene = next(iter(one_seed.system.plans))
     steps = np.arange(5, dtype=np.float32)[:, None]
     heard = {TrialAddress("gru", "shared", 0, scene): (Signal("thrust", "thrust", "N", steps),)}
     data, _ = _unpacked(replace(still, signals=heard))
@@ -75,7 +76,7 @@ def test_signals_are_plotted_beside_what_they_are_compared_with(one_seed: Report
             Signal(IN_FORCE, IN_FORCE, "1", np.isin(steps, (1, 2, 4)).astype(np.float32)),
         )
 
-    scene = next(iter(one_seed.plans))
+    scene = next(iter(one_seed.system.plans))
     heard = {TrialAddress(v, "shared", 0, scene): told(i) for i, v in enumerate(("gru", "gru-dcc"))}
     again = decode_signals(encode_signals(heard))
     assert again.keys() == heard.keys()

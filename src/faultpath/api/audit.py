@@ -1,6 +1,6 @@
 """`faultpath.audit`: run the arms of one question, decide, and write the run folder."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from os import PathLike
@@ -16,9 +16,8 @@ from faultpath.api.folders import (
     parsed,
     read_provenance,
 )
-from faultpath.api.job import Job, asks
+from faultpath.api.job import Job, asks, run
 from faultpath.api.replaying import outcomes_at, run_again, shown_first
-from faultpath.api.running import run
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
@@ -29,20 +28,17 @@ from faultpath.decisions.question import Question
 from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.stopping import after_looks
 from faultpath.faults import each_size
-from faultpath.report.inputs import Traces
+from faultpath.report.inputs import ReportInput
 from faultpath.trials import System, system_shown
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.question import AuditQuestion
 from faultpath.trials.store.atomic import write_file, write_text
 from faultpath.trials.store.folder import read_regular, seal
-from faultpath.trials.store.signals import SIGNALS, Signal, decode_signals, encode_signals
-from faultpath.trials.store.tables import TrialAddress
+from faultpath.trials.store.signals import SIGNALS, Signals, decode_signals, encode_signals
 from faultpath.trials.work.executor import Progress
 
 _SCENES_FOR_ONE = 20
 """So many scenes of an audit, and one more is recorded: at most about a twentieth more trials."""
-
-_Signals = Mapping[TrialAddress, tuple[Signal, ...]]
 
 
 @asks(AuditQuestion)
@@ -65,7 +61,7 @@ def audit(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    return run("audit", AuditQuestion, plan_audit, Run, system, arguments, progress, carry_out)
+    return run("audit", AuditQuestion, plan_audit, carry_out, system, arguments, progress)
 
 
 @asks(AuditQuestion)
@@ -104,15 +100,13 @@ def audits(
     return tuple(runs)
 
 
-def carry_out(audit: Audit, job: Job) -> None:
-    """Run, decide and write what the run folder's pages are made from.
+def carry_out(audit: Audit, job: Job) -> Run:
+    """Run, decide and write what the run folder's pages are made from; return the run.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing can be
     compared.
     """
-    folder, system, question, earlier = job.folder, audit.system, audit.question, None
-    with suppress(UserError):  # nothing sound stands there: it is made anew
-        earlier = read_provenance(folder)
+    folder, system, question = job.folder, audit.system, audit.question
     shown = system_shown(system, (question.baseline, question.repair), audit.study.scenes)
     _, result = job.trials(audit)
 
@@ -120,24 +114,21 @@ def carry_out(audit: Audit, job: Job) -> None:
         return replace(audit, question=question).conclude(result.outcomes, result.deliveries)
 
     record = concluded(folder, question, conclude)
-    recorded: _Signals = {}
-    if earlier is not None and SIGNALS in earlier.files:
-        same = (earlier.system_fingerprint, earlier.outcomes_sha256)
-        with suppress(OSError, UserError, Unreadable):
-            if same == (result.system_fingerprint, result.outcomes_sha256) and (
-                seal(folder, [SIGNALS])[SIGNALS] == earlier.files[SIGNALS]
-            ):  # of these very trials
-                recorded = decode_signals(read_regular(folder / SIGNALS))
+    signals = _kept_signals(folder, result)
     if audit.request.signals:
-        recorded, finding = _recorded(audit, job, record, result, recorded)
+        signals, finding = _recorded(audit, job, record, result, signals)
         if finding:
             job.display.say(finding)
             record = record.model_copy(update={"findings": (*record.findings, finding)})
+    signals = dict(sorted(signals.items()))
     write_text(folder / RECORD, as_text(record), folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
-    if recorded:
-        write_file(folder / SIGNALS, encode_signals(dict(sorted(recorded.items()))), folder)
-    job.finish(result, system, (*MADE_FROM, *([SIGNALS] if recorded else ())))
+    if signals:
+        write_file(folder / SIGNALS, encode_signals(signals), folder)
+    files = (*MADE_FROM, SIGNALS) if signals else MADE_FROM
+    provenance = job.finish(result, system, files)
+    source = ReportInput(record, provenance, shown, result.outcomes, result.traces, signals)
+    return Run(folder, source)
 
 
 def concluded(
@@ -154,21 +145,31 @@ def concluded(
     return after_looks(conclude(question.by_the_rule_of(before.question)), (before,))
 
 
+def _kept_signals(folder: Path, result: RunResult) -> Signals:
+    """Return the signals that the folder holds of these very trials; none where they changed."""
+    with suppress(OSError, UserError, Unreadable):
+        earlier = read_provenance(folder)
+        then = (earlier.system_fingerprint, earlier.outcomes_sha256, earlier.files.get(SIGNALS))
+        here = (result.system_fingerprint, result.outcomes_sha256, seal(folder, [SIGNALS])[SIGNALS])
+        if then == here:
+            return decode_signals(read_regular(folder / SIGNALS))
+    return {}
+
+
 def _recorded(
     audit: Audit,
     job: Job,
     record: DecisionRecord,
     result: RunResult,
-    recorded: _Signals,
-) -> tuple[_Signals, str]:
+    recorded: Signals,
+) -> tuple[Signals, str]:
     """Run the scenes that the report begins with once more; return signals and a finding.
 
     What goes wrong here is a finding, never an error of the audit.
     """
-    traces = Traces(result.traces, audit.system.control_dt_s)
     few = shown_first(record, result.outcomes)[: 1 + record.scenes // _SCENES_FOR_ONE]
     named = {path.name for path in record.paths}
-    before = outcomes_at(result.outcomes, traces)
+    before = outcomes_at(result.outcomes, result.traces)
     missing = [
         at
         for at in before

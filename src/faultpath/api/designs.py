@@ -1,20 +1,25 @@
 """`faultpath.map`, `faultpath.api.search` and `sensitivity`: many faults of one system."""
 
+from functools import partial
 from os import PathLike
-from typing import Any
+from typing import Any, TypeVar
 
 from faultpath.api.audit import carry_out
 from faultpath.api.display import Display
-from faultpath.api.folders import read_run
-from faultpath.api.job import Job, asks
-from faultpath.api.running import run
-from faultpath.api.runs import MapRun, Run, SearchRun, SensitivityRun
+from faultpath.api.job import Job, asks, run
+from faultpath.api.runs import MapRun, SearchRun, SensitivityRun
+from faultpath.core.results import Result
+from faultpath.decisions.analysis import Analysis
 from faultpath.decisions.map.study import plan_map
 from faultpath.decisions.search.decide import best
 from faultpath.decisions.search.study import SearchPlan, digest, plan_search
 from faultpath.decisions.sensitivity.study import plan_sensitivity
 from faultpath.trials import System
+from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.question import MapQuestion, SearchQuestion, SensitivityQuestion
+from faultpath.trials.store.atomic import write_text
+
+_Kind = TypeVar("_Kind", bound=MapRun | SearchRun | SensitivityRun)
 
 
 @asks(MapQuestion)
@@ -34,7 +39,8 @@ def map(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    return run("map", MapQuestion, plan_map, MapRun, system, arguments, progress)
+    decide = partial(_decide, MapRun)
+    return run("map", MapQuestion, plan_map, decide, system, arguments, progress)
 
 
 @asks(SearchQuestion)
@@ -57,19 +63,10 @@ def search(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    return run(
-        "api.search",
-        SearchQuestion,
-        plan_search,
-        SearchRun,
-        system,
-        arguments,
-        progress,
-        _carry_out,
-    )
+    return run("api.search", SearchQuestion, plan_search, _search, system, arguments, progress)
 
 
-def _carry_out(plan: SearchPlan, job: Job) -> None:
+def _search(plan: SearchPlan, job: Job) -> SearchRun:
     """Try faults, audit the best, and write the record.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the trials cannot be run.
@@ -80,12 +77,11 @@ def _carry_out(plan: SearchPlan, job: Job) -> None:
         folder = f"confirmation-{digest(chosen)}"
         job.display.say(f"Chosen: {chosen}. What follows decides.")
         audit = Job(job.folder / folder, job.executor, job.display, job.how)
-        carry_out(plan.audit(chosen), audit)
-        confirming = Run(audit.folder, *read_run(audit.folder))
+        confirming = carry_out(plan.audit(chosen), audit)
         confirming.report()
         confirmed, failed = confirming.record, confirming.failed
     record = plan.conclude(result.outcomes, result.deliveries, tried, confirmed, folder, failed)
-    job.keep(record, result, plan.system, SearchRun.files)
+    return _finished(SearchRun, record, result, plan.system, job)
 
 
 @asks(SensitivityQuestion)
@@ -107,12 +103,22 @@ def sensitivity(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    return run(
-        "api.sensitivity",
-        SensitivityQuestion,
-        plan_sensitivity,
-        SensitivityRun,
-        system,
-        arguments,
-        progress,
-    )
+    decide = partial(_decide, SensitivityRun)
+    call = "api.sensitivity"
+    return run(call, SensitivityQuestion, plan_sensitivity, decide, system, arguments, progress)
+
+
+def _decide(kind: type[_Kind], analysis: Analysis[Any], job: Job) -> _Kind:
+    """Run the trials of an analysis, conclude, and write the record; raises as `_search`."""
+    items, result = job.trials(analysis)
+    record = analysis.conclude(result.outcomes, result.deliveries, items)
+    return _finished(kind, record, result, analysis.system, job)
+
+
+def _finished(
+    kind: type[_Kind], record: Result, result: RunResult, system: System, job: Job
+) -> _Kind:
+    """Write a record, and how it was made; return the run."""
+    text = record.model_dump_json(indent=1) + "\n"
+    write_text(job.folder / kind.files[0], text, job.folder)
+    return kind(job.folder, record, job.finish(result, system, kind.files))

@@ -6,15 +6,14 @@ from collections import Counter
 from pathlib import Path
 from typing import Any, TypeVar
 
-import pyarrow as pa
 from pydantic import BaseModel
 
 from faultpath.core.errors import UserError
-from faultpath.core.files.parquet import Unreadable, read_table
+from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import faulted_taps
-from faultpath.report.inputs import ReportInput, Traces
+from faultpath.report.inputs import ReportInput
 from faultpath.trials import Deliveries, OutcomeTable, SystemShown
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, read_regular, unseal
@@ -35,8 +34,8 @@ SENSITIVITY_MADE_FROM = (SENSITIVITY, OUTCOMES)
 _Model = TypeVar("_Model", bound=BaseModel)
 
 
-def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
-    """Read all that the pages of an audit are made from, and its trials as an Arrow table.
+def read_run(folder: Path) -> ReportInput:
+    """Read all that the pages of an audit are made from.
 
     Every file is compared with the digest in `provenance.json` first. `UserError` for a file that
     is missing, damaged or changed, and for files that do not belong together.
@@ -58,17 +57,7 @@ def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
     doubt = _doubt(record, provenance, shown, outcomes, deliveries)
     if doubt:
         raise UserError(f"the files of {folder} do not belong together ({doubt}): {AGAIN}.")
-    read = ReportInput(
-        record=record,
-        provenance=provenance,
-        interface=shown.interface,
-        variants=shown.variants,
-        outcomes=outcomes,
-        traces=Traces(tables[TRACES], shown.control_dt_s),
-        plans=shown.plans,
-        signals=tables[SIGNALS],
-    )
-    return read, read_table(contents[OUTCOMES])
+    return ReportInput(record, provenance, shown, outcomes, tables[TRACES], tables[SIGNALS])
 
 
 def read_provenance(folder: Path) -> RunProvenance:

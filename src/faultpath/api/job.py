@@ -1,6 +1,8 @@
-"""From a call or a command line to a question, its system, and a job that runs its trials."""
+"""From a call or a command line to a question, a job that runs its trials, and a finished run."""
 
+import hashlib
 import inspect
+import re
 import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,22 +13,29 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from faultpath.api.display import Display, Show, display
-from faultpath.api.systems import Chosen, choose
-from faultpath.core.results import Result
+from faultpath.api.runs import MapRun, Run, SearchRun, SensitivityRun
+from faultpath.api.systems import Chosen, choose, executor_of
+from faultpath.core.errors import UserError
 from faultpath.decisions.analysis import Analysis, Items
-from faultpath.trials import Library, Study, System, library_of
+from faultpath.trials import Library, Study, System, SystemSpec, library_of
+from faultpath.trials.code import system_code
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import Failure, RunResult, run_study
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.question import Asked, Request
-from faultpath.trials.store.atomic import write_text
+from faultpath.trials.question import Asked, Request, Running, SensitivityQuestion
+from faultpath.trials.store.folder import keyed
 from faultpath.trials.validation import ask
 from faultpath.trials.work.executor import Executor, Progress
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
 _Asked = TypeVar("_Asked", bound=Request)
+_Request = TypeVar("_Request", bound=Running | SensitivityQuestion)
+_Plan = TypeVar("_Plan", bound=Analysis[Any])
+_Finished = TypeVar("_Finished", bound=Run | MapRun | SearchRun | SensitivityRun)
 
 _ERRORS_SHOWN = 5
+_LONGEST_NAME = 180
+"""Longest name of a run folder; file systems take 255 bytes."""
 
 
 def asks(model: type[Asked]) -> Callable[[_Call], _Call]:
@@ -150,12 +159,6 @@ class Job:
         blocks = result.blocks_kept + result.blocks_computed
         return items, replace(result, blocks_computed=computed, blocks_kept=blocks - computed)
 
-    def keep(self, record: Result, result: RunResult, system: System, names: Sequence[str]) -> None:
-        """Write a record, the first of the files that pages are made from, and how it was made."""
-        text = record.model_dump_json(indent=1) + "\n"
-        write_text(self.folder / names[0], text, self.folder)
-        self.finish(result, system, names)
-
     def finish(
         self, result: RunResult, system: System, names: Iterable[str], folder: Path | None = None
     ) -> RunProvenance:
@@ -187,3 +190,61 @@ class Job:
             self.executor,
             system.backend,
         )
+
+
+def run(
+    call: str,
+    model: type[_Request],
+    plan: Callable[[System, SystemSpec, _Request, Library], _Plan],
+    carry_out: Callable[[_Plan, Job], _Finished],
+    system: str | PathLike[str] | System,
+    arguments: Mapping[str, object],
+    progress: bool | Display,
+) -> _Finished:
+    """Read a question, plan its trials, run them, conclude, and write record and pages.
+
+    `call` is the name of the function. Raises `UserError` for what cannot be done, and `Stopped` on
+    Ctrl-C.
+    """
+    request, chosen, library, display = begin(call, model, system, arguments, progress)
+    analysis = plan(chosen.system, chosen.spec, request, library)
+    place = run_folder(request, chosen, analysis.named)
+    with executor_of(chosen.system, chosen.workers, chosen.executor) as executor:
+        how = {"time_limit_s": request.time_limit_s}
+        finished = carry_out(analysis, Job(place, executor, display, how))
+    finished.report()
+    return finished
+
+
+def run_folder(
+    question: Running | SensitivityQuestion, chosen: Chosen, named: Sequence[str]
+) -> Path:
+    """Return the folder of a run.
+
+    Without a folder of the caller's it is named after everything that makes it another study,
+    which begins with `named`, and after the code as it is; of an absolute path, which says more of
+    the machine than of the study, a digest stands for the folders. `UserError` for one that holds a
+    run of an object, which may have been another.
+    """
+    parts = [*named, *(f"{key}-{value}" for key, value in sorted(chosen.spec.options.items()))]
+    if question.scenes is not None:
+        parts.append(f"{question.scenes}-scenes")
+    if question.seeds != (0,):
+        parts.append(f"seeds-{','.join(map(str, question.seeds))}")
+    joined = "-".join(parts)
+    short = re.sub(r"(?:^|(?<=[:,=-]))/(?:[^/:,]*/)*", "", joined)
+    if short != joined:
+        short = f"{short}-{hashlib.sha256(joined.encode()).hexdigest()[:8]}"
+    name = re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", short).strip("._")
+    if len(name) > _LONGEST_NAME:
+        name = f"{name[:_LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
+    if question.folder is None and not chosen.own:
+        return keyed(Path("runs"), name, system_code(chosen.system, chosen.spec).state)
+    stamp = datetime.now().strftime("%Y%m%d-%H%M%S-%f")
+    place = question.folder or Path("runs") / f"{name}-{stamp}"
+    if chosen.own and (place / "manifest.json").exists():
+        raise UserError(
+            f"{place} holds a run, and whether it was of this same object cannot be told: give "
+            "another folder, or put what builds the system into a file and name that."
+        )
+    return place

@@ -11,7 +11,7 @@ from typing import Any
 
 from faultpath.api.audit import concluded
 from faultpath.api.display import Display, display
-from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text, read_run
+from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text
 from faultpath.api.job import asks
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
@@ -20,6 +20,7 @@ from faultpath.decisions.judging import LaidOut, lay_out
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.question import Question
 from faultpath.interface import Interface
+from faultpath.report.inputs import ReportInput
 from faultpath.trials.execution.provenance import amend, run_provenance
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.received.files import read_results
@@ -71,11 +72,12 @@ def judge(
     record = concluded(folder, laid.question, conclude)
     begin(folder)
     with locked(folder, shown.say):
-        result = _stored(folder, laid)
+        system = _system(laid.question)
+        result = _stored(folder, laid, system)
         write_text(folder / RECORD, as_text(record), folder)
         provenance = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
-        amend(folder, provenance.model_copy(update={"data": sources}), MADE_FROM)
-    run = Run(folder, *read_run(folder))
+        provenance = amend(folder, provenance.model_copy(update={"data": sources}), MADE_FROM)
+    run = Run(folder, ReportInput(record, provenance, system, laid.table, result.traces))
     run.report()
     if not shown.is_command:
         for finding in laid.findings:
@@ -93,13 +95,9 @@ def _folder(laid: LaidOut, sources: dict[str, str]) -> Path:
     return Path("runs") / f"judged-{arms}-{digest}"
 
 
-def _stored(folder: Path, laid: LaidOut) -> RunResult:
-    """Write the trials and what else pages are made from, of a system of which nothing is known."""
-    question, table = laid.question, laid.table
-    rows = dict.fromkeys((row.variant, row.path, row.seed) for row in table.rows)
-    taps = tuple(RowDeliveries(variant=v, path=p, seed=s, taps=()) for v, p, s in rows)
-    deliveries = Deliveries(rows=taps, findings=laid.findings)
-    shown = SystemShown(
+def _system(question: Question) -> SystemShown:
+    """Return a system of which nothing is known but the names of two variants."""
+    return SystemShown(
         control_dt_s=1.0,
         interface=Interface(name="results", sources=(), channels=()),
         variants=tuple(
@@ -108,11 +106,19 @@ def _stored(folder: Path, laid: LaidOut) -> RunResult:
         ),
         plans={},
     )
+
+
+def _stored(folder: Path, laid: LaidOut, system: SystemShown) -> RunResult:
+    """Write the trials and what else pages are made from."""
+    question, table = laid.question, laid.table
+    rows = dict.fromkeys((row.variant, row.path, row.seed) for row in table.rows)
+    taps = tuple(RowDeliveries(variant=v, path=p, seed=s, taps=()) for v, p, s in rows)
+    deliveries = Deliveries(rows=taps, findings=laid.findings)
     outcomes = encode_outcomes(table)
     write_file(folder / OUTCOMES, outcomes, folder)
     write_file(folder / TRACES, encode_traces(OutcomeTable(())), folder)
     write_text(folder / DELIVERIES, deliveries.model_dump_json(indent=1) + "\n", folder)
-    write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
+    write_text(folder / SYSTEM, system.model_dump_json(indent=1) + "\n", folder)
     digest = hashlib.sha256(outcomes).hexdigest()
     return RunResult(
         outcomes=table,

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from faultpath.api.folders import RECORD, read_run
+from faultpath.api.folders import RECORD
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
@@ -13,7 +13,7 @@ from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.pairs import by_scene, read_pairs
 from faultpath.decisions.planning import plan_audit
 from faultpath.report.html import write_report
-from faultpath.report.inputs import ReportInput, Traces
+from faultpath.report.inputs import ReportInput
 from faultpath.systems.checks.blocks import BlockSpec, RecordedBlock, run_blocks
 from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
 from faultpath.trials.attempt import Done
@@ -23,7 +23,7 @@ from faultpath.trials.execution.recheck import difference
 from faultpath.trials.question import AuditQuestion
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
-from faultpath.trials.store.tables import TrialAddress
+from faultpath.trials.store.tables import Trace, TrialAddress
 from faultpath.trials.trust import Received
 from faultpath.trials.validation import ask
 from faultpath.trials.work.executor import Executor
@@ -111,11 +111,13 @@ def replay(
         return run_again(before, study, system, executor, addresses, note)
 
 
-def outcomes_at(outcomes: OutcomeTable, traces: Traces) -> dict[TrialAddress, Outcome]:
+def outcomes_at(
+    outcomes: OutcomeTable, traces: Mapping[TrialAddress, Trace]
+) -> dict[TrialAddress, Outcome]:
     """Return the trials of a run that ran to their end, with their tracks."""
     return {
         (at := TrialAddress(row.variant, row.path, row.seed, row.outcome.scene)): replace(
-            row.outcome, trace=traces.positions.get(at)
+            row.outcome, trace=traces.get(at)
         )
         for row in outcomes.rows
         if not row.outcome.failed
@@ -170,10 +172,9 @@ def keep_signals(folder: Path, source: ReportInput, replays: Sequence[Replayed])
 
     Returns what was written. `UserError` where the folder cannot be written.
     """
-    signals = {
-        **source.signals,
-        **{replay.address: replay.signals for replay in replays if replay.signals},
-    }
-    write_file(folder / SIGNALS, encode_signals(dict(sorted(signals.items()))), folder)
-    amend(folder, source.provenance, [SIGNALS])
-    return [folder / SIGNALS, *write_report(read_run(folder)[0], folder)]
+    new = {replay.address: replay.signals for replay in replays if replay.signals}
+    signals = dict(sorted({**source.signals, **new}.items()))
+    write_file(folder / SIGNALS, encode_signals(signals), folder)
+    provenance = amend(folder, source.provenance, [SIGNALS])
+    source = replace(source, provenance=provenance, signals=signals)
+    return [folder / SIGNALS, *write_report(source, folder)]

@@ -3,7 +3,7 @@
 from importlib.metadata import entry_points
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import pyarrow as pa
 
@@ -18,19 +18,18 @@ from faultpath.api.folders import (
     read_run,
 )
 from faultpath.core.errors import UserError
+from faultpath.core.files.parquet import read_table
 from faultpath.decisions.gate import Answer, Ask, found, holds_when_shared
+from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.search.model import SearchRecord
+from faultpath.decisions.sensitivity.model import SensitivityRecord
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.tables import markdown_table
-from faultpath.trials import Status
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import AGAIN, OUTCOMES, unseal
-
-if TYPE_CHECKING:
-    from faultpath.decisions.map.model import MapRecord
-    from faultpath.decisions.search.model import SearchRecord
-    from faultpath.decisions.sensitivity.model import SensitivityRecord
+from faultpath.trials.store.tables import encode_outcomes
 
 
 class FinishedRun:
@@ -65,11 +64,10 @@ class Run(FinishedRun):
     record: DecisionRecord
     """Decisions of the audit: `headline` in a sentence, `effects` in numbers."""
 
-    def __init__(self, folder: Path, source: ReportInput, trials: pa.Table) -> None:
+    def __init__(self, folder: Path, source: ReportInput) -> None:
         super().__init__(folder, source.record, source.provenance)
         self.held = source
         """All that its pages are made from."""
-        self._trials = trials
 
     @property
     def headline(self) -> str:
@@ -79,7 +77,7 @@ class Run(FinishedRun):
     @property
     def failed(self) -> int:
         """Number of trials in which the program raised an error; each voids its pair."""
-        return self._trials.column("status").to_pylist().count(Status.FAILED.value)
+        return len(self.held.outcomes.failed())
 
     @property
     def repair_holds_when_shared(self) -> Answer:
@@ -98,7 +96,7 @@ class Run(FinishedRun):
 
         Its `to_pandas` makes a DataFrame where pandas is installed.
         """
-        return self._trials
+        return read_table(encode_outcomes(self.held.outcomes))
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html and table.md, and return their paths.
@@ -115,7 +113,8 @@ class MapRun(FinishedRun):
     """A finished reversal map: what was decided, and where its files are."""
 
     files = MAP_MADE_FROM
-    record: "MapRecord"
+    model = MapRecord
+    record: MapRecord
     """`headline` and `sentences` in words; `points`, `surface`, `flips`, `joint` in numbers."""
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
@@ -130,7 +129,8 @@ class SearchRun(FinishedRun):
     """A finished search: what was confirmed, and where its files are."""
 
     files = SEARCH_MADE_FROM
-    record: "SearchRecord"
+    model = SearchRecord
+    record: SearchRecord
     """`headline` and `sentences` in words; `tried`, and `confirmed`, the record of the audit."""
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
@@ -145,7 +145,8 @@ class SensitivityRun(FinishedRun):
     """A finished sensitivity analysis: what was decided, and where its files are."""
 
     files = SENSITIVITY_MADE_FROM
-    record: "SensitivityRecord"
+    model = SensitivityRecord
+    record: SensitivityRecord
     """`headline` and `sentences` in words; `indices` in numbers, a group each."""
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
@@ -171,13 +172,8 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | SearchRun | Sensiti
         name = kind.files[0]
         if name not in provenance.files:
             continue
-        from faultpath.decisions.map.model import MapRecord
-        from faultpath.decisions.search.model import SearchRecord
-        from faultpath.decisions.sensitivity.model import SensitivityRecord
-
         contents = unseal(place, provenance.files, kind.files)
-        models = {MapRun: MapRecord, SearchRun: SearchRecord, SensitivityRun: SensitivityRecord}
-        record = parsed(contents[name], place / name, models[kind])
+        record = parsed(contents[name], place / name, kind.model)
         if (provenance.files[OUTCOMES], provenance.library_hash) != (
             provenance.outcomes_sha256,
             record.question.library_hash,
@@ -188,4 +184,4 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | SearchRun | Sensiti
         for point in entry_points(group="faultpath.runs"):
             if point.name in provenance.files:
                 return point.load()(place)
-    return Run(place, *read_run(place))
+    return Run(place, read_run(place))

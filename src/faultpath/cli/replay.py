@@ -37,7 +37,7 @@ def replay(
 
     if RECORD not in read_provenance(folder).files:
         raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")
-    source, _ = read_run(folder)
+    source = read_run(folder)
     scenes = chosen_scenes(source, scene or (), path or ())
     console = SafeConsole()
     say = partial(console.print, markup=False)

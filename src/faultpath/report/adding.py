@@ -128,7 +128,7 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
         caption=f"Scene {scene}, {where(last)}, mean sizes: {'; '.join(descriptions)}.",
         span=(low, high) if cut else whole,
         cut=cut,
-        dt_s=source.traces.dt_s,
+        dt_s=source.system.control_dt_s,
     )
 
 

@@ -42,10 +42,10 @@ def of_runs(runs: Sequence[ReportInput], names: Sequence[str] = ()) -> Table | N
     """
     first = runs[0]
     for run in runs[1:]:
-        others = (run.record.question.system, run.interface, run.variants)
-        if others != (first.record.question.system, first.interface, first.variants):
+        others = (run.record.question.system, run.system.interface, run.system.variants)
+        if others != (first.record.question.system, first.system.interface, first.system.variants):
             return None
-    groups = dependent_groups(first.interface, first.variants)
+    groups = dependent_groups(first.system.interface, first.system.variants)
     named = zip(names or [""] * len(runs), (run.record for run in runs), strict=True)
     return _table(with_evidence(groups, named), first.record.question)
 

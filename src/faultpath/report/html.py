@@ -54,7 +54,7 @@ def report_page(source: ReportInput) -> str:
         numbers=Markup(html(by_path(record, SHOWN, "Effects; bold is significant"))),
         fault="; ".join(fault.aimed_at(*readers).describe() for fault in question.faults)
         or "As the system defines it.",
-        variants=list(zip(("baseline", "repair"), source.variants, strict=True)),
+        variants=list(zip(("baseline", "repair"), source.system.variants, strict=True)),
         forks=[Markup(fork_panel(fork)) for fork in forks(source)],
         frequency=[(Markup(picture), words) for picture, words in frequency_panels(record)],
         beta=[(Markup(picture), words) for picture, words in frequency_panels(record, beta=True)],

@@ -3,25 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
 from faultpath.decisions.model import DecisionRecord
-from faultpath.interface import Interface
-from faultpath.trials import FloorPlan, OutcomeTable, VariantShown
+from faultpath.trials import OutcomeTable, SystemShown
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.signals import Signal, Signals
-from faultpath.trials.store.tables import TrialAddress
-
-
-@dataclass(frozen=True)
-class Traces:
-    """Positions at control steps; trials may be missing."""
-
-    positions: Mapping[TrialAddress, NDArray[np.float32]]
-    """`[T, 3]` each, metres, world frame."""
-    dt_s: float
-    """Seconds between two rows."""
+from faultpath.trials.store.tables import Trace, TrialAddress
 
 
 @dataclass(frozen=True)
@@ -30,12 +16,10 @@ class ReportInput:
 
     record: DecisionRecord
     provenance: RunProvenance
-    interface: Interface
-    variants: tuple[VariantShown, ...]
-    """How baseline and repair are wired."""
+    system: SystemShown
+    """Interface, how baseline and repair are wired, and floor plans."""
     outcomes: OutcomeTable
-    traces: Traces
-    plans: Mapping[str, FloorPlan]
-    """By scene id; scenes without one are drawn without obstacles."""
+    traces: Mapping[TrialAddress, Trace]
+    """Position at each control step, `[T, 3]`, metres, world frame; trials may be missing."""
     signals: Signals = field(default_factory=dict[TrialAddress, tuple[Signal, ...]])
     """Signals of the trials of which they were recorded."""

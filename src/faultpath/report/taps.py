@@ -72,10 +72,10 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
         frozenset(
             (name, consumer)
             for name in names
-            for consumer in source.interface.channel(name).consumers
+            for consumer in source.system.interface.channel(name).consumers
             if consumer in variant.consumers
         )
-        for variant in source.variants
+        for variant in source.system.variants
     ]
     every = frozenset[Tap]().union(*reads)
     modules = sorted({module_of(consumer) for _, consumer in every})

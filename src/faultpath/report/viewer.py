@@ -50,9 +50,9 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
 
     Left out are scenes without any track and, where no trial has one, those without signals.
     """
-    question, plans, space = source.record.question, source.plans, _space(source)
+    question, plans, space = source.record.question, source.system.plans, _space(source)
     recorded = {(at.scene, at.seed) for at in source.signals}
-    tracked = {(at.scene, at.seed) for at, track in source.traces.positions.items() if len(track)}
+    tracked = {(at.scene, at.seed) for at, track in source.traces.items() if len(track)}
     groups = {at: of for at, of in by_scene(pairs).items() if at in (tracked or recorded)}
     if not groups:
         return None
@@ -60,7 +60,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     few = [at for at in dict.fromkeys((*chosen, *groups)) if at in recorded][:_MOST_WITH_SIGNALS]
     signals = {at: s for at, s in source.signals.items() if (at.scene, at.seed) in few}
     if tracked and _flat(source):
-        signals = _with_positions(signals, source.traces.positions)
+        signals = _with_positions(signals, source.traces)
     trials, why = _Trials(source, signals, _plots(signals)), captions(pairs)
     scenes = [
         {
@@ -85,7 +85,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     for prism in (prism for plan in drawn.values() for prism in plan["prisms"]):
         prism["corners"] = [[round(v, 3) for v in corner] for corner in prism["corners"]]
     content = {
-        "dt_s": source.traces.dt_s,
+        "dt_s": source.system.control_dt_s,
         "space": space,
         "paths": [{"name": path.name, "title": path.title} for path in source.record.paths],
         "picked": [list(groups).index(at) for at in chosen],
@@ -107,8 +107,8 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
 
 def _flat(source: ReportInput) -> bool:
     """Return whether all positions lie on one axis, among no obstacles."""
-    return not any(plan.prisms or plan.pillars for plan in source.plans.values()) and all(
-        not track[:, 1:].any() for track in source.traces.positions.values()
+    return not any(plan.prisms or plan.pillars for plan in source.system.plans.values()) and all(
+        not track[:, 1:].any() for track in source.traces.values()
     )
 
 
@@ -116,7 +116,7 @@ def _space(source: ReportInput) -> str:
     flat, named = _flat(source), source.signals.values()
     if flat and any(signal.name == DRAWN for signals in named for signal in signals):
         return "picture"
-    tracked = any(len(track) for track in source.traces.positions.values())
+    tracked = any(len(track) for track in source.traces.values())
     return "none" if not tracked else "line" if flat else "space"
 
 
@@ -143,7 +143,7 @@ class _Trials:
             return None
         address = TrialAddress(variant, pair.path, pair.seed, pair.scene)
         named = {signal.name: signal for signal in self.signals.get(address, ())}
-        track = self.source.traces.positions.get(address, np.empty((0, 3), np.float32))
+        track = self.source.traces.get(address, np.empty((0, 3), np.float32))
         faulted: list[list[int]] = []
         if IN_FORCE in named:
             on = named[IN_FORCE].values[:, 0] > 0
