@@ -21,7 +21,6 @@ from faultpath.report.inputs import ReportInput
 from faultpath.trials import Outcome, OutcomeTable, Status, SystemShown, TrialRow, VariantShown
 from faultpath.trials.declared import FloorPlan, Pillar, Prism
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store.tables import TrialAddress
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -96,11 +95,6 @@ def make_input(
     )
     outcomes = OutcomeTable(rows)
     record = decide(question, paths, outcomes)
-    tracks = {
-        TrialAddress(r.variant, r.path, r.seed, r.outcome.scene): r.outcome.trace
-        for r in rows
-        if r.outcome.trace is not None
-    }
     return ReportInput(
         record=record,
         provenance=_provenance(),
@@ -111,7 +105,6 @@ def make_input(
             plans={_scene(i): _plan(i) for i in range(n_scenes)},
         ),
         outcomes=outcomes,
-        traces=tracks,
     )
 
 

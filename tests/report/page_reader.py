@@ -4,10 +4,15 @@ import json
 import re
 import zlib
 from base64 import b64decode
+from collections.abc import Callable
+from dataclasses import replace
 from html.parser import HTMLParser
 from typing import Any
 
 import numpy as np
+
+from faultpath.trials import OutcomeTable, TrialRow
+from faultpath.trials.store.tables import Trace
 
 
 class Page(HTMLParser):
@@ -54,3 +59,13 @@ def unpack(packed: str) -> tuple[dict[str, Any], list[np.ndarray]]:
     """Return the content and the series of what the viewer's `pack` made, as its script does."""
     content = json.loads(zlib.decompress(b64decode(packed)))
     return content, [np.cumsum(np.cumsum(steps)) for steps in content.pop("series")]
+
+
+def with_traces(outcomes: OutcomeTable, change: Callable[[Trace], Trace | None]) -> OutcomeTable:
+    """Return the trials with other positions."""
+    rows: list[TrialRow] = []
+    for row in outcomes.rows:
+        trace = row.outcome.trace
+        changed = None if trace is None else change(trace)
+        rows.append(replace(row, outcome=replace(row.outcome, trace=changed)))
+    return OutcomeTable(tuple(rows))

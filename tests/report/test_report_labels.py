@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from faultpath_paper.reproduction import ReproductionRun
+from page_reader import with_traces
 from playwright.sync_api import Browser
 
 from faultpath import compare, open_run
@@ -52,10 +53,10 @@ def test_a_cart_has_its_goal(
     make: Callable[..., ReportInput], browser: Browser, tmp_path: Path
 ) -> None:
     source = make(n_scenes=4, void=False)
-    line = {at: track * [1, 0, 0] for at, track in source.traces.items()}
+    line = with_traces(source.outcomes, lambda track: track * np.float32([1, 0, 0]))
     rail = FloorPlan((0, 0, 0), (9, 0, 0), (), (), (0, 0, 0), (9.2, 0, 0), "")
     plans = dict.fromkeys(source.system.plans, rail)
-    flat = replace(source, traces=line, system=source.system.model_copy(update={"plans": plans}))
+    flat = replace(source, outcomes=line, system=source.system.model_copy(update={"plans": plans}))
     opened = browser.new_page()
     folder = tmp_path / "my cart"
     opened.goto(write_report(flat, folder)[0].as_uri())
@@ -71,7 +72,8 @@ def test_a_picture_moves_with_the_clock_and_lifts_its_pen(
     """Without positions: a cart that drives on, and a mark that stays."""
     source = make(n_scenes=4, void=False)
     system = source.system.model_copy(update={"plans": {}, "control_dt_s": 0.5})
-    source = replace(source, traces={}, system=system)
+    bare = with_traces(source.outcomes, lambda track: None)
+    source = replace(source, outcomes=bare, system=system)
     steps, lift = np.arange(9.0, dtype=np.float32)[:, None], np.full((9, 2), np.nan, np.float32)
     cart = np.hstack([steps, steps * 0, steps + 2, steps * 0, lift, steps * 0 + 5, steps * 0 + 1])
     named = (

@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
-from page_reader import Page, unpack
+from page_reader import Page, unpack, with_traces
 
 from faultpath.decisions.pairs import PairKind, read_pairs
 from faultpath.report.html import report_page
@@ -118,7 +118,8 @@ def test_viewer_data_cannot_close_its_element(html: str) -> None:
 
 def test_page_without_flights_and_void_pairs(make: Callable[..., ReportInput]) -> None:
     source = make(void=False, n_scenes=60)
-    bare = replace(source, traces={}, system=source.system.model_copy(update={"plans": {}}))
+    system = source.system.model_copy(update={"plans": {}})
+    bare = replace(source, outcomes=with_traces(source.outcomes, lambda track: None), system=system)
     page = Page(report_page(bare))
     ids = {attributes.get("id") for _, attributes in page.tags}
     assert ids.isdisjoint({"flights", "viewer", "viewer-data"})

@@ -4,14 +4,14 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from page_reader import unpack
+from page_reader import unpack, with_traces
 
 from faultpath.decisions.pairs import read_pairs
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.viewer import pack, viewer_data
 from faultpath.trials.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
-from faultpath.trials.store.tables import TrialAddress
+from faultpath.trials.store.tables import TrialAddress, traces_of
 
 
 def _unpacked(source: ReportInput) -> tuple[dict[str, Any], list[Any]]:
@@ -22,19 +22,19 @@ def _unpacked(source: ReportInput) -> tuple[dict[str, Any], list[Any]]:
 
 def test_every_trial_is_there_to_the_centimetre(three_seeds: ReportInput) -> None:
     data, series = _unpacked(three_seeds)
-    seen = 0
+    traces, seen = traces_of(three_seeds.outcomes), 0
     for scene in data["scenes"]:
         for pair in scene["pairs"]:
             for arm, variant in (("baseline", "gru"), ("repair", "gru-dcc")):
                 at = TrialAddress(variant, pair["path"], scene["seed"], scene["scene"])
                 place = pair[arm]["track"]
                 if place is None:
-                    assert at not in three_seeds.traces
+                    assert at not in traces
                     continue
                 kept = np.stack(series[place : place + 2], axis=1) / 100
-                assert np.abs(kept - three_seeds.traces[at][:, :2]).max() < 0.0051
+                assert np.abs(kept - traces[at][:, :2]).max() < 0.0051
                 seen += 1
-    assert seen == len(three_seeds.traces)
+    assert seen == len(traces)
     void = [p for s in data["scenes"] for p in s["pairs"] if p["void"]]
     assert len(void) == 1
     assert "no</b> candidate" in void[0]["void"]
@@ -52,7 +52,8 @@ def test_numbers_come_out_of_a_page_as_they_went_in() -> None:
 def test_a_player_with_nothing_to_play_is_not_shown(one_seed: ReportInput) -> None:
     """Without positions only scenes of which signals were recorded can be played."""
     system = one_seed.system.model_copy(update={"plans": {}})
-    still = replace(one_seed, traces={}, system=system)
+    bare = with_traces(one_seed.outcomes, lambda track: None)
+    still = replace(one_seed, outcomes=bare, system=system)
     page = report_page(still)
     assert 'id="flights"' not in page
     assert 'href="#scene=' not in page

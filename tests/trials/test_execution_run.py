@@ -18,7 +18,7 @@ from faultpath.trials.execution.runner import RunResult, run_study
 from faultpath.trials.execution.schedule import plan
 from faultpath.trials.store import tables
 from faultpath.trials.store.folder import read_outcomes
-from faultpath.trials.store.tables import decode_traces
+from faultpath.trials.store.tables import decode_traces, traces_of
 from faultpath.trials.table import TrialRow
 from faultpath.trials.work.executor import Progress
 
@@ -72,11 +72,11 @@ def test_the_tables_read_back(whole):
     table = read_outcomes(folder / "outcomes.parquet")
     assert _comparable(table.rows) == _comparable(result.outcomes.rows)
     traces = decode_traces((folder / "traces.parquet").read_bytes())
-    assert traces.keys() == result.traces.keys()
+    assert traces.keys() == traces_of(result.outcomes).keys()
     assert len(traces) == len(table.rows)
     for address, trace in traces.items():
         assert trace.dtype == np.float32
-        np.testing.assert_array_equal(trace, result.traces[address])
+        np.testing.assert_array_equal(trace, traces_of(result.outcomes)[address])
 
 
 @pytest.mark.parametrize("scenes", [("s03",), SCENES[2:9], SCENES[::-1]])

@@ -156,7 +156,6 @@ def save(folder: Path, flown: Flown, results: Results, record: Reproduction) -> 
     return RunResult(
         outcomes=results.outcomes,
         deliveries=deliveries,
-        traces={},
         blocks_computed=sum(result.blocks_computed for result in flown.results),
         blocks_kept=sum(result.blocks_kept for result in flown.results),
         failures=tuple(failure for result in flown.results for failure in result.failures),

@@ -127,7 +127,7 @@ def carry_out(audit: Audit, job: Job) -> Run:
         write_file(folder / SIGNALS, encode_signals(signals), folder)
     files = (*MADE_FROM, SIGNALS) if signals else MADE_FROM
     provenance = job.finish(result, system, files)
-    source = ReportInput(record, provenance, shown, result.outcomes, result.traces, signals)
+    source = ReportInput(record, provenance, shown, result.outcomes, signals)
     return Run(folder, source)
 
 
@@ -169,7 +169,7 @@ def _recorded(
     """
     few = shown_first(record, result.outcomes)[: 1 + record.scenes // _SCENES_FOR_ONE]
     named = {path.name for path in record.paths}
-    before = outcomes_at(result.outcomes, result.traces)
+    before = outcomes_at(result.outcomes)
     missing = [
         at
         for at in before

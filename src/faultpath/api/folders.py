@@ -3,8 +3,11 @@
 import json
 import math
 from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from itertools import product
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from pydantic import BaseModel
 
@@ -13,8 +16,9 @@ from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import faulted_taps
+from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
-from faultpath.trials import Deliveries, OutcomeTable, SystemShown
+from faultpath.trials import Deliveries, OutcomeTable, Status, SystemShown
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, read_regular, unseal
 from faultpath.trials.store.signals import SIGNALS, decode_signals
@@ -32,6 +36,7 @@ SENSITIVITY_MADE_FROM = (SENSITIVITY, OUTCOMES)
 """Those of a sensitivity analysis."""
 
 _Model = TypeVar("_Model", bound=BaseModel)
+_Table = TypeVar("_Table")
 
 
 def read_run(folder: Path) -> ReportInput:
@@ -45,19 +50,23 @@ def read_run(folder: Path) -> ReportInput:
     record = parsed(contents[RECORD], folder / RECORD, DecisionRecord)
     shown = parsed(contents[SYSTEM], folder / SYSTEM, SystemShown)
     deliveries = parsed(contents[DELIVERIES], folder / DELIVERIES, Deliveries)
-    decoders = {OUTCOMES: decode_outcomes, TRACES: decode_traces, SIGNALS: decode_signals}
-    tables: dict[str, Any] = {SIGNALS: {}}
-    for name, decode in decoders.items():
-        if name in contents:
-            try:
-                tables[name] = decode(contents[name])
-            except Unreadable as error:
-                raise UserError(f"{folder / name} is damaged ({error}): {AGAIN}.") from None
-    outcomes = tables[OUTCOMES]
-    doubt = _doubt(record, provenance, shown, outcomes, deliveries)
-    if doubt:
+    traces = _decoded(decode_traces, contents, folder / TRACES)
+    outcomes = _decoded(partial(decode_outcomes, traces=traces), contents, folder / OUTCOMES)
+    signals = {}
+    if SIGNALS in contents:
+        signals = _decoded(decode_signals, contents, folder / SIGNALS)
+    for doubt in _doubts(record, provenance, shown, outcomes, deliveries):
         raise UserError(f"the files of {folder} do not belong together ({doubt}): {AGAIN}.")
-    return ReportInput(record, provenance, shown, outcomes, tables[TRACES], tables[SIGNALS])
+    return ReportInput(record, provenance, shown, outcomes, signals)
+
+
+def _decoded(
+    decode: Callable[[bytes], _Table], contents: Mapping[str, bytes], path: Path
+) -> _Table:
+    try:
+        return decode(contents[path.name])
+    except Unreadable as error:
+        raise UserError(f"{path} is damaged ({error}): {AGAIN}.") from None
 
 
 def read_provenance(folder: Path) -> RunProvenance:
@@ -84,60 +93,75 @@ def parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:
         ) from None
 
 
-def _doubt(
+def _doubts(
     record: DecisionRecord,
     provenance: RunProvenance,
     shown: SystemShown,
     outcomes: OutcomeTable,
     deliveries: Deliveries,
-) -> str:
-    """Say what shows that the files are of different runs, or were put together by hand."""
+) -> Iterator[str]:
+    """Yield what shows that the files are of different runs, or were put together by hand."""
     question = record.question
-    arms = (question.baseline, question.repair)
-    paths = {path.name for path in record.paths}
-    cells = {(cell.variant, cell.path): cell for cell in record.cells}
-    expected = {(variant, path) for variant in arms for path in paths}
-    trials = Counter((row.variant, row.path) for row in outcomes.rows)
-    solved = Counter(
-        (row.variant, row.path) for row in outcomes.rows if row.outcome.status == "success"
-    )
     if provenance.files[OUTCOMES] != provenance.outcomes_sha256:
-        return "provenance gives the outcomes two digests"
+        yield "provenance gives the outcomes two digests"
     if provenance.library_hash != question.library_hash:
-        return "record and provenance name different libraries"
-    if tuple(variant.name for variant in shown.variants) != arms:
-        return "the system's variants are not those of the question"
-    if not paths or set(cells) != expected or set(trials) != expected:
-        return "the record and the outcomes have different arms"
-    ended = (row.outcome for row in outcomes.rows if not row.outcome.failed)
-    untimed = any(math.isnan(outcome.time_s) for outcome in ended)
+        yield "record and provenance name different libraries"
+    if tuple(variant.name for variant in shown.variants) != (question.baseline, question.repair):
+        yield "the system's variants are not those of the question"
+    yield from _other_trials(record, outcomes)
+    yield from _other_effects(record)
+    yield from _other_taps(record, shown.interface, deliveries)
+    if not set(deliveries.findings) <= set(record.findings):
+        yield "the record leaves out a finding of the run"
+
+
+def _other_trials(record: DecisionRecord, outcomes: OutcomeTable) -> Iterator[str]:
+    """Yield where the record tells of other trials than the outcomes hold."""
+    question, rows = record.question, outcomes.rows
+    arms = set(product((question.baseline, question.repair), (p.name for p in record.paths)))
+    cells = {(cell.variant, cell.path): (cell.trials, cell.success) for cell in record.cells}
+    trials = Counter((row.variant, row.path) for row in rows)
+    solved = Counter((r.variant, r.path) for r in rows if r.outcome.status is Status.SUCCESS)
+    if not arms or set(cells) != arms or set(trials) != arms:
+        yield "the record and the outcomes have different arms"
+    untimed = any(math.isnan(row.outcome.time_s) for row in rows if not row.outcome.failed)
     if untimed and question.judged is None:
-        return "trials of an audit have no time"
-    if any(cells[at].trials != trials[at] or cells[at].success != solved[at] for at in expected):
-        return "the record and the outcomes count different successes"
-    measured = {name for row in outcomes.rows for name in row.outcome.metrics}
-    for effect in record.effects:
-        if lost := sorted(set(effect.metrics) - measured):
-            return f"the record tells of '{lost[0]}', and the outcomes have no such column"
+        yield "trials of an audit have no time"
+    if any(cells[arm] != (trials[arm], solved[arm]) for arm in arms):
+        yield "the record and the outcomes count different successes"
+    measured = {name for row in rows for name in row.outcome.metrics}
+    told = {name for effect in record.effects for name in effect.metrics}
+    for name in sorted(told - measured):
+        yield f"the record tells of '{name}', and the outcomes have no such column"
+
+
+def _other_effects(record: DecisionRecord) -> Iterator[str]:
+    """Yield where effects do not fit the paths of the record, or each other."""
+    paths = {path.name for path in record.paths}
     results = (*record.effects, *record.break_even, *record.break_even_beta)
     if not paths.issuperset(result.path for result in results):
-        return "the record has effects on paths that it does not name"
+        yield "the record has effects on paths that it does not name"
     ends = {path for change in record.changes for path in (change.isolated, change.shared)}
     seeds = all(len(effect.wins) == len(effect.losses) for effect in record.effects)
     if not seeds or not ends.issubset(effect.path for effect in record.effects):
-        return "the record has effects that do not fit each other"
-    taps = {(c.name, consumer) for c in shown.interface.channels for consumer in c.consumers}
+        yield "the record has effects that do not fit each other"
+
+
+def _other_taps(
+    record: DecisionRecord, interface: Interface, deliveries: Deliveries
+) -> Iterator[str]:
+    """Yield where the record names other faulted taps than interface and receipts."""
+    question = record.question
+    taps = {(c.name, consumer) for c in interface.channels for consumer in c.consumers}
     for path in record.paths:
         faulted = {question.repair: path.faulted, question.baseline: path.baseline_faulted}
         for variant, named in faulted.items():
             if not taps.issuperset((tap.channel, tap.consumer) for tap in named):
-                return "the record names taps that the interface has not got"
+                yield "the record names taps that the interface has not got"
             try:
                 received = faulted_taps(deliveries.at(variant, path.name))
             except KeyError:
-                return "the record has arms without receipts"
-            if received != named:
-                return f"receipts and record differ about the taps that '{path.name}' faulted"
-    if not set(deliveries.findings) <= set(record.findings):
-        return "the record leaves out a finding of the run"
-    return ""
+                yield "the record has arms without receipts"
+            else:
+                if received != named:
+                    yield f"receipts and record differ about the taps that '{path.name}' faulted"

@@ -77,7 +77,7 @@ def judge(
         write_text(folder / RECORD, as_text(record), folder)
         provenance = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
         provenance = amend(folder, provenance.model_copy(update={"data": sources}), MADE_FROM)
-    run = Run(folder, ReportInput(record, provenance, system, laid.table, result.traces))
+    run = Run(folder, ReportInput(record, provenance, system, laid.table))
     run.report()
     if not shown.is_command:
         for finding in laid.findings:
@@ -123,7 +123,6 @@ def _stored(folder: Path, laid: LaidOut, system: SystemShown) -> RunResult:
     return RunResult(
         outcomes=table,
         deliveries=deliveries,
-        traces={},
         blocks_computed=0,
         blocks_kept=0,
         failures=(),

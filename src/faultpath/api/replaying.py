@@ -23,7 +23,7 @@ from faultpath.trials.execution.recheck import difference
 from faultpath.trials.question import AuditQuestion
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
-from faultpath.trials.store.tables import Trace, TrialAddress
+from faultpath.trials.store.tables import TrialAddress, address_of
 from faultpath.trials.trust import Received
 from faultpath.trials.validation import ask
 from faultpath.trials.work.executor import Executor
@@ -99,7 +99,7 @@ def replay(
     kept = ("baseline", "repair", "fault", "seeds")
     request = ask(AuditQuestion, {name: getattr(question, name) for name in kept})
     study = plan_audit(system, chosen.spec, request, library).study
-    before = outcomes_at(source.outcomes, source.traces)
+    before = outcomes_at(source.outcomes)
     named = paths or {row.path for row in study.rows}
     addresses = [at for at in before if at.scene in scenes and at.path in named]
 
@@ -111,17 +111,9 @@ def replay(
         return run_again(before, study, system, executor, addresses, note)
 
 
-def outcomes_at(
-    outcomes: OutcomeTable, traces: Mapping[TrialAddress, Trace]
-) -> dict[TrialAddress, Outcome]:
-    """Return the trials of a run that ran to their end, with their tracks."""
-    return {
-        (at := TrialAddress(row.variant, row.path, row.seed, row.outcome.scene)): replace(
-            row.outcome, trace=traces.get(at)
-        )
-        for row in outcomes.rows
-        if not row.outcome.failed
-    }
+def outcomes_at(outcomes: OutcomeTable) -> dict[TrialAddress, Outcome]:
+    """Return the trials of a run that ran to their end."""
+    return {address_of(row): row.outcome for row in outcomes.rows if not row.outcome.failed}
 
 
 def run_again(

@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from functools import wraps
 from pathlib import Path
 from types import NoneType
-from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args, get_origin
 
 import typer
 from typer.models import OptionInfo
@@ -15,6 +15,9 @@ from faultpath.cli.options import literal, path
 from faultpath.core.errors import UserError
 from faultpath.trials.question import ADVANCED, Asked, Flag
 from faultpath.trials.validation import flag
+
+if TYPE_CHECKING:
+    from faultpath.trials.options import Option
 
 _Verb = TypeVar("_Verb", bound=Callable[..., Any])
 _KEYWORD = inspect.Parameter.KEYWORD_ONLY
@@ -160,23 +163,26 @@ def with_system_flags(
         return verb(**arguments, options=pairs)
 
     every = [*signature.parameters.values()]
-    for spelling, option in added.items():
-        choices, text = "|".join(option.choices), option.help.rstrip(".")
-        short = 0 < len(choices) <= _SHORT
-        if choices and not short:
-            listed = ", ".join(option.choices)
-            text += f": {listed}" if text else f"One of {listed}"
-        if option.default:
-            text += f"{'; d' if text else 'D'}efault {option.default}"
-        shown = typer.Option(
-            spelling,
-            metavar=f"<{choices if short else option.kind}>",
-            help=f"{text}." if text else None,
-            rich_help_panel=literal(f"Options of {system}"),
-        )
-        hint = Annotated[str | None, shown]
-        every.append(
-            inspect.Parameter(_DEST + option.name, _KEYWORD, default=None, annotation=hint)
-        )
+    every += [_system_option(system, spelling, option) for spelling, option in added.items()]
     vars(extended)["__signature__"] = signature.replace(parameters=every)
     return extended
+
+
+def _system_option(system: str, spelling: str, option: "Option") -> inspect.Parameter:
+    """Return the flag of an option of a system."""
+    choices, text = "|".join(option.choices), option.help.rstrip(".")
+    short = 0 < len(choices) <= _SHORT
+    if choices and not short:
+        listed = ", ".join(option.choices)
+        text += f": {listed}" if text else f"One of {listed}"
+    if option.default:
+        text += f"{'; d' if text else 'D'}efault {option.default}"
+    shown = typer.Option(
+        spelling,
+        metavar=f"<{choices if short else option.kind}>",
+        help=f"{text}." if text else None,
+        rich_help_panel=literal(f"Options of {system}"),
+    )
+    annotation = Annotated[str | None, shown]
+    name = _DEST + option.name
+    return inspect.Parameter(name, _KEYWORD, default=None, annotation=annotation)

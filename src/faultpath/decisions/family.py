@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from faultpath.core.errors import UserError
 from faultpath.decisions.compared import Arms, ComparedTrials, Voids, compared
@@ -112,25 +113,21 @@ def decide_paths(
             for path, pair in arms.items()
         }
 
-    effects = effects_of(success, resamples)
+    effects, voids = effects_of(success, resamples), voids or {}
     tested = [path for path in success if path not in untested]
     family = {name: with_test(c, rule) for name, c in _named(effects, effects, tested).items()}
     parts = alpha_shares(tested, led(primary, success))
     weights = {name: parts[name] for name in family} if RULES[rule].weighted else None
-    decided = decide_family(family, alpha, shares, weights)
-    fills, unsettled, voids = dict[str, tuple[Contrast, Contrast]](), list[str](), voids or {}
+    decide = partial(decide_family, alpha=alpha, shares=shares, weights=weights)
+    decided = decide(family)
+    fills, unsettled = dict[str, tuple[Contrast, Contrast]](), list[str]()
     if voids:
         low = effects_of({path: void.against for path, void in voids.items()})
         high = effects_of({path: void.favour for path, void in voids.items()})
         fills = {path: (low[path], high[path]) for path in voids}
         if any(void.open for void in voids.values()):
-            # What is open is taken each time as it is nearest to showing nothing.
-            ends = _named(low, high, tested), _named(high, low, tested)
-            least = {name: _nearest(ends[0][name], ends[1][name], rule) for name in family}
-            stands = decide_family(least, alpha, shares, weights)
-            unsettled = [
-                name for name in decided if decided[name].sign not in (0, stands[name].sign)
-            ]
+            least = decide(_nearest_to_nothing(low, high, tested, rule))
+            unsettled = [name for name, c in decided.items() if c.sign not in (0, least[name].sign)]
     for name in unsettled:
         decision = decided[name].decision
         decided[name] = replace(decided[name], decision=decision and decision._replace(sign=0))
@@ -138,12 +135,7 @@ def decide_paths(
         path: decided.get(effect_name(path), with_test(e, rule)) for path, e in effects.items()
     }
     changes = {path: decided[change_name(path)] for path in _isolated(tested)}
-    uneven = {path for path, void in voids.items() if void.uneven}
-    turns: dict[str, Turn] = {}
-    for path, moved in changes.items():
-        turns[path] = turn(effects[path], effects[SHARED], moved)
-        if uneven & {path, SHARED}:  # no reversal rests on it
-            turns[path] = "interaction" if moved.sign else "none"
+    uneven = [path for path, void in voids.items() if void.uneven]
     largest = max(weights.values()) / sum(weights.values()) if weights else 1.0 / len(family)
     needed = fewest_scenes(alpha * largest)
     if shares is not None:
@@ -151,12 +143,22 @@ def decide_paths(
     return Family(
         effects=effects,
         changes=changes,
-        turns=turns,
+        turns={path: _turn(path, effects, moved, uneven) for path, moved in changes.items()},
         hypotheses=len(family if shares is None else shares),
         scenes_needed=needed,
         fills=fills,
         unsettled=tuple(unsettled),
     )
+
+
+def _turn(
+    path: str, effects: Mapping[str, Contrast], moved: Contrast, uneven: Collection[str]
+) -> Turn:
+    """Return what sharing does to the effect on an isolated path; no reversal rests on a path where
+    the trials of one arm failed more often."""
+    if path in uneven or SHARED in uneven:
+        return "interaction" if moved.sign else "none"
+    return turn(effects[path], effects[SHARED], moved)
 
 
 def _named(
@@ -169,14 +171,25 @@ def _named(
     return {effect_name(path): effects[path] for path in tested} | changes
 
 
-def _nearest(against: Contrast, favour: Contrast, rule: RuleName) -> Contrast:
-    """Return the tested contrast nearest to no difference that what is open allows."""
-    low, high = with_test(against, rule), with_test(favour, rule)
-    assert low.test is not None
-    assert high.test is not None
-    if low.test.leans > 0:
-        return low
-    return high if high.test.leans < 0 else replace(low, test=PairedTest(low.test.name, 1.0, 0))
+def _nearest_to_nothing(
+    low: Mapping[str, Contrast],
+    high: Mapping[str, Contrast],
+    tested: Collection[str],
+    rule: RuleName,
+) -> dict[str, Contrast]:
+    """Return the tested contrasts, each as near to no difference as open outcomes allow, from the
+    effects with these against the repair and for it."""
+    least: dict[str, Contrast] = {}
+    lowest, highest = _named(low, high, tested), _named(high, low, tested)
+    for name in lowest:
+        one, two = with_test(lowest[name], rule), with_test(highest[name], rule)
+        assert one.test is not None
+        assert two.test is not None
+        if one.test.leans <= 0:
+            nothing = replace(one, test=PairedTest(one.test.name, 1.0, 0))
+            one = two if two.test.leans < 0 else nothing
+        least[name] = one
+    return least
 
 
 def led(primary: str, paths: Collection[str]) -> str:

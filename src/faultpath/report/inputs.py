@@ -1,13 +1,12 @@
 """Inputs of a report."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from faultpath.decisions.model import DecisionRecord
 from faultpath.trials import OutcomeTable, SystemShown
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.signals import Signal, Signals
-from faultpath.trials.store.tables import Trace, TrialAddress
+from faultpath.trials.store.tables import TrialAddress
 
 
 @dataclass(frozen=True)
@@ -19,7 +18,6 @@ class ReportInput:
     system: SystemShown
     """Interface, how baseline and repair are wired, and floor plans."""
     outcomes: OutcomeTable
-    traces: Mapping[TrialAddress, Trace]
-    """Position at each control step, `[T, 3]`, metres, world frame; trials may be missing."""
+    """The trials, with their positions where the system gives any."""
     signals: Signals = field(default_factory=dict[TrialAddress, tuple[Signal, ...]])
     """Signals of the trials of which they were recorded."""

@@ -17,7 +17,7 @@ from faultpath.decisions.sentences import wording
 from faultpath.report.inputs import ReportInput
 from faultpath.trials import Outcome
 from faultpath.trials.store.signals import DRAWN, IN_FORCE, Signal, Signals
-from faultpath.trials.store.tables import TrialAddress
+from faultpath.trials.store.tables import Trace, TrialAddress, traces_of
 
 _MOST_WITH_SIGNALS = 12
 """Scenes, with a seed each, whose signals go into a page."""
@@ -50,17 +50,22 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
 
     Left out are scenes without any track and, where no trial has one, those without signals.
     """
-    question, plans, space = source.record.question, source.system.plans, _space(source)
+    question, plans, tracks = (
+        source.record.question,
+        source.system.plans,
+        traces_of(source.outcomes),
+    )
+    flat = _flat(source, tracks)
     recorded = {(at.scene, at.seed) for at in source.signals}
-    tracked = {(at.scene, at.seed) for at, track in source.traces.items() if len(track)}
+    tracked = {(at.scene, at.seed) for at, track in tracks.items() if len(track)}
     groups = {at: of for at, of in by_scene(pairs).items() if at in (tracked or recorded)}
     if not groups:
         return None
     chosen = [at for at in choose(source.record, pairs) if at in groups]
     few = [at for at in dict.fromkeys((*chosen, *groups)) if at in recorded][:_MOST_WITH_SIGNALS]
     signals = {at: s for at, s in source.signals.items() if (at.scene, at.seed) in few}
-    if tracked and _flat(source):
-        signals = _with_positions(signals, source.traces)
+    if tracked and flat:
+        signals = _with_positions(signals, tracks)
     trials, why = _Trials(source, signals, _plots(signals)), captions(pairs)
     scenes = [
         {
@@ -86,7 +91,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
         prism["corners"] = [[round(v, 3) for v in corner] for corner in prism["corners"]]
     content = {
         "dt_s": source.system.control_dt_s,
-        "space": space,
+        "space": (space := _space(source, flat, bool(tracked))),
         "paths": [{"name": path.name, "title": path.title} for path in source.record.paths],
         "picked": [list(groups).index(at) for at in chosen],
         "path": _first_path(source.record, groups[(*chosen, *groups)[0]]),
@@ -105,18 +110,17 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     return Viewer(space, frozenset(groups), pack(content, trials.series))
 
 
-def _flat(source: ReportInput) -> bool:
+def _flat(source: ReportInput, tracks: Mapping[TrialAddress, Trace]) -> bool:
     """Return whether all positions lie on one axis, among no obstacles."""
     return not any(plan.prisms or plan.pillars for plan in source.system.plans.values()) and all(
-        not track[:, 1:].any() for track in source.traces.values()
+        not track[:, 1:].any() for track in tracks.values()
     )
 
 
-def _space(source: ReportInput) -> str:
-    flat, named = _flat(source), source.signals.values()
+def _space(source: ReportInput, flat: bool, tracked: bool) -> str:
+    named = source.signals.values()
     if flat and any(signal.name == DRAWN for signals in named for signal in signals):
         return "picture"
-    tracked = any(len(track) for track in source.traces.values())
     return "none" if not tracked else "line" if flat else "space"
 
 
@@ -143,7 +147,7 @@ class _Trials:
             return None
         address = TrialAddress(variant, pair.path, pair.seed, pair.scene)
         named = {signal.name: signal for signal in self.signals.get(address, ())}
-        track = self.source.traces.get(address, np.empty((0, 3), np.float32))
+        track = np.empty((0, 3), np.float32) if trial.trace is None else trial.trace
         faulted: list[list[int]] = []
         if IN_FORCE in named:
             on = named[IN_FORCE].values[:, 0] > 0
@@ -199,9 +203,7 @@ def pack(content: Mapping[str, Any], series: Sequence[NDArray[np.int32]]) -> str
     return b64encode(zlib.compress(text.encode(), 9)).decode()
 
 
-def _with_positions(
-    signals: Signals, positions: Mapping[TrialAddress, NDArray[np.float32]]
-) -> Signals:
+def _with_positions(signals: Signals, positions: Mapping[TrialAddress, Trace]) -> Signals:
     """Return the signals with the position before them, and nothing that only repeats it."""
     by_trial: dict[TrialAddress, tuple[Signal, ...]] = {}
     for at, track in positions.items():

@@ -49,6 +49,8 @@ class MapPlan(Analysis[list[Point]]):
     request: MapQuestion
     question: ResolvedMap
     spec: SystemSpec
+    fault: FaultText
+    """Without a size."""
     scenes: tuple[str, ...] = field(repr=False)
 
     def rounds(self) -> Rounds[list[Point]]:
@@ -100,7 +102,7 @@ class MapPlan(Analysis[list[Point]]):
                 if units:
                     by_size.setdefault(units, []).append(module)
             faults = [
-                _sized(self.system, question.fault, question.size(units)).aimed_at(*modules)
+                _sized(self.system, self.fault, question.size(units)).aimed_at(*modules)
                 for units, modules in by_size.items()
             ]
             for name in (question.baseline, question.repair):
@@ -137,35 +139,16 @@ class MapPlan(Analysis[list[Point]]):
 
 def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Library) -> MapPlan:
     """Lay out a map. `UserError` for anything that cannot be run or means nothing."""
-    variants = two_variants(system, request)
-    kind = _kind(system, request.fault)
-    relative = kind != "offset"
-    interface = system.interface
-    parts = _sized(system, request.fault, 0.1 if relative else 1.0).resolved(interface)
+    variants, interface = two_variants(system, request), system.interface
+    fault = _without_size(system, request.fault)
+    relative = fault.kind != "offset"
+    parts = _sized(system, fault, 0.1 if relative else 1.0).resolved(interface)
     sources = [interface.source(interface.channel(part.channel).sources[0]) for part in parts]
-    unsure = [
-        s.uncertainty for s in sources if s.uncertainty and s.uncertainty.relative is relative
-    ]
-    expected = max((error.expected_std for error in unsure), default=None)
-    largest = request.up_to
-    if largest is None:
-        if expected is None:
-            raise UserError(
-                "the interface declares no uncertainty of that source: say how large errors may "
-                "be, for example --up-to 0.2 for 20 % to either side."
-            )
-        largest = float(f"{3.0 * expected:.2g}")  # three declared spreads
-    elif not _LEAST <= largest <= _LARGEST:
-        raise UserError(
-            f"--up-to {largest:g} is no size: give a number from {_LEAST:g} to {_LARGEST:g}."
-        )
-    elif relative and largest >= 1.0:
-        raise UserError(
-            f"--up-to {largest:g} would take all of the reading away: errors are fractions of it, "
-            "so give less than 1."
-        )
-    faults = [_sized(system, request.fault, end) for end in (-largest, largest)]
-    modules, others = _places(system, faults[1], request.against, variants)
+    errors = [source.uncertainty for source in sources if source.uncertainty]
+    unsure = [error.expected_std for error in errors if error.relative is relative]
+    largest = _largest(request, max(unsure, default=None), relative)
+    ends = [_sized(system, fault, end) for end in (-largest, largest)]
+    modules, others = _places(system, ends[1], request.against, variants)
     least = len(lattice(COARSE))
     if not least <= request.points <= _MOST_POINTS:
         raise UserError(
@@ -173,7 +156,7 @@ def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Li
             f"{_MOST_POINTS}, give a number between them."
         )
     chosen = scenes_of(library, request.scenes)
-    spread = _two("--spread", request.spread or (expected or largest / 2.0,))
+    spread = _two("--spread", request.spread or (max(unsure, default=0.0) or largest / 2.0,))
     if not 0.0 < min(spread) <= max(spread) <= 1000 * largest:
         raise UserError(f"--spread: give standard deviations above 0, up to {1000 * largest:g}.")
     middle = _two("--mean", request.mean)
@@ -198,34 +181,54 @@ def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Li
     )
     name = f"{spec.name}-map-{request.repair}-vs-{request.baseline}"
     named = (name, request.fault, *modules, f"{largest:g}", PurePath(request.library).stem)
-    return MapPlan(request, question, system, named, spec, chosen)
+    return MapPlan(request, question, system, named, spec, fault, chosen)
 
 
-def _kind(system: System, text: str) -> str | None:
-    """Return the kind of a fault without its size: `scale`, `offset`, or none as in a preset."""
-    parsed = FaultText.read(text)
-    if parsed.sizes:
+def _without_size(system: System, text: str) -> FaultText:
+    """Return a fault that takes sizes of both signs, with its kind unless it is a preset."""
+    fault = FaultText.read(text)
+    if fault.sizes:
         raise UserError(
-            f"fault '{text}': the map sets the size itself; leave '={parsed.sizes[0]}' out and "
+            f"fault '{text}': the map sets the size itself; leave '={fault.sizes[0]}' out and "
             "give the largest one with --up-to."
         )
-    if parsed.consumers:
+    if fault.consumers:
         raise UserError(f"fault '{text}': name the modules with --against, without '@'.")
-    preset = parsed.kind is None and parsed.name in system.fault_presets
-    if not preset and parsed.kind not in (None, "scale", "offset"):
+    if fault.kind is None and fault.name not in system.fault_presets:
+        return replace(fault, kind="scale")
+    if fault.kind not in (None, "scale", "offset"):
         raise UserError(
-            f"fault '{text}': a map needs errors of both signs; use {parsed.name}:scale (relative, "
-            f"the default) or {parsed.name}:offset, not '{parsed.kind}'."
+            f"fault '{text}': a map needs errors of both signs; use {fault.name}:scale (relative, "
+            f"the default) or {fault.name}:offset, not '{fault.kind}'."
         )
-    return parsed.kind
+    return fault
 
 
-def _sized(system: System, text: str, size: float) -> AnyFault:
+def _sized(system: System, fault: FaultText, size: float) -> AnyFault:
     """Return a fault of a size at every reader; `UserError` where it takes no such size."""
-    parsed = FaultText.read(text)
-    if parsed.kind is None and parsed.name not in system.fault_presets:
-        parsed = replace(parsed, kind="scale")
-    return system.fault(str(parsed.at(f"{1.0 + size if parsed.kind == 'scale' else size:.12g}")))
+    return system.fault(str(fault.at(f"{1.0 + size if fault.kind == 'scale' else size:.12g}")))
+
+
+def _largest(request: MapQuestion, expected: float | None, relative: bool) -> float:
+    """Return the largest error of a map: as asked, or three declared spreads."""
+    largest = request.up_to
+    if largest is None:
+        if expected is None:
+            raise UserError(
+                "the interface declares no uncertainty of that source: say how large errors may "
+                "be, for example --up-to 0.2 for 20 % to either side."
+            )
+        return float(f"{3.0 * expected:.2g}")
+    if not _LEAST <= largest <= _LARGEST:
+        raise UserError(
+            f"--up-to {largest:g} is no size: give a number from {_LEAST:g} to {_LARGEST:g}."
+        )
+    if relative and largest >= 1.0:
+        raise UserError(
+            f"--up-to {largest:g} would take all of the reading away: errors are fractions of it, "
+            "so give less than 1."
+        )
+    return largest
 
 
 def _places(

@@ -1,6 +1,6 @@
 """A plan: sources in order, the audits of a study, how many trials they take, and why."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Literal
 
 from faultpath.core.errors import UserError
@@ -9,11 +9,11 @@ from faultpath.decisions.dependent import Group, dependent_groups
 from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_modules
 from faultpath.decisions.plan.probing import command_responses
 from faultpath.decisions.plan.study import StudyAudit, StudyFile, arms_of
-from faultpath.decisions.planning import plan_audit, two_variants
+from faultpath.decisions.planning import Audit, plan_audit, two_variants
 from faultpath.decisions.question import resolve
 from faultpath.decisions.sentences.wording import counted, series
 from faultpath.decisions.sources import Candidate, candidates
-from faultpath.trials import Library, LoopSystem, System, SystemSpec
+from faultpath.trials import Library, LoopSystem, System, SystemSpec, Variant
 from faultpath.trials.question import PlanQuestion
 
 PROBED_SCENES = 5
@@ -61,35 +61,12 @@ def make_plan(
         if candidate.fault
     }
     if not laid:
-        if not uncertain:
-            raise UserError(
-                f"{system.name}: neither variant reads a source that may err: nothing to plan."
-            )
-        why = "; ".join(f"{candidate.name} {candidate.unsized}" for candidate in uncertain)
-        channel = next((c for candidate in uncertain for c in candidate.channels), "CHANNEL")
-        raise UserError(
-            f"{system.name}: no source says how large its errors are ({why}): declare it in the "
-            f"interface, or give the expected error, for example --fault {channel}:scale=1.1"
-        )
+        raise _nothing_sized(system, uncertain)
     repaired = repaired_modules(system, *variants, question.module)
-    scenes = next(iter(laid.values())).study.scenes
-    probed = 0
+    scenes, probed = next(iter(laid.values())).study.scenes, 0
     if isinstance(system, LoopSystem) and len(laid) > 1:
         probed = min(len(scenes), PROBED_SCENES)
-        responses: dict[str, float] = {}
-        for done, variant in enumerate(variants):
-            note(done, len(variants))
-            arms = {
-                (name, row.path): row.arm.faults
-                for name, audit in laid.items()
-                for row in audit.study.rows
-                if row.variant == variant.name and row.arm.faults
-            }
-            moved = command_responses(
-                system, variant.name, arms, scenes[:probed], question.seeds[0]
-            )
-            for (name, _), value in moved.items():
-                responses[name] = max(value, responses.get(name, value))
+        responses = _responses(system, laid, variants, scenes[:probed], question.seeds[0], note)
         uncertain = [c.model_copy(update={"response": responses.get(c.name)}) for c in uncertain]
     order = ranked(uncertain)
     first = next(candidate for candidate in order if candidate.fault)
@@ -128,30 +105,52 @@ def make_plan(
     )
 
 
+def _nothing_sized(system: System, uncertain: Sequence[Candidate]) -> UserError:
+    """Return the error of a system of which no source has a fault."""
+    if not uncertain:
+        return UserError(
+            f"{system.name}: neither variant reads a source that may err: nothing to plan."
+        )
+    why = "; ".join(f"{candidate.name} {candidate.unsized}" for candidate in uncertain)
+    channel = next((c for candidate in uncertain for c in candidate.channels), "CHANNEL")
+    return UserError(
+        f"{system.name}: no source says how large its errors are ({why}): declare it in the "
+        f"interface, or give the expected error, for example --fault {channel}:scale=1.1"
+    )
+
+
+def _responses(
+    system: LoopSystem,
+    laid: Mapping[str, Audit],
+    variants: Sequence[Variant],
+    scenes: Sequence[str],
+    seed: int,
+    note: Note,
+) -> dict[str, float]:
+    """Return how far a probe of each audit's fault moves the commands, at most, by its source."""
+    responses: dict[str, float] = {}
+    for done, variant in enumerate(variants):
+        note(done, len(variants))
+        arms = {
+            (name, row.path): row.arm.faults
+            for name, audit in laid.items()
+            for row in audit.study.rows
+            if row.variant == variant.name and row.arm.faults
+        }
+        moved = command_responses(system, variant.name, arms, scenes, seed)
+        for (name, _), value in moved.items():
+            responses[name] = max(value, responses.get(name, value))
+    return responses
+
+
 def sentences(plan: Plan) -> Iterator[str]:
     """Say why the first source is first, what the plan leaves open, and what it will take.
 
     Ranks compare point estimates, and the words say no more.
     """
     first, *others = plan.candidates
-    count = counted(len(first.consumers), "consumer")
-    tied = [candidate.name for candidate in others if candidate.rank == first.rank]
-    alike = [
-        candidate.name for candidate in others if len(candidate.consumers) == len(first.consumers)
-    ]
-    if not others:
-        yield f"{first.name} ({count}) is the only uncertain source: no rank is due."
-    elif not alike:
-        yield f"{first.name} comes first: {count}, more than any other source."
-    elif tied:
-        named = series([first.name, *tied])
-        yield f"{named} tie: {count} each, and nothing tells them apart."
-    else:
-        yield (
-            f"{first.name} comes first: {count}, as {series(alike)}, and the largest known probe "
-            f"response ({first.response:.3g}), a point estimate from "
-            f"{counted(plan.probed, 'scene')} that no test compares."
-        )
+    tied = any(candidate.rank == first.rank for candidate in others)
+    yield _first(plan)
     if not first.fault:
         audited = next(candidate.name for candidate in plan.candidates if candidate.fault)
         yield (
@@ -189,3 +188,25 @@ def sentences(plan: Plan) -> Iterator[str]:
     if len(audits) > 1:
         yield "Each audit decides by itself: no correction is made for their number."
     yield f"{counted(sum(plan.trials), 'trial')} in all."
+
+
+def _first(plan: Plan) -> str:
+    """Say why the first source is first."""
+    first, *others = plan.candidates
+    count = counted(len(first.consumers), "consumer")
+    tied = [candidate.name for candidate in others if candidate.rank == first.rank]
+    alike = [
+        candidate.name for candidate in others if len(candidate.consumers) == len(first.consumers)
+    ]
+    if not others:
+        return f"{first.name} ({count}) is the only uncertain source: no rank is due."
+    if not alike:
+        return f"{first.name} comes first: {count}, more than any other source."
+    if tied:
+        named = series([first.name, *tied])
+        return f"{named} tie: {count} each, and nothing tells them apart."
+    return (
+        f"{first.name} comes first: {count}, as {series(alike)}, and the largest known probe "
+        f"response ({first.response:.3g}), a point estimate from "
+        f"{counted(plan.probed, 'scene')} that no test compares."
+    )

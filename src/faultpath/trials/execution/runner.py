@@ -1,7 +1,7 @@
 """Run a study into a folder, from wherever an earlier invocation left it."""
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +18,6 @@ from faultpath.trials.execution.state import RunState, Stop
 from faultpath.trials.provenance import Recheck
 from faultpath.trials.registry import load_system
 from faultpath.trials.store.folder import Manifest, RunFolder
-from faultpath.trials.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.system import System
 from faultpath.trials.table import Deliveries, OutcomeTable, check_rows, selected
 from faultpath.trials.work.executor import Executor, Progress
@@ -45,8 +44,6 @@ class RunResult:
     outcomes: OutcomeTable
     deliveries: Deliveries
     """Deliveries of the taps, row by row, and what a reader of the results has to know."""
-    traces: Mapping[TrialAddress, Trace]
-    """Position at each control step, `[T, 3]`, metres, world frame."""
     blocks_computed: int
     blocks_kept: int
     failures: tuple[Failure, ...]
@@ -158,27 +155,28 @@ def run_study(
             f"interrupted with {done} of {len(units)} blocks done and kept in {run.path}; run the "
             "same again to resume."
         ) from None
-    failures: list[Failure] = []
-    for unit in state.units:
-        details = run.failures / f"{unit.key}.txt"
-        for scene in unit.scenes:
-            outcome = state.outcomes[unit.arm.key(), scene]
-            if outcome.failed:
-                where = details if details.exists() else None
-                failures.append(Failure(unit.arm, scene, outcome.error or "", where))
     return RunResult(
         outcomes=table,
         deliveries=deliveries,
-        traces=traces_of(table),
         blocks_computed=state.computed,
         blocks_kept=state.kept,
-        failures=tuple(failures),
+        failures=tuple(_failures(state, run)),
         outcomes_sha256=digest,
         system_fingerprint=code.state.digest,
         code=(code,),
         library_hash=library.content_hash,
         rechecks=again.flown(),
     )
+
+
+def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:
+    for unit in state.units:
+        details = folder.failures / f"{unit.key}.txt"
+        for scene in unit.scenes:
+            outcome = state.outcomes[unit.arm.key(), scene]
+            if outcome.failed:
+                where = details if details.exists() else None
+                yield Failure(unit.arm, scene, outcome.error or "", where)
 
 
 def _attempted(system: System, task: Task) -> Reply:

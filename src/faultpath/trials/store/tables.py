@@ -90,16 +90,22 @@ def encode_outcomes(table: OutcomeTable) -> bytes:
     return encode(schema, ({**vars(row), **_cells(row.outcome)} for row in table.rows))
 
 
-def decode_outcomes(data: bytes) -> OutcomeTable:
-    """Return an assembled outcome table (without traces); `Unreadable` when it is not one.
+def decode_outcomes(
+    data: bytes, traces: Mapping[TrialAddress, Trace] | None = None
+) -> OutcomeTable:
+    """Return an assembled outcome table, with `traces` where there are any; `Unreadable` when it is
+    not one.
 
     Where a trial that did not fail has no time, it is not a number: other tools write none.
     """
     schema = {**_ADDRESS, **_PLACE, **_END, **_RESULT}
     rows, _ = decode(data, schema, _MAY_LACK, more=NUMBER)
-    at = ("variant", "path", "seed", *_PLACE)
-    placed = (({name: row[name] for name in at}, _outcome(row, None, True)) for row in rows)
-    return OutcomeTable(tuple(TrialRow(**place, outcome=outcome) for place, outcome in placed))
+    at, trials = ("variant", "path", "seed", *_PLACE), list[TrialRow]()
+    for row in rows:
+        trace = (traces or {}).get(_address(row))
+        outcome = _outcome(row, trace, untimed=True)
+        trials.append(TrialRow(**{name: row[name] for name in at}, outcome=outcome))
+    return OutcomeTable(tuple(trials))
 
 
 def encode_traces(table: OutcomeTable) -> bytes:
@@ -111,20 +117,22 @@ def encode_traces(table: OutcomeTable) -> bytes:
 def decode_traces(data: bytes) -> dict[TrialAddress, Trace]:
     """Return assembled traces, `[T, 3]` each, metres; `Unreadable` when they are not that."""
     rows, _ = decode(data, _TRACES, _MAY_LACK)
-    return {
-        TrialAddress(*(row[name] for name in _ADDRESS)): trace
-        for row in rows
-        if (trace := _trace(row)) is not None
-    }
+    return {_address(row): trace for row in rows if (trace := _trace(row)) is not None}
 
 
 def traces_of(table: OutcomeTable) -> dict[TrialAddress, Trace]:
     """Return the traces of a table by trial."""
-    return {
-        TrialAddress(row.variant, row.path, row.seed, row.outcome.scene): row.outcome.trace
-        for row in table.rows
-        if row.outcome.trace is not None
-    }
+    trials = ((address_of(row), row.outcome.trace) for row in table.rows)
+    return {address: trace for address, trace in trials if trace is not None}
+
+
+def address_of(row: TrialRow) -> TrialAddress:
+    """Return where a trial of a table stands."""
+    return TrialAddress(row.variant, row.path, row.seed, row.outcome.scene)
+
+
+def _address(row: Row) -> TrialAddress:
+    return TrialAddress(*(row[name] for name in _ADDRESS))
 
 
 def _columns(outcomes: Iterable[Outcome]) -> Schema:
