@@ -16,7 +16,7 @@ from faultpath_paper.central import (
     QUESTION,
     WEIGHTS,
     Case,
-    Effect,
+    PrintedEffect,
     answer,
     case_of,
     detail,
@@ -104,7 +104,7 @@ def _case(run: Run) -> Case:
     effects = {effect.path: effect for effect in record.effects}
     pair = effects[_MODULE], effects[SHARED]
     isolated, shared = (
-        Effect.of(wording.with_interval(effect.success), effect.detected) for effect in pair
+        PrintedEffect.of(wording.with_interval(effect.success), effect.detected) for effect in pair
     )
     by_seed = zip(*(effect.success.per_seed or () for effect in pair), strict=True)
     return Case(

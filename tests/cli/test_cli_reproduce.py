@@ -9,7 +9,7 @@ from cli_runs import faultpath as command
 from faultpath_paper.cells import QUICK, published_claims
 from faultpath_paper.pages import table_4
 from faultpath_paper.reproduction import ReproductionRun, carry_out
-from faultpath_paper.run import Plan
+from faultpath_paper.run import ReproductionPlan
 from faultpath_paper.verb import show
 
 import faultpath
@@ -19,7 +19,7 @@ from faultpath.core.errors import UserError
 from faultpath.decisions.tables import MISSING
 from faultpath.trials.work.executor import Here
 
-PLAN = Plan((table_4.PAGE,), QUICK)
+PLAN = ReproductionPlan((table_4.PAGE,), QUICK)
 DISPLAY = Display(command=("faultpath", "reproduce"))
 
 

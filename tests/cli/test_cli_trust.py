@@ -12,7 +12,7 @@ from odd_inputs import sign
 
 from faultpath.core.errors import UserError
 from faultpath.trials import SystemSpec
-from faultpath.trials.trust import Received
+from faultpath.trials.trust import ReceivedCode
 
 STUDY = {
     "baseline": "calibrated",
@@ -156,7 +156,7 @@ def test_a_part_that_changed_since_the_run_is_said_to_have() -> None:
     pytest.importorskip("faultpath_quadrotor")
     said: list[str] = []
     spec = SystemSpec(name="quadrotor", options={"bring": "mine.py:create"})
-    Received("record.json", True, said.append, {"mine": "0" * 64}).check(spec, ())
+    ReceivedCode("record.json", True, said.append, {"mine": "0" * 64}).check(spec, ())
     assert "mine.py:create" in said[-1]
     assert "changed since" in said[-1]
 
@@ -164,7 +164,7 @@ def test_a_part_that_changed_since_the_run_is_said_to_have() -> None:
 def test_an_installed_system_needs_no_word() -> None:
     pytest.importorskip("faultpath_quadrotor")
     said: list[str] = []
-    file = Received("record.json", False, said.append)
+    file = ReceivedCode("record.json", False, said.append)
     file.check(SystemSpec(name="quadrotor", options={"wind": "L3"}), ("gru", "gru+dcc"))
     assert said == ["Importing quadrotor, which record.json names."]
     with pytest.raises(UserError, match="no file found"):

@@ -23,7 +23,7 @@ SIGNS = {-1: "−5.0 [−9.0, −1.0]", 0: "+1.0 [−3.0, 5.0]", 1: "+6.0 [2.0, 
 
 def case(isolated: Sign, shared: Sign, *, reversal: bool = False) -> central.Case:
     """Return a run that detected effects with these signs."""
-    one, two = (central.Effect(text=SIGNS[sign], sign=sign) for sign in (isolated, shared))
+    one, two = (central.PrintedEffect(text=SIGNS[sign], sign=sign) for sign in (isolated, shared))
     return central.Case(place="4 scenes here", isolated=one, shared=two, reversal=reversal)
 
 
@@ -40,7 +40,7 @@ def test_the_answer_is_a_reversal_only_where_a_run_decides_one() -> None:
 
 @pytest.mark.parametrize("sign", [-1, 0, 1])
 def test_a_clause_says_more_or_less_only_of_what_was_detected(sign: Sign) -> None:
-    text = central.clause("There", central.Effect(text=SIGNS[sign], sign=sign))
+    text = central.clause("There", central.PrintedEffect(text=SIGNS[sign], sign=sign))
     assert ("no difference" in text) == (sign == 0)
     assert ("more often" in text) == (sign == 1)
     assert ("less often" in text) == (sign == -1)
@@ -59,8 +59,8 @@ def test_trainings_are_counted_where_there_are_several() -> None:
 
 def test_an_effect_takes_its_side_from_its_text_only_where_it_is_detected() -> None:
     for sign, text in SIGNS.items():
-        assert central.Effect.of(text, detected=True).sign == (sign or 1)
-        assert central.Effect.of(text, detected=False).sign == 0
+        assert central.PrintedEffect.of(text, detected=True).sign == (sign or 1)
+        assert central.PrintedEffect.of(text, detected=False).sign == 0
 
 
 def test_a_run_answers_by_the_papers_rules(found: Reproduction) -> None:

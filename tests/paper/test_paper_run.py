@@ -6,11 +6,11 @@ import pytest
 from faultpath_paper import flights
 from faultpath_paper.answers import Reproduction
 from faultpath_paper.cells import HELD_OUT, PAPER, QUICK, Cell, Profile, calibration
-from faultpath_paper.entries import Group, centimetres, success
+from faultpath_paper.entries import EntryGroup, centimetres, success
 from faultpath_paper.flights import Flown
-from faultpath_paper.page import Page, Row, TableSpec
+from faultpath_paper.page import Page, TableRow, TableSpec
 from faultpath_paper.pages import PAGES, table_1, table_2
-from faultpath_paper.run import Plan, conclude, measure_all, plan, read_results, save
+from faultpath_paper.run import ReproductionPlan, conclude, measure_all, plan, read_results, save
 
 from faultpath.api.display import Display
 from faultpath.api.job import Job
@@ -24,19 +24,21 @@ FAULTY = table_2.cell("wm-a", 0.1)
 ERROR = table_2.error_under(0.1)
 
 
-def table(*groups: Group) -> TableSpec:
-    return TableSpec("one", "One", ("Success, %",), tuple(Row("", (group,)) for group in groups))
+def table(*groups: EntryGroup) -> TableSpec:
+    return TableSpec(
+        "one", "One", ("Success, %",), tuple(TableRow("", (group,)) for group in groups)
+    )
 
 
 ONE = Page("one", "One", (table(success(NOMINAL), success(FAULTY), centimetres(ERROR)),))
 TWO = Page("two", "Two", (table(success(NOMINAL)),))
 
 
-def a_plan(*pages: Page) -> Plan:
-    return Plan(pages, TINY)
+def a_plan(*pages: Page) -> ReproductionPlan:
+    return ReproductionPlan(pages, TINY)
 
 
-def fly(asked: Plan, folder: Path) -> Flown:
+def fly(asked: ReproductionPlan, folder: Path) -> Flown:
     return flights.fly(asked.legs(), folder, Job(folder, Here(), SILENT).run, lambda now: None)
 
 

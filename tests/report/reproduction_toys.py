@@ -3,10 +3,10 @@
 from faultpath_paper.answers import (
     ClaimVerdict,
     Ledger,
-    Part,
     Point,
     Reproduction,
     Series,
+    StatementPart,
     Sweep,
 )
 
@@ -15,12 +15,12 @@ from faultpath.decisions.tables import Entry, Line, Table
 NASTY = '<script>alert("x")</script> & co'
 
 
-def part(answer: str, **fields: object) -> Part:
+def part(answer: str, **fields: object) -> StatementPart:
     known = {"words": f"first minus second is above -1 {NASTY}", "answer": answer}
-    return Part.model_validate(known | fields)
+    return StatementPart.model_validate(known | fields)
 
 
-def claim(id: str, kind: str, parts: tuple[Part, ...]) -> ClaimVerdict:
+def claim(id: str, kind: str, parts: tuple[StatementPart, ...]) -> ClaimVerdict:
     first = parts[0]
     return ClaimVerdict.model_validate(
         {

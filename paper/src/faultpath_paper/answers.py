@@ -16,11 +16,11 @@ Size = Literal["compatible", "right sign, other size", "other size", "other sign
 """
 
 
-class _Frozen(Shown):
+class _PlainFrozen(Shown):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-class Part(_Frozen):
+class StatementPart(_PlainFrozen):
     """One of the statements that a claim is made of."""
 
     words: str
@@ -49,7 +49,7 @@ class Part(_Frozen):
     """How the estimate compares with that figure; no answer depends on it."""
 
 
-class ClaimVerdict(_Frozen):
+class ClaimVerdict(_PlainFrozen):
     """A claim and the run's answer to it; confirmed when every part is."""
 
     id: str
@@ -63,10 +63,10 @@ class ClaimVerdict(_Frozen):
     paper: str
     """Result that the paper reports."""
     claim: str
-    parts: tuple[Part, ...]
+    parts: tuple[StatementPart, ...]
 
 
-class Ledger(_Frozen):
+class Ledger(_PlainFrozen):
     """Claims over one run."""
 
     library: str
@@ -82,7 +82,7 @@ class Ledger(_Frozen):
         return sum(claim.verdict == answer for claim in self.claims)
 
 
-class Point(_Frozen):
+class Point(_PlainFrozen):
     """One point of a series, with its interval."""
 
     x: float
@@ -91,14 +91,14 @@ class Point(_Frozen):
     high: float | None = None
 
 
-class Series(_Frozen):
+class Series(_PlainFrozen):
     """One line of a figure."""
 
     label: str
     points: tuple[Point, ...]
 
 
-class Sweep(_Frozen):
+class Sweep(_PlainFrozen):
     """A figure of lines."""
 
     name: str
@@ -111,7 +111,7 @@ class Sweep(_Frozen):
     notes: tuple[str, ...] = ()
 
 
-class Reproduction(_Frozen):
+class Reproduction(_PlainFrozen):
     """Ledger, tables and figures of one run, in the order in which they are read."""
 
     profile: str

@@ -32,7 +32,7 @@ QUESTION = (
 QUICK_RUN = "This quick run is too small to answer the question."
 
 
-class Effect(Frozen):
+class PrintedEffect(Frozen):
     """Success of the retrained estimator minus the original one."""
 
     text: str
@@ -41,7 +41,7 @@ class Effect(Frozen):
     """Side of zero on which a difference is detected; 0 where none is."""
 
     @classmethod
-    def of(cls, text: str, detected: bool) -> "Effect":
+    def of(cls, text: str, detected: bool) -> "PrintedEffect":
         """Return the effect that a table prints."""
         if not detected:
             return cls(text=text, sign=0)
@@ -53,8 +53,8 @@ class Case(Frozen):
 
     place: str
     """Such as `300 scenes of confirmation, seeds 0, 1, 2`."""
-    isolated: Effect
-    shared: Effect
+    isolated: PrintedEffect
+    shared: PrintedEffect
     reversal: bool
     """Whether the run decides that the ranking reverses."""
     reversing: int | None = None
@@ -83,7 +83,7 @@ def case_of(reproduction: Reproduction) -> Case | None:
     at = labels.index(f"{NAMES[REPAIR]} minus {NAMES[BASELINE]}, success (pp)")
     differences, intervals = table.lines[at + 1].entries, table.lines[at + 2].entries
     isolated, shared = (
-        Effect.of(f"{difference.text} {ends.text}", difference.detected)
+        PrintedEffect.of(f"{difference.text} {ends.text}", difference.detected)
         for difference, ends in zip(differences[1:], intervals[1:], strict=True)
     )
     return Case(
@@ -116,7 +116,7 @@ def detail(cases: Sequence[Case]) -> str:
     return f"{alone}; {shared} ({case.place}). {by_training(case)}".rstrip()
 
 
-def clause(where: str, effect: Effect) -> str:
+def clause(where: str, effect: PrintedEffect) -> str:
     """Return what was detected in a condition, as a clause."""
     if not effect.sign:
         return f"{where} no difference between the two was detected ({effect.text} pp)"

@@ -21,7 +21,7 @@ Figure = float | str
 
 
 @dataclass(frozen=True)
-class Group:
+class EntryGroup:
     """Entries that are made together; all are dashes where a run does not hold them."""
 
     make: Callable[[Results], Made]
@@ -43,7 +43,7 @@ class Group:
         )
 
 
-BLANK = Group(lambda results: ("",))
+BLANK = EntryGroup(lambda results: ("",))
 """Group of a column that is empty in a line."""
 
 
@@ -60,56 +60,56 @@ def bracket(ends: Sequence[float], digits: int = 1) -> str:
     return f"[{wording.plain(low, digits)}, {wording.plain(high, digits)}]"
 
 
-def success(cell: Cell, paper: Figure = "") -> Group:
+def success(cell: Cell, paper: Figure = "") -> EntryGroup:
     """Success in percent: one decimal for a mean over seeds, none for one seed, as in the paper."""
 
     def make(results: Results) -> Made:
         rate = results.rate(cell)
         return (wording.plain(rate.value, 1 if rate.n_seeds > 1 else 0),)
 
-    return Group(make, (printed(paper),), (cell,))
+    return EntryGroup(make, (printed(paper),), (cell,))
 
 
-def ended(cell: Cell, status: Status, paper: Figure = "") -> Group:
+def ended(cell: Cell, status: Status, paper: Figure = "") -> EntryGroup:
     """Share of seed 0's trials that ended in a way, percent; failed trials do not count."""
 
     def make(results: Results) -> Made:
         ends = [outcome.status for outcome in results.first(cell)]
         return (wording.plain(100 * ends.count(status) / len(ends), 0),)
 
-    return Group(make, (printed(paper),), (of_seed(cell),))
+    return EntryGroup(make, (printed(paper),), (of_seed(cell),))
 
 
-def time(cell: Cell, paper: float) -> Group:
+def time(cell: Cell, paper: float) -> EntryGroup:
     """Median time of seed 0's successful trials, s."""
 
     def make(results: Results) -> Made:
         times = [e.time_s for e in results.first(cell) if e.status is Status.SUCCESS]
         return (wording.plain(float(np.median(times)), 2) if times else MISSING,)
 
-    return Group(make, (printed(paper, 2),), (of_seed(cell),))
+    return EntryGroup(make, (printed(paper, 2),), (of_seed(cell),))
 
 
 def measured(
     by_seed: Iterable[Measurement], paper: Figure = "", *, times: float = 1.0, digits: int = 2
-) -> Group:
+) -> EntryGroup:
     """Mean over seeds of the median over windows, in `times` its unit."""
     subject = tuple(by_seed)
-    return Group(
+    return EntryGroup(
         lambda results: (wording.plain(times * mean_of_medians(results, subject), digits),),
         (printed(paper, digits),),
         measurements=subject,
     )
 
 
-def centimetres(measurement: Measurement, paper: Figure = "") -> Group:
+def centimetres(measurement: Measurement, paper: Figure = "") -> EntryGroup:
     """Median over windows of a distance, cm."""
     return measured((measurement,), paper, times=100, digits=1)
 
 
 def of_quantity(
     quantity: Quantity, cells: Iterable[Cell], published: tuple[str, str], digits: int
-) -> Group:
+) -> EntryGroup:
     """A difference that claims may be decided by, its interval, and beside it the score's.
 
     Bold is a detected difference in success.
@@ -122,7 +122,7 @@ def of_quantity(
         entry = Entry(text=wording.signed(effect.value, digits), detected=bold)
         return entry, interval_of(as_paper, digits), interval_of(effect, digits)
 
-    return Group(make, (*published, ""), tuple(cells))
+    return EntryGroup(make, (*published, ""), tuple(cells))
 
 
 def interval_of(effect: Contrast, digits: int = 1) -> str:
@@ -154,7 +154,7 @@ def published_contrasts(
     )
 
 
-def difference(first: Cell, second: Cell, published: PublishedContrast) -> Group:
+def difference(first: Cell, second: Cell, published: PublishedContrast) -> EntryGroup:
     """Difference, its two intervals, wins:losses, p-value and least detectable difference."""
 
     def make(results: Results) -> Made:
@@ -168,7 +168,7 @@ def difference(first: Cell, second: Cell, published: PublishedContrast) -> Group
             "none" if effect.least is None else wording.plain(effect.least),
         )
 
-    return Group(make, astuple(published), (first, second))
+    return EntryGroup(make, astuple(published), (first, second))
 
 
 def decided(effect: Contrast) -> Entry:

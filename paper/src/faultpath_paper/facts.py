@@ -35,7 +35,7 @@ class Fact(Frozen):
     """Our way and the reason for it, unless it is as written."""
 
 
-class Group(Frozen):
+class FactGroup(Frozen):
     """Facts of one section on one subject."""
 
     section: Literal["IV-A", "IV-B", "V", "VI", "VII", "VIII", "Appendix"]
@@ -44,9 +44,9 @@ class Group(Frozen):
 
 
 @cache
-def groups() -> tuple[Group, ...]:
+def groups() -> tuple[FactGroup, ...]:
     """Return every group of `data/facts.yaml`, in the order of the paper."""
-    return tuple(Group.model_validate(entry) for entry in data("facts.yaml"))
+    return tuple(FactGroup.model_validate(entry) for entry in data("facts.yaml"))
 
 
 def facts() -> tuple[Fact, ...]:

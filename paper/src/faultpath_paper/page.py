@@ -9,7 +9,7 @@ from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Line, Table
 from faultpath_paper.answers import Sweep
 from faultpath_paper.cells import Cell
-from faultpath_paper.entries import Figure, Group, PublishedContrast, difference, success
+from faultpath_paper.entries import EntryGroup, Figure, PublishedContrast, difference, success
 from faultpath_paper.evidence.table import Measured, Measurement
 from faultpath_paper.results import NotRun, Results
 
@@ -66,11 +66,11 @@ Built: TypeAlias = tuple[Table | Sweep, ...]
 
 
 @dataclass(frozen=True)
-class Row:
+class TableRow:
     """A line of a table; one without groups is a heading inside it."""
 
     label: str
-    groups: tuple[Group, ...] = ()
+    groups: tuple[EntryGroup, ...] = ()
 
     def lines(self, results: Results) -> tuple[Line, ...]:
         """Return the line as a run fills it."""
@@ -84,7 +84,7 @@ class Columns:
 
     labels: tuple[str, ...]
     """An empty one leaves its line out; entries beyond the labels are not shown."""
-    groups: tuple[Group, ...]
+    groups: tuple[EntryGroup, ...]
 
     def lines(self, results: Results) -> tuple[Line, ...]:
         """Return the lines as a run fills them."""
@@ -96,13 +96,13 @@ class Columns:
         )
 
 
-Rows: TypeAlias = tuple[Row | Columns, ...]
+Rows: TypeAlias = tuple[TableRow | Columns, ...]
 
 
-def rates(label: str, cells: Iterable[Cell], papers: Sequence[Figure]) -> Row:
+def rates(label: str, cells: Iterable[Cell], papers: Sequence[Figure]) -> TableRow:
     """Return a row of success in percent."""
     pairs = zip(cells, papers, strict=True)
-    return Row(label, tuple(success(cell, paper) for cell, paper in pairs))
+    return TableRow(label, tuple(success(cell, paper) for cell, paper in pairs))
 
 
 ROWS = ("Difference", "95 % interval", "Score interval", "Wins:losses")

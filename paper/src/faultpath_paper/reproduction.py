@@ -26,7 +26,7 @@ from faultpath_paper.report.terminal import ledger_markdown
 from faultpath_paper.report.words import headline
 from faultpath_paper.run import (
     RESULTS,
-    Plan,
+    ReproductionPlan,
     conclude,
     measure_all,
     plan,
@@ -114,7 +114,7 @@ def reproduce(
         return carry_out(work, Job(place, workforce, terminal, {"time_limit_s": time_limit_s}))
 
 
-def carry_out(plan: Plan, job: Job) -> ReproductionRun:
+def carry_out(plan: ReproductionPlan, job: Job) -> ReproductionRun:
     """Run, measure, conclude and write the files of a plan.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run.

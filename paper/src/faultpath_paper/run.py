@@ -43,7 +43,7 @@ RESULTS = (CONCLUSIONS, OUTCOMES, EVIDENCE)
 
 
 @dataclass(frozen=True)
-class Plan:
+class ReproductionPlan:
     """Pages to reproduce, with their profile and options of the system."""
 
     pages: tuple[Page, ...]
@@ -92,7 +92,9 @@ class Plan:
         return Results(outcomes, evidence, self.system.library(HELD_OUT).content_hash)
 
 
-def plan(names: Sequence[str], profile: str, options: Mapping[str, str] | None = None) -> Plan:
+def plan(
+    names: Sequence[str], profile: str, options: Mapping[str, str] | None = None
+) -> ReproductionPlan:
     """Return the plan for some pages, or for all; `UserError` for a name that does not exist."""
     known = {page.name: page for page in PAGES}
     for name in names:
@@ -101,11 +103,11 @@ def plan(names: Sequence[str], profile: str, options: Mapping[str, str] | None =
     if profile not in PROFILES:
         raise UserError(f"unknown profile '{profile}'; choose one of {', '.join(PROFILES)}.")
     pages = tuple(page for page in PAGES if page.name in names) if names else PAGES
-    return Plan(pages, PROFILES[profile], options or {})
+    return ReproductionPlan(pages, PROFILES[profile], options or {})
 
 
 def measure_all(
-    plan: Plan, folder: Path, workers: int, progress: Callable[[float, float], None]
+    plan: ReproductionPlan, folder: Path, workers: int, progress: Callable[[float, float], None]
 ) -> EvidenceTable:
     """Measure on recorded windows what `folder` does not hold yet.
 
@@ -119,7 +121,7 @@ def measure_all(
     return EvidenceTable({m: table.values(own) for m, own in measurements.items()})
 
 
-def conclude(plan: Plan, results: Results) -> Reproduction:
+def conclude(plan: ReproductionPlan, results: Results) -> Reproduction:
     """Evaluate pages and claims."""
     library = plan.system.library(HELD_OUT)
     built = [part for page in plan.pages for part in page.build(results)]

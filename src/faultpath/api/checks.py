@@ -19,7 +19,7 @@ from faultpath.decisions.planning import plan_audit
 from faultpath.trials import System, library_of
 from faultpath.trials.question import CheckQuestion, PlanQuestion, RepairQuestion, TraceQuestion
 from faultpath.trials.store.atomic import check_output, write_text
-from faultpath.trials.trust import Received
+from faultpath.trials.trust import ReceivedCode
 from faultpath.trials.work.executor import Progress
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ def audit_study(
     file that does not fit the system any more.
     """
     say = display(progress, "audit_study", {}).say
-    received, arms = Received("the study file", trust, say), (study.baseline, study.repair)
+    received, arms = ReceivedCode("the study file", trust, say), (study.baseline, study.repair)
     chosen = choose(study.system, study.options, None, arms, received=received)
     library = library_of(chosen.system, study.library)
     for planned in study.audits:

@@ -19,7 +19,7 @@ from faultpath.trials.store.folder import read_regular
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Comparison:
+class RunComparison:
     """Finished audits side by side."""
 
     runs: tuple[Compared, ...]
@@ -83,7 +83,7 @@ def folder_and_record(folder: Path) -> dict[str, object]:
     return {"folder": str(folder), "record": json.loads(read_regular(folder / RECORD))}
 
 
-def compare(runs: Sequence[str | PathLike[str] | Run]) -> Comparison:
+def compare(runs: Sequence[str | PathLike[str] | Run]) -> RunComparison:
     """Set finished audits side by side: effects path by path, what differs, who disagrees.
 
     Nothing is tested between them: each keeps the verdict that it reached by itself. Sizes of one
@@ -101,7 +101,7 @@ def compare(runs: Sequence[str | PathLike[str] | Run]) -> Comparison:
     return beside(runs)
 
 
-def beside(runs: Sequence[str | PathLike[str] | Run]) -> Comparison:
+def beside(runs: Sequence[str | PathLike[str] | Run]) -> RunComparison:
     """Return finished audits, one or more, each once; `UserError` as `compare`."""
     compared: list[Compared] = []
     places: set[Path] = set()
@@ -113,4 +113,4 @@ def beside(runs: Sequence[str | PathLike[str] | Run]) -> Comparison:
             raise UserError(f"{run.folder} is given twice: give each run once.")
         places.add(run.folder.resolve())
         compared.append(Compared(number, str(run.folder), run.record, run.provenance, run.held))
-    return Comparison(together(compared))
+    return RunComparison(together(compared))

@@ -24,7 +24,7 @@ from faultpath.trials.question import AuditQuestion
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.trials.store.tables import TrialAddress, address_of
-from faultpath.trials.trust import Received
+from faultpath.trials.trust import ReceivedCode
 from faultpath.trials.validation import ask
 from faultpath.trials.work.executor import Executor
 from faultpath.trials.work.processes import local
@@ -87,7 +87,7 @@ def replay(
             f"the run is of a {question.system}, which only its own process had: put what builds "
             "the system into a file, and audit that."
         )
-    received = Received(RECORD, trust, say, source.provenance.sources)
+    received = ReceivedCode(RECORD, trust, say, source.provenance.sources)
     arms = question.baseline, question.repair
     chosen = choose(question.system, question.options, None, arms, received=received)
     system = chosen.system

@@ -14,7 +14,7 @@ from faultpath.trials import System, SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import as_text
 from faultpath.trials.registry import factory_name
-from faultpath.trials.trust import PART, Received
+from faultpath.trials.trust import PART, ReceivedCode
 from faultpath.trials.work.executor import Executor
 from faultpath.trials.work.processes import local
 
@@ -63,7 +63,7 @@ def choose(
     workers: int | None,
     variants: Sequence[str],
     executor: str = LOCAL,
-    received: Received | None = None,
+    received: ReceivedCode | None = None,
 ) -> Chosen:
     """Return the system to audit, with the parts that its variants name.
 

@@ -26,7 +26,7 @@ _ASKED = f"{_TOY} --baseline calibrated --repair blind --fault gain:scale"
 
 
 @dataclass(frozen=True)
-class Entry:
+class Command:
     """A verb, as the table below names it."""
 
     name: str
@@ -41,25 +41,25 @@ class Entry:
 
 _PANELS = {
     "Begin here": (
-        Entry("demo", demo.demo, "--out runs/demo", "Audit a small system that ships along."),
-        Entry("init", systems.init, "mine --with numpy", "Write a system of your own to start."),
-        Entry(
+        Command("demo", demo.demo, "--out runs/demo", "Audit a small system that ships along."),
+        Command("init", systems.init, "mine --with numpy", "Write a system of your own to start."),
+        Command(
             "check", systems.check, _TOY, "Check that a system can be audited.", of_a_system=True
         ),
-        Entry(
+        Command(
             "audit",
             audits.audit,
             f"{_ASKED}=0.6 --library carts",
             "Compare a repair with a baseline, module by module and shared.",
             of_a_system=True,
         ),
-        Entry(
+        Command(
             "judge",
             audits.judge,
             "results.csv --baseline old --repair new",
             "Decide from trials that other tools ran.",
         ),
-        Entry(
+        Command(
             "report",
             audits.report,
             "runs/one runs/two --out comparison.html",
@@ -67,24 +67,24 @@ _PANELS = {
         ),
     ),
     "More": (
-        Entry(
+        Command(
             "trace", systems.trace, _TOY, "Show which module reads which source.", of_a_system=True
         ),
-        Entry(
+        Command(
             "plan",
             audits.plan,
             f"{_ASKED}=0.6 --library carts",
             "Say which sources to audit first, as a study file.",
             of_a_system=True,
         ),
-        Entry(
+        Command(
             "map",
             designs.reversal_map,
             f"{_ASKED} --against controller,observer --up-to 0.4 --library carts",
             "Compare over the errors of two modules.",
             of_a_system=True,
         ),
-        Entry(
+        Command(
             "search",
             designs.search,
             f"{_TOY} --baseline calibrated --repair blind --within examples/toy_bounds.yaml "
@@ -92,7 +92,7 @@ _PANELS = {
             "Look for the fault that an isolated test misjudges most.",
             of_a_system=True,
         ),
-        Entry(
+        Command(
             "sensitivity",
             designs.sensitivity,
             f"{_TOY} --variant calibrated --fault gain:scale=1.4 --fault velocity:offset=0.2 "
@@ -100,7 +100,7 @@ _PANELS = {
             "Say which source is worth improving.",
             of_a_system=True,
         ),
-        Entry(
+        Command(
             "replay",
             replay.replay,
             "runs/mine --scene cart/003 --signals",
@@ -112,14 +112,14 @@ _PANELS = {
 
 
 @cache
-def panels() -> dict[str, tuple[Entry, ...]]:
+def panels() -> dict[str, tuple[Command, ...]]:
     """Return all verbs: the engine's, and what installed distributions add.
 
     An entry point in the group `faultpath.verbs` is a verb's name, and a function with options or a
     `Verbs` as its value; the module holds an `EXAMPLE` of what follows the name in a call.
     """
     added = tuple(
-        Entry(point.name, point.load(), import_module(point.module).EXAMPLE)
+        Command(point.name, point.load(), import_module(point.module).EXAMPLE)
         for point in sorted(entry_points(group="faultpath.verbs"), key=lambda entry: entry.name)
     )
     return _PANELS | ({"Installed with a system": added} if added else {})

@@ -47,7 +47,7 @@ class Way(Frozen):
     evidence: tuple[Evidence, ...] = ()
 
 
-class Group(Frozen):
+class DependentGroup(Frozen):
     """Consumers whose failures one source, or several that err by one cause, may bring about."""
 
     name: str
@@ -64,14 +64,14 @@ class Group(Frozen):
         return tuple(way.path for way in self.ways if way.path != SHARED)
 
 
-def dependent_groups(interface: Interface, variants: Sequence[Wired]) -> tuple[Group, ...]:
+def dependent_groups(interface: Interface, variants: Sequence[Wired]) -> tuple[DependentGroup, ...]:
     """Return the groups of two consumers or more, in the order of declaration.
 
     Every source counts that exists at deployment, whatever error it declares; a consumer counts
     that reads it in one of the variants, directly or through reconstructions.
     """
     deployed = (source for source in interface.sources if source.provenance not in NOT_DEPLOYED)
-    groups: list[Group] = []
+    groups: list[DependentGroup] = []
     for name, sources in groups_of(deployed).items():
         taps = _readers(interface, variants, [source.name for source in sources])
         alone: dict[str, list[tuple[str, str]]] = {}
@@ -89,7 +89,7 @@ def dependent_groups(interface: Interface, variants: Sequence[Wired]) -> tuple[G
         fault, _ = expected((), name, sources, channels)
         named = channels if sources[0].correlation_group is None else (name,)
         groups.append(
-            Group(
+            DependentGroup(
                 name=name,
                 sources=tuple(source.name for source in sources),
                 coupling=_coupling(sources, len(places), bool(every)),
@@ -131,8 +131,8 @@ def _coupling(sources: Sequence[Source], places: int, passed_on: bool) -> str:
 
 
 def with_evidence(
-    groups: Sequence[Group], audits: Iterable[tuple[str, DecisionRecord]]
-) -> tuple[Group, ...]:
+    groups: Sequence[DependentGroup], audits: Iterable[tuple[str, DecisionRecord]]
+) -> tuple[DependentGroup, ...]:
     """Return the groups with what `audits`, each with its name, show of them.
 
     An audit counts for a group where its fault acts on channels of that group and on no other. A
@@ -142,7 +142,7 @@ def with_evidence(
         (name, record, {f.channel for f in record.question.faults}) for name, record in audits
     ]
 
-    def shown(group: Group) -> Group:
+    def shown(group: DependentGroup) -> DependentGroup:
         channels = {channel for way in group.ways for channel, _ in way.taps}
         about = [(name, record) for name, record, acts in records if acts and acts <= channels]
         ways = [

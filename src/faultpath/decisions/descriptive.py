@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from faultpath.decisions.model import CORRECT, AtThreshold, Cell, Path
+from faultpath.decisions.model import CORRECT, ArmCounts, AtThreshold, Path
 from faultpath.decisions.question import Question
 from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.statistics.effects import mean_effect, median_effect, success_effect
@@ -23,9 +23,11 @@ def percent(success: Bools) -> float:
     return 100.0 * float(success.sum()) / success.size
 
 
-def cells_of(question: Question, paths: Sequence[Path], table: OutcomeTable) -> tuple[Cell, ...]:
+def cells_of(
+    question: Question, paths: Sequence[Path], table: OutcomeTable
+) -> tuple[ArmCounts, ...]:
     """Return how the trials of both arms ended on every path."""
-    cells: list[Cell] = []
+    cells: list[ArmCounts] = []
     for path in paths:
         for variant in (question.baseline, question.repair):
             seeds = table.seeds(variant, path.name)
@@ -34,7 +36,7 @@ def cells_of(question: Question, paths: Sequence[Path], table: OutcomeTable) -> 
             ran = len(ends) - count[Status.FAILED]
             times = [e.time_s for e in ends if e.status is Status.SUCCESS and isfinite(e.time_s)]
             cells.append(
-                Cell(
+                ArmCounts(
                     variant=variant,
                     path=path.name,
                     trials=len(ends),
@@ -51,7 +53,7 @@ def cells_of(question: Question, paths: Sequence[Path], table: OutcomeTable) -> 
     return tuple(cells)
 
 
-def untested_paths(paths: Sequence[Path], cells: Sequence[Cell]) -> tuple[str, ...]:
+def untested_paths(paths: Sequence[Path], cells: Sequence[ArmCounts]) -> tuple[str, ...]:
     """Return the paths on which the fault changed nothing in any trial."""
     acted = {cell.path for cell in cells if cell.altered_trials}
     return tuple(path.name for path in paths if path.name != CORRECT and path.name not in acted)

@@ -11,7 +11,7 @@ from faultpath.core.text import listed, unknown
 from faultpath.decisions.decide import primary_path
 from faultpath.decisions.judging_table import Address, Key, table_of, units_of
 from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Path
-from faultpath.decisions.question import Judged, Question, resolve
+from faultpath.decisions.question import JudgedTrials, Question, resolve
 from faultpath.decisions.sentences.wording import capital, counted, where
 from faultpath.statistics.estimate import RULE
 from faultpath.trials import Library, SystemSpec
@@ -82,7 +82,7 @@ def lay_out(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
         ends={Status.TIMEOUT.value: "no success"} if dull else {},
         metrics=_metrics(request),
         rule=RULE if len(units.labels) <= _MOST else "exact",
-        judged=Judged(pairing="hashes" if hashed else "keys", unit=request.cluster),
+        judged=JudgedTrials(pairing="hashes" if hashed else "keys", unit=request.cluster),
     )
     longer = [unit for unit, members in units.labels.items() if len(members) > len(units.seeds)]
     findings = _findings(table, missing, longer, tasks, request, hashed)

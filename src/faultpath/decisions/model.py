@@ -43,7 +43,7 @@ class Path(Result):
     """Taps faulted in the baseline."""
 
 
-class Cell(Result):
+class ArmCounts(Result):
     """The trials of one variant on one path, all seeds together."""
 
     variant: str
@@ -193,7 +193,7 @@ class Change(Result):
         return self.change
 
 
-class Stopped(Result):
+class StoppedAudit(Result):
     """How far a sequential audit went."""
 
     scenes: int
@@ -210,7 +210,7 @@ class DecisionRecord(Result):
     format: Literal[3] = 3
     question: Question
     paths: tuple[Path, ...]
-    cells: tuple[Cell, ...]
+    cells: tuple[ArmCounts, ...]
     effects: tuple[Effect, ...]
     changes: tuple[Change, ...]
     break_even: tuple[PathBreakEven, ...]
@@ -232,7 +232,7 @@ class DecisionRecord(Result):
     """Changes of the audit that could change the result."""
     findings: tuple[str, ...] = ()
     """Remarks on the run that a reader has to know, a sentence each."""
-    stopped: Stopped | None = None
+    stopped: StoppedAudit | None = None
     """State at which a sequential audit ended."""
     earlier: tuple[EarlierLook, ...] = ()
     """Concluded before, from the same trials and otherwise."""

@@ -54,7 +54,7 @@ class StopRule(Result):
     """That a scene takes: distinct arms."""
 
 
-class Judged(Result):
+class JudgedTrials(Result):
     """Facts about trials that other tools ran."""
 
     pairing: Literal["keys", "hashes"]
@@ -96,7 +96,7 @@ class Question(Resolved):
     rule: RuleName = "exact"
     """By which it is decided, then and ever after; records that do not say were by the first. A
     sequential audit is decided by bets, whatever the rule."""
-    judged: Judged | None = None
+    judged: JudgedTrials | None = None
     """Facts about results that other tools wrote."""
 
     @property

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from faultpath.core.errors import UserError
 from faultpath.decisions.descriptive import cells_of, untested_paths
 from faultpath.decisions.family import Family, family_of
-from faultpath.decisions.model import DecisionRecord, Path, Stopped
+from faultpath.decisions.model import DecisionRecord, Path, StoppedAudit
 from faultpath.decisions.question import EarlierLook, Question
 from faultpath.decisions.sentences import phrases
 from faultpath.trials.table import OutcomeTable
@@ -23,7 +23,7 @@ def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> boo
     return state is not None and state.reached
 
 
-def stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped | None:
+def stopped(question: Question, family: Family, table: OutcomeTable) -> StoppedAudit | None:
     """Return how a sequential audit stands with these trials; `None` of one that is not.
 
     Every claim on a contrast, of who is ahead or of how little, follows from its one interval, at
@@ -45,7 +45,7 @@ def stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped 
     settled = {path for path, effect in family.effects.items() if effect.sign or path in small}
     required = set(family.effects) if rule.when == "all-decided" else {question.primary}
     scenes = len({row.outcome.scene for row in table.rows})
-    return Stopped(scenes=scenes, reached=required <= settled, small=tuple(small))
+    return StoppedAudit(scenes=scenes, reached=required <= settled, small=tuple(small))
 
 
 def after_looks(record: DecisionRecord, earlier: Iterable[DecisionRecord]) -> DecisionRecord:

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from faultpath.decisions.dependent import (
+    DependentGroup,
     Evidence,
-    Group,
     Taps,
     Way,
     dependent_groups,
@@ -67,7 +67,7 @@ def in_short(plan: Plan) -> Table | None:
     return table if lines else None
 
 
-def _table(groups: Sequence[Group], question: Question | StudyFile) -> Table | None:
+def _table(groups: Sequence[DependentGroup], question: Question | StudyFile) -> Table | None:
     if not groups:
         return None
     lines: list[Line] = []

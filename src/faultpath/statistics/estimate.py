@@ -130,7 +130,7 @@ class BreakEven(Frozen, allow_inf_nan=False):
 RuleName: TypeAlias = Literal["exact", "unconditional", "graded"]
 
 
-class Rule(NamedTuple):
+class DecisionRule(NamedTuple):
     """How effects are tested and adjusted for each other."""
 
     tests: str
@@ -143,10 +143,10 @@ class Rule(NamedTuple):
     """Whether several seeds and changes take the test of degrees (`score`)."""
 
 
-RULES: dict[RuleName, Rule] = {
-    "exact": Rule("exact McNemar or sign test and Holm", False, 3.0),
-    "unconditional": Rule("E+M, sign flips and weighted Holm", True, 12.0),
-    "graded": Rule("E+M test and weighted Holm", True, 12.0, graded=True),
+RULES: dict[RuleName, DecisionRule] = {
+    "exact": DecisionRule("exact McNemar or sign test and Holm", False, 3.0),
+    "unconditional": DecisionRule("E+M, sign flips and weighted Holm", True, 12.0),
+    "graded": DecisionRule("E+M test and weighted Holm", True, 12.0, graded=True),
 }
 RULE: RuleName = "graded"
 """By which audits are decided; the others decided earlier ones, and still do."""

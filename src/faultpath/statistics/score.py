@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from faultpath.statistics import betting, unconditional
 from faultpath.statistics.distributions import normal_p_value, normal_quantile
-from faultpath.statistics.estimate import RULES, Rule
+from faultpath.statistics.estimate import RULES, DecisionRule
 from faultpath.statistics.inputs import Floats
 
 _HALVINGS = 44
@@ -55,7 +55,7 @@ class SceneValues:
         bound: float,
         scale: float = 1.0,
         sequential: bool = False,
-        rule: Rule = RULES["exact"],
+        rule: DecisionRule = RULES["exact"],
     ) -> "SceneValues":
         """Return differences between two arms; what was not observed lies within `reach`.
 

@@ -19,7 +19,7 @@ PART = re.compile(r"([^:]+:[A-Za-z_]\w*)(?:/|$)")
 
 
 @dataclass(frozen=True)
-class Received:
+class ReceivedCode:
     """A file that names code: what it is called, and whether that code may be imported."""
 
     name: str

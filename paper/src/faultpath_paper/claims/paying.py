@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from faultpath_paper.answers import Part
+from faultpath_paper.answers import StatementPart
 from faultpath_paper.cells import Printed, published
 from faultpath_paper.claims.rules import FEW_SCENES, REFUTED, Bound, Judged, by_point
 from faultpath_paper.claims.statement import Statement, Statements, beside, size
@@ -32,13 +32,13 @@ class Pays:
         """The statement."""
         return self.bound.words.format(f"break-even frequency of {self.name}, in percent,")
 
-    def part(self, results: Results) -> Part:
+    def part(self, results: Results) -> StatementPart:
         """Answer the statement from a run."""
         tradeoff = crossing(results, table_5.REPAIRS[self.repair])
         n_scenes = tradeoff.correct.n_scenes
         judged = judge(tradeoff, self.bound)
         ends = None if tradeoff.value is None else tradeoff.interval
-        return Part(
+        return StatementPart(
             words=self.words,
             answer=judged.answer,
             estimate=tradeoff.value,

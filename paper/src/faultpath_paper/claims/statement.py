@@ -5,7 +5,7 @@ from math import hypot
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from faultpath.statistics.contrast import ROUNDING, Contrast, change
-from faultpath_paper.answers import ClaimVerdict, Part, Size
+from faultpath_paper.answers import ClaimVerdict, Size, StatementPart
 from faultpath_paper.cells import Printed, PublishedClaim
 from faultpath_paper.claims.rules import (
     CONFIRMED,
@@ -84,7 +84,7 @@ class Stated(Protocol):
         """The paper's figure for it."""
         ...
 
-    def part(self, results: Results) -> Part:
+    def part(self, results: Results) -> StatementPart:
         """Answer the statement from a run; raises `NotRun` or `Undecidable`."""
         ...
 
@@ -108,7 +108,7 @@ class Statement:
         """The statement."""
         return self.rule.words.format(self.subject)
 
-    def part(self, results: Results) -> Part:
+    def part(self, results: Results) -> StatementPart:
         """Answer the statement from a run."""
         contrast = self.quantity(results)
         no_effect = NO_EFFECT.get(contrast.unit) if self.rule.sided else None
@@ -123,14 +123,14 @@ def shown(
     paper: Printed | None,
     no_effect: float | None,
     counts: str = "",
-) -> Part:
+) -> StatementPart:
     """Return an answer with the numbers that it rests on, and its size beside the paper's figure.
 
     `no_effect` as in `size`; `counts` where the quantity has none of its own.
     """
     score = None if contrast.scenes is None else contrast.interval
     contrast = contrast.resampled()
-    return Part(
+    return StatementPart(
         words=words,
         answer=judged.answer,
         estimate=contrast.value,
@@ -176,12 +176,12 @@ def verdict(claim: PublishedClaim, statements: Statements, results: Results) -> 
     )
 
 
-def answered(statement: Stated, results: Results) -> Part:
+def answered(statement: Stated, results: Results) -> StatementPart:
     """Answer a statement from a run; what was not run, or does not decide, leaves it undecided."""
 
-    def left_open(reason: str, **fields: Any) -> Part:
+    def left_open(reason: str, **fields: Any) -> StatementPart:
         fields |= beside(statement.paper)
-        return Part(words=statement.words, answer="undecided", reason=reason, **fields)
+        return StatementPart(words=statement.words, answer="undecided", reason=reason, **fields)
 
     try:
         return statement.part(results)
@@ -234,7 +234,7 @@ class TurnsDown:
         """The statement."""
         return f"{self.subject} turns from above 0 to below 0"
 
-    def part(self, results: Results) -> Part:
+    def part(self, results: Results) -> StatementPart:
         """Answer the statement from a run."""
         one, two = together(results, self.before, self.after)
         turned = Turned(decisive(change(one, two)), one, two)

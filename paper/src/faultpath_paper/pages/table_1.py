@@ -5,7 +5,7 @@ from faultpath.trials import Status
 from faultpath_paper.cells import SEEDS, Cell, Setting, of_seed, published
 from faultpath_paper.entries import (
     BLANK,
-    Group,
+    EntryGroup,
     Made,
     centimetres,
     ended,
@@ -14,7 +14,7 @@ from faultpath_paper.entries import (
     time,
 )
 from faultpath_paper.evidence.table import Measurement, Recording
-from faultpath_paper.page import WINDOWS, Page, Row, TableSpec
+from faultpath_paper.page import WINDOWS, Page, TableRow, TableSpec
 from faultpath_paper.quantities import differences
 from faultpath_paper.results import Results
 
@@ -59,10 +59,10 @@ TITLE = "Prediction accuracy and closed-loop performance of four predictors"
 _PAPER = published("table_1_prediction_accuracy")
 
 
-def _row(key: str, cell: Cell) -> Row:
+def _row(key: str, cell: Cell) -> TableRow:
     paper = _PAPER[key]
     ends = (Status.SUCCESS, Status.CRASH, Status.TIMEOUT)
-    return Row(
+    return TableRow(
         key.partition("/")[0].replace("true", "True"),
         (
             centimetres(common_error(cell), paper["error_common_cm"]),
@@ -73,7 +73,7 @@ def _row(key: str, cell: Cell) -> Row:
     )
 
 
-def _slower(cell: Cell) -> Group:
+def _slower(cell: Cell) -> EntryGroup:
     """Return a predictor's time minus WM-A's where both succeed, with the number of scenes."""
     paper = _PAPER["paired_time_minus_WM-A_s"][cell.variant if cell != DKI else "DKI"]
     pair = cell, of_seed(WM_A)
@@ -82,17 +82,17 @@ def _slower(cell: Cell) -> Group:
         effect = differences.time(*pair)(results)
         return wording.signed(effect.value, 2), interval_of(effect, 2), str(effect.n_scenes)
 
-    return Group(make, (wording.signed(paper["median"], 2), "", printed(paper["n"])), pair)
+    return EntryGroup(make, (wording.signed(paper["median"], 2), "", printed(paper["n"])), pair)
 
 
-def _over_seeds(cell: Cell, key: str) -> Group:
+def _over_seeds(cell: Cell, key: str) -> EntryGroup:
     """Return the least and the most success of a model's seeds, percent."""
 
     def make(results: Results) -> Made:
         rates = [results.rate(of_seed(cell, seed)).value for seed in results.seeds(cell)]
         return (_range(min(rates), max(rates)),)
 
-    return Group(make, (_range(*_PAPER["success_range_over_seeds"][key]),), (cell,))
+    return EntryGroup(make, (_range(*_PAPER["success_range_over_seeds"][key]),), (cell,))
 
 
 def _range(least: float, most: float) -> str:
@@ -119,7 +119,7 @@ PAGE = Page(
                 _row("WM-A", WM_A),
                 _row("WM-U", WM_U),
                 _row("true-parameter", TRUE_PARAMETER),
-                Row("With ground-truth clearance"),
+                TableRow("With ground-truth clearance"),
                 _row("WM-A/true-clearance", WM_A_SEEN),
                 _row("true-parameter/true-clearance", TRUE_PARAMETER_SEEN),
             ),
@@ -141,10 +141,10 @@ PAGE = Page(
                 "Success over seeds (%)",
             ),
             rows=(
-                Row("DKI", (_slower(DKI), BLANK)),
-                Row("WM-A", (BLANK, BLANK, BLANK, _over_seeds(WM_A, "WM-A"))),
-                Row("WM-U", (BLANK, BLANK, BLANK, _over_seeds(WM_U, "WM-U"))),
-                Row("True-parameter", (_slower(TRUE_PARAMETER), BLANK)),
+                TableRow("DKI", (_slower(DKI), BLANK)),
+                TableRow("WM-A", (BLANK, BLANK, BLANK, _over_seeds(WM_A, "WM-A"))),
+                TableRow("WM-U", (BLANK, BLANK, BLANK, _over_seeds(WM_U, "WM-U"))),
+                TableRow("True-parameter", (_slower(TRUE_PARAMETER), BLANK)),
             ),
             notes=(
                 "{flown}",

@@ -2,15 +2,15 @@
 
 from faultpath.decisions.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, Printed, calibration, of_seed, published
-from faultpath_paper.entries import Group, centimetres, published_contrasts
+from faultpath_paper.entries import EntryGroup, centimetres, published_contrasts
 from faultpath_paper.evidence.table import Measurement
 from faultpath_paper.page import (
     INTERVALS,
     WINDOWS,
     WINS,
     Page,
-    Row,
     Rows,
+    TableRow,
     TableSpec,
     differences,
     rates,
@@ -59,7 +59,7 @@ def paper_repair(baseline: str, error: float) -> Printed:
     return Printed(_PAPER[f"{name}_dcc_minus_baseline_pp"][at], (low, high))
 
 
-def _rates(model: str) -> Row:
+def _rates(model: str) -> TableRow:
     return rates(NAMES[model], (cell(model, error) for error in ERRORS), _PAPER[NAMES[model]])
 
 
@@ -67,10 +67,10 @@ def _matched(repair: str, baseline: str) -> Rows:
     kinds = ("dcc_minus_baseline_pp", "ci95", "wins_losses")
     printed = (_PAPER[f"{NAMES[baseline]}_{kind}"] for kind in kinds)
     return (
-        Row(f"Matched {NAMES[baseline]} comparison, success (%)"),
+        TableRow(f"Matched {NAMES[baseline]} comparison, success (%)"),
         _rates(baseline),
         _rates(repair),
-        Row(f"{NAMES[repair]} minus {NAMES[baseline]} (pp)"),
+        TableRow(f"{NAMES[repair]} minus {NAMES[baseline]} (pp)"),
         differences(
             ((cell(repair, error), cell(baseline, error)) for error in ERRORS),
             published_contrasts(*printed),
@@ -78,9 +78,9 @@ def _matched(repair: str, baseline: str) -> Rows:
     )
 
 
-def _tail(error: float) -> Group:
+def _tail(error: float) -> EntryGroup:
     own = error_under(error)
-    return Group(
+    return EntryGroup(
         lambda results: (wording.plain(100 * quantile(results, own, 0.9)),), measurements=(own,)
     )
 
@@ -96,12 +96,12 @@ PAGE = Page(
             rows=(
                 *_matched(*PAIRS[0]),
                 *_matched(*PAIRS[1]),
-                Row("WM-A seed 0: prediction and control"),
-                Row(
+                TableRow("WM-A seed 0: prediction and control"),
+                TableRow(
                     "Error, median (cm)",
                     tuple(map(centimetres, map(error_under, ERRORS), _FIRST["error_cm"])),
                 ),
-                Row("Error, 90th percentile (cm)", tuple(map(_tail, ERRORS))),
+                TableRow("Error, 90th percentile (cm)", tuple(map(_tail, ERRORS))),
                 rates(
                     "Success (%)",
                     (of_seed(cell("wm-a", error)) for error in ERRORS),

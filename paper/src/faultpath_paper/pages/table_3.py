@@ -4,8 +4,8 @@ The paper averages some rows over three seeds at L3; all other entries use the f
 """
 
 from faultpath_paper.cells import SEEDS, Cell, Setting, of_seed, published
-from faultpath_paper.entries import Group, Made
-from faultpath_paper.page import FLOWN_ONCE, Page, Row, Rows, TableSpec, rates
+from faultpath_paper.entries import EntryGroup, Made
+from faultpath_paper.page import FLOWN_ONCE, Page, Rows, TableRow, TableSpec, rates
 from faultpath_paper.results import Results
 
 LEVELS = ("L0", "L2", "L3")
@@ -64,19 +64,19 @@ def _levels(environment: str) -> Rows:
         rates(label, (cell(variant, environment, level) for level in LEVELS), papers[key])
         for variant, (label, key) in ROWS.items()
     )
-    return Row(_HEADINGS[environment]), *rows
+    return TableRow(_HEADINGS[environment]), *rows
 
 
-def _unmet(variant: str, key: str) -> Row:
+def _unmet(variant: str, key: str) -> TableRow:
     papers = _PAPER["unseen_wind_subset_L3"][key]
     groups = (
         _won(cell(variant, environment, "L3"), papers[environment.replace("-", "_")])
         for environment in ENVIRONMENTS
     )
-    return Row(ROWS[variant][0], tuple(groups))
+    return TableRow(ROWS[variant][0], tuple(groups))
 
 
-def _won(row: Cell, paper: int | list[int]) -> Group:
+def _won(row: Cell, paper: int | list[int]) -> EntryGroup:
     """Return successes among the unmet scenes, seed by seed where the paper has each seed's."""
     by_seed = isinstance(paper, list)
     shown = row if by_seed else of_seed(row)
@@ -86,7 +86,7 @@ def _won(row: Cell, paper: int | list[int]) -> Group:
         pairs = (results.pairs(cell, cell, scenes=UNMET) for cell in trainings)
         return ("/".join(str(int(pair.first.success.sum())) for pair in pairs),)
 
-    return Group(make, ("/".join(map(str, paper)) if by_seed else str(paper),), (shown,))
+    return EntryGroup(make, ("/".join(map(str, paper)) if by_seed else str(paper),), (shown,))
 
 
 PAGE = Page(

@@ -5,15 +5,15 @@ from typing import Any
 
 from faultpath.decisions.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, Printed, Setting, calibration, published
-from faultpath_paper.entries import Group, bracket, of_quantity, published_contrasts
+from faultpath_paper.entries import EntryGroup, bracket, of_quantity, published_contrasts
 from faultpath_paper.page import (
     FLOWN_ONCE,
     INTERVALS,
     WINS,
     Columns,
     Page,
-    Row,
     Rows,
+    TableRow,
     TableSpec,
     differences,
     rates,
@@ -77,27 +77,27 @@ def _contrast(first: str, second: str) -> Rows:
     paper = _PAPER[f"{NAMES[first]}_minus_{NAMES[second]}"]
     printed = published_contrasts(paper["pp"], paper["ci95"], paper["wins_losses"])
     return (
-        Row(f"{NAMES[first]} minus {NAMES[second]}, success (pp)"),
+        TableRow(f"{NAMES[first]} minus {NAMES[second]}, success (pp)"),
         differences((_cells(first, second, path) for path in PATHS), printed),
     )
 
 
-def last_column(label: str, group: Group, *below: str) -> Columns:
+def last_column(label: str, group: EntryGroup, *below: str) -> Columns:
     """Return a change between the columns with its intervals, in the last of them."""
-    blank = Group(lambda results: ("",) * 3, ("",) * 3)
+    blank = EntryGroup(lambda results: ("",) * 3, ("",) * 3)
     return Columns((label, "95 % interval", *below), (*[blank] * (len(PATHS) - 1), group))
 
 
 def _shown(
     quantity: Quantity, cells: Iterable[Cell], mean: float, ends: Sequence[float], digits: int
-) -> Group:
+) -> EntryGroup:
     texts = wording.signed(mean, digits), bracket(ends, digits)
     return of_quantity(quantity, cells, texts, digits)
 
 
 def _changed(
     first: str, second: str, effect: Effect, paper: Mapping[str, Any], digits: int = 1
-) -> Group:
+) -> EntryGroup:
     cells = [cell(method, path) for method in (first, second) for path in list(PATHS)[1:]]
     return _shown(change(first, second, effect), cells, paper["mean"], paper["ci95"], digits)
 
@@ -114,7 +114,7 @@ PAGE = Page(
             title=f"{TITLE} (paper, Table IV)",
             columns=("Correct (0, 0)", "Reconstruction-only (+0.1, 0)", "Shared (+0.1, +0.1)"),
             rows=(
-                Row("Success (%)"),
+                TableRow("Success (%)"),
                 *(
                     rates(name, (cell(method, path) for path in PATHS), _PAPER[name])
                     for method, name in NAMES.items()
@@ -127,7 +127,7 @@ PAGE = Page(
                     _changed("dob", "gru", succeeded, _PAPER["DOB_GRU_interaction_pp"]),
                     "Score interval",
                 ),
-                Row("Terminal distance, secondary, GRU+DCC minus GRU (m)"),
+                TableRow("Terminal distance, secondary, GRU+DCC minus GRU (m)"),
                 Columns(
                     ("Mean difference", "95 % interval"),
                     tuple(

@@ -3,8 +3,8 @@
 from faultpath.decisions.sentences import wording
 from faultpath.statistics.breakeven import break_even
 from faultpath_paper.cells import published
-from faultpath_paper.entries import Group, Made, decided
-from faultpath_paper.page import INTERVALS, Page, Row, TableSpec
+from faultpath_paper.entries import EntryGroup, Made, decided
+from faultpath_paper.page import INTERVALS, Page, TableRow, TableSpec
 from faultpath_paper.pages import table_2, table_4
 from faultpath_paper.quantities.crossing import Crossing, Repair, crossing
 from faultpath_paper.results import Results
@@ -36,7 +36,7 @@ NO_CROSSING = "no crossing"
 ABOVE_NONE = "above none"
 
 
-def _row(label: str, key: str) -> Row:
+def _row(label: str, key: str) -> TableRow:
     paper = published("table_5_decision_record", key)
     cells = REPAIRS[key]
 
@@ -54,7 +54,7 @@ def _row(label: str, key: str) -> Row:
         low, high = paper["ci95"]
         printed = f"{p_star} [{low}, {high}]"
     effects = wording.signed(paper["delta_0_pp"]), wording.signed(paper["delta_f_pp"])
-    return Row(label, (Group(make, (*effects, printed, ""), cells),))
+    return TableRow(label, (EntryGroup(make, (*effects, printed, ""), cells),))
 
 
 def _crossing(tradeoff: Crossing) -> str:

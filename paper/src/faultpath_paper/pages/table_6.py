@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 from faultpath.decisions.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, calibration, published
-from faultpath_paper.entries import BLANK, Group, PublishedContrast, difference, measured
+from faultpath_paper.entries import BLANK, EntryGroup, PublishedContrast, difference, measured
 from faultpath_paper.evidence.table import Measurement
-from faultpath_paper.page import Columns, Page, Row, TableSpec, rates
+from faultpath_paper.page import Columns, Page, TableRow, TableSpec, rates
 from faultpath_paper.pages.table_1 import recording
 from faultpath_paper.pages.table_4 import ERROR, METHODS, NAMES, PATHS, WINDY
 
@@ -88,24 +88,24 @@ def paper_negative(method: str, path: str) -> float:
     return _OFFSET[NAMES[method]][list(NEGATIVE).index(path)]
 
 
-def _accelerations(method: str) -> Row:
+def _accelerations(method: str) -> TableRow:
     groups = (
         measured(by_seed(acceleration_error, method, interface), paper)
         for interface, paper in zip(INTERFACES, _ERRORS[NAMES[method]], strict=True)
     )
-    return Row(NAMES[method], tuple(groups))
+    return TableRow(NAMES[method], tuple(groups))
 
 
-def _wind_term(interface: str, key: str) -> Group:
+def _wind_term(interface: str, key: str) -> EntryGroup:
     return measured(by_seed(wind_term_error, "gru", interface), _WIND_TERM[key])
 
 
-def _negative_rates(method: str) -> Row:
+def _negative_rates(method: str) -> TableRow:
     cells = (negative(method, path) for path in NEGATIVE)
     return rates(f"{NAMES[method]} (%)", cells, _OFFSET[NAMES[method]])
 
 
-def _negative_difference(path: str) -> Group:
+def _negative_difference(path: str) -> EntryGroup:
     at = list(NEGATIVE).index(path)
     p_value = wording.p_value(_OFFSET["mcnemar_exact_p"][at])
     paper = PublishedContrast(wins_losses=_OFFSET["dcc_only_gru_only"][at], p_value=p_value)
@@ -127,7 +127,7 @@ PAGE = Page(
             ),
             rows=(
                 *map(_accelerations, METHODS),
-                Row(
+                TableRow(
                     "GRU, wind term alone",
                     (
                         BLANK,

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from faultpath.decisions.tables import Entry, Line, Table, line
-from faultpath_paper.answers import ClaimVerdict, Ledger, Part
+from faultpath_paper.answers import ClaimVerdict, Ledger, StatementPart
 from faultpath_paper.claims import SUBJECTS
 from faultpath_paper.report.words import (
     ANSWERS,
@@ -58,7 +58,7 @@ def apart(ledger: Ledger) -> Iterator[tuple[str, str]]:
             yield f"{claim.id}, {claim.verdict}", _decisive(part)
 
 
-def _decisive(part: Part) -> str:
+def _decisive(part: StatementPart) -> str:
     statement = typeset(part.words.removesuffix(", by the point estimate"))
     paper = figure(part.model_copy(update={"estimate": part.paper})) if part.unit else ""
     shown = f"{statement}: {estimate(part) or 'no estimate'}"

@@ -3,7 +3,7 @@
 import re
 
 from faultpath.decisions.sentences import wording
-from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Part, Size
+from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size, StatementPart
 
 QUICK = "quick"
 """The profile whose runs are too small to be compared with the paper."""
@@ -32,7 +32,7 @@ def typeset(text: str) -> str:
     return _HYPHEN_FOR_MINUS.sub(wording.MINUS, text)
 
 
-def figure(of: ClaimVerdict | Part) -> str:
+def figure(of: ClaimVerdict | StatementPart) -> str:
     """Return the estimate with its unit, nothing without one; differences carry their sign."""
     if of.estimate is None:
         return ""
@@ -42,26 +42,26 @@ def figure(of: ClaimVerdict | Part) -> str:
     return f"{write(of.estimate, _DIGITS.get(of.unit, 2))}{behind(of.unit)}"
 
 
-def interval(of: ClaimVerdict | Part) -> str:
+def interval(of: ClaimVerdict | StatementPart) -> str:
     """Return `[48.3, 66.3]`, or nothing without an interval."""
     if of.interval is None:
         return ""
     return f"[{', '.join(wording.plain(end, _DIGITS.get(of.unit, 2)) for end in of.interval)}]"
 
 
-def estimate(of: ClaimVerdict | Part) -> str:
+def estimate(of: ClaimVerdict | StatementPart) -> str:
     """Return estimate and interval; nothing where there is no estimate."""
     return f"{figure(of)} {interval(of)}".rstrip() if figure(of) else ""
 
 
-def least_detectable(of: ClaimVerdict | Part) -> str:
+def least_detectable(of: ClaimVerdict | StatementPart) -> str:
     """Return the minimum detectable difference from 0; nothing where there is none."""
     if of.mde is None or of.unit in _SHARES:
         return ""
     return f"{wording.plain(of.mde, _DIGITS.get(of.unit, 2))}{behind(of.unit)}"
 
 
-def evidence(part: Part) -> tuple[str, ...]:
+def evidence(part: StatementPart) -> tuple[str, ...]:
     """Return the evidence for a part's answer, phrase by phrase."""
     p_value = "" if part.p_value is None else wording.p_value(part.p_value)
     p_value = p_value and f"p {p_value if p_value.startswith('<') else f'= {p_value}'}"
@@ -78,7 +78,7 @@ def evidence(part: Part) -> tuple[str, ...]:
     return tuple(phrase for phrase in phrases if phrase)
 
 
-def papers(part: Part) -> str:
+def papers(part: StatementPart) -> str:
     """Return the paper's figure for a part as ours is written; nothing where it prints none."""
     theirs = {"estimate": part.paper, "interval": part.paper_interval}
     return estimate(part.model_copy(update=theirs)) if part.unit else ""

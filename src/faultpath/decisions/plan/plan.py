@@ -5,7 +5,7 @@ from typing import Literal
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
-from faultpath.decisions.dependent import Group, dependent_groups
+from faultpath.decisions.dependent import DependentGroup, dependent_groups
 from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_modules
 from faultpath.decisions.plan.probing import command_responses
 from faultpath.decisions.plan.study import StudyAudit, StudyFile, arms_of
@@ -37,7 +37,7 @@ class Plan(Result):
     """Scenes of the probe; 0 where there was none."""
     trials: tuple[int, ...]
     """Number of trials of each audit."""
-    dependent: tuple[Group, ...] = ()
+    dependent: tuple[DependentGroup, ...] = ()
     """Consumers that have one cause of failure in common, none of them with evidence yet."""
 
 

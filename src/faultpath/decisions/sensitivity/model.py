@@ -10,7 +10,7 @@ _NOTHING = 0.005
 """Share of the variance that counts as nothing."""
 
 
-class Part(Frozen, allow_inf_nan=False):
+class UncertainSource(Frozen, allow_inf_nan=False):
     """A source of a group, and how large its error is."""
 
     source: str
@@ -23,7 +23,7 @@ class Uncertain(Frozen):
     """Sources that err together: those of one correlation group, or one alone."""
 
     name: str
-    parts: tuple[Part, ...]
+    parts: tuple[UncertainSource, ...]
     numbers: int
     """Drawn for an error: 1 where all have one cause, or one for each component of a vector."""
 

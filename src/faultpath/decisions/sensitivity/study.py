@@ -14,10 +14,10 @@ from faultpath.decisions.planning import scenes_of
 from faultpath.decisions.question import resolve
 from faultpath.decisions.sensitivity.decide import conclude
 from faultpath.decisions.sensitivity.model import (
-    Part,
     ResolvedSensitivity,
     SensitivityRecord,
     Uncertain,
+    UncertainSource,
 )
 from faultpath.decisions.sources import NOT_DEPLOYED, channels_of, groups_of
 from faultpath.faults import Fault, FaultText
@@ -166,14 +166,14 @@ def uncertain(
     unread = {*sizes}
     groups, left_out = list[Uncertain](), list[str]()
     for name, sources in members.items():
-        parts: list[Part] = []
+        parts: list[UncertainSource] = []
         for source in sources:
             channels = feeds[source.name]
             named = [key for key in (*channels, source.name, name) if key in sizes]
             unread -= {*named}
             error = sizes[named[0]] if named else source.uncertainty
             if error is not None and error.expected_std > 0.0:
-                parts.append(Part(source=source.name, channels=channels, error=error))
+                parts.append(UncertainSource(source=source.name, channels=channels, error=error))
             elif error is None:
                 left_out.append(source.name)
         if parts:

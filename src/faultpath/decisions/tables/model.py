@@ -11,7 +11,7 @@ Tone = Literal["", "good", "bad", "faint"]
 """How a terminal or a page colours an entry; what is bad is bold wherever there is no colour."""
 
 
-class _Frozen(BaseModel):
+class _Sparse(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     @model_serializer(mode="wrap")
@@ -21,7 +21,7 @@ class _Frozen(BaseModel):
         return {k: v for k, v in dump(self).items() if v or fields[k].is_required()}
 
 
-class Entry(_Frozen):
+class Entry(_Sparse):
     """Entry of a table, where a line and a column meet."""
 
     text: str
@@ -37,7 +37,7 @@ class Entry(_Frozen):
     """Whether it is a name or a digest, set as code where there is such a type."""
 
 
-class Line(_Frozen):
+class Line(_Sparse):
     """A row; one without entries is a heading inside the table."""
 
     label: str
@@ -48,7 +48,7 @@ class Line(_Frozen):
     """Whether the label is the name of something, set as code."""
 
 
-class Table(_Frozen):
+class Table(_Sparse):
     """Lines of entries below headings."""
 
     name: str = ""

@@ -37,7 +37,7 @@ class UndeclaredFile(SystemMistake):
 
 
 @dataclass(frozen=True)
-class Job:
+class BuildSpec:
     """System that a worker builds, the library of its scenes, and what both have to be."""
 
     system: SystemSpec
@@ -50,7 +50,7 @@ class Job:
 class Built:
     """The system of a job, as a process holds it for its tasks."""
 
-    job: Job
+    job: BuildSpec
     system: System
     library: Library
     code: Code
@@ -60,7 +60,7 @@ class Built:
     def of(cls, system: System, spec: SystemSpec, name: str) -> "Built":
         """Take the state that `system`, which `spec` builds, and one of its libraries have now."""
         library, code = library_of(system, name), system_code(system, spec)
-        job = Job(spec, name, code.state, library.content_hash)
+        job = BuildSpec(spec, name, code.state, library.content_hash)
         return cls(job, system, library, code, code.unread())
 
     def work(self, function: Callable[[System, Any], Any], task: Any) -> Any:
@@ -179,7 +179,7 @@ _built: list[Built] = []
 """System that this worker process built last."""
 
 
-def _elsewhere(job: Job, work: Callable[[System, Any], Any], task: Any) -> Any:
+def _elsewhere(job: BuildSpec, work: Callable[[System, Any], Any], task: Any) -> Any:
     """Work on a task in a worker process, which keeps the system, and tell when that is built.
 
     Raises where the system cannot be built or is another one here.
@@ -202,7 +202,7 @@ def _elsewhere(job: Job, work: Callable[[System, Any], Any], task: Any) -> Any:
     return _built[0].work(work, task)
 
 
-def _build(job: Job) -> Built:
+def _build(job: BuildSpec) -> Built:
     before = source_state(job.system)
     system = load_system(job.system)
     built = Built.of(system, job.system, job.library)

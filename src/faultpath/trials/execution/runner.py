@@ -13,7 +13,7 @@ from faultpath.trials.attempt import Reply, Wrong, attempt
 from faultpath.trials.code import Code
 from faultpath.trials.execution.dispatch import Built, dispatch
 from faultpath.trials.execution.recheck import Rechecks
-from faultpath.trials.execution.schedule import Schedule, Task, plan
+from faultpath.trials.execution.schedule import Task, TaskQueue, plan
 from faultpath.trials.execution.state import RunState, Stop
 from faultpath.trials.provenance import Recheck
 from faultpath.trials.registry import load_system
@@ -122,7 +122,7 @@ def run_study(
     state = RunState(study, library, units, run, stop)
     try:
         with run.open(manifest, notice, shared):
-            schedule = Schedule(state.resume(notice), study.look > 0)
+            schedule = TaskQueue(state.resume(notice), study.look > 0)
             progress(state.progress())
             with manager as workforce:
                 dispatch(

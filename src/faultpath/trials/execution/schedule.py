@@ -67,7 +67,7 @@ class Task:
     Its result is compared and not stored."""
 
 
-class Schedule:
+class TaskQueue:
     """Tasks that wait for a worker.
 
     A system caches what it derives from a block's scenes, so a worker stays with its block, takes
