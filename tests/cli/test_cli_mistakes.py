@@ -6,8 +6,7 @@ import pytest
 from cli_runs import HERE, TOY, audit, faultpath
 
 from faultpath.core.errors import UserError
-from faultpath.trials.question import CheckQuestion
-from faultpath.trials.validation import ask
+from faultpath.trials.question import CheckQuestion, ask
 
 TOY_MISTAKES = {
     "unknown system": ({"system": "quadcopter"}, ["'quadcopter'", "installed: quadrotor"]),

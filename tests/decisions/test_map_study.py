@@ -10,8 +10,7 @@ from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.study import MapPlan, plan_map
 from faultpath.decisions.planning import plan_audit
 from faultpath.trials import SystemSpec, library_of, load_system
-from faultpath.trials.question import AuditQuestion, MapQuestion
-from faultpath.trials.validation import ask
+from faultpath.trials.question import AuditQuestion, MapQuestion, ask
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SPEC = SystemSpec(name=f"{EXAMPLES / 'toy.py'}:create")

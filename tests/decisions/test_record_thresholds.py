@@ -9,8 +9,7 @@ from faultpath.core.errors import UserError
 from faultpath.decisions.decide import decide
 from faultpath.decisions.planning import plan_audit
 from faultpath.trials import Metric, OutcomeTable, Status, SystemSpec, load_system
-from faultpath.trials.question import AuditQuestion
-from faultpath.trials.validation import ask
+from faultpath.trials.question import AuditQuestion, ask
 
 CELLS = {"correct": (96, 2, 2), "shared": (30, 40, 10)}
 TOY = SystemSpec(name="examples/toy.py:create")

@@ -17,8 +17,7 @@ from faultpath.decisions.search.model import ResolvedSearch, SearchRecord, Tried
 from faultpath.decisions.search.propose import proposals
 from faultpath.decisions.search.study import SearchPlan, halves, plan_search, regret
 from faultpath.trials import SystemSpec, library_of, load_system
-from faultpath.trials.question import SearchQuestion
-from faultpath.trials.validation import ask
+from faultpath.trials.question import SearchQuestion, ask
 
 SPEC = SystemSpec(name=f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create")
 TOY = load_system(SPEC)

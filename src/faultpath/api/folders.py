@@ -130,8 +130,8 @@ def _other_trials(record: DecisionRecord, outcomes: OutcomeTable) -> Iterator[st
     if any(cells[arm] != (trials[arm], solved[arm]) for arm in arms):
         yield "the record and the outcomes count different successes"
     measured = {name for row in rows for name in row.outcome.metrics}
-    told = {name for effect in record.effects for name in effect.metrics}
-    for name in sorted(told - measured):
+    names = {name for effect in record.effects for name in effect.metrics}
+    for name in sorted(names - measured):
         yield f"the record tells of '{name}', and the outcomes have no such column"
 
 

@@ -22,9 +22,8 @@ from faultpath.trials.code import system_code
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import Failure, RunResult, run_study
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.question import Asked, Request, Running, SensitivityQuestion
+from faultpath.trials.question import Asked, Request, Running, SensitivityQuestion, ask
 from faultpath.trials.store.folder import keyed
-from faultpath.trials.validation import ask
 from faultpath.trials.work.executor import Executor, Progress
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
@@ -86,8 +85,11 @@ def begin(
     library = library_of(chosen.system, question.library)
     fields = {"system": chosen.spec.name, **question.model_dump(exclude_unset=True)}
     shown = display(progress, call, fields | {"options": chosen.spec.options})
-    if chosen.notice:
-        shown.say(chosen.notice)
+    if chosen.own:
+        shown.say(
+            "The system is an object, so it runs in this process; one that is named, as "
+            "'my_system.py:create', runs in several."
+        )
     if library.name != question.library:
         shown.say(f"Scenes of '{library.name}', the only library of this system.")
     return question, chosen, library, shown
@@ -209,7 +211,8 @@ def run(
     request, chosen, library, display = begin(call, model, system, arguments, progress)
     analysis = plan(chosen.system, chosen.spec, request, library)
     place = run_folder(request, chosen, analysis.named)
-    with executor_of(chosen.system, chosen.workers, chosen.executor) as executor:
+    workers = 0 if chosen.own else request.workers
+    with executor_of(chosen.system, workers, request.executor) as executor:
         how = {"time_limit_s": request.time_limit_s}
         finished = carry_out(analysis, Job(place, executor, display, how))
     finished.report()

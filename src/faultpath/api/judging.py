@@ -23,6 +23,7 @@ from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
 from faultpath.trials.execution.provenance import amend, run_provenance
 from faultpath.trials.execution.runner import RunResult
+from faultpath.trials.question import ask
 from faultpath.trials.received.files import read_results
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.shown import SystemShown, VariantShown
@@ -30,7 +31,6 @@ from faultpath.trials.store.atomic import begin, locked, write_file, write_text
 from faultpath.trials.store.folder import DELIVERIES, OUTCOMES, TRACES
 from faultpath.trials.store.tables import encode_outcomes, encode_traces
 from faultpath.trials.table import Deliveries, OutcomeTable, RowDeliveries
-from faultpath.trials.validation import ask
 from faultpath.trials.work.processes import local
 
 

@@ -20,12 +20,11 @@ from faultpath.trials.attempt import Done
 from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.execution.provenance import amend
 from faultpath.trials.execution.recheck import difference
-from faultpath.trials.question import AuditQuestion
+from faultpath.trials.question import AuditQuestion, ask
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.trials.store.tables import TrialAddress, address_of
 from faultpath.trials.trust import ReceivedCode
-from faultpath.trials.validation import ask
 from faultpath.trials.work.executor import Executor
 from faultpath.trials.work.processes import local
 

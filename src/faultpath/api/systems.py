@@ -35,11 +35,8 @@ class Chosen:
 
     system: System
     spec: SystemSpec
-    workers: int | None
-    executor: str = LOCAL
     own: bool = False
     """Whether it is an object of the caller's: nothing but this process has it."""
-    notice: str = ""
 
 
 def load_system(
@@ -91,7 +88,7 @@ def choose(
         if received is not None:
             received.check(spec, variants)
         spec = with_parts(spec, variants)
-        return Chosen(trials.load_system(spec), spec, workers, executor)
+        return Chosen(trials.load_system(spec), spec)
     if workers or executor != LOCAL:
         idle = "workers" if workers else "executor"
         raise UserError(
@@ -101,11 +98,7 @@ def choose(
     assert isinstance(system, System)
     spec = SystemSpec.of_class(type(system))
     check_system(system, spec.name)
-    notice = (
-        "The system is an object, so it runs in this process; one that is named, as "
-        "'my_system.py:create', runs in several."
-    )
-    return Chosen(system, spec, 0, own=True, notice=notice)
+    return Chosen(system, spec, own=True)
 
 
 def check_executor(executor: object) -> None:

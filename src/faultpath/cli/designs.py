@@ -1,6 +1,6 @@
 """`faultpath map`, `search` and `sensitivity`: many faults of one system."""
 
-from collections.abc import Callable
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -10,9 +10,8 @@ from faultpath.cli.options import FOUND, Json, SystemName, display
 from faultpath.trials.question import MapQuestion, SearchQuestion, SensitivityQuestion
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
-
     from faultpath.api.runs import FinishedRun
+    from faultpath.decisions.tables import Table
 
 
 @takes(MapQuestion)
@@ -23,9 +22,9 @@ def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) ->
 
     run = map(system, **arguments, progress=display(as_json))
 
-    from faultpath.report.map import shown
+    from faultpath.report.map import tables
 
-    return _tell(run, shown, as_json)
+    return _tell(run, tables(run.record), as_json)
 
 
 @takes(SearchQuestion)
@@ -36,9 +35,9 @@ def search(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
 
     run = search(system, **arguments, progress=display(as_json))
 
-    from faultpath.report.search import shown
+    from faultpath.report.search import tables
 
-    return _tell(run, shown, as_json)
+    return _tell(run, tables(run.record), as_json)
 
 
 @takes(SensitivityQuestion)
@@ -49,19 +48,20 @@ def sensitivity(system: SystemName, as_json: Json = False, **arguments: Any) -> 
 
     run = sensitivity(system, **arguments, progress=display(as_json))
 
-    from faultpath.report.sensitivity import shown
+    from faultpath.report.sensitivity import table
 
-    return _tell(run, shown, as_json)
+    return _tell(run, [table(run.record)], as_json)
 
 
-def _tell(run: "FinishedRun", shown: "Callable[[Any], RenderableType]", as_json: bool) -> int:
+def _tell(run: "FinishedRun", tables: "Iterable[Table]", as_json: bool) -> int:
     """Print the record of a map, a search or a sensitivity analysis; return the status."""
     from faultpath.api.display import SafeConsole
+    from faultpath.report.terminal import conclusion
 
     if as_json:
         typer.echo(run.record.model_dump_json(indent=1))
     else:
         console = SafeConsole()
-        console.print(shown(run.record))
+        console.print(conclusion(run.record, tables))
         console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
     return FOUND if run.record.failed else 0

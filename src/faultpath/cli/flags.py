@@ -13,8 +13,7 @@ from typer.models import OptionInfo
 
 from faultpath.cli.options import literal, path
 from faultpath.core.errors import UserError
-from faultpath.trials.question import ADVANCED, Asked, Flag
-from faultpath.trials.validation import flag
+from faultpath.trials.question import ADVANCED, Asked, Flag, flag
 
 if TYPE_CHECKING:
     from faultpath.trials.options import Option

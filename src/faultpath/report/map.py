@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from markupsafe import Markup
-from rich.console import RenderableType
 
 from faultpath.decisions.map.lattice import SHARED
 from faultpath.decisions.map.model import MapRecord
@@ -14,7 +13,6 @@ from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
 from faultpath.report.frame import render, write_pages
 from faultpath.report.map_pictures import correlation_picture, map_picture
-from faultpath.report.terminal import conclusion
 from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.trials.provenance import RunProvenance
 
@@ -86,11 +84,6 @@ def _flips(record: MapRecord) -> Table:
             "the map.",
         ),
     )
-
-
-def shown(record: MapRecord) -> RenderableType:
-    """Return the record for a terminal."""
-    return conclusion(record, tables(record))
 
 
 def page(record: MapRecord, provenance: RunProvenance) -> str:

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from markupsafe import Markup
-from rich.console import RenderableType
 
 from faultpath.decisions.search.model import SearchRecord
 from faultpath.decisions.sentences import wording
@@ -14,7 +13,6 @@ from faultpath.report.effects import effect_axis, effect_rows
 from faultpath.report.frame import render, write_pages
 from faultpath.report.svg import Axis, Svg, tick_label
 from faultpath.report.tables import DIFFERENCE, by_path
-from faultpath.report.terminal import conclusion
 from faultpath.trials.provenance import RunProvenance
 
 _ROWS = 8
@@ -80,11 +78,6 @@ def picture(record: SearchRecord) -> Svg:
             svg.circle(at, 8.0, "star", tip=tip)
         svg.circle(at, 3.5, "dot open", tip=tip)
     return svg
-
-
-def shown(record: SearchRecord) -> RenderableType:
-    """Return the record for a terminal."""
-    return conclusion(record, tables(record))
 
 
 def write_search(record: SearchRecord, provenance: RunProvenance, folder: Path) -> list[Path]:

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from markupsafe import Markup
-from rich.console import RenderableType
 
 from faultpath.decisions.sensitivity.model import Index, SensitivityRecord, Uncertain
 from faultpath.decisions.sentences import wording
@@ -13,7 +12,6 @@ from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
 from faultpath.report.frame import render, write_pages
 from faultpath.report.svg import Svg, covering, tick_label
-from faultpath.report.terminal import conclusion
 from faultpath.trials.provenance import RunProvenance
 
 _PITCH, _TOP, _LEFT, _WIDTH = 34.0, 40.0, 150.0, 560.0
@@ -85,11 +83,6 @@ def picture(record: SensitivityRecord) -> Svg:
             svg.line((x(100 * index.low), at), (x(100 * index.high), at), "range")
             svg.circle((x(100 * index.value), at), 4.0, dot, _entry(index).text)
     return svg
-
-
-def shown(record: SensitivityRecord) -> RenderableType:
-    """Return the record for a terminal."""
-    return conclusion(record, [table(record)])
 
 
 def write_sensitivity(

@@ -4,21 +4,19 @@ The flags of the command line, Python's keywords, their help, the study file and
 from these models. Texts are taken where the command line gives them, as in `seeds="0,1,2"`.
 """
 
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, ValidationError
 
+from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
-from faultpath.trials.texts import (
-    LARGEST,
-    power_of_two,
-    read_names,
-    read_seeds,
-    read_sizes,
-    several,
-)
+from faultpath.core.validation_messages import misfit_of
+from faultpath.trials import texts
+from faultpath.trials.texts import LARGEST, several
 
 Generalise = Literal["scenes", "models"]
 StopWhen = Literal["decided", "all-decided"]
@@ -38,12 +36,12 @@ class Flag:
 ADVANCED = "Advanced"
 """Heading of what few ask for; it stands last in a help."""
 Several = Annotated[tuple[str, ...], BeforeValidator(several)]
-Sizes = Annotated[tuple[float, ...], BeforeValidator(read_sizes)]
+Sizes = Annotated[tuple[float, ...], BeforeValidator(texts.read_sizes)]
 _path = BeforeValidator(lambda place: Path(place) if isinstance(place, str) else place)
 Place = Annotated[Path | None, _path, PlainSerializer(lambda path: path and str(path))]
 Scenes = Annotated[str, Field(description="Library of scenes, by name or file.")]
 _SEEDS = "Seeds of the noise, and of trained models where there are any."
-Seeds = Annotated[tuple[int, ...], BeforeValidator(read_seeds), Field(description=_SEEDS)]
+Seeds = Annotated[tuple[int, ...], BeforeValidator(texts.read_seeds), Field(description=_SEEDS)]
 
 
 class Asked(Frozen, strict=True, allow_inf_nan=False):
@@ -51,6 +49,30 @@ class Asked(Frozen, strict=True, allow_inf_nan=False):
 
     panel: ClassVar[str] = ""
     """Heading in the help of the fields that a class declares."""
+
+
+_Asked = TypeVar("_Asked", bound=Asked)
+
+
+def ask(model: type[_Asked], fields: Mapping[str, object], command: bool = False) -> _Asked:
+    """Return what is asked; `UserError` for what does not fit, by its flag if `command`."""
+    try:
+        return model.model_validate(dict(fields))
+    except ValidationError as error:
+        wrong = misfit_of(error, model)
+        first = str(wrong.place[0]) if wrong.place else ""
+        where = flag(model, first) if command and first in model.model_fields else wrong.where
+        raise UserError(f"{where}: {wrong.says}.") from None
+
+
+def flag(model: type[Asked], name: str) -> str:
+    """Return what the command line calls a field: `margin_pp` is `--margin`."""
+    field = model.model_fields[name]
+    for note in field.metadata:
+        if isinstance(note, Flag) and note.name:
+            return note.name
+    dashed = re.sub(r"_(s|pp)$", "", name).replace("_", "-")
+    return f"--no-{dashed}" if field.default is True else f"--{dashed}"
 
 
 class Request(Asked):
@@ -88,7 +110,7 @@ class TraceQuestion(Request):
 class CheckQuestion(Request):
     """Question of a check."""
 
-    variants: Annotated[tuple[str, ...], BeforeValidator(read_names)] = Field(
+    variants: Annotated[tuple[str, ...], BeforeValidator(texts.read_names)] = Field(
         default=(),
         description="Variants to check: old,new. Default all, or two of more than 4.",
     )
@@ -195,7 +217,7 @@ class MapQuestion(Running):
     fault: Annotated[str, Flag(panel=RepairQuestion.panel)] = Field(
         description="Without its size: `gain`, `gain:offset`, `gain,onset=9`."
     )
-    against: Annotated[tuple[str, ...], BeforeValidator(read_names)] = Field(
+    against: Annotated[tuple[str, ...], BeforeValidator(texts.read_names)] = Field(
         description="The two modules whose errors are mapped: controller,observer."
     )
     up_to: float | None = Field(
@@ -246,7 +268,7 @@ class SensitivityQuestion(Placed, Request):
     metric: str = Field(default="", description="Metric to explain; default success.")
     scenes: int | None = Field(default=8, description="Run the first N scenes.")
     seeds: Seeds = (0,)
-    points: Annotated[int, AfterValidator(power_of_two)] = Field(
+    points: Annotated[int, AfterValidator(texts.power_of_two)] = Field(
         default=64,
         ge=64,
         le=65_536,
