@@ -13,7 +13,7 @@ from faultpath.core.streams import generator
 from faultpath.decisions.dependent import Group, dependent_groups
 from faultpath.decisions.plan.plan import make_plan
 from faultpath.interface import read_interface
-from faultpath.report.dependent import of_plan, of_runs
+from faultpath.report.dependent import dependent_table, of_runs
 from faultpath.trials import Status, SystemSpec, Variant
 from faultpath.trials.question import PlanQuestion
 
@@ -106,7 +106,8 @@ def test_a_plan_has_no_evidence_and_the_command_to_get_it() -> None:
     system = Declared()
     asked = PlanQuestion(baseline="calibrated", repair="blind", library="carts", scenes=2)
     spec = SystemSpec(name="my toy.py:create", options={"wind": "L3"})
-    table = of_plan(make_plan(system, spec, asked, system.library("carts")))
+    plan = make_plan(system, spec, asked, system.library("carts"))
+    table = dependent_table(plan.dependent, plan.study)
     lines = [line for line in table.lines if line.entries]
     assert {line.entries[3].text for line in lines} == {"no evidence"}
     assert lines[0].entries[-1].text == (

@@ -26,7 +26,7 @@ def run(source: ReportInput, number: int, folder: str = "", **asked: object) -> 
     """Return an audit with another question."""
     question = source.record.question.model_copy(update=asked)
     record = source.record.model_copy(update={"question": question})
-    return Compared(number, folder or f"runs/{number}", record, source.provenance)
+    return Compared(number, folder or f"runs/{number}", replace(source, record=record))
 
 
 def signed(one: Compared, path: str, sign: int, **more: object) -> Compared:
@@ -36,7 +36,13 @@ def signed(one: Compared, path: str, sign: int, **more: object) -> Compared:
         each.model_copy(update=changed) if each.path == path else each
         for each in one.record.effects
     )
-    return replace(one, record=one.record.model_copy(update={"effects": told}))
+    return decided(one, effects=told)
+
+
+def decided(one: Compared, **changed: object) -> Compared:
+    """Return the run with another record."""
+    record = one.record.model_copy(update=changed)
+    return replace(one, source=replace(one.source, record=record))
 
 
 @pytest.fixture
@@ -133,7 +139,7 @@ def test_only_what_differs_is_told(one_seed: ReportInput) -> None:
             "python": "3.12.1",
         }
     )
-    second = replace(second, provenance=made)
+    second = replace(second, source=replace(second.source, provenance=made))
     told = dict(differing((first, second)))
     assert told.pop("Fault") == ("calibration=+0.1", "calibration=-0.1")
     assert told.pop("Seeds") == ("0", "0, 1")
@@ -165,7 +171,7 @@ def test_other_paths_are_blank_and_not_left_out(
         if cell.path == second.record.effects[1].path
     )
     changed = {"paths": paths, "effects": effects_there, "cells": (*second.record.cells, *cells)}
-    second = replace(second, record=second.record.model_copy(update=changed))
+    second = decided(second, **changed)
     runs = (first, second)
     assert list(titles(runs)) == ["correct", "predictor", "reconstruction", "planner", "shared"]
     table = effects(runs)
@@ -186,10 +192,7 @@ def test_hostile_names_are_text(one_seed: ReportInput) -> None:
         run(one_seed, 2, repair=NASTY, options={NASTY: NASTY}, system=NASTY),
     )
     cells = [cell.model_copy(update={"variant": NASTY}) for cell in runs[0].record.cells]
-    runs = tuple(
-        replace(each, record=each.record.model_copy(update={"cells": (*each.record.cells, *cells)}))
-        for each in runs
-    )
+    runs = tuple(decided(each, cells=(*each.record.cells, *cells)) for each in runs)
     text = page(runs)
     assert "<script>alert" not in text
     assert "\u202e" not in text

@@ -26,7 +26,7 @@ def drawn(source: ReportInput, rng: np.random.Generator, sizes: int) -> list[Com
         question = source.record.question.model_copy(update={"fault": f"calibration={number}"})
         changed = {"effects": tuple(told), "question": question}
         record = source.record.model_copy(update=changed)
-        runs.append(Compared(number, f"runs/{number}", record, source.provenance))
+        runs.append(Compared(number, f"runs/{number}", replace(source, record=record)))
     return runs
 
 
@@ -51,7 +51,8 @@ def test_correct_inputs_that_are_the_same_trials_count_once(one_seed: ReportInpu
             each.model_copy(update={"p_value": lowest} if each.path == CORRECT else {})
             for each in run.record.effects
         )
-        return replace(run, record=run.record.model_copy(update={"effects": told}))
+        record = run.record.model_copy(update={"effects": told})
+        return replace(run, source=replace(run.source, record=record))
 
     first = together([low(run) for run in runs])[0].family
     assert first is not None

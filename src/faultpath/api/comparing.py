@@ -112,5 +112,5 @@ def beside(runs: Sequence[str | PathLike[str] | Run]) -> RunComparison:
         if run.folder.resolve() in places:
             raise UserError(f"{run.folder} is given twice: give each run once.")
         places.add(run.folder.resolve())
-        compared.append(Compared(number, str(run.folder), run.record, run.provenance, run.held))
+        compared.append(Compared(number, str(run.folder), run.held))
     return RunComparison(together(compared))

@@ -68,11 +68,11 @@ def plan(
 
     from faultpath.decisions.tables.csv import csv_text
     from faultpath.decisions.tables.terminal import drawn
-    from faultpath.report.dependent import in_short, of_plan
+    from faultpath.report.dependent import dependent_table, in_short
     from faultpath.report.plan import tables
 
     if dependent_failures is not None:
-        dependent = of_plan(planned.plan)
+        dependent = dependent_table(planned.plan.dependent, planned.plan.study)
         write_text(dependent_failures, csv_text(dependent) if dependent else "")
     if as_json:
         typer.echo(planned.plan.model_dump_json(indent=2))

@@ -92,16 +92,7 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
     chosen = scenes_of(library, request.scenes, in_order=not sequential)
     fault = fault_of(system, request.fault)
     faults = faults_by_path(system, fault, variants)
-    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
-    paths = [
-        Path(
-            name=name,
-            title=titles.get(name, f"{name.replace('_', ' ').capitalize()} only"),
-            consumers=_consumers(of[request.repair]),
-            baseline_consumers=_consumers(of[request.baseline]),
-        )
-        for name, of in faults.items()
-    ]
+    paths = [_path(name, of[request.repair], of[request.baseline]) for name, of in faults.items()]
     # Where the fault cannot reach a variant, that is the arm under correct inputs: it runs once.
     rows = [row for path, of in faults.items() for row in rows_of(path, of, request.seeds)]
     _check(system, request)
@@ -179,8 +170,15 @@ def faults_by_path(
     return paths
 
 
-def _consumers(faults: Sequence[Fault]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(consumer for fault in faults for consumer in fault.consumers))
+def _path(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Path:
+    """Return a path of the fault, with what it reaches in each variant."""
+    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
+    ours, theirs = (
+        tuple(dict.fromkeys(consumer for fault in faults for consumer in fault.consumers))
+        for faults in (repair, baseline)
+    )
+    title = titles.get(name, f"{name.replace('_', ' ').capitalize()} only")
+    return Path(name=name, title=title, consumers=ours, baseline_consumers=theirs)
 
 
 def _check(system: System, question: AuditQuestion) -> None:

@@ -17,7 +17,8 @@ def junit(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str:
         question = record.question
         name = f"{question.repair} against {question.baseline}"
         name += f" under {question.fault}" if question.fault else ""
-        cases = {"trials-ran": _failed(record)}
+        failed = sum(cell.failed for cell in record.cells)
+        cases = {"trials-ran": f"{failed} trials failed or are missing." if failed else ""}
         for condition in conditions:
             answer = found(record, condition)
             cases[f"no-{condition}"] = answer.said if answer else ""
@@ -55,8 +56,3 @@ def summary(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str
             parts.append(f"**Found in the run.**\n\n{noted}")
         parts.append(markdown_table(record))
     return "\n\n".join(parts).rstrip() + "\n"
-
-
-def _failed(record: DecisionRecord) -> str:
-    failed = sum(cell.failed for cell in record.cells)
-    return f"{failed} trials failed or are missing." if failed else ""

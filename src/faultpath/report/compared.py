@@ -29,13 +29,21 @@ class Compared:
     number: int
     """Its place among them, from 1."""
     folder: str
-    record: DecisionRecord
-    provenance: RunProvenance
-    source: ReportInput | None = None
+    source: ReportInput
     """All that its pages are made from."""
     family: Mapping[str, tuple[Sign, float]] | None = None
     """For a sweep over sizes: by path, the side that is decided over all of them together, and
     the adjusted p. `None` where every audit stands by itself."""
+
+    @property
+    def record(self) -> DecisionRecord:
+        """What was decided."""
+        return self.source.record
+
+    @property
+    def provenance(self) -> RunProvenance:
+        """How it was made."""
+        return self.source.provenance
 
     @property
     def asked(self) -> Question:

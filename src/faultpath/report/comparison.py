@@ -28,6 +28,7 @@ from faultpath.report.compared import (
 from faultpath.report.dependent import of_runs
 from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
+from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import tick_label
 from faultpath.report.tables import decided_for
 
@@ -195,14 +196,12 @@ def dependent_failures(runs: Sequence[Compared]) -> Table | None:
 
     Every effect is as its own audit decided it, or all sizes of a sweep together.
     """
-    sources = [
-        replace(run.source, record=run.record.model_copy(update={"effects": effects}))
-        for run in runs
-        if run.source is not None
-        for effects in [tuple(filter(None, (run.effect(p.name) for p in run.record.paths)))]
-    ]
-    numbers = [str(run.number) for run in runs] if len(runs) > 1 else []
-    return of_runs(sources, numbers) if len(sources) == len(runs) else None
+    sources: list[ReportInput] = []
+    for run in runs:
+        effects = tuple(filter(None, (run.effect(path.name) for path in run.record.paths)))
+        record = run.record.model_copy(update={"effects": effects})
+        sources.append(replace(run.source, record=record))
+    return of_runs(sources, [str(run.number) for run in runs] if len(runs) > 1 else [])
 
 
 def page(runs: Sequence[Compared]) -> str:

@@ -47,12 +47,7 @@ def of_runs(runs: Sequence[ReportInput], names: Sequence[str] = ()) -> Table | N
             return None
     groups = dependent_groups(first.system.interface, first.system.variants)
     named = zip(names or [""] * len(runs), (run.record for run in runs), strict=True)
-    return _table(with_evidence(groups, named), first.record.question)
-
-
-def of_plan(plan: Plan) -> Table | None:
-    """Return the table before any flight: nothing has evidence."""
-    return _table(plan.dependent, plan.study)
+    return dependent_table(with_evidence(groups, named), first.record.question)
 
 
 def in_short(plan: Plan) -> Table | None:
@@ -67,7 +62,10 @@ def in_short(plan: Plan) -> Table | None:
     return table if lines else None
 
 
-def _table(groups: Sequence[DependentGroup], question: Question | StudyFile) -> Table | None:
+def dependent_table(
+    groups: Sequence[DependentGroup], question: Question | StudyFile
+) -> Table | None:
+    """Return the table of groups, which before any trial have no evidence; `None` without any."""
     if not groups:
         return None
     lines: list[Line] = []

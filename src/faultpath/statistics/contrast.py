@@ -149,16 +149,14 @@ class Contrast:
         return self.n_scenes >= MIN_SCENES
 
     @property
-    def rejected(self) -> Sign:
-        """Return the side that the test finds ahead; without a test, that of the interval."""
+    def detected(self) -> Sign:
+        """Return the side on which interval and test agree, at the level of this test alone.
+
+        Without a test, that of the interval.
+        """
         if self.test is None:
             return self.side if self.enough else 0
-        return self.test.leans if self.test.rejects() else 0
-
-    @property
-    def detected(self) -> Sign:
-        """Return the side on which interval and test agree, at the level of this test alone."""
-        return self.rejected if self.rejected == self.side else 0
+        return self.side if self.test.rejects() and self.test.leans == self.side else 0
 
     @property
     def sign(self) -> Sign:

@@ -131,9 +131,6 @@ class RunFolder:
         self.shards = path / "shards"
         self.failures = path / "failures"
         self.manifest = path / "manifest.json"
-        self.outcomes = path / OUTCOMES
-        self.traces = path / TRACES
-        self.deliveries = path / DELIVERIES
         self.rechecks = path / "rechecks.json"
 
     @contextmanager
@@ -216,9 +213,9 @@ class RunFolder:
     def save_tables(self, table: OutcomeTable, deliveries: Deliveries) -> str:
         """Write what was assembled and return the SHA-256 of the outcomes."""
         data = encode_outcomes(table)
-        self._write(self.deliveries, f"{deliveries.model_dump_json(indent=1)}\n".encode())
-        self._write(self.traces, encode_traces(table))
-        self._write(self.outcomes, data)
+        self._write(self.path / DELIVERIES, f"{deliveries.model_dump_json(indent=1)}\n".encode())
+        self._write(self.path / TRACES, encode_traces(table))
+        self._write(self.path / OUTCOMES, data)
         return _digest(data)
 
     def files_of(self, key: str) -> list[Path]:
