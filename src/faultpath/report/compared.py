@@ -37,12 +37,12 @@ class Compared:
 
     @property
     def record(self) -> DecisionRecord:
-        """What was decided."""
+        """Decisions of the audit."""
         return self.source.record
 
     @property
     def provenance(self) -> RunProvenance:
-        """How it was made."""
+        """Conditions under which it was made."""
         return self.source.provenance
 
     @property

@@ -50,11 +50,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
 
     Left out are scenes without any track and, where no trial has one, those without signals.
     """
-    question, plans, tracks = (
-        source.record.question,
-        source.system.plans,
-        traces_of(source.outcomes),
-    )
+    plans, tracks = source.system.plans, traces_of(source.outcomes)
     flat = _flat(source, tracks)
     recorded = {(at.scene, at.seed) for at in source.signals}
     tracked = {(at.scene, at.seed) for at, track in tracks.items() if len(track)}
@@ -66,8 +62,32 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     signals = {at: s for at, s in source.signals.items() if (at.scene, at.seed) in few}
     if tracked and flat:
         signals = _with_positions(signals, tracks)
-    trials, why = _Trials(source, signals, _plots(signals)), captions(pairs)
-    scenes = [
+    trials, space = _Trials(source, signals, _plots(signals)), _space(source, flat, bool(tracked))
+    scenes = _scenes(trials, groups, captions(pairs))
+    drawn = {scene: asdict(plans[scene]) for scene, _ in groups if scene in plans}
+    for prism in (prism for plan in drawn.values() for prism in plan["prisms"]):
+        prism["corners"] = [[round(v, 3) for v in corner] for corner in prism["corners"]]
+    content = {
+        "dt_s": source.system.control_dt_s,
+        "space": space,
+        "paths": [{"name": path.name, "title": path.title} for path in source.record.paths],
+        "picked": [list(groups).index(at) for at in chosen],
+        "path": _first_path(source.record, groups[(*chosen, *groups)[0]]),
+        "plots": [plot.described() for plot in trials.plots],
+        "plans": drawn,
+        "scenes": scenes,
+    }
+    return Viewer(space, frozenset(groups), pack(content, trials.series))
+
+
+def _scenes(
+    trials: "_Trials",
+    groups: Mapping[tuple[str, int], Mapping[str, Pair]],
+    why: Mapping[tuple[str, int], str],
+) -> list[dict[str, Any]]:
+    """Return each scene and seed with its pairs, as the script reads them."""
+    question, plans = trials.source.record.question, trials.source.system.plans
+    return [
         {
             "scene": scene,
             "seed": seed,
@@ -86,28 +106,6 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
         }
         for (scene, seed), group in groups.items()
     ]
-    drawn = {scene: asdict(plans[scene]) for scene, _ in groups if scene in plans}
-    for prism in (prism for plan in drawn.values() for prism in plan["prisms"]):
-        prism["corners"] = [[round(v, 3) for v in corner] for corner in prism["corners"]]
-    content = {
-        "dt_s": source.system.control_dt_s,
-        "space": (space := _space(source, flat, bool(tracked))),
-        "paths": [{"name": path.name, "title": path.title} for path in source.record.paths],
-        "picked": [list(groups).index(at) for at in chosen],
-        "path": _first_path(source.record, groups[(*chosen, *groups)[0]]),
-        "plots": [
-            {
-                "title": plot.title,
-                "unit": wording.unit(plot.unit),
-                "lines": [name for _, name in plot.lines],
-                "zero": plot.of_errors,
-            }
-            for plot in trials.plots
-        ],
-        "plans": drawn,
-        "scenes": scenes,
-    }
-    return Viewer(space, frozenset(groups), pack(content, trials.series))
 
 
 def _flat(source: ReportInput, tracks: Mapping[TrialAddress, Trace]) -> bool:
@@ -235,6 +233,11 @@ class _Plot:
     def of_errors(self) -> bool:
         """Whether it is held against zero."""
         return "error" in self.title
+
+    def described(self) -> dict[str, Any]:
+        """Return what the script shows beside the lines."""
+        lines, unit = [name for _, name in self.lines], wording.unit(self.unit)
+        return {"title": self.title, "unit": unit, "lines": lines, "zero": self.of_errors}
 
 
 def _plots(signals: Signals) -> list[_Plot]:

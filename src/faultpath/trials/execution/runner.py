@@ -1,9 +1,10 @@
 """Run a study into a folder, from wherever an earlier invocation left it."""
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from faultpath.core.errors import Stopped, UserError
@@ -11,9 +12,10 @@ from faultpath.core.version import __version__
 from faultpath.trials.arm import Arm, Study
 from faultpath.trials.attempt import Reply, Wrong, attempt
 from faultpath.trials.code import Code
+from faultpath.trials.declared import SceneRef
 from faultpath.trials.execution.dispatch import Built, dispatch
 from faultpath.trials.execution.recheck import Rechecks
-from faultpath.trials.execution.schedule import Task, TaskQueue, plan
+from faultpath.trials.execution.schedule import Task, TaskQueue, Unit, plan
 from faultpath.trials.execution.state import RunState, Stop
 from faultpath.trials.provenance import Recheck
 from faultpath.trials.registry import load_system
@@ -107,11 +109,7 @@ def run_study(
     built = Built.of(system, study.system, study.library)
     built.check_files()
     library, code = built.library, built.code
-    scenes = selected(study, library)
-    if study.look:
-        scenes = sorted(scenes, key=lambda scene: study.scenes.index(scene.id))
-    check_rows(study.rows, system.variants)
-    units = plan(study.arms(), scenes, system.block_size, library, code.state.digest, study.look)
+    units = _units(study, built)
     manifest = Manifest(
         faultpath_version=__version__,
         code=code.state,
@@ -125,26 +123,16 @@ def run_study(
             schedule = TaskQueue(state.resume(notice), study.look > 0)
             progress(state.progress())
             with manager as workforce:
-                dispatch(
-                    workforce,
-                    built,
-                    _attempted,
+                work = partial(dispatch, workforce, built, _attempted, limit_s=time_limit_s)
+                work(
                     lambda worker: None if state.enough() else schedule.take(worker),
                     lambda task, reply: schedule.put(state.settle(task, reply)),
-                    time_limit_s,
-                    lambda: progress(state.progress()),
+                    report=lambda: progress(state.progress()),
                 )
                 again = Rechecks(state.units, state.outcomes, run)
                 if recheck:
                     waiting = iter(again.tasks())
-                    dispatch(
-                        workforce,
-                        built,
-                        _attempted,
-                        lambda worker: next(waiting, None),
-                        again.settle,
-                        time_limit_s,
-                    )
+                    work(lambda worker: next(waiting, None), again.settle)
             table, findings = state.table(), (*state.findings(), *again.findings())
             deliveries = Deliveries.of(study, state.taps(), table, findings)
             digest = run.save_tables(table, deliveries)
@@ -167,6 +155,17 @@ def run_study(
         library_hash=library.content_hash,
         rechecks=again.flown(),
     )
+
+
+def _units(study: Study, built: Built) -> tuple[Unit, ...]:
+    """Return the blocks that a study takes; `UserError` for scenes or rows that cannot be run."""
+    library, system = built.library, built.system
+    scenes: Sequence[SceneRef] = selected(study, library)
+    if study.look:
+        scenes = sorted(scenes, key=lambda scene: study.scenes.index(scene.id))
+    check_rows(study.rows, system.variants)
+    fingerprint = built.code.state.digest
+    return plan(study.arms(), scenes, system.block_size, library, fingerprint, study.look)
 
 
 def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:
