@@ -10,10 +10,11 @@ import pytest
 from faultpath.core.errors import UserError
 from faultpath.loop import TapCount
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
+from faultpath.trials.attempt import Done
 from faultpath.trials.code import CodeState
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.store.folder import FORMAT, Manifest, RunFolder, read_outcomes
-from faultpath.trials.store.tables import Shard, encode_shard
+from faultpath.trials.store.tables import encode_shard
 
 
 def _manifest(name: str = "a", seed: int = 0, scenes: tuple[str, ...] = ("s0",)) -> Manifest:
@@ -40,7 +41,7 @@ def _outcomes() -> tuple[Outcome, ...]:
 def folder(tmp_path: Path) -> RunFolder:
     folder = RunFolder(tmp_path / "run")
     with folder.open(_manifest(), _unexpected):
-        folder.save_shard("k", Shard(_outcomes(), TAPS))
+        folder.save_shard("k", Done(_outcomes(), TAPS))
     return folder
 
 
@@ -70,7 +71,7 @@ def test_a_shard_reads_back(folder):
         lambda data: data[: len(data) // 2],
         lambda data: data[:40] + bytes([data[40] ^ 1]) + data[41:],
         lambda data: encode_shard(
-            "k", Shard(tuple(replace(o, time_s=9.0) for o in _outcomes()), TAPS)
+            "k", Done(tuple(replace(o, time_s=9.0) for o in _outcomes()), TAPS)
         ),
     ],
     ids=["truncated", "flipped", "edited"],
@@ -90,7 +91,7 @@ def test_of_two_shards_of_a_block_the_one_that_failed_less_is_taken(folder):
     data = before.read_bytes()
     hashes = dict.fromkeys(("initial_hash", "disturbance_hash", "planner_noise_hash"), "none")
     ended = {"status": Status.CRASH, "time_s": 1.0, **hashes}
-    sound = Shard(tuple(replace(outcome, **ended) for outcome in _outcomes()), TAPS)
+    sound = Done(tuple(replace(outcome, **ended) for outcome in _outcomes()), TAPS)
     folder.save_shard("k", sound)
     (after,) = folder.shards.iterdir()
     assert after != before

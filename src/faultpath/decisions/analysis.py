@@ -1,13 +1,12 @@
 """Parts that audit, map, search and sensitivity analysis share: rounds of trials, and a record."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Generator, Iterator, Mapping, Sequence
+from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
 
 from faultpath.decisions.question import Resolved
-from faultpath.faults import Fault
-from faultpath.trials import Arm, Deliveries, OutcomeTable, Row, Study, System
+from faultpath.trials import Deliveries, OutcomeTable, Study, System
 from faultpath.trials.execution.state import Stop
 from faultpath.trials.question import Running, SensitivityQuestion
 
@@ -53,13 +52,3 @@ class Analysis(ABC, Generic[Items]):
     @abstractmethod
     def conclude(self, table: OutcomeTable, deliveries: Deliveries, items: Items) -> Any:
         """Return the record. `UserError` where nothing is left to compare."""
-
-
-def rows_of(
-    path: str, faults: Mapping[str, Sequence[Fault]], seeds: Sequence[int]
-) -> Iterator[Row]:
-    """Yield the rows of a path: each variant under its faults, once with each seed."""
-    for variant, parts in faults.items():
-        for seed in seeds:
-            arm = Arm(variant=variant, faults=tuple(parts), seed=seed)
-            yield Row(variant=variant, path=path, seed=seed, arm=arm)

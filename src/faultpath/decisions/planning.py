@@ -1,13 +1,13 @@
 """Plan an audit: which arms a question about a repair needs, on which paths of the fault."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import unknown
-from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
+from faultpath.decisions.analysis import Analysis, Round, Rounds
 from faultpath.decisions.decide import decide, primary_path
 from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, FaultedTap, Path
@@ -17,7 +17,17 @@ from faultpath.faults import AnyFault, Fault
 from faultpath.interface import module_of
 from faultpath.loop import TapCount
 from faultpath.statistics.estimate import RULE
-from faultpath.trials import Deliveries, Library, OutcomeTable, Study, System, SystemSpec, Variant
+from faultpath.trials import (
+    Arm,
+    Deliveries,
+    Library,
+    OutcomeTable,
+    Row,
+    Study,
+    System,
+    SystemSpec,
+    Variant,
+)
 from faultpath.trials.question import AuditQuestion, RepairQuestion
 
 LOOK = 5
@@ -168,6 +178,16 @@ def faults_by_path(
         every = [consumer for name in sorted(by_module) for consumer in by_module[name]]
         paths[SHARED] = within(fault.aimed_at(*every))
     return paths
+
+
+def rows_of(
+    path: str, faults: Mapping[str, Sequence[Fault]], seeds: Sequence[int]
+) -> Iterator[Row]:
+    """Yield the rows of a path: each variant under its faults, once with each seed."""
+    for variant, parts in faults.items():
+        for seed in seeds:
+            arm = Arm(variant=variant, faults=tuple(parts), seed=seed)
+            yield Row(variant=variant, path=path, seed=seed, arm=arm)
 
 
 def _path(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Path:

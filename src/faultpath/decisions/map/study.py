@@ -8,14 +8,14 @@ from pathlib import PurePath
 import numpy as np
 
 from faultpath.core.errors import UserError
-from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
+from faultpath.decisions.analysis import Analysis, Round, Rounds
 from faultpath.decisions.compared import compared
 from faultpath.decisions.map.decide import decided
 from faultpath.decisions.map.lattice import COARSE, Point, lattice
 from faultpath.decisions.map.model import MapRecord, ResolvedMap
 from faultpath.decisions.map.surface import Differences, next_points
 from faultpath.decisions.model import CORRECT
-from faultpath.decisions.planning import scenes_of, two_variants
+from faultpath.decisions.planning import rows_of, scenes_of, two_variants
 from faultpath.decisions.question import resolve
 from faultpath.faults import AnyFault, FaultText
 from faultpath.interface import module_of

@@ -10,10 +10,17 @@ import numpy as np
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import listed
-from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
+from faultpath.decisions.analysis import Analysis, Round, Rounds
 from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
-from faultpath.decisions.planning import Audit, faults_by_path, plan_audit, scenes_of, two_variants
+from faultpath.decisions.planning import (
+    Audit,
+    faults_by_path,
+    plan_audit,
+    rows_of,
+    scenes_of,
+    two_variants,
+)
 from faultpath.decisions.question import resolve
 from faultpath.decisions.search.bounds import read_bounds
 from faultpath.decisions.search.decide import conclude

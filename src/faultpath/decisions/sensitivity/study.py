@@ -9,8 +9,8 @@ from scipy.special import ndtri
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
-from faultpath.decisions.analysis import Analysis, Round, Rounds, rows_of
-from faultpath.decisions.planning import scenes_of
+from faultpath.decisions.analysis import Analysis, Round, Rounds
+from faultpath.decisions.planning import rows_of, scenes_of
 from faultpath.decisions.question import resolve
 from faultpath.decisions.sensitivity.decide import conclude
 from faultpath.decisions.sensitivity.model import (

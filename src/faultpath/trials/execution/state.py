@@ -14,7 +14,6 @@ from faultpath.trials.declared import Library
 from faultpath.trials.execution.schedule import Task, Unit
 from faultpath.trials.outcome import Outcome, failed_outcome
 from faultpath.trials.store.folder import RunFolder
-from faultpath.trials.store.tables import Shard
 from faultpath.trials.table import OutcomeTable, assemble
 from faultpath.trials.work.executor import Progress
 
@@ -137,7 +136,7 @@ class RunState:
                 f"{self._folder.failures / unit.key}.txt"
             )
         if len(partial.outcomes) == len(unit.scenes):
-            shard = Shard(tuple(partial.outcomes[scene] for scene in unit.scenes), partial.taps)
+            shard = Done(tuple(partial.outcomes[scene] for scene in unit.scenes), partial.taps)
             self._folder.save_failure(unit.key, tracebacks)
             self._folder.save_shard(unit.key, shard)
             del self._partial[unit.key]
@@ -164,7 +163,7 @@ class RunState:
     def _outcomes_of(self, unit: Unit) -> list[Outcome]:
         return [self.outcomes[unit.arm.key(), scene] for scene in unit.scenes]
 
-    def _enter(self, unit: Unit, shard: Shard) -> None:
+    def _enter(self, unit: Unit, shard: Done) -> None:
         key = unit.arm.key()
         self.outcomes.update(((key, outcome.scene), outcome) for outcome in shard.outcomes)
         self._taps[unit.key] = shard.taps

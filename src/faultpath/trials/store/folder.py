@@ -19,11 +19,11 @@ from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, model_of, read_json
 from faultpath.core.results import Frozen
 from faultpath.trials.arm import Study
+from faultpath.trials.attempt import Done
 from faultpath.trials.code import CodeState, named
 from faultpath.trials.store import atomic
 from faultpath.trials.store.atomic import Say, locked, make_folder, write_file
 from faultpath.trials.store.tables import (
-    Shard,
     decode_outcomes,
     decode_shard,
     encode_outcomes,
@@ -157,7 +157,7 @@ class RunFolder:
                 self._write(self.manifest, manifest.encode())
             yield
 
-    def save_shard(self, key: str, shard: Shard) -> None:
+    def save_shard(self, key: str, shard: Done) -> None:
         """Store a finished block. The name carries a digest of the bytes, checked on reading."""
         data = encode_shard(key, shard)
         path = self.shards / f"{key}-{_digest(data)[:32]}.parquet"
@@ -171,9 +171,9 @@ class RunFolder:
         times = [path.stat().st_mtime for key in keys for path in self.files_of(key)]
         return datetime.fromtimestamp(min(times), UTC), datetime.fromtimestamp(max(times), UTC)
 
-    def load_shard(self, key: str, scenes: Sequence[str], notice: Say) -> Shard | None:
+    def load_shard(self, key: str, scenes: Sequence[str], notice: Say) -> Done | None:
         """Return a finished block, or `None` without a whole one; a damaged one is removed."""
-        shards: list[Shard] = []
+        shards: list[Done] = []
         for path in self.files_of(key):
             try:
                 data = contents(path)

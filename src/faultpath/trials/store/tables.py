@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,6 +21,7 @@ from faultpath.core.files.parquet import (
     encode,
 )
 from faultpath.loop import TapCount
+from faultpath.trials.attempt import Done
 from faultpath.trials.outcome import VEHICLE, Outcome, Status, checked
 from faultpath.trials.table import OutcomeTable, TrialRow
 
@@ -53,23 +54,14 @@ class TrialAddress(NamedTuple):
     scene: str
 
 
-@dataclass(frozen=True)
-class Shard:
-    """One finished block."""
-
-    outcomes: tuple[Outcome, ...]
-    taps: tuple[TapCount, ...]
-    """Counts of the taps in the trials that did not fail."""
-
-
-def encode_shard(key: str, shard: Shard) -> bytes:
+def encode_shard(key: str, shard: Done) -> bytes:
     """Return one block, traces included, with the key of its unit inside."""
     notes = {_KEY: key, _TAPS: _TAP_COUNTS.dump_json(shard.taps).decode()}
     schema = {"scene": TEXT, **_columns(shard.outcomes), **_TRACE}
     return encode(schema, map(_cells, shard.outcomes), notes)
 
 
-def decode_shard(data: bytes, key: str) -> Shard:
+def decode_shard(data: bytes, key: str) -> Done:
     """Return one block; `Unreadable` when the bytes are not the shard of `key`, whole."""
     schema = {"scene": TEXT, **_END, **_RESULT, **_TRACE}
     rows, notes = decode(data, schema, _MAY_LACK, more=NUMBER)
@@ -81,7 +73,7 @@ def decode_shard(data: bytes, key: str) -> Shard:
         taps = _TAP_COUNTS.validate_json(notes[_TAPS])
     except ValidationError as error:
         raise Unreadable("its receipts of the taps cannot be read") from error
-    return Shard(tuple(_outcome(row, _trace(row)) for row in rows), taps)
+    return Done(tuple(_outcome(row, _trace(row)) for row in rows), taps)
 
 
 def encode_outcomes(table: OutcomeTable) -> bytes:
