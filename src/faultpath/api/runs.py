@@ -26,6 +26,9 @@ from faultpath.decisions.search.model import SearchRecord
 from faultpath.decisions.sensitivity.model import SensitivityRecord
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
+from faultpath.report.map import write_map
+from faultpath.report.search import write_search
+from faultpath.report.sensitivity import write_sensitivity
 from faultpath.report.tables import markdown_table
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import AGAIN, OUTCOMES, unseal
@@ -119,8 +122,6 @@ class MapRun(FinishedRun):
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, map.svg, correlation.svg and table.md, and return their paths."""
-        from faultpath.report.map import write_map
-
         place = self.folder if folder is None else Path(folder)
         return write_map(self.record, self.provenance, place)
 
@@ -135,8 +136,6 @@ class SearchRun(FinishedRun):
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, tried.svg and table.md, and return their paths."""
-        from faultpath.report.search import write_search
-
         place = self.folder if folder is None else Path(folder)
         return write_search(self.record, self.provenance, place)
 
@@ -151,8 +150,6 @@ class SensitivityRun(FinishedRun):
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, sensitivity.svg, sensitivity.csv and table.md; return their paths."""
-        from faultpath.report.sensitivity import write_sensitivity
-
         place = self.folder if folder is None else Path(folder)
         return write_sensitivity(self.record, self.provenance, place)
 

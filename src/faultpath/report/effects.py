@@ -95,7 +95,7 @@ def _band(effect: Effect) -> float | None:
     return None if effect.detected else effect.minimum_detectable_pp
 
 
-def panel(title: str, rows: Sequence[Row], axis: Axis, width: float = 350.0) -> str:
+def panel(title: str, rows: Sequence[Row], axis: Axis) -> str:
     """Return success of the repair minus success of the baseline, one row a label.
 
     A filled dot is a decided effect; the light band behind an open one reaches as far as the
@@ -103,7 +103,7 @@ def panel(title: str, rows: Sequence[Row], axis: Axis, width: float = 350.0) -> 
     """
     values = [e if isinstance(e, str) else wording.with_interval(e.success) for *_, e in rows]
     described = "; ".join(f"{row[0]}: {value}" for row, value in zip(rows, values, strict=True))
-    bottom = _TOP + _PITCH * len(rows)
+    width, bottom = 350.0, _TOP + _PITCH * len(rows)
     name = f"{title}: success of the repair minus success of the baseline, percentage points"
     svg = Svg(width, bottom + 40, name, described)
     svg.text(0, 14, title, "head", room=width)

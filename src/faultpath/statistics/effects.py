@@ -91,7 +91,7 @@ def _mean(
 
 
 def median_effect(
-    first: Numbers, second: Numbers, joint: Numbers, resamples: Resamples, unit: str = "s"
+    first: Numbers, second: Numbers, joint: Numbers, resamples: Resamples
 ) -> Contrast:
     """Return the median over scenes of the within-scene difference, where both arms count.
 
@@ -125,7 +125,7 @@ def median_effect(
             for column, seen in zip(difference.T, mask.T, strict=True)
             if seen.any()
         ),
-        unit=unit,
+        unit="s",
         method="median of paired differences, percentile bootstrap of scenes",
         n_scenes=int(used.sum()),
         n_seeds=mask.shape[1],
