@@ -42,6 +42,11 @@ class BoundedFault(Frozen, allow_inf_nan=False):
     size: Range | None = None
     """By default as the interface declares the uncertainty of the source."""
 
+    @property
+    def text(self) -> FaultText:
+        """The fault, taken apart."""
+        return FaultText.read(self.fault)
+
 
 class Bounds(Frozen, allow_inf_nan=False):
     """Bounds of a search: the faults listed act together, each with a size of its own."""
@@ -57,11 +62,7 @@ class Bounds(Frozen, allow_inf_nan=False):
 
     def ranges(self) -> list[tuple[float, float, bool]]:
         """Return both ends of each number that a fault is made of, and whether it is whole."""
-        sizes = [
-            (*fault.size, _whole(FaultText.read(fault.fault)))
-            for fault in self.faults
-            if fault.size
-        ]
+        sizes = [(*fault.size, _whole(fault.text)) for fault in self.faults if fault.size]
         times = [(*ends, True) for ends in (self.onset, self.duration) if ends]
         return [*sizes, *times, *([(*self.correlation, False)] if self.correlation else [])]
 
@@ -69,7 +70,7 @@ class Bounds(Frozen, allow_inf_nan=False):
         """Return the fault at a point of the unit cube, which has a dimension for each range."""
         spread = zip(self.ranges(), point, strict=True)
         numbers = [_between(*ends, share) for ends, share in spread]
-        texts = [FaultText.read(fault.fault) for fault in self.faults]
+        texts = [fault.text for fault in self.faults]
         sizes, others = numbers[: len(texts)], iter(numbers[len(texts) :])
         when = {"onset": next(others)} if self.onset else {}
         when |= {"for": next(others)} if self.duration else {}
@@ -108,7 +109,7 @@ def read_bounds(path: Path, system: System) -> Bounds:
 
 def _spelt(system: System, fault: BoundedFault, bounds: Bounds) -> BoundedFault:
     """Return a fault with its kind and sizes; `UserError` for one that has none."""
-    text, label = FaultText.read(fault.fault), f"fault '{fault.fault}'"
+    text, label = fault.text, f"fault '{fault.fault}'"
     if text.sizes or text.consumers:
         raise UserError(f"{label}: the search sets size and place: leave '=' and '@' out.")
     for key, ends in (("onset", bounds.onset), ("for", bounds.duration)):
@@ -151,7 +152,7 @@ def _declared(system: System, text: FaultText) -> tuple[float, float]:
 
 
 def _check(bounds: Bounds) -> None:
-    drawn = sum(is_drawn(FaultText.read(fault.fault)) for fault in bounds.faults)
+    drawn = sum(is_drawn(fault.text) for fault in bounds.faults)
     if ends := bounds.correlation:
         least = -1.0 if drawn == 2 else 0.0
         if drawn < 2:

@@ -109,6 +109,19 @@ class _Running(Generic[T]):
         del message
         self.started, self.since = True, time.monotonic()
 
+    def overran(self, limit_s: float, system: str) -> bool:
+        """Return whether its time is over; `UserError` where `system` was not built in time."""
+        allowed = limit_s if self.started else max(LEAST_S, limit_s)
+        if time.monotonic() - self.since <= allowed:
+            return False
+        if not self.started:
+            raise UserError(
+                f"system {system!r} was not built in a worker process within "
+                f"{allowed:g} s: look for what its factory or its file waits for, or allow "
+                "more with --time-limit"
+            )
+        return True
+
 
 def dispatch(
     executor: Executor,
@@ -160,18 +173,10 @@ def dispatch(
             else:
                 settle(ended.task, Died(end.how))
         for worker, attempt in tuple(running.items()):
-            allowed = limit_s if attempt.started else max(LEAST_S, limit_s)
-            if time.monotonic() - attempt.since <= allowed:
-                continue
-            if not attempt.started:
-                raise UserError(
-                    f"system {built.job.system.name!r} was not built in a worker process within "
-                    f"{allowed:g} s: look for what its factory or its file waits for, or allow "
-                    "more with --time-limit"
-                )
-            executor.cancel(worker)
-            del running[worker]
-            settle(attempt.task, Died(f"it was stopped at the time limit of {allowed:g} s"))
+            if attempt.overran(limit_s, built.job.system.name):
+                executor.cancel(worker)
+                del running[worker]
+                settle(attempt.task, Died(f"it was stopped at the time limit of {limit_s:g} s"))
         report()
 
 
