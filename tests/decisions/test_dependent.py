@@ -10,7 +10,7 @@ from outcome_tables import CORRECT, SHARED, arms, record, three
 
 import faultpath
 from faultpath.core.streams import generator
-from faultpath.decisions.dependent import Group, dependent_groups
+from faultpath.decisions.dependent import DependentGroup, dependent_groups
 from faultpath.decisions.plan.plan import make_plan
 from faultpath.interface import read_interface
 from faultpath.report.dependent import dependent_table, of_runs
@@ -42,7 +42,7 @@ EVERY = frozenset(
 WIND = frozenset({"planner.wind", "model.wind"})
 
 
-def groups(*consumers: frozenset[str]) -> dict[str, Group]:
+def groups(*consumers: frozenset[str]) -> dict[str, DependentGroup]:
     variants = [Variant(str(i), "", each) for i, each in enumerate(consumers)]
     return {each.name: each for each in dependent_groups(read_interface(FACTS), variants)}
 
