@@ -102,7 +102,8 @@ def test_an_interval_that_leaves_out_0_undetected_shows_its_p(one_seed: ReportIn
 def test_a_module_that_does_not_read_the_fault_is_grey_and_says_why(one_seed: ReportInput) -> None:
     baseline, repair = one_seed.system.variants
     kept = tuple(name for name in repair.consumers if name != "reconstruction.head")
-    blind = replace(one_seed, variants=(baseline, repair.model_copy(update={"consumers": kept})))
+    variants = (baseline, repair.model_copy(update={"consumers": kept}))
+    blind = replace(one_seed, system=one_seed.system.model_copy(update={"variants": variants}))
 
     def untouched(path: Path) -> Path:
         update = {
