@@ -156,7 +156,7 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
 
 def test_tables_that_cannot_be_read_say_so(folder, tmp_path):
     with pytest.raises(UserError, match=r"outcomes\.parquet"):
-        read_outcomes(folder.outcomes)
+        read_outcomes(folder.path / "outcomes.parquet")
     (tmp_path / "outcomes.parquet").write_bytes(b"PAR1 nothing PAR1")
     with pytest.raises(UserError, match="damaged"):
         read_outcomes(tmp_path / "outcomes.parquet")
