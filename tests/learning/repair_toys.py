@@ -60,20 +60,8 @@ class Net(nn.Module):
         return self.last(self.activation(self.first(seen)))[:, 0]
 
 
-def scaled_net(factor: float) -> type[nn.Module]:
-    """A class of the same name and parts, whose code captures another number."""
-
-    class Scaled(Net):
-        def forward(self, inputs: Mapping[Any, torch.Tensor]) -> torch.Tensor:
-            return factor * super().forward(inputs)
-
-    return Scaled
-
-
 class Spy(nn.Module):
     """Notes what it gets while it is trained."""
-
-    seen: list[dict[Any, torch.Tensor]]
 
     def __init__(self) -> None:
         super().__init__()

@@ -9,6 +9,8 @@ from faultpath.learning.windows import Windows, delivered
 from faultpath.loop import Reading, Taps
 
 WINDOWS, STEPS, DT_S = 5, 8, 0.05
+OF_NO_IMAGE = {"rotate", "recorded"}
+"""They turn vectors of three, and deliver the errors of flights that a file names."""
 INTERFACE = read_interface("""
 name: rover
 sources:
@@ -32,10 +34,6 @@ KINDS: tuple[faults.Intervention, ...] = (
     faults.Shuffle(axis=1),
     faults.Sequence(parts=(faults.Scale(factor=1.1), faults.Noise(std=0.1))),
 )
-
-
-OF_NO_IMAGE = {"rotate", "recorded"}
-"""They turn vectors of three, and deliver the errors of flights that a file names."""
 
 
 def test_no_kind_is_missing() -> None:

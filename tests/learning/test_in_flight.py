@@ -55,9 +55,8 @@ def fly(made: ComposedSystem, variant: str, *faults: Fault, scenes=("seed/1", "s
 
 
 def test_a_withheld_channel_is_not_read_and_its_neutral_value_arrives() -> None:
-    inner = Brake()
-    interface = system(Brake()).interface
-    made = system(Brake(), withheld(inner, withholding("gain", value=1.25), interface))
+    inner, repair = Brake(), withholding("gain", value=1.25)
+    made = system(Brake(), withheld(inner, repair, system(Brake()).interface))
     reading, blind = (made.variants[f"variant_{i}"].consumers for i in (0, 1))
     assert reading - blind == {"brake.model"}
     inner.got.clear()
@@ -69,9 +68,6 @@ def test_a_withheld_channel_is_not_read_and_its_neutral_value_arrives() -> None:
 
 
 def test_what_is_withheld_in_flight_is_what_was_in_the_fit() -> None:
-    repair = withholding("heading", "pilot")
-    resolved = repair.against(INTERFACE, 0.1, {"pilot.course"})
-
     class Pilot(Module):
         name, writes = "pilot", ("course",)
         reads = frozenset({Port("heading", "course"), Port("velocity", "feedback")})
@@ -79,14 +75,13 @@ def test_what_is_withheld_in_flight_is_what_was_in_the_fit() -> None:
         def step(self, inputs, memory):
             return {"course": inputs["heading", "course"]}, memory
 
+    repair = withholding("heading", "pilot")
     made = withheld(Pilot(), repair, INTERFACE)
-    (fault,) = resolved.faults
+    (fault,) = repair.against(INTERFACE, 0.1, {"pilot.course"}).faults
     taps = Taps(INTERFACE, (fault,), scenes=("a", "b"), dt_s=0.1, consumers={"pilot.course"})
     in_fit = taps.deliver("heading", "pilot.course", Reading(np.ones((2, 3)), "compass", 0), 0)
-    delivered = {Port("velocity", "feedback"): torch.zeros(2)}
-    inputs = Inputs("pilot", 0, delivered, {})
-    memory = made.begin(Batch(("a", "b"), 0, 0.1))
-    outputs, _ = made.step(inputs, memory)
+    inputs = Inputs("pilot", 0, {Port("velocity", "feedback"): torch.zeros(2)}, {})
+    outputs, _ = made.step(inputs, made.begin(Batch(("a", "b"), 0, 0.1)))
     assert isinstance(outputs["course"], torch.Tensor)
     assert np.array_equal(outputs["course"].numpy(), in_fit)
 
@@ -109,24 +104,6 @@ def test_a_learned_module_gets_the_last_steps_as_in_its_windows() -> None:
     inputs = [Inputs("observer", 0, some, {}) for some in (delivered, one)]
     first, alone = (made.step(given, None)[0] for given in inputs)
     assert first["slope"][3] == alone["slope"][0]  # to the bit, in other company
-
-
-class Slope(torch.nn.Module):
-    def __init__(self) -> None:
-        super().__init__()
-        self.weight = torch.nn.Parameter(torch.ones(1))
-
-    def forward(self, inputs):
-        return -self.weight * inputs["place", "past"][:, -1] * inputs["gain", "model"][:, -1]
-
-
-def test_a_learned_module_flies_in_a_variant_and_faults_reach_it() -> None:
-    ports = [Port("place", "past"), Port("gain", "model")]
-    made = system(Learned("brake", Slope(), "push", ports, steps=3))
-    clean = fly(made, "variant_0")
-    faulted = fly(made, "variant_0", Fault(channel="gain", intervention=Scale(factor=0.5)))
-    assert [outcome.time_s for outcome in clean] == pytest.approx([0.5, 0.5])
-    assert clean != faulted
 
 
 @pytest.mark.parametrize(

@@ -73,11 +73,11 @@ def test_draws_belong_to_window_seed_and_epoch_and_not_to_the_minibatch() -> Non
     assert (of(np.arange(30), seed=1) != whole).all()
 
 
-def test_without_a_fault_the_readings_arrive_as_they_are() -> None:
-    data = windows(5, None)
-    got, counts = delivered(data, (), data.readings, range(5), 0, 0)
-    assert (got[VELOCITY] == data.readings["velocity"]).all()
-    assert not any(count.altered_steps for count in counts)
+UNEVEN = {"gain": np.ones((60, 4)), "velocity": np.ones((60, 5))}
+
+
+def of_observer(repair):
+    return repair.against(INTERFACE, DT_S, windows().consumers)
 
 
 @pytest.mark.parametrize(
@@ -94,29 +94,16 @@ def test_without_a_fault_the_readings_arrive_as_they_are() -> None:
         (lambda: windows(reader="controller"), "read slope, of which there are no readings"),
         (lambda: windows(targets=np.zeros(7)), "7 rows for 60 windows"),
         (lambda: windows(2, ids=("a", "a")), "same id"),
-        (lambda: windows(dt_s=0.1, readings={}), "no readings"),
-        (
-            lambda: windows(3, readings={"gain": np.ones((3, 4)), "velocity": np.ones((3, 5))}),
-            "interface says",
-        ),
+        (lambda: windows(readings={}), "no readings"),
+        (lambda: windows(readings=UNEVEN), "interface says"),
+        (lambda: of_observer(uncertainty_training("gain")), "gain"),
+        (lambda: of_observer(uncertainty_training("wind:scale=2")), "unknown channel 'wind'"),
+        (lambda: of_observer(uncertainty_training("gain:scale=2@controller")), "acts on none of"),
+        (lambda: of_observer(withholding("heading", value=0.0)), r"shape \[3\]"),
+        (lambda: of_observer(withholding("gain", "pilot")), "does not read it"),
     ],
 )
 def test_bad_input_is_one_sentence(make, said) -> None:
     with pytest.raises(UserError, match=said) as caught:
         make()
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("repair", "said"),
-    [
-        (uncertainty_training("gain"), "gain"),
-        (uncertainty_training("wind:scale=2"), "unknown channel 'wind'"),
-        (uncertainty_training("gain:scale=2@controller"), "acts on none of observer"),
-        (withholding("heading", value=0.0), r"shape \[3\]"),
-        (withholding("gain", "pilot"), "does not read it"),
-    ],
-)
-def test_a_repair_that_does_not_fit_is_one_sentence(repair, said) -> None:
-    with pytest.raises(UserError, match=said):
-        repair.against(INTERFACE, DT_S, windows().consumers)

@@ -140,13 +140,6 @@ def whole(ends: Ends = as_published, power: float = 1.0, slower_s: float = 1.4) 
     return Results(outcomes(ends, slower_s=slower_s), windows(power), "toy")
 
 
-def without(results: Results, drop: Callable[[str, str, int], bool]) -> Results:
-    """Return a run without the arms (variant, path, seed) that `drop` names."""
-    rows = results.outcomes.rows
-    kept = tuple(row for row in rows if not drop(row.variant, row.path, row.seed))
-    return replace(results, outcomes=OutcomeTable(kept))
-
-
 def _values(measurement: Measurement, n: int) -> np.ndarray:
     stream = np.random.default_rng(int(measurement.key(), 16))
     values = MEDIANS.get(measurement, 0.1) * np.exp(0.05 * stream.standard_normal(n))

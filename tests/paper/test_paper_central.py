@@ -30,37 +30,24 @@ def case(isolated: Sign, shared: Sign, *, reversal: bool = False) -> central.Cas
 def test_the_answer_is_a_reversal_only_where_a_run_decides_one() -> None:
     for signs in ((0, 0), (1, 0), (0, -1), (1, -1), (-1, 1)):
         assert "did not reproduce" in central.answer([case(*signs)])
-    cases = [case(1, -1, reversal=True), case(0, 0)]
-    assert "appeared" in central.answer(cases)
-    assert "more often (+6.0" in central.detail(cases)
-    assert "less often (−5.0" in central.detail(cases)
-    assert "No run" in central.answer([])
-    assert central.detail([]) == ""
-
-
-@pytest.mark.parametrize("sign", [-1, 0, 1])
-def test_a_clause_says_more_or_less_only_of_what_was_detected(sign: Sign) -> None:
-    text = central.clause("There", central.PrintedEffect(text=SIGNS[sign], sign=sign))
-    assert ("no difference" in text) == (sign == 0)
-    assert ("more often" in text) == (sign == 1)
-    assert ("less often" in text) == (sign == -1)
-    assert SIGNS[sign] in text
-
-
-def test_trainings_are_counted_where_there_are_several() -> None:
     one = case(1, -1, reversal=True)
-    assert central.by_training(one) == ""
-    assert central.by_training(one.model_copy(update={"reversing": 1})) == ""
+    assert "appeared" in central.answer([one, case(0, 0)])
+    assert "No run" in central.answer([])
+    assert central.detail([]) == central.by_training(one) == ""
     for count, verb in ((0, "show"), (1, "shows"), (3, "show")):
         several = one.model_copy(update={"reversing": count, "trainings": 3})
-        assert f"{count} of 3 trained models {verb} the reversal" in central.by_training(several)
-        assert central.by_training(several) in central.detail([several])
+        told = central.detail([several, case(0, 0)])
+        assert f"{count} of 3 trained models {verb} the reversal" in told
+        assert f"more often ({SIGNS[1]}" in told
+        assert f"less often ({SIGNS[-1]}" in told
 
 
 def test_an_effect_takes_its_side_from_its_text_only_where_it_is_detected() -> None:
     for sign, text in SIGNS.items():
         assert central.PrintedEffect.of(text, detected=True).sign == (sign or 1)
-        assert central.PrintedEffect.of(text, detected=False).sign == 0
+        unseen = central.PrintedEffect.of(text, detected=False)
+        assert unseen.sign == 0
+        assert "no difference" in central.clause("There", unseen)
 
 
 def test_a_run_answers_by_the_papers_rules(found: Reproduction) -> None:
@@ -74,52 +61,39 @@ def test_a_run_answers_by_the_papers_rules(found: Reproduction) -> None:
     assert "of 3 trained models" in central.by_training(own)
 
 
-def test_a_page_answers_with_its_own_run_unless_it_is_quick(found: Reproduction) -> None:
-    here = {central.WEIGHTS: central.elsewhere()[0].weights}
-    page = central.of_page(found, here)
-    assert page
-    assert len(page[2].lines) == len(central.elsewhere()) + 2
+def test_a_page_answers_with_its_own_run_and_those_of_its_platform(found: Reproduction) -> None:
+    here, others = {central.WEIGHTS: central.elsewhere()[0].weights}, len(central.elsewhere())
+    own, page = central.case_of(found), central.of_page(found, here)
     quick = central.of_page(found.model_copy(update={"profile": "quick"}), here)
+    alone = central.of_page(found, {central.WEIGHTS: "other"})
+    assert own
+    assert page
     assert quick
+    assert alone
+    assert len(page[2].lines) == others + 2
     assert "too small" in quick[1]
-    assert len(quick[2].lines) == len(central.elsewhere()) + 1
+    assert len(quick[2].lines) == others + 1
+    assert alone[:2] == (central.answer([own]), central.detail([own]))
+    assert len(alone[2].lines) == 2
     none = found.ledger.model_copy(update={"claims": found.ledger.claims[:3]})
     assert central.of_page(found.model_copy(update={"ledger": none}), here) is None
 
 
-def test_a_page_leaves_out_what_another_platform_showed(found: Reproduction) -> None:
-    own = central.case_of(found)
-    page = central.of_page(found, {central.WEIGHTS: "other"})
-    assert own
-    assert page
-    assert page[:2] == (central.answer([own]), central.detail([own]))
-    assert len(page[2].lines) == 2
-
-
 def test_the_main_job_shows_what_more_scenes_found() -> None:
-    text = central.shipped()
-    assert central.answer(central.elsewhere()) in text
-    assert central.detail(central.elsewhere()) in text
-    assert "make confirm" in text
+    assert central.answer(central.elsewhere()) in central.shipped()
+    assert central.detail(central.elsewhere()) in central.shipped()
 
 
 def test_findings_and_matched_properties_are_counted_apart(ledger: Ledger) -> None:
-    findings = [claim.verdict for claim in ledger.claims if claim.kind == "finding"]
+    findings = [claim for claim in ledger.claims if claim.kind == "finding"]
+    confirmed = sum(claim.verdict == "confirmed" for claim in findings)
     text = headline(ledger, "paper")
-    assert f"{len(findings)} findings, {findings.count('confirmed')} came out" in text
+    assert f"{len(findings)} findings, {confirmed} came out" in text
     assert f"of {len(ledger.claims) - len(findings)} properties" in text
-    two = tuple(claim for claim in ledger.claims if claim.kind == "finding")[:2]
-    some = ledger.model_copy(update={"claims": two, "left_out": 43})
+    some = ledger.model_copy(update={"claims": tuple(findings[:2]), "left_out": 43})
     assert "2 findings that this run is about" in headline(some, "paper")
     assert "properties" not in headline(some, "paper")
     assert headline(ledger.model_copy(update={"claims": ()}), "paper")
-
-
-def test_a_claim_confirmed_by_no_detection_is_marked(ledger: Ledger) -> None:
-    marked = re.findall(r"(C\d\d)\*", str(by_kind(ledger)))
-    assert sorted(marked) == [claim.id for claim in ledger.claims if is_non_detection(claim)]
-    assert "C02" in marked
-    assert "C05" not in marked
 
 
 @pytest.fixture(scope="module")
@@ -127,10 +101,13 @@ def ledger() -> Ledger:
     return shipped_ledger()
 
 
-def test_every_claim_stands_once_under_its_kind_and_answer(ledger: Ledger) -> None:
-    lines = by_kind(ledger).lines
-    told = [name for each in lines for e in each.entries for name in re.findall(r"C\d\d", e.text)]
-    assert sorted(told) == [claim.id for claim in ledger.claims]
+def test_every_claim_stands_once_and_is_marked_where_no_detection_confirms_it(ledger: Ledger):
+    text = str(by_kind(ledger))
+    assert sorted(re.findall(r"C\d\d", text)) == [claim.id for claim in ledger.claims]
+    marked = sorted(re.findall(r"(C\d\d)\*", text))
+    assert marked == [claim.id for claim in ledger.claims if is_non_detection(claim)]
+    assert "C02" in marked
+    assert "C05" not in marked
 
 
 def test_every_claim_has_one_subject_and_its_figures_add_up(ledger: Ledger) -> None:

@@ -55,19 +55,16 @@ def found(interval: Interval, p_value: float | None = None, mde: float | None = 
         # A difference is detected when interval and test agree.
         (ABOVE, found(UP, 0.01), "confirmed"),
         (ABOVE, found(DOWN, 0.01), "refuted"),
-        (ABOVE, found(OPEN, 0.3), "undecided"),
         (ABOVE, found(UP, 0.06), "undecided"),
         (ABOVE, found(OPEN, 0.01), "undecided"),
         (ABOVE, found(UP), "confirmed"),
         (ABOVE, found(None), "undecided"),
         (BELOW, found(DOWN, 0.01), "confirmed"),
-        (BELOW, found(UP, 0.01), "refuted"),
         (BELOW, found((-5.0, 0.0), 0.01), "undecided"),
         # Not detecting counts only where something would have been seen.
         (NO_LOSS, found(OPEN, 0.3), "confirmed"),
         (NO_LOSS, found(DOWN, 0.01), "refuted"),
         (NO_LOSS, found((-15.0, 1.0), 0.04), "confirmed"),
-        (NO_LOSS, found(UP, 0.01), "confirmed"),
         (NO_GAIN, found(UP, 0.01), "refuted"),
         (NO_DIFFERENCE, found(UP, 0.01), "refuted"),
         (NO_DIFFERENCE, found(DOWN, 0.01), "refuted"),
@@ -75,11 +72,9 @@ def found(interval: Interval, p_value: float | None = None, mde: float | None = 
         (NO_LOSS, found(OPEN, 0.3, mde=20.0), "confirmed"),
         (NO_LOSS, found(OPEN, 0.3, mde=20.1), "undecided"),
         (NO_LOSS, found(OPEN, 0.3, mde=None), "undecided"),
-        (NO_LOSS, found(DOWN), "refuted"),
         (NO_LOSS, found(None, 0.3), "undecided"),
         # A threshold is met by the estimate, and missed by the whole interval.
         (at_least(10), found(UP), "confirmed"),
-        (at_least(10.1), found(UP), "undecided"),
         (at_least(15), found(UP), "undecided"),
         (at_least(15.1), found(UP), "refuted"),
         (less_than(4.9), found(UP), "refuted"),
@@ -87,15 +82,11 @@ def found(interval: Interval, p_value: float | None = None, mde: float | None = 
         (less_than(10.1), found(UP), "confirmed"),
         (bounded(Bound(10, 1), seen=True), found(UP, 0.01), "confirmed"),
         (at_most(-10, seen=True), found(DOWN, 0.01), "confirmed"),
-        (at_most(-10, seen=True), found(DOWN, 0.2), "undecided"),
         (at_most(-20), found(DOWN, 0.01), "refuted"),
         (bounded(Bound(10, 1), seen=True), found(UP, 0.2), "undecided"),
-        (bounded(Bound(3, 1), seen=True), found(OPEN, 0.2), "undecided"),
         (bounded(Bound(20, 1), seen=True), found(UP, 0.01), "refuted"),
         (within(9, 11), found(UP), "confirmed"),
-        (within(11, 12), found(UP), "undecided"),
         (within(16, 20), found(UP), "refuted"),
-        (within(1, 2), found(UP), "refuted"),
         (at_least(-1), found(None), "undecided"),
         (within(-1, 1), found(None), "undecided"),
         # Claims about points are decided by points.
@@ -104,15 +95,12 @@ def found(interval: Interval, p_value: float | None = None, mde: float | None = 
         (by_point(1, strict=False), shown(0.0, OPEN), "confirmed"),
         (by_point(-1), shown(0.1, OPEN), "refuted"),
         (by_point(-1, -0.5, strict=False), shown(-0.5, OPEN), "confirmed"),
-        (by_point(-1, -0.5, strict=False), shown(-0.4, OPEN), "refuted"),
         (REPORTED, shown(-7.0, OPEN), "confirmed"),
         # Few scenes meet a threshold by their whole interval.
         (at_least(8), shown(10.0, UP, 10), "undecided"),
         (at_least(4), shown(10.0, UP, 10), "confirmed"),
-        (at_least(16), shown(10.0, UP, 10), "refuted"),
         (within(8, 12), shown(10.0, UP, 10), "undecided"),
         (within(4, 16), shown(10.0, UP, 10), "confirmed"),
-        (within(16, 20), shown(10.0, UP, 10), "refuted"),
     ],
 )
 def test_a_rule_answers_by_value_interval_and_test(rule, difference, answer):
@@ -129,7 +117,7 @@ def test_of_several_seeds_the_interval_detects_and_the_test_may_fail_to() -> Non
     assert bounded(Bound(10, 1), seen=True).judge(several).answer == "confirmed"
 
 
-@pytest.mark.parametrize("n_scenes", [1, 5, 10, POINT_SCENES - 1])
+@pytest.mark.parametrize("n_scenes", [1, POINT_SCENES - 1])
 @pytest.mark.parametrize("rule", [by_point(1), by_point(-1), by_point(1, 60), by_point(-1, 0.0)])
 def test_few_scenes_decide_nothing_by_a_point_estimate(rule: Rule, n_scenes: int) -> None:
     for value in (-50.0, 0.0, 50.0):
@@ -138,11 +126,8 @@ def test_few_scenes_decide_nothing_by_a_point_estimate(rule: Rule, n_scenes: int
         assert "scenes" in judged.reason
 
 
-TOUCHING = [(0.0, 15.0), (-15.0, 0.0), (0.0, 0.0), OPEN]
-
-
 @pytest.mark.parametrize("rule", [ABOVE, BELOW])
-@pytest.mark.parametrize("interval", TOUCHING)
+@pytest.mark.parametrize("interval", [(0.0, 15.0), (-15.0, 0.0), (0.0, 0.0), OPEN])
 @pytest.mark.parametrize("n_scenes", [10, 100])
 def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(rule, interval, n_scenes):
     difference = shown(sum(interval) / 2, interval, n_scenes)
@@ -174,7 +159,6 @@ N = 40
         (effect(N, 2, 0), effect(N, 0, 2), "undecided"),
         (effect(N, 40, 0), effect(N, 12, 0), "refuted"),
         (effect(N, 0, 20), effect(N, 0, 20), "refuted"),
-        (effect(N, 0, 8), effect(N, 12, 0), "refuted"),
         (effect(N, 4, 5), effect(N, 20, 0), "refuted"),
         (effect(5, 5, 0), effect(5, 0, 5), "undecided"),
     ],

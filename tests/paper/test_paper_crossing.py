@@ -62,9 +62,6 @@ def test_its_interval_is_of_joint_resamples_and_one_without_a_crossing_counts_as
     drawn[crosses] = 100 * cost[crosses] / (cost + gain)[crosses]
     assert found.interval == pytest.approx(percentile_interval(drawn))
     assert found.interval == (0.0, 100.0)
-
-
-def test_too_few_scenes_give_no_interval() -> None:
     assert crossing(flown(1, 1, scenes=5), REPAIR).interval is None
 
 

@@ -1,5 +1,6 @@
-"""A reproduction from start to end, on two selection scenes and two of its cells."""
+"""A reproduction from start to end, on a selection scene and two of its cells."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -18,7 +19,7 @@ from faultpath.core.errors import UserError
 from faultpath.trials.work.executor import Here
 
 SILENT = Display(command=("faultpath", "reproduce"))
-TINY = Profile("tiny", scenes=2, seeds=(0,))
+TINY = Profile("tiny", scenes=1, seeds=(0,))
 NOMINAL = table_2.cell("wm-a", 0.0)
 FAULTY = table_2.cell("wm-a", 0.1)
 ERROR = table_2.error_under(0.1)
@@ -43,7 +44,15 @@ def fly(asked: ReproductionPlan, folder: Path) -> Flown:
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None) -> Path:
+def short() -> Iterator[None]:
+    """Flights of two seconds, long enough for a window."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 40)
+        yield
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None, short: None) -> Path:
     """A folder with the whole of page one."""
     folder = tmp_path_factory.mktemp("run")
     asked = a_plan(ONE)
@@ -56,25 +65,21 @@ def run(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None) -> P
 
 def test_what_was_saved_is_read_back(run: Path) -> None:
     results, found = read_results(run)
-    assert found.trials == 4
+    assert found.trials == 2
     assert found.ledger.library == HELD_OUT
     assert {row.outcome.scene.split("/")[0] for row in results.outcomes.rows} == {"selection"}
-    assert len(results.pairs(NOMINAL, FAULTY).scenes) == 2
+    assert len(results.pairs(NOMINAL, FAULTY).scenes) == 1
     assert len(results.measured(ERROR).values) > 0
     assert found == Reproduction.model_validate_json(found.model_dump_json())
+    for cell in (NOMINAL, FAULTY):
+        rows = results.outcomes.arm("wm-a", cell.path, 0)
+        assert {row.outcome.faulted_steps > 0 for row in rows} == {cell is FAULTY}
 
 
 def test_cells_are_run_once_for_all_pages(run: Path) -> None:
     flown = fly(a_plan(TWO, ONE), run)
     assert sum(result.blocks_computed for result in flown.results) == 0
-    assert len(flown.outcomes.rows) == 4
-
-
-def test_the_faulty_cell_is_faulted_and_pairs_with_the_nominal_one(run: Path) -> None:
-    results, _ = read_results(run)
-    for cell in (NOMINAL, FAULTY):
-        rows = results.outcomes.arm("wm-a", cell.path, 0)
-        assert {row.outcome.faulted_steps > 0 for row in rows} == {cell is FAULTY}
+    assert len(flown.outcomes.rows) == 2
 
 
 def test_a_profile_takes_its_seeds_and_joins_cells_that_share_trials() -> None:
@@ -87,19 +92,16 @@ def test_a_profile_takes_its_seeds_and_joins_cells_that_share_trials() -> None:
     assert [cell.side for cell in PAPER.cells([fine])] == [fine.side]
 
 
-def test_a_page_that_the_paper_does_not_have_is_refused() -> None:
+def test_what_there_is_not_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"no page 'table-9'; choose from .*table-1"):
         plan(["table-9"], "quick")
     with pytest.raises(UserError, match="unknown profile 'huge'; choose one of quick, paper"):
         plan([], "huge")
+    with pytest.raises(UserError, match="holds no finished reproduction"):
+        read_results(tmp_path)
 
 
 def test_all_pages_are_the_whole_paper() -> None:
     assert plan([], "paper").whole
     assert plan(["table-4"], "paper").place == "table-4"
     assert [page.name for page in PAGES] == [page.name for page in plan([], "quick").pages]
-
-
-def test_a_folder_without_a_reproduction_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match="holds no finished reproduction"):
-        read_results(tmp_path)

@@ -87,8 +87,9 @@ def _reconstructed(cell: Cell) -> int:
     return 10 if cell.variant == "gru+dcc" else 4 if alone else 16
 
 
-def test_table_4_shows_the_reversal_and_its_changes() -> None:
-    table = tables(page("table-4"), run(won(_reconstructed)))["table-4"]
+def test_tables_4_to_6_show_the_reversal_its_changes_and_when_it_pays() -> None:
+    results = run(won(_reconstructed))
+    table = tables(page("table-4"), results)["table-4"]
     difference = line(table, "Difference", below="GRU+DCC minus GRU, success (pp)")
     assert texts(difference) == ["−30.0", "+30.0", "−30.0"]
     assert all(entry.detected for entry in difference.entries)
@@ -97,6 +98,20 @@ def test_table_4_shows_the_reversal_and_its_changes() -> None:
     # Each scene that is lost ends 2 m farther away.
     assert texts(line(table, "Mean difference")) == ["+0.60", "−0.60", "+0.60"]
     assert texts(line(table, "Shared minus reconstruction-only (m)"))[2] == "+1.20"
+
+    table = tables(page("table-5"), results)["table-5"]
+    *changes, pays = texts(line(table, "GRU: reconstruction only"))
+    assert changes[:2] == ["−30.0", "+30.0"]
+    assert pays.startswith("50 [")
+    low, high = (int(end) for end in pays.partition("[")[2].strip("]").split(", "))
+    assert 0 < low < 50 < high < 100
+    assert papers(line(table, "GRU: reconstruction only"))[2] == "59 [33, 80]"
+    assert texts(line(table, "GRU: shared with predictor"))[2] == "no crossing"
+
+    table = tables(page("table-6"), results)["table-6b"]
+    assert texts(line(table, "GRU+DCC only:GRU only")) == ["0:6", "6:0", "0:6"]
+    assert texts(line(table, "Exact McNemar p")) == ["0.031"] * 3
+    assert papers(line(table, "Exact McNemar p")) == ["0.002", "0.648", "0.057"]
 
 
 def test_the_observer_flies_once_and_is_compared_with_each_trained_seed() -> None:
@@ -114,17 +129,6 @@ def test_the_observer_flies_once_and_is_compared_with_each_trained_seed() -> Non
     assert (dob.fixed, dob.seeds, results.pairs(dob, dob).seeds) == (True, (0,), (0,))
 
 
-def test_table_5_gives_the_break_even_frequency_or_says_that_there_is_none() -> None:
-    table = tables(page("table-5"), run(won(_reconstructed)))["table-5"]
-    alone = texts(line(table, "GRU: reconstruction only"))
-    assert alone[:2] == ["−30.0", "+30.0"]
-    assert alone[2].startswith("50 [")
-    assert texts(line(table, "GRU: shared with predictor"))[2] == "no crossing"
-    low, high = (int(end) for end in alone[2].partition("[")[2].strip("]").split(", "))
-    assert 0 < low < 50 < high < 100
-    assert papers(line(table, "GRU: reconstruction only"))[2] == "59 [33, 80]"
-
-
 def test_table_6_averages_the_medians_of_the_seeds() -> None:
     def value(measurement: Measurement) -> float:
         return 1.0 + measurement.seed
@@ -137,10 +141,3 @@ def test_table_6_averages_the_medians_of_the_seeds() -> None:
     first = measured([m for m in table_6.PAGE.measurements if m.seed == 0], value)
     table = tables(page("table-6"), run(won(calibrated), evidence=first))["table-6a"]
     assert texts(line(table, "GRU")) == ["1.00"] * 4
-
-
-def test_table_6_tests_the_negative_offset() -> None:
-    table = tables(page("table-6"), run(won(_reconstructed)))["table-6b"]
-    assert texts(line(table, "GRU+DCC only:GRU only")) == ["0:6", "6:0", "0:6"]
-    assert texts(line(table, "Exact McNemar p")) == ["0.031"] * 3
-    assert papers(line(table, "Exact McNemar p")) == ["0.002", "0.648", "0.057"]

@@ -106,9 +106,6 @@ def _outcome(scene: int, seed: int, status: Status) -> Outcome:
     )
 
 
-# Reading what a page built
-
-
 def tables(page: Page, results: Results) -> dict[str, Table]:
     return {part.name: part for part in page.build(results) if isinstance(part, Table)}
 
