@@ -1,6 +1,7 @@
 """Predictors, reconstructions and planners that a user brings."""
 
 import os
+import re
 import sys
 from pathlib import Path
 from textwrap import dedent
@@ -14,6 +15,7 @@ from faultpath.systems.checks.check import chosen_variants
 from faultpath.trials import SystemSpec
 from faultpath.trials.code import system_code
 
+ROOT = Path(__file__).parents[2]
 PARTS = Path(__file__).with_name("own_parts.py")
 PREDICTOR, EXACT, WIND, PLANNER, BLIND = (
     f"{PARTS}:{name}" for name in ("predictor", "exact", "wind", "planner", "blind")
@@ -42,12 +44,9 @@ def test_what_a_user_brings_stands_beside_what_ships():
 @pytest.mark.parametrize(
     ("options", "first"),
     [
-        ({}, ["zero-wind"]),
         ({"predictor": BLIND}, [BLIND]),
         ({"predictor": PREDICTOR}, ["zero-wind"]),
         ({"predictor": "wm-a+dcc"}, ["wm-a+dcc"]),
-        ({"bring": WIND}, [WIND]),
-        ({"bring": PLANNER}, [PLANNER]),
         ({"bring": f"{PLANNER},{WIND}"}, [f"{PLANNER}/{WIND}"]),
         ({"predictor": BLIND, "bring": WIND}, [BLIND, f"dki/{WIND}"]),
     ],
@@ -60,16 +59,11 @@ def test_what_the_options_name_flies_in_the_first_variants(options, first):
     assert checked[: len(first)] == first
 
 
-def test_a_part_flies_as_the_shipped_one_that_it_equals():
-    system = quadrotor(bring=EXACT, wind="L2")
-    (own,), _ = fly(system, f"{EXACT}/dob")
-    (shipped,), _ = fly(system, "dki-drag/dob")
-    assert bits(own) == bits(shipped)
-
-
 @pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.kernel_args.PortableNotice")
-def test_a_reconstruction_supplies_its_wind_and_a_planner_plans():
-    system = quadrotor(bring=f"{WIND},{PLANNER}", wind="L2")
+def test_parts_fly_do_what_they_say_and_as_the_shipped_one_that_they_equal():
+    system = quadrotor(bring=f"{WIND},{PLANNER},{EXACT}", wind="L2")
+    (own,), _ = fly(system, f"{EXACT}/dob")
+    assert bits(own) == bits(fly(system, "dki-drag/dob")[0][0])
     (_,), taps = fly(system, f"dki-drag/{WIND}")
     supplied = taps.delivered("wind", "predictor.wind_map")[:, 0]
     mass = taps.delivered("mass", "reconstruction.wind_map")[:, 0]
@@ -151,24 +145,15 @@ def _file(folder: Path, code: str) -> Path:
 @pytest.mark.parametrize(("code", "says"), BROKEN.values(), ids=BROKEN)
 def test_a_part_that_cannot_be_brought_is_refused_in_a_sentence(code, says, tmp_path):
     named = f"{'nowhere.py' if code is None else _file(tmp_path, code)}:create"
-    with pytest.raises(UserError) as refused:
+    with pytest.raises(UserError, match=rf"\A.*{re.escape(says)}.*\Z"):
         system_code(quadrotor(bring=named), SystemSpec(name="quadrotor"))
-    assert says in str(refused.value)
-    assert "\n" not in str(refused.value)
 
 
 @pytest.mark.parametrize(("code", "says"), FLOWN.values(), ids=FLOWN)
 def test_a_part_that_does_another_thing_is_refused_at_first_use(code, says, tmp_path):
     named = f"{_file(tmp_path, code)}:create"
-    system = quadrotor(bring=named)
-    with pytest.raises(UserError) as refused:
-        fly(system, f"dki-drag/{named}" if "Constant" in code else named)
-    assert says in str(refused.value)
-
-
-def test_an_unknown_predictor_is_told_how_to_bring_one():
-    with pytest.raises(UserError, match="or name your own as"):
-        quadrotor(predictor="my_model")
+    with pytest.raises(UserError, match=re.escape(says)):
+        fly(quadrotor(bring=named), f"dki-drag/{named}" if "Constant" in code else named)
 
 
 def test_code_and_data_of_a_part_are_part_of_what_flies(tmp_path):
@@ -201,8 +186,9 @@ def test_variants_name_what_is_brought():
     brought = given(("a.py:x/b.py:y", "zero-wind"), bring="a.py:x")
     assert brought == {"bring": "a.py:x,b.py:y"}
     assert given(("gru", "gru+dcc")) == {}
+    assert given(("a.py:create", "blind"), f"{ROOT / 'examples' / 'toy.py'}:create") == {}
     with pytest.raises(UserError, match=r"'a\.py:create'"):
         given(("a.py", "gru"))
-    toy = f"{PARTS.parents[2] / 'examples' / 'toy.py'}:create"
-    assert given(("a.py:create", "blind"), toy) == {}
+    with pytest.raises(UserError, match="or name your own as"):
+        quadrotor(predictor="my_model")
     assert quadrotor(bring=f"wm-a-wind/{os.path.relpath(WIND)}").parts == (os.path.relpath(WIND),)

@@ -55,20 +55,17 @@ def test_the_result_does_not_depend_on_the_shards(pools, tmp_path, monkeypatch):
     again = collect(tmp_path, workers=0, episodes=SMALL)
     for name, path in pools.items():
         one, two = read_pool(path), read_pool(again[name])
-        assert np.array_equal(one.values, two.values, equal_nan=True)
-        assert np.array_equal(one.steps, two.steps)
+        for part in ("values", "steps"):
+            assert np.array_equal(getattr(one, part), getattr(two, part), equal_nan=True)
         assert all(np.array_equal(one.vehicles[key], two.vehicles[key]) for key in one.vehicles)
 
 
 def test_an_interrupted_collection_goes_on_and_ends_with_the_same_files(pools, tmp_path):
-    class Interrupted(Exception):
-        pass
-
     def interrupt(done, _):
         if done > 0:
-            raise Interrupted
+            raise KeyboardInterrupt
 
-    with pytest.raises(Interrupted):
+    with pytest.raises(KeyboardInterrupt):
         collect(tmp_path, workers=0, episodes=SMALL, progress=interrupt)
     seen = []
     paths = collect(tmp_path, workers=0, episodes=SMALL, progress=lambda *told: seen.append(told))
@@ -78,19 +75,13 @@ def test_an_interrupted_collection_goes_on_and_ends_with_the_same_files(pools, t
     assert not any(path.is_dir() for path in tmp_path.iterdir())
 
 
-def test_a_pool_that_is_there_is_kept(pools, tmp_path):
-    first = collect(tmp_path, pools=("nominal",), workers=0, episodes=SMALL)["nominal"]
-    stamp = first.stat().st_mtime_ns
-    seen = []
-    collect(tmp_path, ("nominal",), 0, SMALL, progress=lambda *told: seen.append(told))
-    assert first.stat().st_mtime_ns == stamp
-    assert seen == []
-
-
-def test_a_pool_of_another_seed_is_another_pool_and_is_not_overwritten(pools, tmp_path):
+def test_a_pool_of_another_seed_is_another_pool_and_is_kept(pools, tmp_path):
     path = collect(tmp_path, ("nominal",), 0, SMALL, seed=1)["nominal"]
-    here, there = (read_pool(each).values[:, 0] for each in (path, pools["nominal"]))
+    here, there = (read_pool(file).values[:, 0] for file in (path, pools["nominal"]))
     assert not np.array_equal(here, there)
+    stamp, seen = path.stat().st_mtime_ns, []
+    collect(tmp_path, ("nominal",), 0, SMALL, seed=1, progress=lambda *told: seen.append(told))
+    assert (path.stat().st_mtime_ns, seen) == (stamp, [])
     with pytest.raises(UserError, match="collected with another 'seed'"):
         collect(tmp_path, ("nominal",), 0, SMALL, seed=2)
 

@@ -94,7 +94,7 @@ def test_a_second_call_does_nothing_and_more_scenes_keep_what_is_there(whole, li
 
 def test_a_table_comes_back_as_it_went_with_the_same_bytes(whole, library, tmp_path):
     _, table = whole
-    path = tmp_path / "evidence.parquet"
+    path, again = tmp_path / "evidence.parquet", tmp_path / "again.parquet"
     write_evidence(path, table)
     back = read_evidence(path)
     assert list(back) == list(table)
@@ -102,15 +102,12 @@ def test_a_table_comes_back_as_it_went_with_the_same_bytes(whole, library, tmp_p
         one, two = table.values(measurement), back.values(measurement)
         assert one.same_windows(two)
         assert np.array_equal(one.values, two.values)
-    write_evidence(tmp_path / "again.parquet", back)
-    assert (tmp_path / "again.parquet").read_bytes() == path.read_bytes()
+    write_evidence(again, back)
+    assert again.read_bytes() == path.read_bytes()
     with pytest.raises(KeyError):
         back.values(asked(library)[0].model_copy(update={"seed": 2}))
-
-
-def test_a_missing_or_damaged_table_is_the_user_s_to_see(tmp_path):
     with pytest.raises(UserError, match="cannot read"):
         read_evidence(tmp_path / "none.parquet")
-    (tmp_path / "odd.parquet").write_bytes(b"odd")
+    path.write_bytes(b"odd")
     with pytest.raises(UserError, match="damaged"):
-        read_evidence(tmp_path / "odd.parquet")
+        read_evidence(path)

@@ -1,11 +1,12 @@
 """Errors that stay alike for seconds: blocks are longer than that, or nothing is decided."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from faultpath_quadrotor.flightlog.compensation import (
     LEAST,
     LEAST_S,
-    Compensation,
     Medians,
     compensation,
     correlation_time,
@@ -60,15 +61,9 @@ def test_pairs_across_a_gap_do_not_count() -> None:
     assert correlation_time(np.ones(400), np.zeros(400)) == 1.0
 
 
-@pytest.fixture(scope="module")
-def short(tmp_path_factory: pytest.TempPathFactory) -> Compensation:
-    log = write(tmp_path_factory.mktemp("short") / "flight.csv", flown(18.0))
-    return compensation(read(log))
-
-
-def test_too_short_a_flight_decides_nothing_and_says_what_it_takes(short: Compensation) -> None:
+def test_too_short_a_flight_decides_nothing_and_says_what_it_takes(tmp_path: Path) -> None:
+    short = compensation(read(write(tmp_path / "flight.csv", flown(18.0))))
     assert short.blocks < LEAST
-    assert short.too_short
     assert sentences(short) == (short.too_short,)
     assert {each.decided for each in short.combinations[1:]} == {"not decided"}
     assert {each.error_mps2.low for each in short.combinations} == {None}

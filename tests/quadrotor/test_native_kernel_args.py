@@ -1,14 +1,11 @@
 """What a kernel is lent: memory of the right form, layers of the right size, and nothing else."""
 
-from collections.abc import Callable
-from functools import partial
-
 import pytest
 import torch
 from faultpath_quadrotor import native
 from faultpath_quadrotor.native.kernel_args import lend
 from faultpath_quadrotor.predictors import PredictorInputs
-from faultpath_quadrotor.predictors.rollout import Rollout, rolling
+from faultpath_quadrotor.predictors.rollout import rolling
 from test_native_rollout import commands_of, inputs_of, predictor
 from torch import Tensor
 
@@ -17,9 +14,7 @@ pytestmark = pytest.mark.skipif(not native.available(), reason="nothing was comp
 
 WRONG: dict[str, tuple[Tensor, str]] = {
     "shape": (torch.zeros(3, 5), r"shape \[3, 5\], not \[3, 4\]"),
-    "rank": (torch.zeros(12), r"shape \[12\]"),
     "dtype": (torch.zeros(3, 4, dtype=torch.float64), "float64, not float32"),
-    "half": (torch.zeros(3, 4, dtype=torch.float16), "float16"),
     "device": (torch.zeros(3, 4, device="meta"), "on meta, not on the CPU"),
     "layout": (torch.zeros(4, 3).T, "not contiguous"),
     "expanded": (torch.zeros(1, 4).expand(3, 4), "not contiguous"),
@@ -46,15 +41,15 @@ def test_a_rollout_checks_all_that_it_is_given(name: str) -> None:
     swapped = commands.movedim(3, 2).contiguous().movedim(2, 3)
     assert not swapped.is_contiguous()
     assert torch.equal(roll(given, swapped).positions, roll(given, commands).positions)
-    refused: list[tuple[Callable[[], Rollout], str]] = [
-        (partial(roll, given, commands.double()), "'commands' is float64"),
-        (partial(roll, given, commands[:, :3]), r"'commands' has the shape"),
-        (partial(roll, given, commands[:0]), "horizon of 0"),
-        (partial(roll, given, commands[:, :, :2]), "'position' has the shape"),
-    ]
-    for call, says in refused:
+    refused = {
+        "'commands' is float64": commands.double(),
+        "'commands' has the shape": commands[:, :3],
+        "horizon of 0": commands[:0],
+        "'position' has the shape": commands[:, :, :2],
+    }
+    for says, wrong in refused.items():
         with pytest.raises(ValueError, match=says):
-            call()
+            roll(given, wrong)
 
 
 @torch.inference_mode()

@@ -7,22 +7,16 @@ from faultpath_quadrotor.native import library
 from faultpath.core.errors import UserError
 
 
-def test_the_fastest_set_runs_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_fastest_set_runs_unless_another_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(library.VARIABLE, raising=False)
     built = native.kernels()
     assert built is not None
     assert built.isa == native.available()[0]
     assert built.isa in native.describe()
-
-
-def test_the_portable_path_can_be_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(library.VARIABLE, "portable")
     assert native.kernels() is None
     assert native.numerics() == "portable"
     assert library.VARIABLE in native.describe()
-
-
-def test_an_unknown_set_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(library.VARIABLE, "fast")
     with pytest.raises(UserError, match="is 'fast': it takes one of auto, avx512"):
         native.kernels()

@@ -15,13 +15,13 @@ from faultpath.core.errors import UserError
 SCENES = ["s/0", "s/1", "s/2", "s/3"]
 
 
-def planner_inputs(scenes=4, mass=1.0):
-    state = State.hover(torch.zeros(3, scenes, 1), torch.zeros(scenes, 1))
-    column = torch.full((scenes, 1), mass)
+def planner_inputs(mass=1.0):
+    state = State.hover(torch.zeros(3, 4, 1), torch.zeros(4, 1))
+    column = torch.full((4, 1), mass)
     delivered = {("mass", place): column for place in ("trim", "dynamics", "wind_map")}
     one = torch.ones_like(column)
     delivered |= {("thrust_scale", place): one for place in ("trim", "dynamics")}
-    return PredictorInputs(state, delivered | {("wind", "wind_map"): torch.zeros(3, scenes, 1)})
+    return PredictorInputs(state, delivered | {("wind", "wind_map"): torch.zeros(3, 4, 1)})
 
 
 def free(positions):
@@ -42,20 +42,14 @@ def replan(planner, inputs, plan, scenes, goal, clearance=free, seen=lambda sear
     return search.plan
 
 
-def test_noise_is_standard_and_correlated_along_the_horizon():
+def test_noise_is_standard_correlated_along_the_horizon_and_of_scene_seed_and_step():
     sampler = AutoregressiveSampler(SamplerSettings(candidates=4096))
-    noise = sampler.noise(SCENES, 0, 3)[..., 1:]
-    assert float(noise.std()) == pytest.approx(1, abs=0.01)
-    neighbours = (noise[1:] * noise[:-1]).mean()
-    assert float(neighbours) == pytest.approx(0.7, abs=0.01)
-
-
-def test_noise_belongs_to_scene_seed_and_step():
-    sampler = AutoregressiveSampler()
     noise = sampler.noise(SCENES, 0, 3)
+    assert float(noise[..., 1:].std()) == pytest.approx(1, abs=0.01)
+    assert float((noise[1:] * noise[:-1])[..., 1:].mean()) == pytest.approx(0.7, abs=0.01)
     assert torch.equal(sampler.noise(["s/2"], 0, 3)[:, :, 0], noise[:, :, 2])
-    assert not torch.equal(sampler.noise(["s/2"], 1, 3)[:, :, 0], noise[:, :, 2])
-    assert not torch.equal(sampler.noise(["s/2"], 0, 4)[:, :, 0], noise[:, :, 2])
+    for seed, step in ((1, 3), (0, 4)):
+        assert not torch.equal(sampler.noise(["s/2"], seed, step)[:, :, 0], noise[:, :, 2])
 
 
 def test_candidates_are_bounded_evenly_around_hover():
@@ -72,10 +66,8 @@ def test_candidates_are_bounded_evenly_around_hover():
 
 
 def test_trim_follows_the_supplied_calibration():
-    """The hover centre moves with m~ and T~; nothing else of the sampler does."""
     planner = QuadrotorOptions().build_planner()
-    wrong = planner_inputs(mass=1.1)
-    plan = planner.initial_plan(hover_thrust(wrong.delivered, "trim")[:, 0])
+    plan = planner.initial_plan(hover_thrust(planner_inputs(mass=1.1).delivered, "trim")[:, 0])
     assert torch.allclose(plan[:, 0], torch.tensor(1.1 * GRAVITY_MPS2))
 
 
@@ -105,11 +97,5 @@ def test_the_cross_entropy_method_closes_in_with_as_many_candidates():
     replan(planner, given, planner.initial_plan(hover), SCENES, goal, seen=searched.append)
     first, *_, last = [search.spread for search in searched]
     assert last.mean() < 0.7 * first.mean()
-    plan = planner.initial_plan(hover[:1])
-    alone = replan(planner, planner_inputs(1), plan, SCENES[2:3], goal[:, :1])
-    assert torch.equal(alone[..., 0], searched[-1].plan[..., 2])
-
-
-def test_no_sampler_keeps_modes_apart_for_the_cross_entropy_method():
     with pytest.raises(UserError, match="leave --sampler out"):
         QuadrotorOptions.parse(planner="cem", sampler="mode-preserving")

@@ -57,17 +57,13 @@ def weights(made):
     return torch.cat([value.flatten() for value in made.module().state_dict().values()])
 
 
-def test_repair_shares_initial_weights_and_order():
+def test_repair_shares_weights_and_order_and_without_noise_the_loss(monkeypatch):
     plain, repair = task("gru"), task("gru+dcc")
     assert torch.equal(weights(plain), weights(repair))
     assert plain.order_key == repair.order_key
-    assert not torch.equal(plain._supplied, repair._supplied)
-
-
-def test_repair_without_noise_is_the_baseline_bit_for_bit(monkeypatch):
     noiseless = MODELS | {"gru+dcc": replace(MODELS["gru+dcc"], half_range=0.0)}
     monkeypatch.setattr("faultpath_quadrotor.training.reconstruction_task.MODELS", noiseless)
-    assert loss(task("gru")) == loss(task("gru+dcc"))
+    assert loss(plain) == loss(task("gru+dcc"))
 
 
 def test_noise_reaches_the_loss_and_is_drawn_once_for_the_whole_fit():
@@ -118,8 +114,5 @@ def test_consumers_of_one_channel_share_the_draw_and_others_are_left_alone():
     assert not torch.equal(delivered["mass", places[0]], readings["mass"])
     assert delivered["mass", places[2]] is readings["mass"]
     assert ("thrust_scale", places[2]) not in delivered  # the wind map reads the mass alone
-
-
-def test_a_fault_that_strikes_nobody_is_refused():
     with pytest.raises(UserError, match="reaches no consumer"):
         corrupted([dcc(["predictor.trim"])])

@@ -16,19 +16,12 @@ from faultpath_quadrotor.training.windows import HISTORY, Windows, cut, places
 from flights import in_memory
 
 
-def parts(inputs: PredictorInputs, row: int) -> dict[str, torch.Tensor]:
-    """All that a predictor is told of one vehicle, by name."""
-    state = {f"state.{name}": value for name, value in vars(inputs.state).items()}
-    told = {f"{channel} at {place}": value for (channel, place), value in inputs.delivered.items()}
-    return {name: value[..., row, 0] for name, value in (state | told).items()}
-
-
 def assert_same(here: PredictorInputs, row: int, there: PredictorInputs, beside: int) -> None:
-    one, other = parts(here, row), parts(there, beside)
+    one, other = (dict(inputs.delivered) | vars(inputs.state) for inputs in (here, there))
     assert set(one) == set(other)
     assert len(one) > 6
     for name, value in one.items():
-        assert torch.equal(value, other[name]), name
+        assert torch.equal(value[..., row, 0], other[name][..., beside, 0]), name
 
 
 @pytest.fixture

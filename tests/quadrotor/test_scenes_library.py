@@ -1,23 +1,15 @@
 """The frozen libraries: what they contain, that they are feasible, intact and reproducible."""
 
-import json
 import math
 import subprocess
 import sys
 from itertools import pairwise
 
 import pytest
-from faultpath_quadrotor.scenes.library import FROZEN, Library, frozen_file, load_library
+from faultpath_quadrotor.scenes.library import frozen_file, load_library
 from faultpath_quadrotor.scenes.prisms import floor_plan, prism
 
 from faultpath.core.errors import UserError
-
-NAMES = list(FROZEN)
-
-
-@pytest.fixture(scope="module")
-def libraries() -> dict[str, Library]:
-    return {name: load_library(name) for name in NAMES}
 
 
 def test_asking_for_an_unknown_library_lists_what_there_is():
@@ -25,33 +17,25 @@ def test_asking_for_an_unknown_library_lists_what_there_is():
         load_library("heldout")
 
 
-def _without(text: str, scene: int) -> str:
-    content = json.loads(text)
-    del content["scenes"][scene]
-    return json.dumps(content)
-
-
 @pytest.mark.parametrize(
     ("damage", "reason"),
     [
-        (lambda text: _without(text, 50), "was changed"),
+        (lambda text: text.replace('"index":50,', '"index":51,', 1), "was changed"),
         (lambda text: text[: len(text) // 2], "cannot be read as a library"),
         (lambda text: "[1, 2]", "cannot be read as a library"),
-        (lambda text: text.replace('"radius_m":0.', '"radius_m":-0.', 1), "cannot be read"),
         (lambda text: text.replace("scenes/1", "scenes/9"), "format 'faultpath-scenes/9'"),
     ],
 )
 def test_a_damaged_file_is_refused_in_one_sentence(tmp_path, damage, reason):
     path = tmp_path / "scenes.json"
     path.write_text(damage(frozen_file("training").read_text(encoding="utf-8")), encoding="utf-8")
-    with pytest.raises(UserError, match=reason) as caught:
+    with pytest.raises(UserError, match=rf"scenes\.json.*{reason}") as caught:
         load_library(path)
-    assert "scenes.json" in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
-def test_a_floor_plan_has_every_solid_and_the_free_variant_none(libraries):
-    for scene in libraries["selection"].scenes[:10]:
+def test_a_floor_plan_has_every_solid_and_the_free_variant_none():
+    for scene in load_library("selection").scenes[:10]:
         plan, empty = floor_plan(scene), floor_plan(scene, free_space=True)
         assert (len(plan.prisms), len(plan.pillars)) == (len(scene.boxes), len(scene.cylinders))
         assert (empty.prisms, empty.pillars) == ((), ())

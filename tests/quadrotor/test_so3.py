@@ -1,7 +1,6 @@
 import math
 
 import numpy as np
-import pytest
 import scipy.linalg
 import torch
 from faultpath_quadrotor import so3
@@ -27,52 +26,21 @@ def close(a: Tensor, b: Tensor, atol: float = 1e-12) -> bool:
     return torch.allclose(a, b, rtol=0, atol=atol)
 
 
-def as_batch(rotation: Tensor) -> Tensor:
-    return rotation.movedim((0, 1), (-2, -1))
-
-
 @given(rotation_vectors())
-def test_exp_is_a_rotation_and_the_matrix_exponential(phi):
+def test_exp_is_the_matrix_exponential_and_log_inverts_it(phi):
     x, y, z = phi[:, 0].tolist()
     # SciPy's: torch.linalg.matrix_exp is off by 2e-11 at small angles.
     expected = torch.from_numpy(scipy.linalg.expm(np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])))
-    rotation = so3.exp(phi)[..., 0]
-    assert close(rotation, expected)
-    assert close(rotation.T @ rotation, torch.eye(3, dtype=F64))
-    assert torch.linalg.det(rotation) > 0
-
-
-@given(rotation_vectors())
-def test_log_inverts_exp(phi):
+    assert close(so3.exp(phi)[..., 0], expected)
     assert close(so3.log(so3.exp(phi)), phi, atol=1e-9)
 
 
 @given(rotation_vectors(), rotation_vectors(), rotation_vectors())
 def test_compose_is_the_matrix_product_and_acts_on_vectors(a, b, v):
     first, second = so3.exp(a), so3.exp(b)
-    product = so3.compose(first, second)
-    assert close(as_batch(product), as_batch(first) @ as_batch(second))
-    assert close(so3.rotate(product, v), so3.rotate(first, so3.rotate(second, v)))
-    assert close(so3.rotate_back(first, so3.rotate(first, v)), v)
+    assert close(so3.compose(first, second)[..., 0], first[..., 0] @ second[..., 0])
     assert close(so3.rotate(first, v)[:, 0], first[..., 0] @ v[:, 0])
-
-
-@pytest.mark.parametrize("dtype", [torch.float32, F64])
-def test_bits_do_not_depend_on_the_batch(dtype):
-    generator = torch.Generator().manual_seed(0)
-    phi = torch.randn(3, 2048, dtype=dtype, generator=generator)
-    vector = torch.randn(3, 2048, dtype=dtype, generator=generator)
-    part = slice(96, 128)
-
-    def everything(phi: Tensor, vector: Tensor) -> list[Tensor]:
-        rotation = so3.exp(phi)
-        product = so3.compose(rotation, so3.exp(vector))
-        return [product, so3.rotate(product, vector), so3.rotate_back(product, phi)]
-
-    whole = everything(phi, vector)
-    alone = everything(phi[:, part].contiguous(), vector[:, part].contiguous())
-    for a, b in zip(whole, alone, strict=True):
-        assert torch.equal(a[..., part], b)
+    assert close(so3.rotate_back(first, so3.rotate(first, v)), v)
 
 
 @settings(deadline=None, max_examples=20)

@@ -1,14 +1,13 @@
-"""A trial's result is its own: neither neighbours nor their order enter it, to the bit."""
+"""A trial's result is its own: neither neighbours nor their order enter it, to the bit.
+
+The law of everything that flies: geometry, field and camera, estimators, predictors, planners.
+"""
 
 from collections.abc import Iterator
 
 import pytest
 from faultpath_quadrotor import native, system
 from flights import HELD_OUT, bits, fault, fly, hall, quadrotor, with_halls
-
-from faultpath.faults import AnyFault
-
-STRONG_WIND = {"wind": "L3"}
 
 
 @pytest.fixture(scope="module", params=["auto", native.PORTABLE], autouse=True)
@@ -20,68 +19,52 @@ def _path(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
 
 
-pytestmark = pytest.mark.usefixtures("short")
-
-
-NOISE = ("velocity:noise=0.2", "attitude:noise=0.05", "clearance:noise=0.1")
-FAULTS = (*NOISE, "action:dropout=0.3,onset=4", "wind:delay=2")
-
-
-@pytest.fixture(scope="module")
-def faults() -> tuple[AnyFault, ...]:
-    return tuple(fault(text) for text in FAULTS)
-
-
-@pytest.fixture(scope="module")
-def whole(_path, short, faults) -> dict[str, tuple[object, ...]]:
-    outcomes, _ = fly(quadrotor(**STRONG_WIND), "dob", HELD_OUT, faults, seed=3)
-    return {outcome.scene: bits(outcome) for outcome in outcomes}
-
-
-@pytest.mark.parametrize("chosen", [(0,), (4,), (1, 3), (2, 0, 4, 3, 1), (3, 2, 1, 0)])
-def test_any_selection_in_any_order_gives_what_the_whole_block_gives(chosen, whole, faults):
-    scenes = [HELD_OUT[i] for i in chosen]
-    outcomes, _ = fly(quadrotor(**STRONG_WIND), "dob", scenes, faults, seed=3)
-    assert [outcome.scene for outcome in outcomes] == scenes
-    assert {o.scene: bits(o) for o in outcomes} == {scene: whole[scene] for scene in scenes}
-
-
 MANY = tuple(f"held-out/{i:03d}" for i in range(40))
-OTHER_MODULES = {"predictor": "true-parameter", "sampler": "mode-preserving", "wind": "L3"}
-OTHER_PLANNER = {"planner": "cem", "wind": "L3"}
+NOISE = ("velocity:noise=0.2", "attitude:noise=0.05", "clearance:noise=0.1")
+FAULTS = (*NOISE, "action:dropout=0.3,onset=2", "wind:delay=2")
+LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "candidates": "64", "wind": "L3"}
+TRUE = {"predictor": "true-parameter", "sampler": "mode-preserving"}
+MODULES = {
+    "analytic": ({}, "dob", FAULTS),
+    "true parameters": (
+        {"predictor": "true-parameter", "sampler": "mode-preserving"},
+        "dob",
+        NOISE,
+    ),
+    "cross-entropy": ({"planner": "cem"}, "dob", NOISE),
+    "learned, filtered": (LEARNED | {"estimator": "eskf"}, "gru", NOISE),
+    "unanchored": (LEARNED, "wm-u", NOISE),
+}
 
 
-@pytest.mark.parametrize(
-    "options",
-    [STRONG_WIND, OTHER_MODULES, OTHER_PLANNER],
-    ids=["usual", "other modules", "other planner"],
-)
-def test_chunks_of_every_size_and_more_than_one_group_of_lanes_change_nothing(options, monkeypatch):
+@pytest.mark.parametrize(("options", "variant", "texts"), MODULES.values(), ids=MODULES)
+def test_who_is_flown_beside_a_scene_and_in_which_order_changes_nothing(
+    options, variant, texts, monkeypatch
+):
     """Scenes are planned in eights, fours, twos and ones, and flown in groups of 32 lanes."""
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 5)
-    system = quadrotor(**options)
-    faults = [fault(text, system) for text in NOISE]
-    block = {o.scene: bits(o) for o in fly(system, "dob", MANY, faults)[0]}
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 4)
+    flyer = quadrotor(**{"wind": "L3"} | options)
+    faults = [fault(text, flyer) for text in texts]
+    block = {o.scene: bits(o) for o in fly(flyer, variant, MANY, faults, seed=3)[0]}
     for chosen in (MANY[33:34], MANY[20:35], MANY[38:31:-1], MANY[::13]):
-        outcomes, _ = fly(system, "dob", chosen, faults)
+        outcomes, _ = fly(flyer, variant, chosen, faults, seed=3)
+        assert [outcome.scene for outcome in outcomes] == list(chosen)
         assert {o.scene: bits(o) for o in outcomes} == {scene: block[scene] for scene in chosen}
 
 
-def test_neighbours_that_end_early_leave_the_others_alone(tmp_path):
+@pytest.mark.usefixtures("short")
+@pytest.mark.parametrize("text", ["action:scale=1", "action:erase@vehicle,onset=0,for=8"])
+def test_neighbours_that_end_early_leave_the_others_alone(text, tmp_path):
     """Scenes are planned several at a time, and who flies with whom changes when one ends."""
-    system = quadrotor(**STRONG_WIND)
+    flyer = quadrotor(wind="L3")
     fast = hall(0, start=(0.0, 0.0, 1.5), goal=(0.0, 0.0, 0.995))
     low = hall(1, start=(0.0, 1.0, 0.3), goal=(4.0, 1.0, 1.5))
-    near, under = with_halls(system, tmp_path, fast, low)
-    alone, _ = fly(system, "dob", HELD_OUT)
-    mixed, _ = fly(system, "dob", [near, *HELD_OUT[:3], under, *HELD_OUT[3:]])
-    assert mixed[0].time_s < min(o.time_s for o in alone)
-    assert bits(mixed[0]) == bits(fly(system, "dob", [near])[0][0])
-    assert [bits(o) for o in mixed if o.scene in HELD_OUT] == [bits(o) for o in alone]
-
-    falls = fault("action:erase@vehicle,onset=0,for=8", system)
-    alone, _ = fly(system, "dob", HELD_OUT, [falls])
-    mixed, _ = fly(system, "dob", [near, *HELD_OUT[:3], under, *HELD_OUT[3:]], [falls])
+    near, under = with_halls(flyer, tmp_path, fast, low)
+    faults = [fault(text, flyer)]
+    alone, _ = fly(flyer, "dob", HELD_OUT, faults)
+    mixed, _ = fly(flyer, "dob", [near, *HELD_OUT[:3], under, *HELD_OUT[3:]], faults)
     ends = {o.scene: o.time_s for o in mixed}
-    assert ends[near] < ends[under] < min(ends[scene] for scene in HELD_OUT)
+    assert ends[near] < min(ends[scene] for scene in HELD_OUT)
+    assert ends[near] < ends[under]
+    assert bits(mixed[0]) == bits(fly(flyer, "dob", [near], faults)[0][0])
     assert [bits(o) for o in mixed if o.scene in HELD_OUT] == [bits(o) for o in alone]

@@ -22,24 +22,25 @@ def _mistake(monkeypatch, source, wrong):
     monkeypatch.setattr(VehiclePlant, "sense", sensed)
 
 
-@pytest.mark.parametrize("variant", VARIANTS)
-def test_only_the_variant_that_says_so_reads_the_true_wind(variant, monkeypatch):
-    system = quadrotor(wind="L3")
+@pytest.mark.parametrize(
+    ("predictor", "variant", "source"),
+    [
+        ("dki-drag", "zero-wind", "zero_wind"),
+        ("dki-drag", "dob", "reconstructed_wind"),
+        ("dki-drag", "true-wind", "true_wind"),
+        ("true-parameter", "dob", "reconstructed_wind"),
+    ],
+)
+def test_only_who_says_so_reads_the_true_wind_or_physics(predictor, variant, source, monkeypatch):
+    system = quadrotor(predictor=predictor, wind="L3")
     (plain,), _ = fly(system, variant)
     _mistake(monkeypatch, "true_wind", lambda wind: torch.full_like(wind, 99.0))
-    (blind,), taps = fly(system, variant)
-    assert (bits(blind) == bits(plain)) == (variant != "true-wind")
-    sources = ("zero_wind", "reconstructed_wind", "true_wind")
-    assert taps.bindings["wind"] == dict(zip(VARIANTS, sources, strict=True))[variant]
-
-
-@pytest.mark.parametrize("predictor", ["dki", "dki-drag", "true-parameter"])
-def test_only_the_true_parameter_predictor_reads_the_physics(predictor, monkeypatch):
-    system = quadrotor(predictor=predictor)
-    (plain,), _ = fly(system)
+    (blown,), taps = fly(system, variant)
+    assert (bits(blown) == bits(plain)) == (variant != "true-wind")
+    assert taps.bindings["wind"] == source
     _mistake(monkeypatch, "true_physics", lambda physics: 3.0 * physics)
-    (blind,), _ = fly(system)
-    assert (bits(blind) == bits(plain)) == (predictor != "true-parameter")
+    (other,), _ = fly(system, variant)
+    assert (bits(other) == bits(blown)) == (predictor != "true-parameter")
 
 
 @pytest.mark.parametrize(

