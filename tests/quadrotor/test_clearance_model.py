@@ -57,18 +57,6 @@ def points(count: int, each: int) -> torch.Tensor:
     return torch.randn(3, count, each, generator=draws(2)) * 2
 
 
-@pytest.mark.parametrize("count", [POINTS, 2560 + 32])
-def test_code_and_clearance_of_a_scene_have_the_same_bits_in_any_batch(model, count: int):
-    depth, at = images(40), points(40, count)
-    code = model.encode(depth)
-    together = model.query(code, at)
-    assert (code.shape, together.shape) == ((64, 40), (40, count))
-    for chosen in ([7], [39, 0, 20], list(range(3, 36))):
-        assert torch.equal(model.encode(depth[chosen]), code[:, chosen])
-        alone = model.query(code[:, chosen].contiguous(), at[:, chosen].contiguous())
-        assert torch.equal(alone, together[chosen])
-
-
 def test_clearance_is_bounded_and_is_what_training_sees_between_the_bounds(model: ClearanceModel):
     depth, at = images(6), points(6, POINTS)
     found = model.query(model.encode(depth), at)

@@ -4,24 +4,30 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.platform import PLATFORM, FlightSettings
 from faultpath_quadrotor.training import collection, flight
 from faultpath_quadrotor.training.collection import collect
+from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.pool import episodes_path, read_pool
 from faultpath_quadrotor.training.provenance import provenance_path
-from faultpath_quadrotor.training.recorded import COMPONENTS
+from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS
+from faultpath_quadrotor.vehicle import COLLECTIVE_MAX_N, CONTROL_RATE_HZ, RATE_LIMIT_RADPS
 
 from faultpath.core.errors import UserError
 
 SMALL = {"nominal": 5, "wind": 7}
 
 
+def of_length(patch, steps):
+    patch.setattr(flight, "EPISODE_STEPS", steps)
+    patch.setattr(flight, "EPISODE_S", steps / CONTROL_RATE_HZ)
+
+
 @pytest.fixture(scope="module", autouse=True)
 def short():
     """Ten steps an episode and three episodes a shard, in this process."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(flight, "EPISODE_STEPS", 10)
-        patch.setattr(flight, "EPISODE_S", 0.5)
+        of_length(patch, 10)
         patch.setattr(collection, "BATCH", 3)
         yield
 
@@ -36,18 +42,14 @@ def contents(paths):
     return [path.read_bytes() for path in every]
 
 
-def channel(pool, name):
-    return pool.values[COMPONENTS.index(name)]
-
-
 def test_the_nominal_pool_is_still_and_the_wind_pool_has_the_collection_s_wind(pools):
     still, windy = read_pool(pools["nominal"]), read_pool(pools["wind"])
-    for axis, name in enumerate(("wind_x_mps", "wind_y_mps", "wind_z_mps")):
-        assert not channel(still, name).any()
-        for episode, (first, steps) in enumerate(zip(windy.first_row, windy.steps, strict=True)):
-            series = PLATFORM.winds.pool_series(0, episode, 6.1)[:, axis]
-            expected = series[: 25 * steps + 1 : 25].astype(np.float32)
-            assert np.array_equal(channel(windy, name)[first : first + steps + 1], expected)
+    assert not signal(still, "wind").any()
+    for episode, (first, steps) in enumerate(zip(windy.first_row, windy.steps, strict=True)):
+        series = PLATFORM.winds.pool_series(0, episode, 6.1)
+        expected = series[: 25 * steps + 1 : 25].astype(np.float32)
+        blown = signal(windy, "wind")[:, first : first + steps + 1]
+        assert np.array_equal(blown, expected.T)
 
 
 def test_the_result_does_not_depend_on_the_shards(pools, tmp_path, monkeypatch):
@@ -104,3 +106,46 @@ def test_a_damaged_pool_is_not_read(damaged, tmp_path):
     (tmp_path / damaged).write_bytes(b"?" + (tmp_path / damaged).read_bytes()[1:])
     with pytest.raises(UserError, match="collect it again"):
         read_pool(path)
+
+
+def signal(flights, name):
+    return flights.values[[COMPONENTS.index(component) for component in SIGNALS[name]]]
+
+
+@pytest.mark.parametrize("pool", ["nominal", "wind"])
+def test_an_episode_is_the_same_in_any_batch_to_the_bit(pool, monkeypatch):
+    of_length(monkeypatch, 40)
+    together = fly(pool, range(45), 3)
+    for company in ([7], [40, 7, 0], list(range(7, 72))):
+        other = fly(pool, company, 3)
+        lane = company.index(7)
+        assert np.array_equal(together.values[..., 7], other.values[..., lane], equal_nan=True)
+        assert together.steps[7] == other.steps[lane]
+        assert together.vehicles[7] == other.vehicles[lane]
+
+
+def test_episodes_belong_to_pool_number_and_seed():
+    keys = [("nominal", 0, 0), ("wind", 0, 0), ("nominal", 1, 0), ("nominal", 0, 1)]
+    starts = [fly(pool, [episode], seed).values[:3, 0, 0] for pool, episode, seed in keys]
+    assert len({tuple(start.tolist()) for start in starts}) == len(starts)
+
+
+@pytest.mark.parametrize("pool", ["nominal", "wind"])
+def test_commands_respect_the_vehicle_s_limits(pool):
+    command = signal(fly(pool, range(32), 0), "command")[:, :-1]
+    assert command[0].min() >= 0
+    assert command[0].max() <= COLLECTIVE_MAX_N
+    for axis, limit in enumerate(RATE_LIMIT_RADPS):
+        assert np.abs(command[axis + 1]).max() <= limit
+
+
+def test_an_episode_ends_with_its_last_state_in_bounds(monkeypatch):
+    of_length(monkeypatch, 40)
+    tight = FlightSettings(tilt_limit_deg=35.0)
+    flights = fly("nominal", range(64), 0, tight)
+    short = np.flatnonzero(flights.steps < 40)
+    assert len(short) > 10
+    up = signal(flights, "rotation")[8]
+    for lane in short:
+        beyond = np.flatnonzero(up[1:, lane] <= np.cos(np.radians(35.0)))
+        assert flights.steps[lane] == beyond[0]

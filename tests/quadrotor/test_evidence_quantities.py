@@ -1,17 +1,13 @@
 """The quantities on recorded windows: what must hold whatever the models are."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import torch
-from faultpath_paper.evidence import quantities
-from faultpath_paper.evidence.inputs import Subject, with_shuffled_history
+from faultpath_paper.evidence.inputs import with_shuffled_history
 from faultpath_paper.evidence.quantities import measured
 from faultpath_paper.evidence.recording import STRIDE, Recorded
 from faultpath_paper.evidence.table import Measurement, Recording
 from faultpath_quadrotor.platform import PLATFORM
-from faultpath_quadrotor.reconstruction import DisturbanceObserver
 from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.windows import HISTORY, cut, places
 from flights import in_memory
@@ -90,20 +86,6 @@ def test_a_fault_strikes_only_the_consumers_that_it_names(recorded):
     assert not ask(recorded, "position-response", "gru-withheld", "mass:scale=1").any()
     without = ask(recorded, "position-error", "wm-a-wind/gru-withheld", AT_PREDICTOR)
     assert np.array_equal(without, ask(recorded, "position-error", "gru-withheld", SHARED))
-
-
-def test_an_unfiltered_observer_recombines_under_shared_error(recorded, monkeypatch):
-    def unfiltered(asked):
-        subject = Subject.load(quantities.quadrotor(RECORDING), asked.subject, 0)
-        observer = DisturbanceObserver(PLATFORM.drag_kgps, low_pass=1.0)
-        return replace(subject, reconstruction=observer)
-
-    monkeypatch.setattr(quantities, "_subject", unfiltered)
-    where = ((), (SHARED,), (AT_RECONSTRUCTION,))
-    errors = (ask(recorded, "acceleration-error", "dob", *faults) for faults in where)
-    nominal, shared, isolated = errors
-    np.testing.assert_allclose(shared, nominal, atol=2e-4)
-    assert np.median(isolated) > np.median(nominal) + 0.5
 
 
 def test_with_a_correct_predictor_the_wind_term_is_the_whole_acceleration_error(recorded):

@@ -1,46 +1,26 @@
 """How the wind reconstruction is fitted, and that its repair differs by the corruption alone."""
 
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
 import torch
-from faultpath_quadrotor import so3
 from faultpath_quadrotor.training import corruption
 from faultpath_quadrotor.training.corruption import dcc
+from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.reconstruction_task import HEAD, MODELS, ReconstructionTask
-from faultpath_quadrotor.training.windows import Windows
+from faultpath_quadrotor.training.windows import Windows, cut
+from flights import in_memory
 
 from faultpath.core.errors import UserError
 
 COUNT = 96
 
 
-def windows(pool="wind", count=COUNT, seed=0):
-    """Windows of noise, but for a wind that the last velocities tell."""
-    draw = torch.Generator().manual_seed(seed)
-
-    def normal(*shape):
-        return torch.randn(*shape, count, generator=draw)
-
-    wind = 4 * normal(3, 1).expand(3, 33, count)
-    return Windows(
-        position=normal(3, 33),
-        velocity=0.5 * wind + 0.1 * normal(3, 33),
-        rotation=so3.exp(0.4 * normal(3, 33)),
-        rate=normal(3, 33),
-        command=9.81 + normal(4, 32),
-        wind_mps=wind.contiguous(),
-        mass_kg=1 + 0.5 * normal().tanh(),
-        thrust_scale=1 + 0.5 * normal().tanh(),
-        inertia_kgm2=normal(3),
-        torque_scale=normal(),
-        motor_time_constant_s=normal(),
-        drag_kgps=normal(3),
-        motor_thrust_n=normal(33),
-        episode=torch.arange(count),
-        ids=tuple(f"{pool}/{i:05d}/0" for i in range(count)),
-    )
+@cache
+def windows(seed=0):
+    return cut(in_memory(fly("wind", range(32), seed))).take(torch.arange(COUNT))
 
 
 def task(name, seed=0):
@@ -92,10 +72,10 @@ def test_loss_reads_no_future_state_command_or_wind():
     assert loss(made) == loss(changed)
 
 
-def corrupted(faults, consumers=(HEAD,), seed=0, count=COUNT):
-    few = windows(count=count)
-    readings = {"mass": few.mass_kg, "thrust_scale": few.thrust_scale}
-    return readings, corruption.corrupted(faults, consumers, few.ids, seed, readings)
+def corrupted(faults, consumers=(HEAD,), count=COUNT):
+    readings = {"mass": torch.full((count,), 1.5), "thrust_scale": torch.full((count,), 0.8)}
+    ids = [f"wind/{i:05d}/0" for i in range(count)]
+    return readings, corruption.corrupted(faults, consumers, ids, 0, readings)
 
 
 def test_mass_and_thrust_scale_err_independently_within_the_half_range():

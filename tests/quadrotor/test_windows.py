@@ -101,8 +101,5 @@ def test_noise_reaches_every_place_with_one_draw_a_window(data):
     for place in ("history", "normalise_thrust", "features"):
         assert ("mass", f"predictor.{place}") in taps
     assert all(torch.equal(value, mass[0]) for value in mass)
-    off = mass[0] / noisy._train.mass_kg - 1
-    assert off.abs().max() <= 0.2
-    assert off.std() == pytest.approx(0.2 / 3**0.5, rel=0.2)
     noisy.begin_epoch(1)
     assert torch.equal(noisy._delivered["mass", "predictor.history"], mass[0])
