@@ -44,11 +44,11 @@ def contents(paths):
 
 def test_the_nominal_pool_is_still_and_the_wind_pool_has_the_collection_s_wind(pools):
     still, windy = read_pool(pools["nominal"]), read_pool(pools["wind"])
-    assert not signal(still, "wind").any()
+    assert not signal(still, "wind_mps").any()
     for episode, (first, steps) in enumerate(zip(windy.first_row, windy.steps, strict=True)):
         series = PLATFORM.winds.pool_series(0, episode, 6.1)
         expected = series[: 25 * steps + 1 : 25].astype(np.float32)
-        blown = signal(windy, "wind")[:, first : first + steps + 1]
+        blown = signal(windy, "wind_mps")[:, first : first + steps + 1]
         assert np.array_equal(blown, expected.T)
 
 

@@ -115,7 +115,7 @@ def cell_and_sequence(inputs: int, columns: int) -> tuple[GatedCell, torch.Tenso
 
 
 @pytest.mark.parametrize("inputs", [19, 22, 32])
-def test_the_last_latent_is_the_portable_one(isa: str, inputs: int) -> None:
+def test_the_last_latent_is_the_portable_one_and_that_of_the_gru_of_torch(isa: str, inputs: int):
     cell, sequence = cell_and_sequence(inputs, columns=5)
     with torch.enable_grad():  # the way by which training goes
         portable = cell.last(sequence).detach()
@@ -123,3 +123,7 @@ def test_the_last_latent_is_the_portable_one(isa: str, inputs: int) -> None:
     given, kept = ((layer.weight, layer.bias) for layer in (cell.from_input, cell.from_latent))
     compiled = recur(native.load(isa), given, kept, sequence)
     torch.testing.assert_close(compiled, portable, rtol=1e-5, atol=1e-5)
+    reference = torch.nn.GRU(inputs, 32)
+    weights = (given[0], kept[0], given[1][:, 0], kept[1][:, 0])
+    reference.load_state_dict(dict(zip(reference.state_dict(), weights, strict=True)))
+    torch.testing.assert_close(reference(sequence.movedim(2, 1))[1][0].T, portable)

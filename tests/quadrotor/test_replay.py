@@ -7,6 +7,7 @@ from faultpath_paper.evidence.playback import at_present
 from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath_quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath_quadrotor.predictors import module as prediction
+from faultpath_quadrotor.state import State
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import windows as replay
 from faultpath_quadrotor.training.flight import fly
@@ -81,3 +82,19 @@ def test_a_fit_gives_a_reconstruction_the_history_that_it_remembers(name, window
         played = at_present(windows, nobodys, model, {"wind": "reconstructed_wind"}).wind()
         supplied = _calibration(windows) if model.network.calibrated else None
         assert torch.equal(model.network.estimate(*_history(windows), supplied), played)
+
+
+def test_a_vehicle_that_goes_on_as_before_its_flight_keeps_its_estimate():
+    """The intervals before the flight are those of the hover that was executed then."""
+    hover = State.hover(torch.zeros(3, 32).double(), torch.linspace(0, 3, 32).double())
+    state = hover.position, hover.velocity + 1.0, hover.rotation, hover.rate + 0.1
+    values = dict(zip(("position", "velocity", "attitude", "body_rate"), state, strict=True))
+    values["action"] = torch.tensor([9.0, 0.1, 0.2, 0.3]).double()[:, None].expand(4, 32)
+    reading = {(channel, "history"): value for channel, value in values.items()}
+    reading |= {(channel, "head"): torch.ones(32).double() for channel in ("mass", "thrust_scale")}
+    module = RECONSTRUCTIONS["gru"].load("gru", 0)
+    memory = module.begin(reading)
+    first = module.wind(memory)
+    for _ in range(4):
+        memory = module.update(memory, reading)
+        assert torch.equal(module.wind(memory), first)

@@ -2,11 +2,9 @@
 
 import numpy as np
 import pytest
-import torch
 from faultpath_quadrotor.choices import STATE_NOISE_STD
 from faultpath_quadrotor.models import predictor, reconstruction
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
-from faultpath_quadrotor.predictors.history import STEPS as HISTORY
 from faultpath_quadrotor.variants import setups
 from flights import HELD_OUT, fault, fly, quadrotor
 
@@ -53,30 +51,3 @@ def test_calibration_errors_reach_the_predictor_s_history_but_not_the_hover_befo
     hover = Vehicle.stack([system.scene(HELD_OUT[0]).vehicle]).hover_command().T
     for consumer in ("predictor.history", "reconstruction.history"):
         assert np.array_equal(taps.delivered("action", consumer)[0], hover.numpy())
-
-
-@torch.inference_mode()
-def test_the_deployed_history_is_the_one_that_training_knows(monkeypatch):
-    """After 12 intervals the code is that of the last 12 states and commands, oldest first."""
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", HISTORY + 2)
-    system = quadrotor(**LEARNED)
-    _, taps = fly(system, "wm-a")
-    now = HISTORY + 1
-
-    def past(channel, shift):
-        rows = taps.delivered(channel, "predictor.history")[now - HISTORY + shift : now + shift, 0]
-        return torch.from_numpy(rows).float().movedim(0, -1)[..., None].repeat_interleave(32, -1)
-
-    model = predictor("wm-a", 0)
-    mass = torch.from_numpy(taps.delivered("mass", "predictor.history")[now]).float()
-    code = model.encode(
-        {
-            ("velocity", "history"): past("velocity", 0),
-            ("attitude", "history"): past("attitude", 0),
-            ("body_rate", "history"): past("body_rate", 0),
-            ("action", "history"): past("action", 1),
-            ("mass", "history"): mass.expand(32),
-        }
-    )
-    deployed = taps.delivered("history_code", "predictor.latent")[now, 0]
-    assert np.allclose(code[:, 0].numpy(), deployed, atol=1e-6)

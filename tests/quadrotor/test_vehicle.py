@@ -1,7 +1,5 @@
 import numpy as np
 import pytest
-import torch
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.vehicle import VehicleParameters, VehicleRanges, draw
 from pydantic import ValidationError
 
@@ -36,11 +34,3 @@ def test_weak_vehicles_are_rejected():
 def test_impossible_parameters_are_refused(wrong):
     with pytest.raises(ValidationError):
         VehicleParameters(**wrong)
-
-
-def test_a_stack_keeps_order_and_puts_the_batch_last():
-    vehicle = Vehicle.stack(DRAWS[:5], torch.float32)
-    assert vehicle.batch == (5,)
-    assert vehicle.mass_kg.dtype == torch.float32
-    expected = torch.tensor([parameters.inertia_kgm2 for parameters in DRAWS[:5]]).T
-    torch.testing.assert_close(vehicle.inertia_kgm2, expected)
