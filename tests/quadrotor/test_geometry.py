@@ -58,16 +58,15 @@ def surface(scene: Scene, per_m2: float) -> np.ndarray:
     return np.concatenate(clouds)
 
 
-@pytest.mark.parametrize("index", range(5))
+@pytest.mark.parametrize("index", range(4))
 def test_in_free_space_the_distance_is_that_to_the_nearest_of_many_surface_points(index):
     scene = load_library("training")[index]
     points = spread([scene], 3000)
     distance = Geometry.stack([scene]).distance(points)[0].numpy()
-    nearest, _ = cKDTree(surface(scene, 1000.0)).query(points[:, 0].numpy().T)
+    nearest, _ = cKDTree(surface(scene, 250.0)).query(points[:, 0].numpy().T)
     free = distance > 0
     assert 0.4 < free.mean() < 1.0
     # No point drawn is nearer than the surface, and one lies near its nearest place.
     beyond = nearest[free] - distance[free]
     assert beyond.min() >= -1e-9
-    assert beyond.max() < 0.1
-    assert np.median(beyond) < 0.005
+    assert (np.quantile(beyond, [0.5, 0.95, 1.0]) < [0.002, 0.015, 0.12]).all()

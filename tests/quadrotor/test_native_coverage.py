@@ -44,7 +44,7 @@ def moved(ahead: State) -> State:
     return replace(ahead, position=ahead.position + SHIFT_M)
 
 
-def shifted(self: Predictor, *given: Any) -> tuple[State, Memory]:
+def shifted(self: Any, *given: Any) -> tuple[State, Memory]:
     ahead, memory = AnchoredPredictor.step(self, *given)
     return moved(ahead), memory
 

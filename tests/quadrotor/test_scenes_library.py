@@ -23,6 +23,7 @@ def test_asking_for_an_unknown_library_lists_what_there_is():
         (lambda text: text.replace('"index":50,', '"index":51,', 1), "was changed"),
         (lambda text: text[: len(text) // 2], "cannot be read as a library"),
         (lambda text: "[1, 2]", "cannot be read as a library"),
+        (lambda text: text.replace('"radius_m":0.', '"radius_m":-0.', 1), "cannot be read"),
         (lambda text: text.replace("scenes/1", "scenes/9"), "format 'faultpath-scenes/9'"),
     ],
 )
