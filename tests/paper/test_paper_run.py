@@ -7,8 +7,7 @@ import pytest
 from faultpath_paper import flights
 from faultpath_paper.answers import Reproduction
 from faultpath_paper.cells import HELD_OUT, PAPER, QUICK, Cell, Profile, calibration
-from faultpath_paper.entries import EntryGroup, centimetres, success
-from faultpath_paper.flights import Flown
+from faultpath_paper.entries import centimetres, success
 from faultpath_paper.page import Page, TableRow, TableSpec
 from faultpath_paper.pages import PAGES, table_1, table_2
 from faultpath_paper.run import ReproductionPlan, conclude, measure_all, plan, read_results, save
@@ -25,22 +24,8 @@ FAULTY = table_2.cell("wm-a", 0.1)
 ERROR = table_2.error_under(0.1)
 
 
-def table(*groups: EntryGroup) -> TableSpec:
-    return TableSpec(
-        "one", "One", ("Success, %",), tuple(TableRow("", (group,)) for group in groups)
-    )
-
-
-ONE = Page("one", "One", (table(success(NOMINAL), success(FAULTY), centimetres(ERROR)),))
-TWO = Page("two", "Two", (table(success(NOMINAL)),))
-
-
-def a_plan(*pages: Page) -> ReproductionPlan:
-    return ReproductionPlan(pages, TINY)
-
-
-def fly(asked: ReproductionPlan, folder: Path) -> Flown:
-    return flights.fly(asked.legs(), folder, Job(folder, Here(), SILENT).run, lambda now: None)
+ROWS = tuple(TableRow("", (of,)) for of in (success(NOMINAL), success(FAULTY), centimetres(ERROR)))
+ONE = Page("one", "One", (TableSpec("one", "One", ("Success, %",), ROWS),))
 
 
 @pytest.fixture(scope="module")
@@ -55,8 +40,9 @@ def short() -> Iterator[None]:
 def run(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None, short: None) -> Path:
     """A folder with the whole of page one."""
     folder = tmp_path_factory.mktemp("run")
-    asked = a_plan(ONE)
-    flown = fly(asked, folder)
+    asked = ReproductionPlan((ONE,), TINY)
+    job = Job(folder, Here(), SILENT)
+    flown = flights.fly(asked.legs(), folder, job.run, lambda now: None)
     evidence = measure_all(asked, folder, 0, lambda done, total: None)
     results = asked.results(flown.outcomes, evidence)
     save(folder, flown, results, conclude(asked, results))
@@ -74,12 +60,6 @@ def test_what_was_saved_is_read_back(run: Path) -> None:
     for cell in (NOMINAL, FAULTY):
         rows = results.outcomes.arm("wm-a", cell.path, 0)
         assert {row.outcome.faulted_steps > 0 for row in rows} == {cell is FAULTY}
-
-
-def test_cells_are_run_once_for_all_pages(run: Path) -> None:
-    flown = fly(a_plan(TWO, ONE), run)
-    assert sum(result.blocks_computed for result in flown.results) == 0
-    assert len(flown.outcomes.rows) == 2
 
 
 def test_a_profile_takes_its_seeds_and_joins_cells_that_share_trials() -> None:

@@ -1,9 +1,8 @@
-"""Tables of the studies: known figures from runs with known results."""
+"""Tables of the studies: what the shipped run, whose tables are all compared, does not show."""
 
-from faultpath_paper.answers import Sweep
 from faultpath_paper.cells import Cell
 from faultpath_paper.evidence.table import Measurement
-from faultpath_paper.pages import figure_3, table_3, table_4, table_6
+from faultpath_paper.pages import table_3, table_4, table_6
 from faultpath_quadrotor.training import trajectories
 from toy_runs import SCENES, calibrated, line, measured, page, papers, run, tables, texts, won
 
@@ -49,36 +48,6 @@ def test_scenes_whose_wind_was_not_met_are_counted_apart() -> None:
     assert texts(line(table, "Wind-conditioned, zero")) == ["5", "5"]
     assert papers(line(table, "Wind-conditioned, ground truth")) == ["30", "19"]
     assert table_3.UNMET.start == trajectories.SCENES
-
-
-def test_table_2_has_means_over_seeds_and_detected_differences() -> None:
-    table = tables(page("table-2"), run(won(calibrated)))["table-2"]
-    assert texts(line(table, "WM-A")) == ["10.0", "70.0", "10.0"]
-    assert papers(line(table, "WM-A")) == ["18", "69", "8"]
-    heading = "WM-A+DCC minus WM-A (pp)"
-    difference = line(table, "Difference", below=heading)
-    assert texts(difference) == ["+65.0", "+5.0", "+65.0"]
-    assert papers(difference) == ["+49.7", "−1.0", "+57.3"]
-    assert [entry.detected for entry in difference.entries] == [True, False, True]
-    counts = line(table, "Wins:losses", below=heading)
-    assert texts(counts) == ["13:0/13:0/13:0", "1:0/1:0/1:0", "13:0/13:0/13:0"]
-    assert papers(counts)[0] == "51:0/51:1/49:1"
-    assert texts(line(table, "Success (%)")) == ["10", "70", "10"]
-    ends = [texts(line(table, f"{of} interval", below=heading))[1] for of in ("95 %", "Score")]
-    assert ends[0] == "[0.0, 15.0]"  # of one scene in twenty; the score's holds what none showed
-    assert ends[1].startswith("[−")
-
-
-def test_figure_3_has_a_point_with_its_interval_for_each_error() -> None:
-    results = run(won(lambda cell: 20 if not cell.faults else 10))
-    (sweep,) = page("figure-3").build(results)
-    assert isinstance(sweep, Sweep)
-    assert [series.label for series in sweep.series] == ["WM-A", "WM-A+DCC", "WM-U", "WM-U+DCC"]
-    points = sweep.series[0].points
-    assert [point.x for point in points] == list(figure_3.ERRORS)
-    assert [point.y for point in points if point.x == 0] == [100.0]
-    assert all(p.low is not None and p.high is not None and p.low <= p.y <= p.high for p in points)
-    assert "100 throughout" in sweep.published
 
 
 def _reconstructed(cell: Cell) -> int:
