@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from faultpath_paper.answers import ClaimVerdict
 from faultpath_paper.cells import Cell, published_claims
-from faultpath_paper.claims import STATEMENTS, evaluate, ledger
+from faultpath_paper.claims import STATEMENTS, evaluate
 from faultpath_paper.claims.rules import ABOVE, BELOW
 from faultpath_paper.claims.statement import Statement, TurnsDown, answered, verdict
 from faultpath_paper.pages import table_1, table_4
@@ -26,16 +26,6 @@ def test_an_empty_run_leaves_every_published_claim_undecided() -> None:
     assert {claim.verdict for claim in claims} == {"undecided"}
     assert all(claim.parts for claim in claims)
     assert all(part.reason.startswith("not run: ") for c in claims for part in c.parts)
-
-
-def test_a_run_of_some_pages_answers_what_it_is_about(published_run: Results) -> None:
-    cells = set(table_4.PAGE.cells)
-    rows = [row for row in published_run.outcomes.rows if row.path in {c.path for c in cells}]
-    some = Results(OutcomeTable(tuple(rows)), NOTHING, "toy")
-    found = ledger(some, "toy", "hash", SCENES, (0, 1, 2), only_run=True)
-    assert {"C23", "C26"} <= {claim.id for claim in found.claims}
-    assert not {"C01", "C05"} & {claim.id for claim in found.claims}
-    assert len(found.claims) + found.left_out == len(published_claims())
 
 
 def test_where_the_papers_figures_come_true_every_claim_is_confirmed(answers: Answers) -> None:
