@@ -73,6 +73,13 @@ def test_draws_belong_to_window_seed_and_epoch_and_not_to_the_minibatch() -> Non
     assert (of(np.arange(30), seed=1) != whole).all()
 
 
+def test_without_a_fault_the_readings_of_an_instant_arrive_as_they_are() -> None:
+    data = windows(5, None)
+    got, counts = delivered(data, (), data.readings, range(5), 0, 0)
+    assert (got[VELOCITY] == data.readings["velocity"]).all()
+    assert not any(count.altered_steps for count in counts)
+
+
 UNEVEN = {"gain": np.ones((60, 4)), "velocity": np.ones((60, 5))}
 
 

@@ -86,6 +86,7 @@ def found(interval: Interval, p_value: float | None = None, mde: float | None = 
         (bounded(Bound(10, 1), seen=True), found(UP, 0.2), "undecided"),
         (bounded(Bound(20, 1), seen=True), found(UP, 0.01), "refuted"),
         (within(9, 11), found(UP), "confirmed"),
+        (within(11, 12), found(UP), "undecided"),
         (within(16, 20), found(UP), "refuted"),
         (at_least(-1), found(None), "undecided"),
         (within(-1, 1), found(None), "undecided"),
