@@ -89,3 +89,4 @@ def test_an_audit_s_trials_are_their_own_and_of_their_plant() -> None:
         near, far = (each.metrics["terminal_distance_m"] for each in (ours, theirs))
         assert near == pytest.approx(far, abs=1e-3)
     assert system.fingerprint() != other.fingerprint()
+    assert system.backend.endswith("mujoco_plant.py:create")
