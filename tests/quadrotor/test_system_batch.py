@@ -41,9 +41,9 @@ def test_who_is_flown_beside_a_scene_and_in_which_order_changes_nothing(
     monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", steps)
     flyer = quadrotor(**{"wind": "L3"} | options)
     faults = [fault(text, flyer) for text in texts]
-    block = {o.scene: bits(o) for o in fly(flyer, variant, MANY, faults, seed=3)[0]}
+    block = {o.scene: bits(o) for o in fly(flyer, variant, MANY, faults, seed=2)[0]}
     for chosen in (MANY[33:34], MANY[34:19:-1], MANY[::13]):
-        outcomes, _ = fly(flyer, variant, chosen, faults, seed=3)
+        outcomes, _ = fly(flyer, variant, chosen, faults, seed=2)
         assert [outcome.scene for outcome in outcomes] == list(chosen)
         assert {o.scene: bits(o) for o in outcomes} == {scene: block[scene] for scene in chosen}
 
