@@ -74,7 +74,7 @@ def test_loss_reads_no_future_state_command_or_wind():
 
 def corrupted(faults, consumers=(HEAD,), count=COUNT):
     readings = {"mass": torch.full((count,), 1.5), "thrust_scale": torch.full((count,), 0.8)}
-    ids = [f"wind/{i:05d}/0" for i in range(count)]
+    ids = tuple(f"wind/{i:05d}/0" for i in range(count))
     return readings, corruption.corrupted(faults, consumers, ids, 0, readings)
 
 

@@ -87,9 +87,13 @@ def test_a_fit_gives_a_reconstruction_the_history_that_it_remembers(name, window
 def test_a_vehicle_that_goes_on_as_before_its_flight_keeps_its_estimate():
     """The intervals before the flight are those of the hover that was executed then."""
     hover = State.hover(torch.zeros(3, 32).double(), torch.linspace(0, 3, 32).double())
-    state = hover.position, hover.velocity + 1.0, hover.rotation, hover.rate + 0.1
-    values = dict(zip(("position", "velocity", "attitude", "body_rate"), state, strict=True))
-    values["action"] = torch.tensor([9.0, 0.1, 0.2, 0.3]).double()[:, None].expand(4, 32)
+    values = {
+        "position": hover.position,
+        "velocity": hover.velocity + 1.0,
+        "attitude": hover.rotation,
+        "body_rate": hover.rate + 0.1,
+        "action": torch.tensor([9.0, 0.1, 0.2, 0.3]).double()[:, None].expand(4, 32),
+    }
     reading = {(channel, "history"): value for channel, value in values.items()}
     reading |= {(channel, "head"): torch.ones(32).double() for channel in ("mass", "thrust_scale")}
     module = RECONSTRUCTIONS["gru"].load("gru", 0)
