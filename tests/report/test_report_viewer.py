@@ -7,6 +7,7 @@ import numpy as np
 from page_reader import unpack, with_traces
 
 from faultpath.decisions.pairs import read_pairs
+from faultpath.interface import Provenance
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.viewer import pack, viewer_data
@@ -62,6 +63,37 @@ def test_a_player_with_nothing_to_play_is_not_shown(one_seed: ReportInput) -> No
     heard = {TrialAddress("gru", "shared", 0, scene): (Signal("thrust", "thrust", "N", steps),)}
     data, _ = _unpacked(replace(still, signals=heard))
     assert [each["scene"] for each in data["scenes"]] == [scene]
+
+
+def test_without_positions_the_player_opens_on_what_the_plant_measures(
+    one_seed: ReportInput,
+) -> None:
+    """Not on an error, which is the fault itself, nor on what never moves within a trial."""
+    steps = np.arange(5, dtype=np.float32)[:, None]
+    signals = (
+        Signal("mass error at predictor.trim", "mass error", "kg", steps * 0 + 0.1),
+        Signal("mass_estimate", "mass", "kg", steps * 0 + 1),
+        Signal("reconstructed_wind", "wind", "m/s", steps),
+        Signal("velocity_estimate", "velocity", "m/s", steps),
+    )
+    measured = {"mass_estimate", "velocity_estimate"}
+    sources = tuple(
+        source.model_copy(update={"provenance": Provenance.MEASURED})
+        if source.name in measured
+        else source
+        for source in one_seed.interface.sources
+    )
+    scene = next(iter(one_seed.plans))
+    still = replace(
+        one_seed,
+        interface=one_seed.interface.model_copy(update={"sources": sources}),
+        traces=Traces({}, 0.05),
+        plans={},
+        signals={TrialAddress("gru", "shared", 0, scene): signals},
+    )
+    data, _ = _unpacked(still)
+    assert data["plots"][0]["title"] == "mass error"
+    assert data["plots"][data["plot"]]["title"] == "velocity"
 
 
 def test_signals_are_plotted_beside_what_they_are_compared_with(one_seed: ReportInput) -> None:

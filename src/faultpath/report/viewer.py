@@ -5,7 +5,7 @@ import zlib
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from faultpath.decisions.model import SHARED, DecisionRecord
 from faultpath.decisions.pairs import Pair, by_scene
 from faultpath.decisions.sentences import wording
 from faultpath.report.inputs import ReportInput
+from faultpath.report.plots import Plot, first_plot, plots_of
 from faultpath.trials import Outcome
 from faultpath.trials.store.signals import DRAWN, IN_FORCE, Signal, Signals
 from faultpath.trials.store.tables import Trace, TrialAddress, traces_of
@@ -23,8 +24,6 @@ _MOST_WITH_SIGNALS = 12
 """Scenes, with a seed each, whose signals go into a page."""
 _FARTHEST_M = 1e6
 """Beyond this a position is no longer drawn where it was: in centimetres it must stay a number."""
-_MOST_COMPONENTS = 4
-"""A rotation matrix says little as lines, unless its numbers have names."""
 _LEVELS = 4095
 _GAP = -1
 """In place of a level, where nothing was read."""
@@ -62,7 +61,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     signals = {at: s for at, s in source.signals.items() if (at.scene, at.seed) in few}
     if tracked and flat:
         signals = _with_positions(signals, tracks)
-    trials, space = _Trials(source, signals, _plots(signals)), _space(source, flat, bool(tracked))
+    trials, space = _Trials(source, signals, plots_of(signals)), _space(source, flat, bool(tracked))
     scenes = _scenes(trials, groups, captions(pairs))
     drawn = {scene: asdict(plans[scene]) for scene, _ in groups if scene in plans}
     for prism in (prism for plan in drawn.values() for prism in plan["prisms"]):
@@ -73,6 +72,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
         "paths": [{"name": path.name, "title": path.title} for path in source.record.paths],
         "picked": [list(groups).index(at) for at in chosen],
         "path": _first_path(source.record, groups[(*chosen, *groups)[0]]),
+        "plot": 0 if space == "space" else first_plot(source, signals, trials.plots),
         "plots": [plot.described() for plot in trials.plots],
         "plans": drawn,
         "scenes": scenes,
@@ -123,7 +123,7 @@ def _space(source: ReportInput, flat: bool, tracked: bool) -> str:
 
 
 def _first_path(record: DecisionRecord, pairs: Mapping[str, Pair]) -> str:
-    """Return the path marked first: one on which the first scene shows what was decided."""
+    """Return the path marked first: one on which the first scene shows what is significant."""
     signs = {effect.path: effect.sign for effect in record.effects if effect.leads}
     apart = [path for path, pair in pairs.items() if pair.sign and signs.get(path) == pair.sign]
     primary = record.question.primary or SHARED
@@ -136,7 +136,7 @@ class _Trials:
 
     source: ReportInput
     signals: Signals
-    plots: "Sequence[_Plot]"
+    plots: Sequence[Plot]
     series: list[NDArray[np.int32]] = field(default_factory=list[NDArray[np.int32]])
 
     def packed(self, variant: str, pair: Pair, trial: Outcome | None) -> dict[str, Any] | None:
@@ -213,79 +213,3 @@ def _with_positions(signals: Signals, positions: Mapping[TrialAddress, Trace]) -
         )
         by_trial[at] = (Signal("position", "position", "m", axis), *others)
     return by_trial
-
-
-_Line: TypeAlias = tuple[str, int]
-"""A signal and its component."""
-_ByTrial: TypeAlias = dict[TrialAddress, NDArray[Any]]
-
-
-@dataclass(frozen=True)
-class _Plot:
-    """Lines of one unit on one pair of axes."""
-
-    title: str
-    unit: str
-    lines: tuple[tuple[_Line, str], ...]
-    """Each with what it is called."""
-
-    @property
-    def of_errors(self) -> bool:
-        """Whether it is held against zero."""
-        return "error" in self.title
-
-    def described(self) -> dict[str, Any]:
-        """Return what the script shows beside the lines."""
-        lines, unit = [name for _, name in self.lines], wording.unit(self.unit)
-        return {"title": self.title, "unit": unit, "lines": lines, "zero": self.of_errors}
-
-
-def _plots(signals: Signals) -> list[_Plot]:
-    """Return what is plotted of the signals: first errors, then what differs within its topic.
-
-    A plot is one component of one topic: the wind that is reconstructed with the wind that blew.
-    Lines that are the same in every trial are one line with two names. A plot in which nothing ever
-    changes or differs is left out, unless it is an error, which exists only where a fault made it;
-    one that is zero throughout is left out too.
-    """
-    topics: dict[tuple[str, str, int], dict[_Line, _ByTrial]] = {}
-    words: dict[tuple[str, str], tuple[str, ...]] = {}
-    for address, named in signals.items():
-        for signal in named:
-            many_unnamed = signal.values.shape[1] > _MOST_COMPONENTS and not signal.parts
-            if signal.name in (IN_FORCE, DRAWN) or many_unnamed:
-                continue
-            if signal.parts:
-                words[signal.topic, signal.unit] = signal.parts
-            for part, values in enumerate(signal.values.T):
-                lines = topics.setdefault((signal.topic, signal.unit, part), {})
-                lines.setdefault((signal.name, part), {})[address] = values
-    many = {(topic, unit): part + 1 for topic, unit, part in topics}
-    plots: list[_Plot] = []
-    for (topic, unit, part), lines in topics.items():
-        for at in {at for trials in lines.values() for at in trials}:
-            values = np.concatenate([trials[at] for trials in lines.values() if at in trials])
-            values = values[np.isfinite(values)]
-            if values.size and (("error" in topic and values.any()) or np.ptp(values) > 0):
-                break
-        else:
-            continue
-        title, units = topic.replace("_", " "), unit.split(", ")
-        if (count := many[topic, unit]) > 1:
-            called = words.get((topic, unit), range(1, count + 1))[part]
-            title, unit = f"{title}, {called}", units[part] if len(units) == count else unit
-        same: dict[_Line, list[str]] = {}
-        for line, trials in lines.items():
-            twin = next((other for other in same if _alike(trials, lines[other])), line)
-            same.setdefault(twin, []).append(line[0])
-        named = tuple((line, ", ".join(names)) for line, names in same.items())
-        plots.append(_Plot(title, unit, named))
-    return sorted(plots, key=lambda plot: (not plot.of_errors, len(plot.lines) < 2))
-
-
-def _alike(one: _ByTrial, other: _ByTrial) -> bool:
-    # What the loop ends with may be missing in one of two signals.
-    return one.keys() == other.keys() and all(
-        abs(len(a) - len(b)) < 2 and np.array_equal(a[: len(b)], b[: len(a)], equal_nan=True)
-        for a, b in ((one[at], other[at]) for at in one)
-    )

@@ -60,9 +60,7 @@ if (document.getElementById("viewer-data")) {
   const begin = (data) => {
     const spatial = ["space", "picture"].includes(data.space), { series, dt_s: dt } = data;
     const several = new Set(data.scenes.map((s) => s.seed)).size > 1;
-    const state = { scene: data.picked[0] ?? 0, path: data.path, step: 0, plot: 0, playing: 0, last: 1, box: null, range: null };
-    // Along one axis the track itself is a plot, and comes first.
-    if (!spatial) state.plot = Math.max(0, data.plots.findIndex(({ title }) => title === "position"));
+    const state = { scene: data.picked[0] ?? 0, path: data.path, step: 0, plot: data.plot, playing: 0, last: 1, box: null, range: null };
     const current = () => data.scenes[state.scene];
     const trials = (pair) => ARMS.filter((arm) => pair[arm]).map((arm) => ({ arm, ...pair[arm] }));
     const track = ({ track: at }) => (at === null ? [] : series[at].map((x, i) => [x / 100, series[at + 1][i] / 100]));
