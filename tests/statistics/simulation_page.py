@@ -83,9 +83,10 @@ def sections() -> Iterator[Section]:
     )
     yield (
         "Break-even frequency",
-        "Least and greatest coverage of the set of frequencies at which it is not decided who is "
-        "ahead, over costs that are one-sided or in between and gains of 5 and 30 pp under the "
-        "fault. Columns: share of scenes that differ under correct inputs. Promised: at least .93.",
+        "Least and greatest coverage of the set of frequencies at which neither version is "
+        "significantly ahead, over costs that are one-sided or in between and gains of 5 and 30 pp "
+        "under the fault. Columns: share of scenes that differ under correct inputs. Promised: at "
+        "least .93.",
         lambda: markdown(
             ("scenes, seeds", *by_rate),
             (
@@ -107,8 +108,9 @@ def sections() -> Iterator[Section]:
     )
     yield (
         "Least detectable difference",
-        "Audits of equal arms report what they could have detected; then the true difference is "
-        "made that. Share of audits that detect it. Promised: about .80, at least .70.",
+        "Audits of two equal versions report the difference that they would find with 80 % "
+        "probability; then the true difference is made that. Share of audits in which it is "
+        "significant. Promised: about .80, at least .70.",
         lambda: markdown(
             ("scenes, share that differs", "1 seed", "3 seeds"),
             (
@@ -124,22 +126,22 @@ def sections() -> Iterator[Section]:
         ),
     )
     for title, what, found in (
-        ("Audits of equal arms", "four paths", equal_arms),
-        ("Sequential audits of equal arms", "four paths and ten looks", any_look),
+        ("Audits of equal versions", "four conditions", equal_arms),
+        ("Sequential audits of equal versions", "four conditions and ten looks", any_look),
     ):
         yield (
             title,
-            f"Share of audits with {what} that announce anything at all. Paths alike: chance that "
-            "a scene ends the same on all paths. Promised: at most .05.",
+            f"Share of audits with {what} that report any difference. Conditions alike: chance "
+            "that a scene ends the same under all conditions. Promised: at most .05.",
             partial(announced, found),
         )
     yield (
         "Skewed populations",
         "A thousand populations of 25 to 300 scenes, two to five seeds and no difference, that "
         "differ otherwise to one side than to the other: as many by little as few by much. Share "
-        "of audits of one path that announce a difference. Promised: at most .05, but for a "
+        "of audits under one condition that report a difference. Promised: at most .05, but for a "
         "standard error of .001. The power is that at 100 scenes and three seeds, of which half of "
-        "the scenes agree, where 5.4 % of trials favour one arm and .6 % the other.",
+        "the scenes agree, where 5.4 % of trials favour one version and .6 % the other.",
         lambda: markdown(
             ("largest level", "populations above .05", "power, 3 seeds", "power, 1 seed"),
             ((share([rate]) for rate in (*skewed(1000), powered(3), powered(1))),),
@@ -147,14 +149,15 @@ def sections() -> Iterator[Section]:
     )
     yield (
         "Missing trials",
-        "Two equal arms on three paths, of which trials are missing that ended badly (one-sided: "
-        "those of one arm; opposite: of one arm those that succeeded, of the other those that did "
-        "not; repeated: of one seed of three that end alike; clustered: tasks of five scenes, half "
-        "of the tasks with one less). Share of results that announce anything, promised: at most "
-        ".05. Where arms differ, share in which any of five break-even sets puts an arm ahead "
-        "where the other one is. 2,000 results each, with a standard error of at most .005.",
+        "Two equal versions under three conditions, of which trials are missing that ended badly "
+        "(one-sided: those of one version; opposite: of one version those that succeeded, of the "
+        "other those that did not; repeated: of one seed of three that end alike; clustered: tasks "
+        "of five scenes, half of the tasks with one less). Share of results that report any "
+        "difference, promised: at most .05. Where the versions differ, share in which any of five "
+        "break-even sets puts a version ahead where the other one is. 2,000 results each, with a "
+        "standard error of at most .005.",
         lambda: markdown(
-            ("what is missing, seeds", "announce anything", "any set is wrong"),
+            ("what is missing, seeds", "any difference", "any set is wrong"),
             (
                 (f"{kind}, {seeds}", *(share([rate]) for rate in rates))
                 for (kind, seeds), rates in zip(BLANKS, missing(), strict=True)
@@ -163,7 +166,7 @@ def sections() -> Iterator[Section]:
     )
     yield (
         "Reversals",
-        "Share of audits that announce a reversal where the shared effect is -20 pp. Where both "
+        "Share of audits that report a reversal where the shared effect is -20 pp. Where both "
         "isolated effects are 0 there is none; promised: at most .025, half of the 5 %, "
         "since the other half lies on the same side. The others show the power.",
         lambda: markdown(
@@ -178,7 +181,7 @@ def sections() -> Iterator[Section]:
     yield (
         "Equal methods, other trainings",
         "Two equal methods, of which every training is off by 8 pp (standard deviation). Share of "
-        "audits that detect a difference. For newly trained models that is an error, promised in "
+        "audits that report a difference. For newly trained models that is an error, promised in "
         "at most .05; for these trained models it is not one: they do differ.",
         lambda: markdown(
             ("scenes, trainings", "new trainings", "these trainings"),
@@ -191,10 +194,10 @@ def sections() -> Iterator[Section]:
 
 
 def announced(found: Callable[[int, Population, float], float]) -> str:
-    """Return the table of audits of equal arms, of which `found` measures one entry."""
+    """Return the table of audits of equal versions, of which `found` measures one entry."""
     sizes = ((25, 1), (100, 1), (100, 3))
     return markdown(
-        ("scenes, seeds, share that differs", "paths independent", "paths alike 70 %"),
+        ("scenes, seeds, share that differs", "conditions independent", "conditions alike 70 %"),
         (
             (
                 f"{n}, {seeds}, {100 * rate:g} %",
@@ -215,9 +218,9 @@ def searched() -> Section:
     """Return what is measured of searches for a fault."""
     return (
         "Searches for a fault",
-        "Share of searches that announce a reversal where none of 48 faults tried has one: the "
+        "Share of searches that report a reversal where none of 48 faults tried has one: the "
         "shared effect is 0. Promised: at most .05. The last column is what splitting the scenes "
-        "prevents: the chosen fault judged by the scenes that chose it; its standard error is at "
+        "prevents: the chosen fault tested in the scenes that chose it; its standard error is at "
         "most .025.",
         lambda: markdown(
             ("scenes of each half", "isolated effects 0", "isolated effects 20 pp", "not split"),
@@ -252,10 +255,10 @@ def main() -> None:
     lines = [
         "# What the statistics keep",
         "",
-        "Made by `make statistics`. Populations with a known truth are sampled, and the shipped "
-        "code decides. Simulated rates have a standard error of .003 (interval), .005 "
-        "(break-even), at most .013 (audits) and .018 (sequential audits). What is promised, and "
-        "how it is decided: [design/statistics.md](design/statistics.md).",
+        "Made by `make statistics`: the shipped code analyses populations with a known truth. "
+        "Simulated rates have a standard error of .003 (interval), .005 (break-even), at most .013 "
+        "(audits) and .018 (sequential audits). What is promised, and by which tests: "
+        "[design/statistics.md](design/statistics.md).",
         "",
     ]
     for title, note, measured in sections():
