@@ -32,7 +32,7 @@ IMAGINED = {
     "imagined_correct": "an imagined action misses, no error, actions",
     "imagined_error": "with the error, actions",
 }
-SIDES = {1: "ahead", -1: "behind", 0: "no difference detected"}
+SIDES = {1: "ahead", -1: "behind", 0: "no significant difference"}
 
 
 def _read(name: str) -> Any:
@@ -100,8 +100,8 @@ def said(rooms: str) -> str:
             )
     if not less and not more:
         sentences.append(
-            "Of `plain`, no difference is detected between the error in both pictures and in the "
-            "live one alone."
+            "Of `plain`, no difference between the error in both pictures and in the live one "
+            "alone is significant."
         )
     alike: dict[str, list[str]] = {}
     for audit in audits:

@@ -15,11 +15,11 @@ from faultpath.report.terminal import decision
 
 MAP_PICTURES = {"map": map_picture, "correlation": correlation_picture}
 PARTS: dict[str, tuple[str, str]] = {
-    "verdict": ("Verdict", ".masthead, #verdict > *"),
+    "verdict": ("Result", ".masthead, #verdict > *"),
     "interface": ("Who gets the fault", "#interface > *"),
     "readers": ("Who gets the fault", ".forks .panels"),
     "effects": ("Effects of the repair", "#effects"),
-    "flights": ("Some flights", "#flights > *"),
+    "flights": ("Some trials", "#flights > *"),
 }
 """Parts of a report that may be pictured: name in words, and selector in the page."""
 
@@ -62,7 +62,7 @@ def contrast(name: str) -> str:
         and effect.success.value * shared.success.value < 0
     ]
     if not shared.detected or len(opposed) != 1:
-        raise Wrong(f"{run.name} has not decided one reversal: the block has nothing to say")
+        raise Wrong(f"{run.name} has no single significant reversal: the block cannot be filled")
 
     minus = f"success of `{question.repair}` minus `{question.baseline}`, pp"
     places = {

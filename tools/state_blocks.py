@@ -120,7 +120,7 @@ def _isolated(audits: Sequence[Mapping[str, Any]], place: str) -> str:
     same = sum(a["effects"][place][3] == a["effects"][SHARED][3] for a in audits)
     differ = sum(a["turns"].get(place, "none") != "none" for a in audits)
     return (
-        f"a test {TITLES[place]} alone detects {same or 'none'} "
+        f"a test {TITLES[place]} alone shows {same or 'none'} "
         f"(significantly different from the shared effect: {differ or 'none'})"
     )
 

@@ -74,9 +74,8 @@ def verdict(question: Question, reach: Reach, signs: Sequence[int]) -> str:
     if not cells:
         return "not flown."
     every = "the only cell" if cells == 1 else f"all {cells} cells"
-    of = "the only cell" if cells == 1 else f"any of {cells} cells"
     if often[0] == cells:
-        return f"not decided in {of}."
+        return f"inconclusive in {every}."
     names = {1: question.repair, -1: question.baseline}
     side = question.sign(reach) or (1 if often[1] >= often[-1] else -1)
     if often[side] == cells:
@@ -91,7 +90,7 @@ def verdict(question: Question, reach: Reach, signs: Sequence[int]) -> str:
         return f"does not carry over: {ahead}."
     if often[side] == cells:
         return f"carries over: {ahead}."
-    return f"was not decided everywhere: {ahead}."
+    return f"inconclusive in some cells: {ahead}."
 
 
 @dataclass(frozen=True)
@@ -211,7 +210,7 @@ def moved(moves: Sequence[Move]) -> str:
         if move.opposite:
             pairs = move.same + move.opposite + move.one + move.neither
             sentences.append(
-                f"Opposite sides are decided between {between}, in {move.opposite} of "
+                f"Opposite sides are significantly ahead with {between}, in {move.opposite} of "
                 f"{counted(pairs, 'pair')} of cells that are alike in all else."
             )
         if move.change and move.change.sign:
@@ -219,7 +218,7 @@ def moved(moves: Sequence[Move]) -> str:
             sentences.append(
                 f"From {move.factor} {first} to {second} the mean difference moves to {to}."
             )
-    return " ".join(sentences) or "No factor is decided to change it."
+    return " ".join(sentences) or "No factor changes it significantly."
 
 
 def sentences(flown: Flown) -> list[str]:

@@ -47,7 +47,7 @@ def test_an_effect_takes_its_side_from_its_text_only_where_it_is_detected() -> N
         assert central.PrintedEffect.of(text, detected=True).sign == (sign or 1)
         unseen = central.PrintedEffect.of(text, detected=False)
         assert unseen.sign == 0
-        assert "no difference" in central.clause("There", unseen)
+        assert "not significant" in central.clause("There", unseen)
 
 
 def test_a_run_answers_by_the_papers_rules(found: Reproduction) -> None:
@@ -88,7 +88,7 @@ def test_findings_and_matched_properties_are_counted_apart(ledger: Ledger) -> No
     findings = [claim for claim in ledger.claims if claim.kind == "finding"]
     confirmed = sum(claim.verdict == "confirmed" for claim in findings)
     text = headline(ledger, "paper")
-    assert f"{len(findings)} findings, {confirmed} came out" in text
+    assert f"{len(findings)} findings, {confirmed} were reproduced" in text
     assert f"of {len(ledger.claims) - len(findings)} properties" in text
     some = ledger.model_copy(update={"claims": tuple(findings[:2]), "left_out": 43})
     assert "2 findings that this run is about" in headline(some, "paper")

@@ -51,7 +51,7 @@ def flown(scenes: int, **of: tuple[str, str]) -> Flown:
 @pytest.mark.parametrize("made", [ALL, NONE, TIE])
 def test_of_few_scenes_nothing_is_said_but_that_nothing_is_decided(scenes, made):
     for said in sentences(flown(scenes, mppi=made, cem=NONE)):
-        assert said.endswith("not decided in any of 8 cells. No factor is decided to change it.")
+        assert said.endswith("inconclusive in all 8 cells. No factor changes it significantly.")
 
 
 def test_no_flights_no_verdict():
@@ -59,9 +59,9 @@ def test_no_flights_no_verdict():
 
 
 def test_a_tie_decides_nothing_and_a_failed_trial_voids_its_cell():
-    assert "not decided in any of 8 cells" in sentences(flown(40, mppi=TIE, cem=TIE))[0]
+    assert "inconclusive in all 8 cells" in sentences(flown(40, mppi=TIE, cem=TIE))[0]
     broken = flown(40, mppi=(f"{'0' * 39}x", "1"), cem=TIE)
-    assert "not decided in any of 8 cells" in sentences(broken)[0]
+    assert "inconclusive in all 8 cells" in sentences(broken)[0]
 
 
 def test_verdicts_carry_over_only_where_they_are_decided_so():
@@ -69,7 +69,7 @@ def test_verdicts_carry_over_only_where_they_are_decided_so():
     assert "carries over: gru+dcc is ahead in all 8 cells. On the mean" in alone
     assert "does not carry over: gru is ahead in none of 8 cells, gru+dcc in 8." in shared
     alone, _ = sentences(flown(40, mppi=ALL, cem=TIE))
-    assert "was not decided everywhere: gru+dcc is ahead in 4 of 8 cells, gru in none." in alone
+    assert "inconclusive in some cells: gru+dcc is ahead in 4 of 8 cells, gru in none." in alone
     assert "Opposite" not in alone
     assert "From planner mppi to cem the mean difference moves to gru." in alone
 
@@ -77,7 +77,7 @@ def test_verdicts_carry_over_only_where_they_are_decided_so():
 def test_a_factor_changes_a_verdict_where_both_sides_are_decided():
     found = flown(40, mppi=ALL, cem=NONE)
     assert (
-        "Opposite sides are decided between planner mppi and cem, in 4 of 4 pairs"
+        "Opposite sides are significantly ahead with planner mppi and cem, in 4 of 4 pairs"
         in (sentences(found)[0])
     )
     by = {(move.reach, move.factor): move for move in moves(found)}
@@ -140,4 +140,4 @@ def test_what_is_stopped_resumes_and_an_arm_of_two_questions_flies_once(tmp_path
     assert "4 cells" in carry_blocks.cost("whole")
     assert "Left out: planner rrt" in carry_blocks.cost("whole")
     assert carry_blocks.matrix("whole").count("torch, mppi, exact") == 4
-    assert "not decided in the only cell" in carry_blocks.verdicts("whole")
+    assert "inconclusive in the only cell" in carry_blocks.verdicts("whole")

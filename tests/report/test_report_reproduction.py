@@ -90,7 +90,7 @@ def test_terminal_and_markdown_cut_nothing_of_a_claim() -> None:
     lines = captured.get().splitlines()
     for claim in ledger().claims:
         (line,) = (line for line in lines if line.startswith(claim.id))
-        assert line.split()[2] == claim.verdict
+        assert line.split()[2] == words.SHOWN[claim.verdict]
         assert words.typeset(claim.claim) in " ".join(captured.get().split())
     rows = [r for r in ledger_markdown(ledger(), "paper").splitlines() if r.startswith("|")]
     assert len(rows) == 2 + len(ledger().claims)

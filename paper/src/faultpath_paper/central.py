@@ -1,7 +1,7 @@
 """The paper's central question, whether sharing the error reverses the ranking, and our answers.
 
 Audits that ask it besides the reproduction itself stand in a file that comes with the package.
-Sentences come from what was detected, never from an estimate.
+Sentences come from what is significant, never from an estimate.
 """
 
 from collections.abc import Mapping, Sequence
@@ -117,9 +117,9 @@ def detail(cases: Sequence[Case]) -> str:
 
 
 def clause(where: str, effect: PrintedEffect) -> str:
-    """Return what was detected in a condition, as a clause."""
+    """Return what is significant under a condition, as a clause."""
     if not effect.sign:
-        return f"{where} no difference between the two was detected ({effect.text} pp)"
+        return f"{where} the difference between the two is not significant ({effect.text} pp)"
     than = "more" if effect.sign > 0 else "less"
     return f"{where} the retrained estimator succeeds {than} often ({effect.text} pp)"
 
@@ -143,7 +143,7 @@ def table_of(cases: Sequence[Case]) -> Table:
         line(
             case.place[:1].upper() + case.place[1:],
             *(Entry(text=e.text, detected=bool(e.sign)) for e in (case.isolated, case.shared)),
-            "yes" if case.reversal else "not detected",
+            "yes" if case.reversal else "not significant",
         )
         for case in cases
     ]

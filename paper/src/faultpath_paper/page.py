@@ -16,7 +16,7 @@ from faultpath_paper.results import NotRun, Results
 INTERVALS = (
     "Intervals, 95 %, for these trained models and recorded executions: percentile bootstrap of "
     "scene-wise mean differences, as in the paper. Score intervals (Tango's; over seeds "
-    "cluster-robust) stand beside it and decide nothing here. Bold, differences in success alone: "
+    "cluster-robust) stand beside it and are not tested. Bold, differences in success alone: "
     "the bootstrap's interval excludes 0, and for one seed exact McNemar rejects at 0.05 too."
 )
 WINS = "Wins:losses: scenes in which only the first, or only the second, succeeded, seed by seed."

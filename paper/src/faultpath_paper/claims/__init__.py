@@ -22,7 +22,7 @@ SUBJECTS: Mapping[str, Mapping[str, Statements]] = {
     "Wind (Table III)": wind.CLAIMS,
     "Shared errors (Tables IV, VI (b))": shared.CLAIMS,
     "Compensation (Table VI (a))": compensation.CLAIMS,
-    "Decision record (Table V)": paying.CLAIMS,
+    "When repairs pay (Table V)": paying.CLAIMS,
     "Histories, planning, perception (text)": others.CLAIMS,
 }
 """Claims by subject, with its place in the paper."""

@@ -28,7 +28,7 @@ class Judged(NamedTuple):
 
 CONFIRMED, REFUTED, OPEN = Judged("confirmed"), Judged("refuted"), Judged("undecided")
 FEW_SCENES = Judged("undecided", "too few scenes")
-FEW_FOR_POINTS = Judged("undecided", f"an estimate alone decides from {POINT_SCENES} scenes on")
+FEW_FOR_POINTS = Judged("undecided", f"an estimate alone counts from {POINT_SCENES} scenes on")
 TIED = Judged("undecided", "the estimate is a tie")
 
 
@@ -73,7 +73,7 @@ def detected(sign: int) -> Rule:
             return Judged("undecided", "the interval excludes 0, the test does not reject")
         return OPEN
 
-    return Rule(f"{{}} is detected {_SIDES[sign]} 0", judge)
+    return Rule(f"{{}} is significantly {_SIDES[sign]} 0", judge)
 
 
 def not_detected(sign: int | None = None) -> Rule:
@@ -88,13 +88,13 @@ def not_detected(sign: int | None = None) -> Rule:
         if contrast.detected:
             return REFUTED if sign in (None, contrast.detected) else CONFIRMED
         if contrast.least is None:
-            return Judged("undecided", "no difference, however large, is sure to be detected")
+            return Judged("undecided", "no difference, however large, is sure to be significant")
         if contrast.notable is not None and contrast.least > contrast.notable:
             return Judged("undecided", "a difference of notable size could have been missed")
         return CONFIRMED
 
-    where = "to differ from" if sign is None else _SIDES[sign]
-    return Rule(f"{{}} is not detected {where} 0", judge, sided=False)
+    where = "different from" if sign is None else _SIDES[sign]
+    return Rule(f"{{}} is not significantly {where} 0", judge, sided=False)
 
 
 @dataclass(frozen=True)
@@ -144,10 +144,10 @@ def bounded(bound: Bound, *, seen: bool = False) -> Rule:
     def judge(contrast: Contrast) -> Judged:
         met = bound.judge(contrast.value, contrast.interval, contrast.n_scenes)
         if met == CONFIRMED and seen and detection(contrast) != bound.sign:
-            return Judged("undecided", "met, but not detected")
+            return Judged("undecided", "met, but not significant")
         return met
 
-    return Rule(f"{bound.words}{' and detected' if seen else ''}", judge)
+    return Rule(f"{bound.words}{' and significant' if seen else ''}", judge)
 
 
 def at_least(limit: float) -> Rule:

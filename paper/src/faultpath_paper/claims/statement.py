@@ -215,7 +215,7 @@ class Turned(NamedTuple):
             return REFUTED
         if before and after:
             return CONFIRMED
-        why = "the change is detected, but not both effects" if moved else ""
+        why = "the change is significant, but not both effects" if moved else ""
         return Judged("undecided", why)
 
 

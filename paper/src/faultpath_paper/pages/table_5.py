@@ -72,7 +72,7 @@ PAGE = Page(
         TableSpec(
             name="table-5",
             title=f"{TITLE} (paper, Table V)",
-            columns=("Δ0 (pp)", "Δf (pp)", "p* (%) [95 % interval]", "Undecided by score (%)"),
+            columns=("Δ0 (pp)", "Δf (pp)", "p* (%) [95 % interval]", "Inconclusive by score (%)"),
             rows=(
                 _row("WM-A", "WM-A"),
                 _row("WM-U", "WM-U"),
@@ -85,8 +85,8 @@ PAGE = Page(
                 "under e = +0.1 (Δf). p* = −Δ0/(Δf − Δ0) is the fault frequency above which the "
                 "repair is ahead; 0 where it is nowhere behind; no crossing: behind throughout; "
                 "above none: ahead at low frequencies alone. In brackets: joint percentile "
-                "bootstrap, in which a resample without p* counts as 100. Undecided by score: "
-                "frequencies at which the score test does not tell who is ahead.",
+                "bootstrap, in which a resample without p* counts as 100. Inconclusive by score: "
+                "frequencies at which the score test finds neither significantly ahead.",
                 "Predictors without wind, GRU at wind L3.",
                 INTERVALS,
             ),

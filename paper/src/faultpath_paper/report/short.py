@@ -8,6 +8,7 @@ from faultpath_paper.claims import SUBJECTS
 from faultpath_paper.report.words import (
     ANSWERS,
     KINDS,
+    SHOWN,
     SIZES,
     estimate,
     figure,
@@ -19,13 +20,14 @@ from faultpath_paper.report.words import (
 def by_kind(ledger: Ledger) -> Table:
     """Return how many claims of each kind got which answer, with their ids.
 
-    An asterisk marks what is confirmed by a difference that was not detected.
+    An asterisk marks what is confirmed by a difference that is not significant.
     """
     lines: list[Line] = []
     for kind, name in KINDS.items():
         claims = [claim for claim in ledger.claims if claim.kind == kind]
         lines.append(line(name, *(_ids(claims, answer) for answer in ANSWERS)))
-    return Table(corner="The paper's", columns=ANSWERS, words=ANSWERS, lines=tuple(lines))
+    heads = tuple(SHOWN[answer] for answer in ANSWERS)
+    return Table(corner="The paper's", columns=heads, words=heads, lines=tuple(lines))
 
 
 def _ids(claims: list[ClaimVerdict], answer: str) -> str:
@@ -55,7 +57,7 @@ def apart(ledger: Ledger) -> Iterator[tuple[str, str]]:
     for claim in ledger.claims:
         if claim.verdict != "confirmed":
             part = next(part for part in claim.parts if part.answer == claim.verdict)
-            yield f"{claim.id}, {claim.verdict}", _decisive(part)
+            yield f"{claim.id}, {SHOWN[claim.verdict]}", _decisive(part)
 
 
 def _decisive(part: StatementPart) -> str:

@@ -19,19 +19,19 @@ from faultpath_paper.report import words
 _TONES: dict[Answer, Tone] = {"confirmed": "good", "refuted": "bad", "undecided": "faint"}
 _SHOWN: dict[str, AlignMethod] = {
     "Claim": "left",
-    "Verdict": "left",
+    "Result": "left",
     "Estimate": "right",
     "Size": "left",
     "Detectable": "right",
 }
-_PRINTED = ("What is claimed", "Kind", "Verdict", "Estimate", "Sizes", "Detectable", "The paper")
+_PRINTED = ("What is claimed", "Kind", "Result", "Estimate", "Sizes", "Detectable", "The paper")
 _IN_SHORT: dict[Size, str] = {
     "right sign, other size": "right sign only",
     "not comparable": MISSING,
 }
 _FARTHEST = (
     "Sizes: how the estimate stands to the paper's figure, for the statement of a claim that is "
-    "farthest from it, and how many of those that can be compared stand so. No verdict depends on "
+    "farthest from it, and how many of those that can be compared stand so. No result depends on "
     "it."
 )
 
@@ -81,7 +81,7 @@ def ledger_markdown(ledger: Ledger, profile: str) -> str:
         for claim in ledger.claims
         for entries in [_entries(claim)]
     )
-    texts = ("Kind", "Verdict", "Sizes", "The paper", "What is claimed")
+    texts = ("Kind", "Result", "Sizes", "The paper", "What is claimed")
     table = grid(Table(corner="Claim", columns=_PRINTED, lines=tuple(lines), words=texts))
     sizes = [markdown(f"{words.sizes(ledger)} {_FARTHEST}")] if words.sizes(ledger) else []
     head = f"{words.headline(ledger, profile)}.", markdown(f"{_about(ledger)}.")
@@ -94,11 +94,11 @@ def _about(ledger: Ledger) -> str:
 
 
 def _entries(claim: ClaimVerdict) -> dict[str, str | Entry]:
-    verdict = f"{words.SIGNS[claim.verdict]} {claim.verdict}"
+    answer = f"{words.SIGNS[claim.verdict]} {words.SHOWN[claim.verdict]}"
     size, _, _ = words.farthest(claim)
     return {
         "Kind": claim.kind,
-        "Verdict": Entry(text=verdict, tone=_TONES[claim.verdict]),
+        "Result": Entry(text=answer, tone=_TONES[claim.verdict]),
         "Estimate": words.estimate(claim) or MISSING,
         "Size": _IN_SHORT.get(size, size),
         "Sizes": words.size(claim) or MISSING,

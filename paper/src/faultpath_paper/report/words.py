@@ -8,10 +8,16 @@ from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size, Statemen
 QUICK = "quick"
 """The profile whose runs are too small to be compared with the paper."""
 VERDICTS = (
-    "The verdicts of the run that comes with faultpath: faultpath reproduce --judge, "
+    "Results of the run that comes with faultpath: faultpath reproduce --judge, "
     "docs/reproduction.md."
 )
 SIGNS: dict[Answer, str] = {"confirmed": "✓", "refuted": "✕", "undecided": "○"}
+SHOWN: dict[Answer, str] = {
+    "confirmed": "confirmed",
+    "refuted": "refuted",
+    "undecided": "inconclusive",
+}
+"""How pages call an answer of the ledger."""
 ANSWERS: tuple[Answer, ...] = ("confirmed", "refuted", "undecided")
 
 SIZES: tuple[Size, ...] = ("compatible", "right sign, other size", "other size", "other sign")
@@ -129,7 +135,7 @@ KINDS = {
 def headline(ledger: Ledger, profile: str) -> str:
     """Return the outcome of all claims in one sentence, kind by kind; a quick run has none."""
     if profile == QUICK:
-        return "The quick profile tests the pipeline and decides nothing about the paper’s claims"
+        return "The quick profile tests the pipeline and says nothing about the paper’s claims"
     clauses = [tally(ledger, kind) for kind in KINDS if any(c.kind == kind for c in ledger.claims)]
     return "; ".join(clauses) or "This run is about none of the paper’s claims"
 
@@ -141,20 +147,22 @@ def tally(ledger: Ledger, kind: str) -> str:
     about = " that this run is about" if ledger.left_out else ""
     if kind == "finding":
         return (
-            f"Of the paper’s {len(verdicts)} findings{about}, {confirmed} came out, {refuted} "
-            f"{'was' if refuted == 1 else 'were'} refuted and {undecided} stayed undecided"
+            f"Of the paper’s {len(verdicts)} findings{about}, {confirmed} "
+            f"{'was' if confirmed == 1 else 'were'} reproduced, {refuted} "
+            f"{'was' if refuted == 1 else 'were'} refuted and {undecided} "
+            f"{'is' if undecided == 1 else 'are'} inconclusive"
         )
     return f"of {len(verdicts)} {KINDS[kind]}, {confirmed} hold on these scenes"
 
 
 def is_non_detection(claim: ClaimVerdict) -> bool:
-    """Return whether a claim is confirmed by differences that were looked for and not detected."""
-    return claim.verdict == "confirmed" and all(NOT_DETECTED in p.words for p in claim.parts)
+    """Return whether a claim is confirmed by differences that are not significant."""
+    return claim.verdict == "confirmed" and all(NOT_SIGNIFICANT in p.words for p in claim.parts)
 
 
-NOT_DETECTED = "is not detected"
+NOT_SIGNIFICANT = "is not significantly"
 NON_DETECTION = (
-    "An asterisk marks a claim that is confirmed because no difference was detected: that is no "
+    "An asterisk marks a claim that is confirmed because no difference is significant: that is no "
     "proof that there is none."
 )
 

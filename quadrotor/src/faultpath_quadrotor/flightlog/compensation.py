@@ -72,8 +72,8 @@ class Compensation(Frozen):
             return ""
         flown_s = self.intervals * INTERVAL_S
         return (
-            "Too little data to decide anything: errors on this flight stay alike for so long that "
-            f"it takes at least {LEAST * self.block_s:.0f} s of flight, and {flown_s:.0f} s count."
+            "Too little data: errors on this flight stay alike for so long that at least "
+            f"{LEAST * self.block_s:.0f} s of flight are needed, and {flown_s:.0f} s count."
         )
 
 

@@ -16,7 +16,7 @@ CAVEAT = (
 
 
 def sentences(compensation: Compensation) -> tuple[str, ...]:
-    """Return a sentence for each size of the error, or why nothing is decided."""
+    """Return a sentence for each size of the error, or why there is too little data."""
     if compensation.too_short:
         return (compensation.too_short,)
     return tuple(map(_sentence, compensation.shared))
@@ -24,7 +24,7 @@ def sentences(compensation: Compensation) -> tuple[str, ...]:
 
 def _sentence(comparison: SharedAgainstIsolated) -> str:
     high, low = ("high", "low") if comparison.error > 0 else ("low", "high")
-    effect = "whether sharing the error compensates for it is not decided"
+    effect = "the data do not show whether sharing the error compensates for it"
     if comparison.decided != "not decided":
         helps = comparison.decided == "less"
         effect = "sharing compensates" if helps else "sharing makes it worse"
