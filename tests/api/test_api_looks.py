@@ -18,7 +18,7 @@ ASKED = {
     "workers": 0,
     "progress": False,
 }
-FIVE_PERCENT = "at most 5 % would find any difference"
+FIVE_PERCENT = "at most 5 % of audits would report any difference"
 
 
 @pytest.fixture(autouse=True)

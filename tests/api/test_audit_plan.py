@@ -144,7 +144,9 @@ def test_the_question_names_its_primary_contrast_and_what_it_generalises_to():
     assert planned("deaf", "plain", "mass:scale=2").question.primary == "planner"
     named = planned("plain", "observed", "mass:scale=2", primary="observer").question
     assert (named.primary, named.generalise, named.trained) == ("observer", "scenes", False)
-    with pytest.raises(UserError, match=r"no path 'pilot'.*correct, observer, planner, shared"):
+    with pytest.raises(
+        UserError, match=r"no condition 'pilot'.*correct, observer, planner, shared"
+    ):
         planned("plain", "observed", "mass:scale=2", primary="pilot")
 
 

@@ -141,7 +141,7 @@ def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
     assert run.record.scenes == 3
     assert len(run.record.effects[0].wins) == 30  # though many of them came out alike
     assert run.record.estimand == "new tasks like these"
-    assert run.headline.startswith("Too few scenes to decide")
+    assert run.headline.startswith("Too few scenes")
     by_scene = judged(file, tmp_path / "scenes")
     assert any("--cluster task" in said for said in by_scene.record.findings)
 
@@ -151,13 +151,13 @@ def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
 def test_few_scenes_and_ties_claim_nothing(n: int, won: tuple[bool, bool], tmp_path: Path) -> None:
     arms = {"old": [won[0]] * n, "new": [won[1]] * n}
     run = judged(table(tmp_path / "few.csv", {"": arms}), tmp_path / "run")
-    assert run.headline.startswith("Too few scenes to decide")
+    assert run.headline.startswith("Too few scenes")
     assert not any("more often" in said for said in run.record.sentences)
 
 
 ROW = "old,s0,0,,1,h\nnew,s0,0,,1,h\n"
 REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
-    "arm": (HEADER + ROW, {"repair": "newer"}, "unknown arm 'newer'; did you mean 'new'?"),
+    "arm": (HEADER + ROW, {"repair": "newer"}, "unknown version 'newer'; did you mean 'new'?"),
     "twice": (HEADER + ROW + ROW, {}, "all.csv, line 4 and .*all.csv, line 2 are the same trial"),
     "unpaired": (HEADER + ROW.replace("new,s0", "new,s1"), {}, "no trial of 'old' has its pair"),
     "condition": (

@@ -26,7 +26,7 @@ def test_a_plan_is_told_written_flown_and_resumed(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setenv("COLUMNS", "120")
     ended = plan("--fault", "slope:offset=0.2")
     assert ended.status == 0
-    assert "gain_estimate comes first: 2 consumers, as speedometer" in " ".join(ended.out.split())
+    assert "gain_estimate comes first: 2 readers, as speedometer" in " ".join(ended.out.split())
     assert "output of observer" in ended.out
     assert re.search(r"the largest known probe response \(0\.\d+\)", " ".join(ended.out.split()))
     assert "Written: study.yaml" in ended.out

@@ -75,7 +75,7 @@ def test_swapping_the_arms_swaps_the_record() -> None:
 @pytest.mark.parametrize("scenes", [1, 2, 4])
 def test_nothing_is_said_to_be_decided_of_a_few_scenes(scenes: int) -> None:
     made = record(reversal(scenes))
-    assert made.headline.startswith(f"Too few scenes to decide anything: {scenes}")
+    assert made.headline.startswith(f"Too few scenes: {scenes} compared")
     assert not DECIDES.search(" ".join((made.headline, *made.sentences)))
     assert not any(point.sign for point in made.points)
     assert made.joint.regions == ()

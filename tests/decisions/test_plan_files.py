@@ -122,7 +122,7 @@ def test_a_given_error_takes_the_place_of_a_declared_one():
     [
         ("rate:scale=1.1,1.2", "takes one size"),
         ("rate:scale=1.1@model", "faults every module by itself"),
-        ("unread:scale=2", "reaches no consumer: neither variant"),
+        ("unread:scale=2", "reaches no module"),
         ("rat:scale=2", "did you mean 'rate'"),
     ],
 )
@@ -168,9 +168,9 @@ UNSIZED = {"fault": "", "unsized": "declares none"}
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ([candidate("a", 3)], "a (3 consumers) is the only uncertain source"),
+        ([candidate("a", 3)], "a (3 readers) is the only uncertain source"),
         ([candidate("a", 3, 0.1), candidate("b", 2, 9.0)], "more than any other source"),
-        ([candidate("a", 3), candidate("b", 3, **UNSIZED)], "a and b tie: 3 consumers each"),
+        ([candidate("a", 3), candidate("b", 3, **UNSIZED)], "a and b tie: 3 readers each"),
         ([candidate("a", 3, **UNSIZED), candidate("b", 2)], "b is the first in the ranking that"),
         ([candidate("a", 2, 0.5), candidate("b", 2, 0.25)], "largest known probe response (0.5)"),
         ([candidate("a", 2, 0.5), candidate("b", 2)], "largest known probe response (0.5)"),

@@ -196,7 +196,9 @@ def check(made: DecisionRecord) -> None:
         opposite = effects[change.isolated] * effects[change.shared] < 0
         said = phrases.change(made, change)
         assert ("reverses" in said) == opposite
-        assert ("Interaction detected" in said) == (not opposite and changes[change.isolated] != 0)
+        assert ("Significant interaction" in said) == (
+            not opposite and changes[change.isolated] != 0
+        )
     turned = {c.isolated for c in made.changes if effects[c.isolated] * effects[c.shared] < 0}
     extreme = {e.path for e in made.effects if e.extreme}
     correct = 0 if CORRECT in extreme else effects[CORRECT]
@@ -206,7 +208,7 @@ def check(made: DecisionRecord) -> None:
     advised = "Ask which" in " ".join(plain.values())
     if made.scenes < made.scenes_needed:
         assert list(plain) == ["Left open", "How sure"]
-        assert plain["Left open"].startswith("Too few scenes to decide")
+        assert plain["Left open"].startswith("Too few scenes")
         assert not advised
     else:
         assert advised == bool(turned - extreme and SHARED not in extreme)
@@ -238,7 +240,7 @@ def check(made: DecisionRecord) -> None:
     if made.question.primary not in {e.path for e in made.effects}:
         assert "no pair of trials is left" in made.headline
     elif made.scenes < made.scenes_needed:
-        assert made.headline.startswith("Too few scenes to decide")
+        assert made.headline.startswith("Too few scenes")
         assert str(made.scenes_needed) in made.headline
 
 
@@ -278,7 +280,7 @@ def says_how_it_stopped(made: DecisionRecord) -> None:
     assert held.reached == (wanted <= settled)
     assert ("it stopped after" in told) == (held.reached and held.scenes < most)
     assert ("all that it was allowed" in told) == (held.scenes == most)
-    assert ("not decided" in told or "not every" in told) == (not held.reached)
+    assert ("not significant" in told or "not every" in told) == (not held.reached)
     assert held.scenes == 1 or "1 scenes" not in told
     for effect in made.effects:
         small = effect.path in held.small

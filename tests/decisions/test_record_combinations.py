@@ -88,11 +88,11 @@ def holds(said: str, it: DecisionRecord) -> None:
             clause = found[1]
             for path in places(clause, list(of)):
                 assert leads.get(path) == sign, said
-            if "on every path" in clause and "is ahead" in found[0]:
+            if "under every condition" in clause and "is ahead" in found[0]:
                 assert len(others) == len(of), said
     for found in re.finditer(r"[Nn]o difference([^.;]*)", said):
         assert all(not of[path].detected for path in places(found[1], list(of))), said
-    if "detected on any path" in said:
+    if "significant under any condition" in said:
         assert not any(effect.detected for effect in of.values())
     shared = of.get(SHARED)
     open_ = shared and shared.acted and not (shared.sign or shared.extreme)
@@ -164,11 +164,11 @@ def test_an_interval_that_leaves_out_0_undetected_has_its_p_and_the_reason() -> 
     assert (shared.success.high or 0.0) < 0
     assert not shared.detected
     p = f"p = {shared.adjusted_p_value:.3f} after Holm"
-    assert in_short(it, shared) == f"no difference detected ({p})"
+    assert in_short(it, shared) == f"no significant difference ({p})"
     (said,) = not_standing(it)
     assert said in answers(it)["Left open"]
     assert p in said
     assert f"{it.hypotheses} contrasts" in said
     clear = record({CORRECT: (50, 3, 3), "a": (40, 30, 2), SHARED: (50, 5, 5)})
     assert not list(not_standing(clear))
-    assert "decides nothing" not in " ".join(clear.sentences)
+    assert "although the interval" not in " ".join(clear.sentences)

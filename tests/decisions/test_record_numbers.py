@@ -233,5 +233,5 @@ def test_the_primary_contrast_is_the_shared_path_or_the_only_isolated_one_or_the
     named = question().model_copy(update={"primary": "observer"})
     cells = {CORRECT: level, "observer": level, SHARED: level}
     assert decide(named, paths(*cells), table(cells)).question.primary == "observer"
-    with pytest.raises(UserError, match=r"no path 'obs'.*has correct, observer, shared"):
+    with pytest.raises(UserError, match=r"no condition 'obs'.*has correct, observer, shared"):
         decide(named.model_copy(update={"primary": "obs"}), paths(*cells), table(cells))

@@ -47,7 +47,7 @@ def test_a_change_without_two_effects_is_an_interaction_and_no_advice():
     made = three((50, 0, 0), (50, 9, 9), LOSS)
     (change,) = made.changes
     assert change.turn == "interaction"
-    assert phrases.change(made, change).startswith("Interaction detected")
+    assert phrases.change(made, change).startswith("Significant interaction")
     assert "Do not" not in made.headline
 
 
@@ -58,11 +58,14 @@ def test_a_fault_without_a_shared_path_has_no_change():
 @pytest.mark.parametrize(
     ("cells", "said"),
     [
-        ((GAIN, GAIN, GAIN), "new is ahead of old on every path."),
-        ((LEVEL, LEVEL, LEVEL), "No difference between old and new is detected on any path."),
+        ((GAIN, GAIN, GAIN), "new is ahead of old under every condition."),
+        (
+            (LEVEL, LEVEL, LEVEL),
+            "No difference between old and new is significant under any condition.",
+        ),
         ((LEVEL, GAIN, GAIN), "under the shared fault and with the fault at the observer alone."),
         ((LOSS, GAIN, GAIN), "; old is ahead under correct inputs."),
-        ((LOSS, LEVEL, LEVEL), "is detected under the shared fault"),
+        ((LOSS, LEVEL, LEVEL), "is significant under the shared fault"),
         ((GAIN, GAIN, (0, 9, 0)), "Both nearly always fail under the shared fault; new is ahead"),
         (((100, 0, 0),) * 3, "No difference could show"),
         (((0, 0, 0),) * 3, "No difference could show"),
@@ -91,7 +94,7 @@ def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
     words = " ".join(made.sentences)
     (effect,) = (e for e in made.effects if e.path == CORRECT)
     least = re.search(
-        r"detected under correct inputs; a true one of (\d+) pp would be found in 8 of 10", words
+        r"significant under correct inputs; a true one of (\d+) pp would be found in 8 of 10", words
     )
     assert least is not None
     assert effect.minimum_detectable_pp <= int(least[1]) < effect.minimum_detectable_pp + 1
@@ -100,7 +103,7 @@ def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
 def test_three_scenes_decide_nothing_however_clear_they_look():
     made = record({CORRECT: (0, 0, 3), "observer": (0, 3, 0), SHARED: (0, 0, 3)}, n=3)
     assert made.scenes_needed == 8
-    assert made.headline.startswith("Too few scenes to decide: 3 compared")
+    assert made.headline.startswith("Too few scenes: 3 compared")
 
 
 @pytest.mark.parametrize(
@@ -121,7 +124,7 @@ def test_the_fault_frequency_is_said_where_it_is_decided(correct, fault, said):
 
 
 def test_a_fault_that_never_acted_was_not_tested():
-    """Not: no difference is detected."""
+    """Not: no difference is significant."""
 
     def made(altered: dict[str, int | None]) -> DecisionRecord:
         out = []

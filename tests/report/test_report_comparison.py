@@ -56,8 +56,8 @@ def test_detected_here_and_not_there_is_no_difference(two: Given) -> None:
     quiet = (first, signed(second, "shared", 0))
     assert headline(quiet) == "2 audits side by side"
     said = sentences(quiet)
-    assert said[0] == "No two audits of the same arms are significant in opposite directions."
-    assert "no test between the audits" in said[1]
+    assert said[0] == "No two audits of the same versions are significant in opposite directions."
+    assert "separate tests" in said[1]
     assert "not shown to differ" in said[1]
 
 
@@ -177,7 +177,7 @@ def test_other_paths_are_blank_and_not_left_out(
     table = effects(runs)
     told = [(line.label, line.entries[-1].text) for line in table.lines if line.entries]
     assert told[2][1] == "every pair void"
-    assert told[6][1] == "no such path"
+    assert told[6][1] == "not run"
     text = page(runs)
     panels = re.findall(r"<svg.*?</svg>", text, re.DOTALL)
     assert len(panels) == 5

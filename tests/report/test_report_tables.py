@@ -147,9 +147,9 @@ def test_an_interval_that_leaves_out_0_undetected_has_its_p_in_every_table(
     open_ = record.effects[-1].model_copy(update={"sign": 0, "adjusted_p_value": 0.25})
     made = record.model_copy(update={"effects": (*record.effects[:-1], open_)})
     assert "0.250" in decided_for(made, open_).aside
-    assert "the interval by itself leaves out 0" in markdown_table(made)
+    assert "the interval excludes 0" in markdown_table(made)
     console = Console(file=io.StringIO(), width=120)
     console.print(decision(made))
     shown = console.file.getvalue()
-    assert "the interval by itself leaves out 0, but p = 0.250" in " ".join(shown.split())
-    assert "by itself leaves out 0" not in markdown_table(record)
+    assert "the interval excludes 0, but p = 0.250" in " ".join(shown.split())
+    assert "the interval excludes 0" not in markdown_table(record)

@@ -135,7 +135,7 @@ def test_a_shard_without_receipts_is_named_and_run_again(whole, tmp_path, monkey
     after = run_study(study(), tmp_path, workers=0, notice=notices.append)
     assert after.blocks_kept == 0
     assert len(notices) == after.blocks_computed
-    assert all("kept no receipts" in notice for notice in notices)
+    assert all("kept no delivery log" in notice for notice in notices)
     assert after.deliveries == whole[0].deliveries
 
 

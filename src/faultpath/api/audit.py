@@ -181,7 +181,7 @@ def _recorded(
         with job.display.progress("Recording signals") as show:
 
             def note(arm: object, done: int, total: int) -> None:
-                count = f"{done} of {total} arms, {counted(len(few), 'scene')}"
+                count = f"{done} of {total} batches of {counted(len(few), 'scene')}"
                 show(Progress(done, total, count))
 
             replays = run_again(before, audit.study, audit.system, job.executor, missing, note)

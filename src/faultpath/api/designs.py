@@ -75,7 +75,7 @@ def _search(plan: SearchPlan, job: Job) -> SearchRun:
     confirmed, folder, failed = None, "", 0
     if chosen := best(tried):
         folder = f"confirmation-{digest(chosen)}"
-        job.display.say(f"Chosen: {chosen}. What follows decides.")
+        job.display.say(f"Chosen: {chosen}. The audit that follows tests it.")
         audit = Job(job.folder / folder, job.executor, job.display, job.how)
         confirming = carry_out(plan.audit(chosen), audit)
         confirming.report()

@@ -105,14 +105,14 @@ def _doubts(
     if provenance.files[OUTCOMES] != provenance.outcomes_sha256:
         yield "provenance gives the outcomes two digests"
     if provenance.library_hash != question.library_hash:
-        yield "record and provenance name different libraries"
+        yield "result and provenance name different libraries"
     if tuple(variant.name for variant in shown.variants) != (question.baseline, question.repair):
         yield "the system's variants are not those of the question"
     yield from _other_trials(record, outcomes)
     yield from _other_effects(record)
     yield from _other_taps(record, shown.interface, deliveries)
     if not set(deliveries.findings) <= set(record.findings):
-        yield "the record leaves out a finding of the run"
+        yield "the result leaves out a finding of the run"
 
 
 def _other_trials(record: DecisionRecord, outcomes: OutcomeTable) -> Iterator[str]:
@@ -123,16 +123,16 @@ def _other_trials(record: DecisionRecord, outcomes: OutcomeTable) -> Iterator[st
     trials = Counter((row.variant, row.path) for row in rows)
     solved = Counter((r.variant, r.path) for r in rows if r.outcome.status is Status.SUCCESS)
     if not arms or set(cells) != arms or set(trials) != arms:
-        yield "the record and the outcomes have different arms"
+        yield "the result and the outcomes have different versions, conditions or seeds"
     untimed = any(math.isnan(row.outcome.time_s) for row in rows if not row.outcome.failed)
     if untimed and question.judged is None:
         yield "trials of an audit have no time"
     if any(cells[arm] != (trials[arm], solved[arm]) for arm in arms):
-        yield "the record and the outcomes count different successes"
+        yield "the result and the outcomes count different successes"
     measured = {name for row in rows for name in row.outcome.metrics}
     names = {name for effect in record.effects for name in effect.metrics}
     for name in sorted(names - measured):
-        yield f"the record tells of '{name}', and the outcomes have no such column"
+        yield f"the result has a metric '{name}', and the outcomes have no such column"
 
 
 def _other_effects(record: DecisionRecord) -> Iterator[str]:
@@ -140,11 +140,11 @@ def _other_effects(record: DecisionRecord) -> Iterator[str]:
     paths = {path.name for path in record.paths}
     results = (*record.effects, *record.break_even, *record.break_even_beta)
     if not paths.issuperset(result.path for result in results):
-        yield "the record has effects on paths that it does not name"
+        yield "the result has effects under conditions that it does not name"
     ends = {path for change in record.changes for path in (change.isolated, change.shared)}
     seeds = all(len(effect.wins) == len(effect.losses) for effect in record.effects)
     if not seeds or not ends.issubset(effect.path for effect in record.effects):
-        yield "the record has effects that do not fit each other"
+        yield "the result has effects that contradict each other"
 
 
 def _other_taps(
@@ -157,11 +157,11 @@ def _other_taps(
         faulted = {question.repair: path.faulted, question.baseline: path.baseline_faulted}
         for variant, named in faulted.items():
             if not taps.issuperset((tap.channel, tap.consumer) for tap in named):
-                yield "the record names taps that the interface has not got"
+                yield "the result names injection points that the interface does not have"
             try:
                 received = faulted_taps(deliveries.at(variant, path.name))
             except KeyError:
-                yield "the record has arms without receipts"
+                yield "the delivery log leaves out a version or condition of the result"
             else:
                 if received != named:
-                    yield f"receipts and record differ about the taps that '{path.name}' faulted"
+                    yield f"delivery log and result differ in who got the fault under '{path.name}'"

@@ -247,7 +247,7 @@ def run_folder(
     place = question.folder or Path("runs") / f"{name}-{stamp}"
     if chosen.own and (place / "manifest.json").exists():
         raise UserError(
-            f"{place} holds a run, and whether it was of this same object cannot be told: give "
+            f"{place} holds a run, and nothing shows whether it was of this same object: give "
             "another folder, or put what builds the system into a file and name that."
         )
     return place

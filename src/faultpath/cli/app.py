@@ -57,7 +57,7 @@ _PANELS = {
             "judge",
             audits.judge,
             "results.csv --baseline old --repair new",
-            "Decide from trials that other tools ran.",
+            "Compare two versions in trials that other tools ran.",
         ),
         Command(
             "report",

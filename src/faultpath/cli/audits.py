@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Details = Annotated[
     bool,
     typer.Option(
-        "--details", help="Print every sentence of the record too, and what would change it."
+        "--details", help="Print every sentence of the result too, and what would change it."
     ),
 ]
 
@@ -152,7 +152,8 @@ def judge(
         list[str],
         typer.Argument(
             help="Files or folders: CSV, Parquet, JSON lines, LeRobot's eval_info.json, logs of "
-            "Inspect, samples of lm-eval. ARM=FILE or ARM@CONDITION=FILE says what a file does not."
+            "Inspect, samples of lm-eval. VERSION=FILE or VERSION@CONDITION=FILE says what a file "
+            "does not."
         ),
     ],
     details: Details = False,
@@ -196,7 +197,7 @@ def report(
                 "--out takes the page of a comparison: give two or more finished audits."
             )
         if as_json:
-            raise UserError("--json prints a comparison: record.json holds the record of a run.")
+            raise UserError("--json prints a comparison: the result of one run is its record.json.")
         from faultpath.api.comparing import beside
         from faultpath.api.runs import open_run
 

@@ -23,8 +23,8 @@ FailIf = Annotated[
     typer.Option(
         "--fail-if",
         metavar=f"<{'|'.join(_ASKS)}>",
-        help="Exit with 1 where this is found; repeat the option for more. undecided is about the "
-        "primary contrast.",
+        help="Exit with 1 where this is found; repeat the option for more. `undecided` is about "
+        "the primary contrast.",
         rich_help_panel=ADVANCED,
     ),
 ]

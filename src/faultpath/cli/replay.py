@@ -18,7 +18,8 @@ def replay(
         typer.Option(help="Scene by its id, several times for several; default those shown first."),
     ] = None,
     path: Annotated[
-        list[str] | None, typer.Option(help="Path of the fault, such as shared; default all.")
+        list[str] | None,
+        typer.Option(help="Condition: correct, shared or a module's name; default all."),
     ] = None,
     signals: Annotated[
         bool,

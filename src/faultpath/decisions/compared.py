@@ -87,8 +87,8 @@ def compared(
         faulty = [name for name in left if name != CORRECT]
         if len(left) == 1 or not left[CORRECT].scenes:
             raise UserError(
-                "no scene is left to compare, because in each of them a trial failed or the arms "
-                "met different conditions: mend what made it fail, or choose other scenes."
+                "no scene is left to compare, because in each of them a trial failed or the two "
+                "versions met different conditions: mend what made it fail, or choose other scenes."
                 + "".join(f" {words}" for words in mismatch_words(mismatches))
             )
         del left[min(faulty, key=lambda name: len(left[name].scenes))]

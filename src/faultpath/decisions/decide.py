@@ -99,7 +99,7 @@ def primary_path(named: str, paths: Sequence[Path]) -> str:
     names = [path.name for path in paths]
     if named and named not in names:
         raise UserError(
-            f"the audit has no path '{named}' to be its primary contrast: it has "
+            f"the audit has no condition '{named}' for its primary contrast: it has "
             f"{', '.join(names)}."
         )
     return led(named, names)

@@ -1,7 +1,7 @@
 """Which scenes stand as examples, and how many go like each.
 
-A scene with one seed shows who succeeded on each path: its pattern. Patterns come first that show
-the most detected reversals, then those that show the most decided effects, less what they
+A scene with one seed shows who succeeded under each condition: its pattern. Patterns come first
+that show the most reversals, then those that show the most significant effects, less what they
 contradict, then those in which not everything ends alike, then those that more scenes have. Of
 each of the first six patterns the scene with the lowest index is shown; places left over are
 filled in the same order. They are examples, not a sample.
@@ -50,7 +50,7 @@ def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
 
 
 def captions(pairs: Sequence[Pair]) -> dict[At, str]:
-    """Say of each scene and seed in how many the same arms succeed on every path."""
+    """Say of each scene and seed in how many the same versions succeed under every condition."""
     patterns = _patterns(pairs)
     scenes, seeds = (
         (len(set(values)) for values in zip(*patterns, strict=True)) if patterns else (0, 0)
@@ -59,7 +59,7 @@ def captions(pairs: Sequence[Pair]) -> dict[At, str]:
     like = Counter(patterns.values())
     return {
         at: f"{like[pattern]} of {of} {'goes' if like[pattern] == 1 else 'go'} like this one: "
-        "the same versions succeed on each path."
+        "the same versions succeed under each condition."
         for at, pattern in patterns.items()
     }
 

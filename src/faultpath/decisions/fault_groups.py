@@ -18,7 +18,7 @@ def fault_of(system: System, text: str) -> AnyFault:
     if len(texts) == 1:
         return system.fault(text)
     if "@" in text:
-        raise UserError(f"fault '{text}': joined faults reach every consumer; leave '@' out")
+        raise UserError(f"fault '{text}': joined faults reach every reader; leave '@' out")
     parts = [_part(system, text) for text in texts]
     # Without sizes: draws of the cause are the same at every size.
     names = (part.name if part.kind == "coupled" else part.drawn_from for part in parts)

@@ -1,4 +1,4 @@
-"""Questions of a build or a test, answered from the decisions of a record and nothing else."""
+"""Questions of a build or a test, answered from a result and nothing else."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ ASKS: tuple[Ask, ...] = get_args(Ask)
 
 @dataclass(frozen=True)
 class Answer:
-    """Yes or no, with what was decided: true and false as a bool, and read in a failed assert."""
+    """Yes or no, and what it rests on: true and false as a bool, and read in a failed assert."""
 
     yes: bool
     said: str
@@ -31,11 +31,11 @@ class Answer:
 
 
 def found(record: DecisionRecord, what: str) -> Answer:
-    """Return whether a record holds what is named; `UserError` for what is none of `ASKS`.
+    """Return whether a result holds what is named; `UserError` for what is none of `ASKS`.
 
-    `reversal`: sharing the fault is decided to reverse the ranking. `repair-behind`: on some path
-    the baseline is decided to be ahead. `undecided`: on the primary path nobody is, nor is the
-    difference shown to be small. `void`: pairs of trials count for nothing.
+    `reversal`: sharing the fault reverses the ranking. `repair-behind`: under some condition the
+    baseline is significantly ahead. `undecided`: the primary contrast is neither significant nor
+    shown to be small. `void`: pairs of trials count for nothing.
     """
     match what:
         case "reversal":
@@ -45,7 +45,7 @@ def found(record: DecisionRecord, what: str) -> Answer:
         case "repair-behind":
             behind = [effect for effect in record.effects if effect.sign < 0]
             if not behind:
-                return Answer(False, "on no path is the baseline significantly ahead.")
+                return Answer(False, "under no condition is the baseline significantly ahead.")
             ahead = f"{record.question.baseline} succeeds more often."
             return Answer(True, f"{capital(places(behind))}, {ahead}")
         case "undecided":
@@ -65,10 +65,10 @@ def found(record: DecisionRecord, what: str) -> Answer:
 
 
 def holds_when_shared(record: DecisionRecord) -> Answer:
-    """Return whether the repair is decided to be ahead under the shared fault.
+    """Return whether the repair is significantly ahead under the shared fault.
 
     Away from floor and ceiling, and not because the baseline's trials failed. `UserError` for a
-    record without a shared fault.
+    result without a shared fault.
     """
     if SHARED not in {path.name for path in record.paths}:
         raise UserError("the result has no shared fault, so nothing says whether the repair holds.")
@@ -78,6 +78,6 @@ def holds_when_shared(record: DecisionRecord) -> Answer:
 
 
 def broken(record: DecisionRecord, conditions: Sequence[str]) -> dict[str, Answer]:
-    """Return what a build fails for, of what it was told to: by name, each with its answer."""
+    """Return which of the conditions to fail for are met: by name, each with its answer."""
     answers = {condition: found(record, condition) for condition in conditions}
     return {name: answer for name, answer in answers.items() if answer}

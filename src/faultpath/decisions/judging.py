@@ -47,10 +47,10 @@ def lay_out(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
     without a trial in common, and hashes that only some trials have.
     """
     if request.baseline == request.repair:
-        raise UserError(f"baseline and repair are both '{request.repair}': name two arms.")
+        raise UserError(f"baseline and repair are both '{request.repair}': name two versions.")
     for name in (request.baseline, request.repair):
-        if name not in (arms := {row.arm for row in rows}):
-            raise UserError(f"the results have no such arm: {unknown('arm', name, arms)}.")
+        if name not in (versions := {row.arm for row in rows}):
+            raise UserError(f"the results: {unknown('version', name, versions)}.")
     rows = [row for row in rows if row.arm in (request.baseline, request.repair)]
     names = _path_names({row.condition for row in rows}, request)
     if request.cluster == "task" and not all(row.task for row in rows):
@@ -117,7 +117,7 @@ def _path_names(conditions: Collection[str], question: JudgeQuestion) -> dict[st
         )
     if len(set(names.values())) < len(names):
         raise UserError(
-            f"two of the conditions are one path ({listed(conditions)}): say with --nominal and "
+            f"two of the conditions mean the same ({listed(conditions)}): say with --nominal and "
             "--shared which is which."
         )
     return names
@@ -136,8 +136,8 @@ def _by_address(
         if (before := trials.setdefault(address, row)) is not row:
             seed = f", seed {row.seed}" if row.seed else ""
             raise UserError(
-                f"{row.where} and {before.where} are the same trial (arm {row.arm}, scene {scene}"
-                f"{seed}): give each once, or name the column that tells them apart, as in "
+                f"{row.where} and {before.where} are the same trial (version {row.arm}, scene "
+                f"{scene}{seed}): give each once, or name the column that tells them apart, as in "
                 "--column seed=NAME."
             )
     return trials
@@ -155,7 +155,7 @@ def _check_paired(
         for name, keys in ((question.baseline, ones), (question.repair, twos)):
             if not keys:
                 raise UserError(
-                    f"'{name}' has no trial {where(path)}: give both arms under each condition."
+                    f"'{name}' has no trial {where(path)}: give both versions under each condition."
                 )
         if not set(ones) & set(twos):
             first, second = (", seed ".join(filter(None, keys[0])) for keys in (ones, twos))
@@ -222,8 +222,8 @@ def _findings(
     several = len(set(tasks.values()))
     if question.cluster == "scene" and several > 1:
         yield (
-            f"The scenes come from {several} tasks and are taken for independent: what is decided "
-            "is not about new tasks. --cluster task asks about those."
+            f"The scenes come from {several} tasks and are taken as independent: what is "
+            "significant need not hold for new tasks. --cluster task tests whether it does."
         )
     ended = [row.outcome for row in table.rows if not row.outcome.failed]
     if hashed:

@@ -264,10 +264,10 @@ class DecisionRecord(Result):
         rule = self.question.stop
         if rule is None:
             return ""
-        what = "the primary contrast" if rule.when == "decided" else "the effect on every path"
+        what = "the primary contrast" if rule.when == "decided" else "every effect"
         small = f" or shown to be smaller than {rule.margin_pp:g} pp" if rule.margin_pp else ""
         return (
-            f"the audit was to stop once {what} is decided{small}, at a look after every "
+            f"the audit was to stop once {what} is significant{small}, at a look after every "
             f"{'scene' if rule.look == 1 else f'{rule.look} scenes'}, or after "
             f"{self.question.n_scenes}; the order of its scenes was drawn beforehand from the hash "
             f"of the library and the seed {rule.order_seed}"

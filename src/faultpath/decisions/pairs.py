@@ -30,7 +30,7 @@ WORDS = {
     PairKind.REPAIR_ONLY: "only the repair succeeds",
     PairKind.BASELINE_ONLY: "only the baseline succeeds",
     PairKind.NEITHER: "neither succeeds",
-    PairKind.LEFT_OUT: "left out: a pair of this scene is void on another path or seed",
+    PairKind.LEFT_OUT: "left out: a pair of this scene is void under another condition or seed",
     PairKind.VOID: "void: a trial failed to run, or the two are not the same trial",
 }
 
@@ -58,7 +58,7 @@ class Pair:
             if trial.failed:
                 return f"the {arm} failed: {trial.error or 'no message was kept'}"
         if self.baseline and self.repair and unlike(self.baseline, self.repair):
-            return "the two arms differ in initial state, disturbance or planner noise"
+            return "the two trials differ in initial state, disturbance or planner noise"
         return None
 
     @property

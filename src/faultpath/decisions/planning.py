@@ -168,7 +168,7 @@ def faults_by_path(
         )
     for reserved in {CORRECT, SHARED} & set(by_module):
         raise UserError(
-            f"the interface calls a module '{reserved}', which is the name of a path of every "
+            f"the interface calls a module '{reserved}', which is the name of a condition in every "
             "audit: rename the module."
         )
     paths: dict[str, dict[str, tuple[Fault, ...]]] = {CORRECT: {v.name: () for v in variants}}

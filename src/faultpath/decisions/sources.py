@@ -119,7 +119,7 @@ def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
     sources = {bound(variant, system.interface, c): None for variant in variants for c in channels}
     candidate = _candidate(system, variants, parsed.name, tuple(sources), channels, text)
     if not candidate.consumers:
-        raise UserError(f"fault '{text}' reaches no consumer: neither variant reads it there.")
+        raise UserError(f"fault '{text}' reaches no module: neither version reads it there.")
     return candidate
 
 

@@ -66,9 +66,9 @@ class Compared:
         return f"By itself, and not over all sizes: {own}" if fallen else own
 
     def absent(self, path: str) -> str:
-        """Say why it has no effect on a path."""
+        """Say why it has no effect under a condition."""
         there = any(recorded.name == path for recorded in self.record.paths)
-        return "every pair void" if there else "no such path"
+        return "every pair void" if there else "not run"
 
 
 def titles(runs: Sequence[Compared]) -> dict[str, str]:
@@ -106,7 +106,7 @@ def _asked(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
             "Scenes run": run.record.scenes_run,
             "Scenes compared": str(run.record.scenes),
             "Seeds": ", ".join(map(str, run.asked.seeds)),
-            "Primary path": run.asked.primary,
+            "Primary contrast": run.asked.primary,
             "Intervals and tests hold for": run.record.estimand,
             "Stopping": wording.sentence(run.record.stopping or "all scenes were run"),
             **{f"Option {key}": value for key, value in sorted(run.asked.options.items())},

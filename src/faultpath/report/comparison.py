@@ -68,18 +68,18 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
     ]
     if not conclusions and len({_arms(run) for run in runs}) == len(runs):
         conclusions = [
-            "No two of these audits compare the same arms, so none can contradict another."
+            "No two of these audits compare the same versions, so none can contradict another."
         ]
     conclusions = conclusions or [
-        "No two audits of the same arms are significant in opposite directions."
+        "No two audits of the same versions are significant in opposite directions."
     ]
     if len({run.asked.system for run in runs}) > 1:
         conclusions += [
             "The runs are of different systems: the same name need not mean the same thing."
         ]
     caveat = (
-        "Setting verdicts side by side is no test between the audits: where one detects a "
-        "difference and another does not, the two are not shown to differ."
+        "The audits are separate tests and are not compared with each other: where a difference is "
+        "significant in one and not in another, the two are not shown to differ."
     )
     return *_over_sizes(runs), *conclusions, caveat
 

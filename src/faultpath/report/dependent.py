@@ -30,8 +30,8 @@ _NOTES = (
     "an effect that is not significant is not absent, and coupling that no interface declares "
     "(power, clocks, buses, shared code, the environment) is not seen. No compliance with ISO "
     "26262 or IEC 61508 follows.",
-    "An audit counts for a group where its fault acts on that group alone. No evidence: none that "
-    "is shown here has this arm.",
+    "An audit counts for a group where its fault acts on that group alone. No evidence: no audit "
+    "shown here has this condition.",
 )
 
 

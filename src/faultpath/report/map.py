@@ -18,9 +18,9 @@ from faultpath.trials.provenance import RunProvenance
 
 
 def tables(record: MapRecord) -> tuple[Table, ...]:
-    """Return how large an error reverses the ranking on each path, and what was seen there.
+    """Return how large an error reverses the ranking, and the differences at one or equal errors.
 
-    Too few scenes to decide anything have no ranking that could reverse.
+    With too few scenes for a significant difference there is no ranking that could reverse.
     """
     flips = (_flips(record),) if record.scenes >= MIN_SCENES else ()
     return *flips, _paths(record)
@@ -73,7 +73,7 @@ def _flips(record: MapRecord) -> Table:
     return Table(
         name="flips",
         title="Smallest error that reverses the ranking",
-        corner="Path",
+        corner="Condition",
         columns=("Error", "Ahead without error, up to", "Estimate turns at", "Ahead beyond, from"),
         lines=tuple(lines),
         notes=(

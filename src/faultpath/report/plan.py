@@ -22,15 +22,15 @@ def tables(plan: Plan) -> tuple[Table, Table]:
                 for candidate in plan.candidates
             ),
             notes=(
-                "Order: number of consumers, then the larger probe response, one that is not known "
+                "Order: number of readers, then the larger probe response, one that is not known "
                 "last; equal ones share a rank.",
             ),
         ),
         Table(
             title=f"Proposed: {plan.study.repair} against {plan.study.baseline}",
             corner="fault",
-            columns=("why", "arms", "trials"),
-            words=("why", "arms"),
+            columns=("why", "conditions", "trials"),
+            words=("why", "conditions"),
             lines=tuple(
                 line(
                     audit.fault,

@@ -41,7 +41,8 @@ def tables(record: SearchRecord) -> tuple[Table, ...]:
         notes=(
             f"{len(worst)} of {many} faults, in the {question.finding} scenes that find. Regret is "
             "what the choice by the isolated fault loses under the shared one, as far as it would "
-            "be made. The best of many looks better than it is: only the confirming audit decides.",
+            "be made. The best of many looks better than it is: only the confirming audit is a "
+            "test.",
         ),
     )
     if record.confirmed is None:

@@ -17,7 +17,7 @@ ALL = (
     *("power", "scenes", "void", "break-even", "beta"),
 )
 _BETA = (
-    " Break-even beta: the same of the beta factor, the share of the module's faults that strike "
+    " Break-even beta: the same for the beta factor, the share of the module's faults that reach "
     "all modules at once."
 )
 
@@ -78,8 +78,8 @@ def _labels(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
 
 
 def decided_for(record: DecisionRecord, effect: Effect) -> Entry:
-    """Return the arm that the family decides for, with what keeps it out of a headline, or the
-    p-value that keeps it from being decided where the interval alone leaves out 0."""
+    """Return the version that is significantly ahead, with what keeps it out of a headline; or the
+    p-value for which the difference is not significant where the interval alone excludes 0."""
     if not effect.acted:
         return Entry(text="not tested")
     arm = record.winner(effect.sign) if effect.sign else MISSING
@@ -88,7 +88,7 @@ def decided_for(record: DecisionRecord, effect: Effect) -> Entry:
 
 
 def by_path(record: DecisionRecord, names: Sequence[str], title: str = "") -> Table:
-    """Return a table with a row for each path and a column for each of the quantities `names`."""
+    """Return a table with a row for each condition and a column for each quantity in `names`."""
     labels, titles = _labels(record, names), _titles(record)
     lines = [
         line(
@@ -99,13 +99,13 @@ def by_path(record: DecisionRecord, names: Sequence[str], title: str = "") -> Ta
         for title_of, effect in zip(titles, record.effects, strict=True)
     ]
     columns = (label + (", %" if name in _ARMS else "") for name, label in labels.items())
-    return Table(title=title, corner="Path", columns=tuple(columns), lines=tuple(lines))
+    return Table(title=title, corner="Condition", columns=tuple(columns), lines=tuple(lines))
 
 
 def by_quantity(
     record: DecisionRecord, names: Sequence[str], title: str = "", notes: Sequence[str] = ()
 ) -> Table:
-    """Return a table with a column for each path and a row for each of the quantities `names`."""
+    """Return a table with a column for each condition and a row for each quantity in `names`."""
     of = [_entries(record, effect) for effect in record.effects]
     return Table(
         name="faultpath",
@@ -166,7 +166,7 @@ def markdown_table(record: DecisionRecord) -> str:
 
 
 def ended(record: DecisionRecord) -> Table:
-    """Return how the trials of both arms ended on each path."""
+    """Return how the trials of both versions ended under each condition."""
     question = record.question
     statuses = ("success", "crash", "timeout", "failed")
     cells = {(cell.path, cell.variant): cell for cell in record.cells}
@@ -182,14 +182,14 @@ def ended(record: DecisionRecord) -> Table:
                 lines.append(line(name, *counts, median, aside=role))
     return Table(
         title="How trials ended",
-        corner="Arm",
+        corner="Version",
         columns=(*(question.ends.get(s, s) for s in shown), "median time of successes, s"),
         lines=tuple(lines),
     )
 
 
 def secondary(record: DecisionRecord) -> Table | None:
-    """Return time and metrics, repair minus baseline, path by path; `None` without any."""
+    """Return time and metrics, repair minus baseline, by condition; `None` without any."""
     question = record.question
     shown = {"time on joint successes (s)": [effect.time_s for effect in record.effects]}
     for name, metric in question.metrics.items():

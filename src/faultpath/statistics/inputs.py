@@ -32,5 +32,5 @@ def paired(first: Numbers, second: Numbers, *, binary: bool = False) -> tuple[Fl
     one = by_scene_and_seed(first, "first", binary=binary)
     two = by_scene_and_seed(second, "second", binary=binary)
     if one.shape != two.shape:
-        raise ValueError(f"paired arms need one shape, got {one.shape} and {two.shape}")
+        raise ValueError(f"paired outcomes need one shape, got {one.shape} and {two.shape}")
     return one, two

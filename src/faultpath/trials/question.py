@@ -175,14 +175,15 @@ class Running(Placed, RepairQuestion):
 class AuditQuestion(Running):
     """Question that an audit answers."""
 
-    panel: ClassVar[str] = "How it is decided"
+    panel: ClassVar[str] = "How it is tested"
 
     fault: Annotated[str, Flag(panel=RepairQuestion.panel)] = Field(
         description="`gain:scale=0.6`, `gain:delay=5@observer`, `gain:scale=2,onset=20`, ...; "
         "one audit per size: `gain:scale=0.9,1.1` or `gain:offset=-0.2..0.2/9`."
     )
     primary: str | None = Field(
-        default=None, description="Path of the primary contrast, a module or shared (default)."
+        default=None,
+        description="Where the fault acts in the primary contrast: a module, or shared (default).",
     )
     generalise: Annotated[Generalise, Flag(panel=ADVANCED)] = Field(
         default="scenes",
@@ -196,8 +197,8 @@ class AuditQuestion(Running):
     )
     stop_when: Annotated[StopWhen | None, Flag(panel=ADVANCED)] = Field(
         default=None,
-        description="Stop once the primary contrast is decided, or the effect on every path: "
-        "scenes in random order, at most --scenes of them.",
+        description="Stop once the primary contrast is significant (`decided`), or every effect "
+        "(`all-decided`): scenes in random order, at most --scenes of them.",
     )
     margin_pp: Annotated[float | None, Flag(panel=ADVANCED)] = Field(
         default=None,
@@ -224,7 +225,9 @@ class MapQuestion(Running):
         default=None, description="Largest error, of either sign; default three declared spreads."
     )
     points: int = Field(
-        default=81, description="Pairs of errors at most, but for those that bisect the paths."
+        default=81,
+        description="Pairs of errors at most, but for those that narrow down where the ranking "
+        "reverses.",
     )
     mean: Sizes = Field(
         default=(0.0,), description="Mean of the errors, one number or one a module."
@@ -233,7 +236,8 @@ class MapQuestion(Running):
         default=(), description="Standard deviation of the errors, likewise; default as declared."
     )
     correlation: float | None = Field(
-        default=None, description="Of the errors, to tell the expected difference there."
+        default=None,
+        description="Correlation of the errors for which to report the expected difference.",
     )
 
 
@@ -243,8 +247,8 @@ class SearchQuestion(Running):
     panel: ClassVar[str] = "What is searched"
 
     within: Annotated[Path, _path, PlainSerializer(str)] = Field(
-        description="File of bounds: the faults with their sizes, and the module that an isolated "
-        "audit strikes."
+        description="File of bounds: the faults with their sizes, and the module that the isolated "
+        "fault reaches."
     )
     candidates: int = Field(
         default=48, ge=8, le=10_000, description="Faults to try in the scenes that find."

@@ -54,14 +54,15 @@ class MapPlan(Analysis[list[Point]]):
     scenes: tuple[str, ...] = field(repr=False)
 
     def rounds(self) -> Rounds[list[Point]]:
-        """Yield the coarse lattice, then with it the points where the sign is not decided."""
+        """Yield the coarse lattice, then with it points where no difference is significant."""
         question, points = self.question, list(lattice(COARSE))
         expected = question.points + _BISECTING
         study = self.study(points)
         first = len(study.rows) * len(self.scenes)
         notice = (
-            f"{len(points)} pairs of errors first, {first} trials; then more where the sign is not "
-            f"decided, about {round(first * max(1.0, expected / len(points)))} trials at most."
+            f"{len(points)} pairs of errors first, {first} trials; then more where no difference "
+            f"is significant, about {round(first * max(1.0, expected / len(points)))} trials at "
+            "most."
         )
         while True:
             table = yield Round(study, len(points), expected, notice)

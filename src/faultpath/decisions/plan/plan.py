@@ -186,14 +186,14 @@ def sentences(plan: Plan) -> Iterator[str]:
     )
     yield "Each fault has one size and sign, and lasts; `faultpath map` covers both signs."
     if len(audits) > 1:
-        yield "Each audit decides by itself: no correction is made for their number."
+        yield "The audits are separate tests: no correction is made for their number."
     yield f"{counted(sum(plan.trials), 'trial')} in all."
 
 
 def _first(plan: Plan) -> str:
     """Say why the first source is first."""
     first, *others = plan.candidates
-    count = counted(len(first.consumers), "consumer")
+    count = counted(len(first.consumers), "reader")
     tied = [candidate.name for candidate in others if candidate.rank == first.rank]
     alike = [
         candidate.name for candidate in others if len(candidate.consumers) == len(first.consumers)

@@ -119,8 +119,9 @@ def check_arms(study: StudyFile, planned: StudyAudit, audit: Audit) -> None:
     if planned.arms and current != then:
         other = sorted({path for path, _, _ in current ^ then})
         raise UserError(
-            f"audit '{planned.name}' of the study file has other arms than the system now has for "
-            f"'{planned.fault}' ({', '.join(other)}): an audit runs all of its arms, so plan anew."
+            f"audit '{planned.name}' of the study file does not run what the system now has for "
+            f"'{planned.fault}' ({', '.join(other)}): an audit runs every version under every "
+            "condition, so plan anew."
         )
 
 

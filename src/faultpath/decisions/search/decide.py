@@ -50,8 +50,8 @@ def _headline(question: ResolvedSearch, confirmed: DecisionRecord | None) -> str
         return f"No reversal was confirmed: no fault that was tried showed one {alone}."
     if confirmed.few:
         return (
-            f"No reversal was confirmed: {counted(confirmed.scenes, 'scene')} cannot decide, and "
-            f"{confirmed.scenes_needed} are the least."
+            f"No reversal was confirmed: {counted(confirmed.scenes, 'scene')} compared, and no "
+            f"difference can be significant with fewer than {confirmed.scenes_needed}."
         )
     turned, fault = _turned(question, confirmed), confirmed.question.fault
     one = JOINED not in fault  # several do not fit into a headline

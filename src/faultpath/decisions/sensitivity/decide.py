@@ -103,7 +103,7 @@ def sentences(record: SensitivityRecord) -> Iterator[str]:
             if getattr(one, kind).counts and getattr(one, kind).low > getattr(other, kind).high
         ]
         if ordered:
-            yield f"Decided of what they explain {phrase}: {series(ordered)}."
+            yield f"Significant differences in what they explain {phrase}: {series(ordered)}."
     if record.indices and (open_ := [e.group for e in record.indices if not e.total.counts]):
         yield f"Of {series(open_)} nothing is shown; that is no proof that it does not matter."
     drawn = np.array(record.values).reshape(-1, len(question.groups) + 2)[:, [0, -1]]

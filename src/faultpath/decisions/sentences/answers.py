@@ -16,9 +16,10 @@ from faultpath.decisions.tables import MISSING
 _FEW_TRAININGS = 10
 """With fewer, an interval for newly trained models rests on how trainings are distributed."""
 _PAIRED = {
-    "keys": "Trials are paired by their keys alone: nothing shows that both arms began alike.",
-    "hashes": "Pairs share their keys and a hash of what they began with; nothing shows that later "
-    "noise was the same.",
+    "keys": "Trials are paired by their keys alone: nothing shows that both versions started "
+    "alike.",
+    "hashes": "Both trials of a pair share their keys and a hash of how they started; nothing "
+    "shows that later noise was the same.",
 }
 
 
@@ -45,15 +46,17 @@ def _answers(record: DecisionRecord) -> dict[str, list[str]]:
     sure = [*reach(record), *phrases.hardly_acted(record)]
     if record.few:
         few = (
-            f"Too few scenes to decide: {counted(record.scenes, 'scene')} compared, and this "
-            f"question needs at least {record.scenes_needed}. The numbers are theirs alone."
+            f"Too few scenes: {counted(record.scenes, 'scene')} compared, and no difference can be "
+            f"significant with fewer than {record.scenes_needed}. The numbers hold for them alone."
         )
         return {"Left open": [few], "How sure": sure}
     if record.earlier:
         sure.append(phrases.looks(record))
     elif significant and not question.judged and question.generalise == "scenes":
         # Of other tools' trials it is said with how they were paired.
-        sure.append("Of audits of two equal systems, at most 5 % would find any difference.")
+        sure.append(
+            "If both versions were equally good, at most 5 % of audits would report any difference."
+        )
     follows = {"What follows": list(_follows(record)), "How sure": sure}
     left_open = {"Left open": list(_left_open(record))}
     # Where nothing is significant, what was not seen is the result.
@@ -66,7 +69,9 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
     disagree = {effect.sign for effect in leading} == {1, -1}
     if not leading:
         if any(effect.sign and effect.uneven for effect in tested):
-            yield "No choice can rest on what is significant: one arm's trials failed more often."
+            yield (
+                "No choice can rest on what is significant: one version's trials failed more often."
+            )
         elif any(effect.sign for effect in tested):
             yield "What is significant lies at the floor or ceiling: no choice can rest on it."
         else:
@@ -96,7 +101,7 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
         yield "Which is better depends on which fault occurs, and how often."
     for result in record.break_even if disagree else ():
         if result.path == record.question.primary and result.words:
-            yield f"By the share of trials with the fault, {where(result.path)}: {result.words}."
+            yield f"Depending on how often the fault occurs, {where(result.path)}: {result.words}."
 
 
 def reach(record: DecisionRecord) -> Iterator[str]:
@@ -109,8 +114,9 @@ def reach(record: DecisionRecord) -> Iterator[str]:
     if question.judged:
         yield _PAIRED[question.judged.pairing]
         yield (
-            "Of two equal arms at most 5 % of such comparisons would find a difference, if the "
-            "number of scenes was fixed before anybody looked: other tools do not tell."
+            "If both versions were equally good, at most 5 % of such comparisons would report any "
+            "difference, provided that the number of scenes was fixed before anybody looked: other "
+            "tools do not say whether it was."
         )
     run = len(question.seeds)
     if question.generalise == "models" and run < _FEW_TRAININGS:
@@ -134,10 +140,10 @@ def _stopped(record: DecisionRecord) -> Iterator[str]:
         return
     whole = stopped.scenes == most
     because = "but" if not stopped.reached else "and" if whole else "because"
-    why = f"the primary contrast was {'' if stopped.reached else 'not '}decided"
+    why = f"the primary contrast was {'' if stopped.reached else 'not '}significant"
     if rule.when == "all-decided":
         also = f" or smaller than {margin(record)}" if rule.margin_pp else ""
-        why = f"{'every' if stopped.reached else 'not every'} effect was decided{also}"
+        why = f"{'every' if stopped.reached else 'not every'} effect was significant{also}"
     elif record.question.primary in stopped.small:
         why = f"the primary contrast was shown to be smaller than {margin(record)}"
     took = f"it {'stopped after' if stopped.reached else 'took'} {counted(stopped.scenes, 'scene')}"
@@ -159,11 +165,11 @@ def _left_open(record: DecisionRecord) -> Iterator[str]:
         yield f"The fault never acted {series(idle)}: nothing was tested there."
     if unsettled := [where(effect.path) for effect in record.effects if effect.unsettled]:
         yield f"Who is ahead {series(unsettled)} depends on trials that failed."
-    yield from _undetected(record)
+    yield from _insignificant(record)
     yield from phrases.not_standing(record)
     if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
         at = " or the ".join(same)
-        yield f"No change is detected from the fault at the {at} alone to the shared fault."
+        yield f"No change from the fault at the {at} alone to the shared fault is significant."
     if record.question.judged:
         yield "Other scenes and other conditions are not among the results."
     else:
@@ -172,8 +178,8 @@ def _left_open(record: DecisionRecord) -> Iterator[str]:
         )
 
 
-def _undetected(record: DecisionRecord) -> Iterator[str]:
-    """Say where no difference is detected, and how large a one 8 of 10 audits would find."""
+def _insignificant(record: DecisionRecord) -> Iterator[str]:
+    """Say where no difference is significant, and how large a one 8 of 10 audits would find."""
     sizes: dict[str, str] = {}
     extreme: dict[str, list[str]] = {}
     for effect in record.effects:
@@ -185,18 +191,18 @@ def _undetected(record: DecisionRecord) -> Iterator[str]:
             sizes[where(effect.path)] = detectable(effect)
     for end, at in extreme.items():
         both = "fail" if end == "floor" else "succeed"
-        yield f"No difference is detected {series(at)}, where both nearly always {both}."
+        yield f"No difference is significant {series(at)}, where both nearly always {both}."
     if not sizes:
         return
     true = f"true ones of {series(list(sizes.values()))} pp, in this order,"
     if len(set(sizes.values())) == 1:
         true = f"a true one of {next(iter(sizes.values()))} pp"
     would = "" if MISSING in sizes.values() else f"; {true} would be found in 8 of 10 audits"
-    yield f"No difference is detected {series(list(sizes))}{would}."
+    yield f"No difference is significant {series(list(sizes))}{would}."
 
 
 def _would_change(record: DecisionRecord) -> Iterator[str]:
-    """Say what would change the verdict."""
+    """Say what would change the result."""
     stopped, tested = record.stopped, [effect for effect in record.effects if effect.acted]
     judged = record.question.judged is not None
     if stopped and not all(effect.sign for effect in record.effects):
@@ -219,7 +225,7 @@ def _would_change(record: DecisionRecord) -> Iterator[str]:
         instead = "" if judged else ", or --stop-when, which allows for looks"
         yield (
             f"Fresh scenes, which no audit has looked at, and more of them{instead}: they find "
-            "smaller differences. Adding scenes to this audit would break its 5 %."
+            "smaller differences. Adding scenes to this audit would raise its error rate above 5 %."
         )
     if judged:
         yield "Other scenes, other conditions: none of these is among the results."

@@ -1,4 +1,4 @@
-"""The headline: one sentence of some twenty words, by the kind of verdict.
+"""The headline: one sentence of some twenty words, by the kind of result.
 
 Names of modules and variants count as one word each.
 """
@@ -11,7 +11,7 @@ from faultpath.decisions.sentences.wording import capital, where
 
 
 def headline(record: DecisionRecord) -> str:
-    """Return a sentence that rests on decided things, led by the primary contrast."""
+    """Return a sentence that rests on significant effects, led by the primary contrast."""
     primary = record.question.primary
     main = next((effect for effect in record.effects if effect.path == primary), None)
     tested = [effect for effect in record.effects if effect.acted]
@@ -19,8 +19,8 @@ def headline(record: DecisionRecord) -> str:
         return f"{no_pair(primary)}."
     if record.few:
         return (
-            f"Too few scenes to decide: {record.scenes} compared, and this question needs at least "
-            f"{record.scenes_needed}."
+            f"Too few scenes: {record.scenes} compared, and no difference can be significant with "
+            f"fewer than {record.scenes_needed}."
         )
     if not main.acted and all(effect.path == CORRECT for effect in tested):
         return "The fault never acted: nothing was tested."
@@ -29,7 +29,7 @@ def headline(record: DecisionRecord) -> str:
     ends = {rate for effect in tested for rate in (effect.baseline_percent, effect.repair_percent)}
     if ends <= {0.0, 100.0} and not any(any((*e.wins, *e.losses)) for e in tested):
         every = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
-        return f"No difference could show: in every scene both arms {' or '.join(every)}."
+        return f"No difference could show: in every scene both versions {' or '.join(every)}."
     if turned := reversed_at(record):
         return _reversal(record, main, turned)
     return _ranking(record, main, [effect for effect in tested if effect is not main])
@@ -46,8 +46,8 @@ def reversed_at(record: DecisionRecord) -> list[Effect]:
 
 
 def _reversal(record: DecisionRecord, main: Effect, turned: Sequence[Effect]) -> str:
-    """Advise against the isolated fault, unless correct inputs rank the arms as it does: then a
-    test with it shows no more than one without."""
+    """Advise against the isolated fault, unless correct inputs rank the versions as it does: then
+    a test with it shows no more than one without."""
     one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
     modules = " or ".join(effect.path for effect in turned)
     alone = f"the {modules} alone" if len(turned) < 3 else "one module alone"
@@ -63,10 +63,10 @@ def _reversal(record: DecisionRecord, main: Effect, turned: Sequence[Effect]) ->
 
 
 def _ranking(record: DecisionRecord, main: Effect, others: Sequence[Effect]) -> str:
-    """Say who is ahead on the primary path, and one thing more.
+    """Say who is ahead in the primary contrast, and one thing more.
 
     That is the shared fault where it shows something else, so that no gain in isolation stands
-    without what came of it; or else who is ahead elsewhere, if that is one arm in a place or two.
+    without what came of it; or else who is ahead elsewhere, if it is one version in a place or two.
     """
     state = _state(record, main)
     alike = [effect for effect in others if _state(record, effect) == state]
@@ -74,7 +74,7 @@ def _ranking(record: DecisionRecord, main: Effect, others: Sequence[Effect]) -> 
     ahead = [effect for effect in others if effect.leads and effect not in alike]
     shared = [effect for effect in others if effect.path == SHARED]
     if len(alike) + 1 == len(record.effects) > 1:
-        place = "on every path" if main.leads else "on any path"
+        place = "under every condition" if main.leads else "under any condition"
         return _sentence(record, [main], place=place)
     if shared and shared[0] not in alike:
         return _sentence(record, [main], shared, both=main.leads)
@@ -100,24 +100,24 @@ def _sentence(
 ) -> str:
     """Return a sentence with a clause for each of two groups of like effects.
 
-    `both` names both arms in the first one; `place` stands instead of where it holds.
+    `both` names both versions in the first one; `place` stands instead of where it holds.
     """
     question, state = record.question, _state(record, first[0])
     if both and first[0].leads:
         state += f" of {record.winner(-first[0].sign)}"
     elif both and state == _OPEN:
-        state = f"no difference between {question.baseline} and {question.repair} is detected"
+        state = f"no difference between {question.baseline} and {question.repair} is significant"
     text = f"{state} {place or places(first)}"
     if second:
         text += f"; {_state(record, second[0])} {places(second)}"
     return f"{text if first[0].leads else capital(text)}."
 
 
-_OPEN = "no difference is detected"
+_OPEN = "no difference is significant"
 
 
 def _state(record: DecisionRecord, effect: Effect) -> str:
-    """Return what is decided of a path, as a clause without its place."""
+    """Return the result under one condition, as a clause that does not name the condition."""
     if effect.leads:
         return f"{record.winner(effect.sign)} is ahead"
     if effect.extreme:

@@ -1,4 +1,4 @@
-"""Sentences on a map: only what was decided, each time with the sizes at which it was."""
+"""Sentences on a map: only what is significant, each time with the sizes at which it is."""
 
 import math
 from collections.abc import Iterator
@@ -21,9 +21,7 @@ def headline(record: MapRecord) -> str:
     """Return who does better at which correlation of the two errors."""
     question, regions = record.question, record.joint.regions
     if record.scenes < MIN_SCENES:
-        return (
-            f"Too few scenes to decide anything: {record.scenes}, and {MIN_SCENES} are the least."
-        )
+        return f"Too few scenes: {record.scenes} compared, and at least {MIN_SCENES} are needed."
     if not regions:
         return (
             f"At no correlation of the two errors does {question.baseline} or {question.repair} do "

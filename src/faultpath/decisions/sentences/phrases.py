@@ -1,4 +1,4 @@
-"""Contrasts, paths and shares in words, from what was decided of them and nothing else."""
+"""Contrasts, conditions and shares in words, from their results and nothing else."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -42,7 +42,7 @@ def adjusted(record: DecisionRecord, of: Effect | Change) -> str:
 
 
 def only_alone(of: Effect | Change) -> bool:
-    """Return whether the interval by itself leaves out 0 and yet nothing is detected."""
+    """Return whether the interval excludes 0 and yet the difference is not significant."""
     low, high = of.estimate.interval or (0.0, 0.0)
     tested = of.adjusted_p_value is not None and not (of.sign or of.unsettled)
     return tested and (low > 0 or high < 0)
@@ -57,7 +57,7 @@ def places(effects: Sequence[Effect]) -> str:
 
 
 def in_short(record: DecisionRecord, effect: Effect | None) -> str:
-    """Say in a few words what is decided of one path."""
+    """Say in a few words what an audit found under one condition."""
     if effect is None:
         return "no pair of trials to compare"
     if not effect.acted:
@@ -67,13 +67,13 @@ def in_short(record: DecisionRecord, effect: Effect | None) -> str:
         at = at or (", but trials failed unevenly" if effect.uneven else "")
         return f"{record.winner(effect.sign)} succeeds more often{at}"
     if effect.unsettled:
-        return "open: trials that failed could decide it"
+        return "open: it depends on trials that failed"
     if record.few:
-        return "too few scenes to decide"
+        return "too few scenes"
     p = f" ({adjusted(record, effect)})" if only_alone(effect) else ""
     if record.is_small(effect):
         return f"differ by less than {margin(record)}{p}"
-    return f"no difference detected{p}"
+    return f"no significant difference{p}"
 
 
 def change(record: DecisionRecord, of: Change) -> str:
@@ -83,7 +83,7 @@ def change(record: DecisionRecord, of: Change) -> str:
     values = " to ".join(f"{signed(end.success.value)} pp" for end in ends)
     numbers = f"{values}; change {signed(of.estimate.value)} pp {interval(of.estimate)}".rstrip()
     numbers += f", {adjusted(record, of)}"
-    numbers += ": the interval alone decides nothing" if only_alone(of) else ""
+    numbers += ": not significant, although the interval excludes 0" if only_alone(of) else ""
     alone, shared = where(of.isolated), where(of.shared)
     if of.turn == "reversal":
         one, other = (record.winner(end.sign) for end in ends)
@@ -95,13 +95,13 @@ def change(record: DecisionRecord, of: Change) -> str:
         )
     if of.turn == "interaction":
         return (
-            f"Interaction detected: the difference is not the same {alone} as {shared} ({numbers});"
-            " a reversal is not shown."
+            f"Significant interaction: the difference is not the same {alone} as {shared} "
+            f"({numbers}); a reversal is not shown."
         )
     between = f"between the effect {alone} and that {shared} ({numbers})"
     if of.unsettled:
         return f"No change is significant {between}: trials that failed could undo it."
-    return f"No change is {'significant' if record.few else 'detected'} {between}."
+    return f"No change is significant {between}."
 
 
 class Shares(NamedTuple):
@@ -155,22 +155,22 @@ def shares(
 
 
 def no_pair(path: str) -> str:
-    """Say that a path has no pair of trials to compare."""
+    """Say that a condition has no pair of trials to compare."""
     return f"{capital(where(path))}, no pair of trials is left to compare"
 
 
 def not_standing(record: DecisionRecord) -> Iterator[str]:
-    """Say of each interval that leaves out 0 where nothing is detected why it does not count."""
+    """Say of each interval that excludes 0 without a significant difference why it is not one."""
     for effect in filter(only_alone, record.effects):
         yield (
-            f"{capital(where(effect.path))}, the interval by itself leaves out 0, but "
-            f"{adjusted(record, effect)} ({record.hypotheses} contrasts): no difference is "
-            "detected."
+            f"{capital(where(effect.path))}, the interval excludes 0, but "
+            f"{adjusted(record, effect)} ({record.hypotheses} contrasts): the difference is not "
+            "significant."
         )
 
 
 def hardly_acted(record: DecisionRecord) -> Iterator[str]:
-    """Name the arms in which the fault changed nothing in most of the trials."""
+    """Name the versions in which the fault changed nothing in most of the trials."""
     acted = {effect.path for effect in record.effects if effect.acted}
     faulted = {path.name: (path.baseline_consumers, path.consumers) for path in record.paths}
     for cell in record.cells:
@@ -196,7 +196,7 @@ def partly_measured(record: DecisionRecord) -> Iterator[str]:
 
 
 def failed_trials(record: DecisionRecord) -> Iterator[str]:
-    """Say by arm and path how many trials failed, and what their outcomes could make of it."""
+    """Say by version and condition how many trials failed, and how far that could matter."""
     question = record.question
     for effect in record.effects:
         failed = effect.failed
@@ -212,12 +212,12 @@ def failed_trials(record: DecisionRecord) -> Iterator[str]:
 
 
 def looks(record: DecisionRecord) -> str:
-    """Say what was concluded before, and what that does to what is announced now."""
+    """Say what was concluded before, and what that does to what is significant now."""
     counts = sorted({look.scenes for look in record.earlier if look.scenes is not None})
     with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
     led = series([f"'{name}'" for name in dict.fromkeys(look.primary for look in record.earlier)])
     return (
-        f"This audit was concluded before{with_scenes}, led by {led}: after such a look, what it "
-        "announces now is wrong more often than in 5 % of audits. Ask again of scenes that no "
-        "audit has looked at, or with --stop-when, which allows for looks."
+        f"This audit was concluded before{with_scenes}, led by {led}: after such a look, a "
+        "significant result is wrong in more than 5 % of audits. Run it in scenes that no audit "
+        "has looked at, or with --stop-when, which allows for looks."
     )

@@ -157,13 +157,13 @@ class Rechecks:
             where = f"'{shown.variant}' under {shown.faults}, seed {shown.seed}"
             if shown.wrote:
                 yield (
-                    f"A consumer writes into its reading, seen with {where}: {shown.wrote}. "
+                    f"A module writes into its reading, seen with {where}: {shown.wrote}. "
                     "Without a fault that changes what others read, and with one it does not."
                 )
             elif shown.differs:
                 count = len(shown.scenes)
                 how = (
-                    "alone, with a copy of every reading for each consumer"
+                    "alone, with a copy of every reading for each module"
                     if shown.why == "guarded"
                     else f"without the others of its {shown.unit_scenes}"
                 )

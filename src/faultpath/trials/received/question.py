@@ -49,21 +49,21 @@ class JudgeQuestion(Asked):
 
     panel: ClassVar[str] = "What is compared"
 
-    baseline: str = Field(description="Arm to compare with, as the results name it.")
-    repair: str = Field(description="Arm that is meant to be better.")
+    baseline: str = Field(description="Version to compare with, as the results name it.")
+    repair: str = Field(description="Version that is meant to be better.")
     columns: Annotated[
         dict[str, str], BeforeValidator(_columns), Flag("--column", several=True)
     ] = Field(
         default_factory=dict,
-        description="Column by another name, scene=episode_id: of arm, scene, seed, task, "
-        "condition, success, initial (a hash of the initial state), time_s. For Inspect and "
-        "lm-eval success=NAME is the scorer or metric.",
+        description="Column by another name, scene=episode_id: of `arm` (the version), scene, "
+        "seed, task, condition, success, initial (a hash of the initial state), time_s. For "
+        "Inspect and lm-eval success=NAME is the scorer or metric.",
     )
     metrics: Annotated[
         tuple[str, ...], BeforeValidator(_metrics), Flag("--metric", several=True)
     ] = Field(
         default=(),
-        description="Column of numbers to tell beside success; NAME:less where less is better.",
+        description="Column of numbers to show beside success; NAME:less where less is better.",
     )
     success_from: float | None = Field(
         default=None, description="Score from which on a trial counts as a success."
@@ -77,18 +77,19 @@ class JudgeQuestion(Asked):
         "other is the name of the module that alone got it.",
     )
     fault: str = Field(default="", description="What the conditions did, in words.")
-    cluster: Annotated[Literal["scene", "task"], Flag(panel="How it is decided")] = Field(
+    cluster: Annotated[Literal["scene", "task"], Flag(panel="How it is tested")] = Field(
         default="scene",
         description="What would be drawn anew: new scenes, or new tasks with all of their scenes.",
     )
-    primary: Annotated[str | None, Flag(panel="How it is decided")] = Field(
-        default=None, description="Path of the primary contrast, a module or shared (default)."
+    primary: Annotated[str | None, Flag(panel="How it is tested")] = Field(
+        default=None,
+        description="Where the fault acts in the primary contrast: a module, or shared (default).",
     )
-    generalise: Annotated[Generalise, Flag(panel="How it is decided")] = Field(
+    generalise: Annotated[Generalise, Flag(panel="How it is tested")] = Field(
         default="scenes",
         description="What intervals are valid for: new scenes, or newly trained models too, one a "
         "seed.",
     )
     folder: Annotated[Place, Flag("--out")] = Field(
-        default=None, description="Run folder; default runs/judged-<arms>-<results>."
+        default=None, description="Run folder; default runs/judged-<versions>-<results>."
     )

@@ -66,8 +66,8 @@ def received(
     arm, condition = file.label("arm", cells, where), file.label("condition", cells, where)
     if not arm:
         raise UserError(
-            f"{where} names no arm: write it before the file, as in {question.repair}={file.path}, "
-            "or name the column with --column arm=NAME."
+            f"{where} names no version: write it before the file, as in "
+            f"{question.repair}={file.path}, or name its column with `--column arm=NAME`."
         )
     scene = _text(cells.get("scene"), f"{where}: the scene")
     if not scene:
