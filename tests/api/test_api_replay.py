@@ -102,7 +102,7 @@ def test_scenes_and_paths_are_those_of_the_run(folder) -> None:
     assert chosen_scenes(held, (SCENE, SCENE), ("shared",)) == (SCENE,)
     with pytest.raises(UserError, match=r"unknown scene"):
         chosen_scenes(held, ("cart/09",), ())
-    with pytest.raises(UserError, match=r"unknown path"):
+    with pytest.raises(UserError, match=r"unknown condition"):
         chosen_scenes(held, (), ("both",))
 
 

@@ -70,7 +70,7 @@ def audits(
 ) -> tuple[Run, ...]:
     """Audit a repair under each size of a fault.
 
-    Each size is an audit with a record of its own, which holds within a size; `compare` decides all
+    Each size is an audit with a result of its own, which holds within a size; `compare` tests all
     of them as one family.
 
     Args:

@@ -69,8 +69,8 @@ def plan(
 ) -> Planned:
     """Rank the uncertain sources of a system, and propose the audits of a repair.
 
-    Where faultpath runs the system's modules itself, a few scenes probe the sources; nothing is
-    decided from them.
+    Where faultpath runs the system's modules itself, a few scenes probe the sources; they are not
+    tested.
 
     Args:
         system: As for `audit`, but by name: a study file has to build it again.
@@ -137,8 +137,9 @@ def check(
 ) -> "Report":
     """Check that a system keeps what an audit takes for granted.
 
-    Trials repeat and can be paired, modules read what is declared, a fault reaches every tap. What
-    comes back has `checks`, each with its `status`, and all `failures` in a sentence each.
+    Trials repeat and can be paired, modules read what is declared, a fault reaches every injection
+    point. What comes back has `checks`, each with its `status`, and all `failures` in a sentence
+    each.
 
     Args:
         system: As for `faultpath.audit`; an object of your own is checked in this process.
@@ -165,7 +166,7 @@ def check(
 def trace(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> "TraceReport":
-    """Run a variant for a few steps, and tell who read what, when, and from whom.
+    """Run a variant for a few steps, and show who read what, when, and from whom.
 
     What comes back has `reads` in their order, and as `findings` where they are not as declared.
 
@@ -176,7 +177,7 @@ def trace(
 
     Raises:
         UserError: There is no such system, variant, library or scene, the fault reaches no
-            consumer, or the run fails.
+            module, or the run fails.
     """
     question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, progress)
     return traced(question, chosen)

@@ -27,7 +27,7 @@ class RunComparison:
 
     @property
     def headline(self) -> str:
-        """How many audits there are, and where they are decided in opposite directions."""
+        """How many audits there are, and where they are significant in opposite directions."""
         return headline(self.runs)
 
     def report(self, path: str | PathLike[str]) -> Path:
@@ -56,7 +56,7 @@ class RunComparison:
         return Path(path)
 
     def as_json(self) -> dict[str, object]:
-        """Return headline, sentences, what differs, and each record, for `json.dumps`."""
+        """Return headline, sentences, what differs, and each result, for `json.dumps`."""
         entries: list[dict[str, object]] = []
         for run in self.runs:
             entry = folder_and_record(Path(run.folder))
@@ -84,10 +84,10 @@ def folder_and_record(folder: Path) -> dict[str, object]:
 
 
 def compare(runs: Sequence[str | PathLike[str] | Run]) -> RunComparison:
-    """Set finished audits side by side: effects path by path, what differs, who disagrees.
+    """Set finished audits side by side: effects by condition, what differs, who disagrees.
 
-    Nothing is tested between them: each keeps the verdict that it reached by itself. Sizes of one
-    fault are one family, and only what stands over all of them is called decided.
+    Audits are separate tests and are not compared with each other. Sizes of one fault are one
+    family, and only what is significant over all of them is called so.
 
     Args:
         runs: Two or more finished audits, or their folders; each once.

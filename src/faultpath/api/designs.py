@@ -49,7 +49,7 @@ def search(
 ) -> SearchRun:
     """Look for the fault that hurts those most who choose the repair by an isolated audit.
 
-    Half of the scenes find it, and decide nothing; an ordinary audit of that one fault in the other
+    Half of the scenes find it, and test nothing; an ordinary audit of that one fault in the other
     half does.
 
     Args:
@@ -88,9 +88,9 @@ def _search(plan: SearchPlan, job: Job) -> SearchRun:
 def sensitivity(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> SensitivityRun:
-    """Tell which declared uncertainty moves what a variant achieves: Sobol indices of groups.
+    """Rank declared uncertainties by how much they move what a variant achieves: Sobol indices.
 
-    One arm is one draw of all errors, each at all who read its source.
+    Each draw of all errors is a condition, with each error at all who read its source.
 
     Args:
         system: As for `audit`.

@@ -41,12 +41,12 @@ def judge(
     progress: bool | Display = True,
     **arguments: Any,
 ) -> Run:
-    """Decide from trials that other tools ran, as an audit does from its own.
+    """Compare two versions in trials that other tools ran, as an audit does in its own.
 
     Args:
         results: Files, or folders of them: named columns as CSV, Parquet or JSON lines, LeRobot's
-            `eval_info.json`, logs of Inspect, samples of lm-eval. `mine=FILE` says of which arm all
-            trials of a file are, `mine@shared=FILE` under which condition too.
+            `eval_info.json`, logs of Inspect, samples of lm-eval. `mine=FILE` says which version
+            all trials of a file are of, `mine@shared=FILE` under which condition too.
         progress: Whether notices are shown, on the standard error.
         **arguments: ...
 

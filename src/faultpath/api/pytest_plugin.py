@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Audits:
-    """`audit` and `judge` as from Python; a run goes into the test's own folder unless told."""
+    """`audit` and `judge` as from Python; by default a run goes into the test's own folder."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -38,5 +38,5 @@ class Audits:
 
 @pytest.fixture
 def faultpath(tmp_path: Path) -> Audits:
-    """Audit a repair, or judge trials that other tools ran, and assert what was decided."""
+    """Audit a repair, or judge trials that other tools ran, and assert the result."""
     return Audits(tmp_path)

@@ -44,11 +44,11 @@ def chosen_scenes(
 ) -> tuple[str, ...]:
     """Return the scenes to run again, by default those that the report begins with.
 
-    `UserError` for a scene or path that the run has not got.
+    `UserError` for a scene or condition that the run does not have.
     """
     every = list(dict.fromkeys(row.outcome.scene for row in source.outcomes.rows))
     named = [path.name for path in source.record.paths]
-    for what, names, known in (("scene", scenes, every), ("path", paths, named)):
+    for what, names, known in (("scene", scenes, every), ("condition", paths, named)):
         for name in names:
             if name not in known:
                 raise UserError(f"the run: {unknown(what, name, known)}")
@@ -70,9 +70,9 @@ def replay(
     say: Callable[[str], None] = lambda text: None,
     trust: bool = False,
 ) -> list[Replayed]:
-    """Run the trials of some scenes again, on all paths or on some, in both arms.
+    """Run the trials of some scenes again, under all conditions or some, with both versions.
 
-    Without `trust` the system has to be an installed one, since the record may be anybody's.
+    Without `trust` the system has to be an installed one, since the folder may be anybody's.
     Raises `UserError` where the system cannot be built, or no longer has the scenes and variants
     of the run.
     """

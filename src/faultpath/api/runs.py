@@ -36,7 +36,7 @@ from faultpath.trials.store.tables import encode_outcomes
 
 
 class FinishedRun:
-    """A finished run: what was decided, how it was made, and where its files are."""
+    """A finished run: its result, how it was made, and where its files are."""
 
     files: ClassVar[tuple[str, ...]]
     """Those that its pages are made from, its record first."""
@@ -58,14 +58,14 @@ class FinishedRun:
 
 
 class Run(FinishedRun):
-    """A finished audit: what was decided, from which trials, and where its files are.
+    """A finished audit: its result, from which trials, and where its files are.
 
-    A notebook shows it as the table of its effects, with the verdict below.
+    A notebook shows it as the table of its effects, with the result in words below.
     """
 
     files = MADE_FROM
     record: DecisionRecord
-    """Decisions of the audit: `headline` in a sentence, `effects` in numbers."""
+    """Result of the audit: `headline` in a sentence, `effects` in numbers."""
 
     def __init__(self, folder: Path, source: ReportInput) -> None:
         super().__init__(folder, source.record, source.provenance)
@@ -74,7 +74,7 @@ class Run(FinishedRun):
 
     @property
     def headline(self) -> str:
-        """The verdict in one sentence."""
+        """The result in one sentence."""
         return self.record.headline
 
     @property
@@ -84,8 +84,8 @@ class Run(FinishedRun):
 
     @property
     def repair_holds_when_shared(self) -> Answer:
-        """Whether the repair is decided to be ahead under the shared fault; a failed assert shows
-        what was decided instead. `UserError` where the audit has no shared fault."""
+        """Whether the repair is significantly ahead under the shared fault; a failed assert shows
+        what was found instead. `UserError` where the audit has no shared fault."""
         return holds_when_shared(self.record)
 
     def found(self, what: Ask) -> Answer:
@@ -94,8 +94,9 @@ class Run(FinishedRun):
         return found(self.record, what)
 
     def table(self) -> pa.Table:
-        """Return the trials as an Arrow table, one row each: variant, path, seed, scene, status,
-        time_s, the system's metrics (null where a trial has none), and what the taps did.
+        """Return the trials as an Arrow table, one row each: variant, `path` (the condition), seed,
+        scene, status, time_s, the system's metrics (null where a trial has none), and what the
+        injection points did.
 
         Its `to_pandas` makes a DataFrame where pandas is installed.
         """
@@ -113,7 +114,7 @@ class Run(FinishedRun):
 
 
 class MapRun(FinishedRun):
-    """A finished reversal map: what was decided, and where its files are."""
+    """A finished reversal map: its result, and where its files are."""
 
     files = MAP_MADE_FROM
     model = MapRecord
@@ -132,7 +133,7 @@ class SearchRun(FinishedRun):
     files = SEARCH_MADE_FROM
     model = SearchRecord
     record: SearchRecord
-    """`headline` and `sentences` in words; `tried`, and `confirmed`, the record of the audit."""
+    """`headline` and `sentences` in words; `tried`, and `confirmed`, the result of the audit."""
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, tried.svg and table.md, and return their paths."""
@@ -141,7 +142,7 @@ class SearchRun(FinishedRun):
 
 
 class SensitivityRun(FinishedRun):
-    """A finished sensitivity analysis: what was decided, and where its files are."""
+    """A finished sensitivity analysis: its result, and where its files are."""
 
     files = SENSITIVITY_MADE_FROM
     model = SensitivityRecord

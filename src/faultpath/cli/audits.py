@@ -163,7 +163,8 @@ def judge(
     summary: Summary = None,
     **arguments: Any,
 ) -> int:
-    """Decide from trials that other tools ran: record, report and words are those of an audit.
+    """Compare two versions in trials that other tools ran, with the tests, the result and the
+    report of an audit.
 
     Trials are paired by task, scene, seed and condition; what cannot be paired is refused, and a
     missing pair is named with what it could change."""

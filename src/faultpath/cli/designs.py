@@ -30,7 +30,7 @@ def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) ->
 @takes(SearchQuestion)
 def search(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Look within bounds for the fault that hurts those most who choose the repair by an isolated
-    audit: half of the scenes find it, and an audit of it in the other half decides."""
+    audit: half of the scenes find it, and an audit in the other half tests it."""
     from faultpath.api.designs import search
 
     run = search(system, **arguments, progress=display(as_json))

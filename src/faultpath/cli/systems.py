@@ -64,7 +64,8 @@ def trace(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
 @takes(CheckQuestion)
 def check(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Check what a careful reviewer would: that trials repeat and can be paired, that modules read
-    what is declared, and that a fault reaches every tap. Exits with 1 where a check fails."""
+    what is declared, and that a fault reaches every injection point. Exits with 1 where a check
+    fails."""
     from rich.padding import Padding
     from rich.text import Text
 
