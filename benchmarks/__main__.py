@@ -26,7 +26,7 @@ from benchmarks.rows import ELSEWHERE, ROWS, SIDES, Row
 from faultpath.trials.execution.provenance import checkout, processor
 
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-PACKAGES = ["numpy", "scipy", "torch", "mujoco", "pytorch-mppi", "rotorpy"]
+PACKAGES = ["numpy", "scipy", "torch", "mujoco", "pytorch-mppi", "rotorpy", "torchrl"]
 
 
 class NotMeasured(Exception):

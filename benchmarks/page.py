@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from statistics import median
 from typing import Any
 
-from benchmarks.results import DEVICE, Record, load, record
+from benchmarks.results import DEVICE, WAITS, Record, load, record
+from benchmarks.waits import STEPS, TESTS
 from faultpath.decisions.tables import MISSING, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
 
@@ -73,6 +74,22 @@ def _ratio(record: Record) -> str:
     if record.low is None or record.high is None:
         return number(record.ratio)
     return f"{number(record.ratio)} [{number(record.low)}, {number(record.high)}]"
+
+
+def waits() -> str:
+    """Return what each step took that a user waits for."""
+    figures = json.loads(WAITS.read_text())
+    steps = STEPS | TESTS
+    lines = [
+        line(step, steps[step], f"{number(seconds)} s", name=True)
+        for step, seconds in figures["seconds"].items()
+    ]
+    columns = ("what it does", "time")
+    table = grid(Table(corner="command", columns=columns, lines=tuple(lines), words=columns[:1]))
+    return (
+        f"{table}\n\nMeasured on {figures['date']}: {figures['processor']}, {figures['cores']} "
+        f"cores; commit `{figures['commit'][:12]}`."
+    )
 
 
 def gpu() -> str:

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results.json"
 DEVICE = ROOT / "benchmarks" / "device.json"
+WAITS = ROOT / "benchmarks" / "waits.json"
 
 
 class _Frozen(BaseModel):

@@ -9,14 +9,24 @@ from benchmarks.results import Target
 
 _XLA = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 _PORTABLE = {library.VARIABLE: library.PORTABLE}
+_AVX2 = {
+    library.VARIABLE: "avx2",
+    "ATEN_CPU_CAPABILITY": "avx2",
+    "ONEDNN_MAX_CPU_ISA": "AVX2",
+    "MKL_ENABLE_INSTRUCTIONS": "AVX2",
+}
+"""Keeps ours and torch to vectors of half the width."""
 
 SIDES: Mapping[str, tuple[str, Mapping[str, str]]] = {
     "fused rollout": ("benchmarks.planning:rollout", {}),
     "portable": ("benchmarks.planning:rollout", _PORTABLE),
     "torch.mm": ("benchmarks.planning:network_product", {}),
     "fused replan": ("benchmarks.planning:replan", {}),
+    "fused replan, AVX2": ("benchmarks.planning:replan", _AVX2),
     "portable replan": ("benchmarks.planning:replan", _PORTABLE),
     "pytorch_mppi": ("benchmarks.peers.pytorch_mppi_side:command", {}),
+    "pytorch_mppi, AVX2": ("benchmarks.peers.pytorch_mppi_side:command", _AVX2),
+    "torchrl": ("benchmarks.peers.torchrl_side:planning_step", {}),
     "jax-mppi": ("benchmarks.peers.jax_mppi_side:command", {"XLA_FLAGS": _XLA}),
     "one vehicle": ("benchmarks.planning:one_vehicle", {}),
     "plant": ("benchmarks.physics:plant", {}),
@@ -57,6 +67,8 @@ ROWS = (
     Row("Fused rollout, portable", "replans/s", "fused rollout", "portable"),
     Row("Fused rollout, torch.mm", "replans/s", "fused rollout", "torch.mm", _ratio(0.75)),
     Row("Fused replan, pytorch_mppi", "replans/s", "fused replan", "pytorch_mppi", _ratio(5.0)),
+    Row("Fused replan by AVX2, the same", "replans/s", "fused replan, AVX2", "pytorch_mppi, AVX2"),
+    Row("Fused replan, torchrl", "replans/s", "fused replan", "torchrl"),
     Row("Fused replan, jax-mppi", "replans/s", "fused replan", "jax-mppi"),
     Row("Portable replan, pytorch_mppi", "replans/s", "portable replan", "pytorch_mppi"),
     Row("One vehicle, depth image encoded and queried", "ms", "one vehicle", target=_at_most(5.0)),

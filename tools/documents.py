@@ -73,6 +73,7 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
     **{f"latent:{part}": function for part, function in latent_blocks.KIND.items()},
     "performance:machine": performance.machine,
     "performance:rows": performance.all_rows,
+    "performance:waits": performance.waits,
     "performance:gpu": performance.gpu,
 }
 """Functions that return the text of a block from the other words of its name, by its kind."""

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from benchmarks import page, physics, planning
 from benchmarks.peers import batched
-from benchmarks.results import DEVICE, Target, load, record
+from benchmarks.results import DEVICE, WAITS, Target, load, record
 from benchmarks.rows import ROWS, SIDES
+from benchmarks.waits import STEPS, TESTS
 
 ROOT = Path(__file__).parents[2]
 
@@ -45,6 +46,12 @@ def test_every_figure_of_a_gpu_names_its_command_or_says_that_it_was_entered_by_
         for part in (figures, figures.get("audits"), figures.get("paper")):
             if part is not None:
                 assert (part.get("command") or part["by_hand"]) in text
+
+
+def test_every_wait_that_was_timed_is_a_step_of_today():
+    seconds = json.loads(WAITS.read_text("utf-8"))["seconds"]
+    assert set(STEPS) <= set(seconds) <= set(STEPS | TESTS)
+    assert all(f"`{step}`" in page.waits() for step in seconds)
 
 
 def test_the_plants_have_times_and_no_ratio():
