@@ -6,7 +6,6 @@ refinement that takes all candidates is the update of MPPI; the library's own ex
 
 from typing import Any
 
-import torch
 from tensordict import TensorDict
 from torch import nn
 from torchrl.data import Bounded, Composite, Unbounded
