@@ -81,14 +81,14 @@ def test_without_positions_the_player_opens_on_what_the_plant_measures(
         source.model_copy(update={"provenance": Provenance.MEASURED})
         if source.name in measured
         else source
-        for source in one_seed.interface.sources
+        for source in one_seed.system.interface.sources
     )
-    scene = next(iter(one_seed.plans))
+    interface = one_seed.system.interface.model_copy(update={"sources": sources})
+    scene = next(iter(one_seed.system.plans))
     still = replace(
         one_seed,
-        interface=one_seed.interface.model_copy(update={"sources": sources}),
-        traces=Traces({}, 0.05),
-        plans={},
+        system=one_seed.system.model_copy(update={"interface": interface, "plans": {}}),
+        outcomes=with_traces(one_seed.outcomes, lambda track: None),
         signals={TrialAddress("gru", "shared", 0, scene): signals},
     )
     data, _ = _unpacked(still)
