@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
+from outcome_tables import question as audit
 
 from faultpath.decisions.map.decide import decided
 from faultpath.decisions.map.lattice import COARSE, UNITS, Point, lattice
@@ -15,27 +16,10 @@ Seen = Callable[[float, float], tuple[np.ndarray, np.ndarray]]
 
 
 def question(**given: object) -> ResolvedMap:
-    return ResolvedMap.model_validate(
-        {
-            "system": "toy",
-            "options": {},
-            "baseline": "old",
-            "repair": "new",
-            "fault": "gain",
-            "against": MODULES,
-            "up_to": 0.4,
-            "relative": True,
-            "unit": "1",
-            "means": (0.0, 0.0),
-            "spreads": (0.2, 0.2),
-            "points": 81,
-            "library": "carts",
-            "library_hash": "carts-1",
-            "n_scenes": 100,
-            "seeds": (0,),
-        }
-        | given
-    )
+    same = audit(100).model_dump(include={*ResolvedMap.model_fields})
+    errors = {"up_to": 0.4, "relative": True, "unit": "1", "means": (0.0, 0.0)}
+    more = {"fault": "gain", "against": MODULES, "spreads": (0.2, 0.2), "points": 81}
+    return ResolvedMap.model_validate(same | errors | more | given)
 
 
 def differences(seen: Seen, points: tuple[Point, ...], seeds: int = 1) -> Differences:

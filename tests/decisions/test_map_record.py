@@ -13,15 +13,13 @@ from faultpath.decisions.map.joint import Errors, lattice_weights
 from faultpath.decisions.map.lattice import COARSE, SHOWN, UNITS, lattice, surface_weights
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.surface import Combined, Differences
-from faultpath.report.map import tables
-from faultpath.trials.provenance import RunProvenance
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS
 DECIDES = re.compile(r"(new|old) (is|does|is expected)")
 
 
-@pytest.mark.parametrize("correlation", [-1.0, -0.4, 0.0, 0.6, 1.0])
+@pytest.mark.parametrize("correlation", [-1.0, 0.6])
 def test_the_expectation_of_a_bilinear_surface_is_that_of_its_moments(correlation: float) -> None:
     errors = Errors((0.1, -0.2), (0.15, 0.1))
     weights = lattice_weights(errors, correlation)
@@ -30,16 +28,6 @@ def test_the_expectation_of_a_bilinear_surface_is_that_of_its_moments(correlatio
     assert weights @ Y == pytest.approx(-0.2, abs=1e-6)
     assert weights @ (X * Y) == pytest.approx(correlation * 0.015 - 0.02, abs=2e-4)
     assert errors.outside(correlation) == 0
-
-
-def test_exchanging_the_modules_exchanges_the_errors() -> None:
-    one, two = Errors((0.1, -0.2), (0.3, 0.2)), Errors((-0.2, 0.1), (0.2, 0.3))
-    side = 2 * UNITS // SHOWN + 1
-    for correlation in (-0.7, 0.3, 1.0):
-        turned = lattice_weights(two, correlation).reshape(side, side).T
-        np.testing.assert_allclose(
-            lattice_weights(one, correlation).reshape(side, side), turned, atol=1e-12
-        )
 
 
 def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
@@ -54,7 +42,6 @@ def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
     assert expected.means[0] == pytest.approx(0, abs=0.1)
     assert "new does better with an error correlation up to" in made.headline
     assert "; old from" in made.headline
-    assert len(made.headline.split()) <= 20
     stated = [float(each) for each in re.findall(r"-?\d\.\d+", made.headline)]
     assert stated[0] <= low
     assert stated[1] >= high
@@ -155,16 +142,3 @@ def test_every_claim_of_a_path_is_one_of_its_points() -> None:
     said = " ".join(made.sentences)
     assert "With both wrong alike, error below 0: old is ahead at every size of the map." in said
     assert "Sharing the error reverses the ranking at" in said
-
-
-def origin() -> RunProvenance:
-    return RunProvenance.model_validate_json((REFERENCE / "map-toy/provenance.json").read_bytes())
-
-
-def shown(made: MapRecord) -> dict[str, tuple[str, ...]]:
-    """The table of turning sizes, by path and direction."""
-    (table,) = (each for each in tables(made) if each.name == "flips")
-    return {
-        f"{each.label}, {each.entries[0].text}": tuple(e.text for e in each.entries[1:])
-        for each in table.lines
-    }

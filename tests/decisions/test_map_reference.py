@@ -25,27 +25,16 @@ def test_a_reference_map_follows_from_its_outcomes(
     asked = record.question
     spec = SystemSpec(name=asked.system, options=asked.options)
     system = load_system(spec)
-    plan = plan_map(
-        system,
-        spec,
-        MapQuestion(
-            baseline=asked.baseline,
-            repair=asked.repair,
-            fault=asked.fault,
-            against=asked.against,
-            up_to=asked.up_to,
-            points=asked.points,
-            mean=asked.means,
-            spread=asked.spreads,
-            correlation=asked.correlation,
-            scenes=asked.n_scenes,
-            seeds=asked.seeds,
-        ),
-        library_of(system, asked.library),
+    same = ("baseline", "repair", "fault", "against", "up_to", "points", "correlation", "seeds")
+    question = MapQuestion(
+        **{name: getattr(asked, name) for name in same},
+        mean=asked.means,
+        spread=asked.spreads,
+        scenes=asked.n_scenes,
     )
+    plan = plan_map(system, spec, question, library_of(system, asked.library))
     # Under other versions of packages an environment has other scenes; the trials are of these.
-    same = plan.question.model_copy(update={"library_hash": asked.library_hash})
-    assert same == asked
+    assert plan.question.model_copy(update={"library_hash": asked.library_hash}) == asked
     plan = replace(plan, question=asked)
     points = [
         (round(x / asked.up_to * UNITS), round(y / asked.up_to * UNITS))

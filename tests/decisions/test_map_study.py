@@ -31,12 +31,10 @@ def plan(**given: Any) -> MapPlan:
 
 def test_the_paths_of_an_audit_are_points_of_the_map() -> None:
     """To the arm, so that both would be the same trials."""
-    audit = plan_audit(
-        TOY,
-        SPEC,
-        AuditQuestion(baseline="calibrated", repair="blind", fault="gain:scale=0.6", scenes=8),
-        library_of(TOY, "carts"),
+    question = AuditQuestion(
+        baseline="calibrated", repair="blind", fault="gain:scale=0.6", scenes=8
     )
+    audit = plan_audit(TOY, SPEC, question, library_of(TOY, "carts"))
     points = [(0, 0), (-UNITS, 0), (0, -UNITS), (-UNITS, -UNITS)]
     names = dict(zip(("correct", "controller", "observer", "shared"), points, strict=True))
     made = plan()
@@ -62,19 +60,9 @@ def test_errors_of_unequal_size_strike_each_its_own_module() -> None:
 def test_an_offset_is_in_the_unit_of_the_reading() -> None:
     dock = SystemSpec(name=f"{EXAMPLES / 'dock.py'}:create")
     system = load_system(dock)
-    made = plan_map(
-        system,
-        dock,
-        MapQuestion(
-            baseline="wheels",
-            repair="ranges",
-            fault="range:offset,onset=5",
-            against=("approach", "speedometer"),
-            up_to=0.5,
-            scenes=4,
-        ),
-        library_of(system, "floors"),
-    )
+    question = {"baseline": "wheels", "repair": "ranges", "fault": "range:offset,onset=5"}
+    question |= {"against": ("approach", "speedometer"), "up_to": 0.5, "scenes": 4}
+    made = plan_map(system, dock, ask(MapQuestion, question), library_of(system, "floors"))
     assert not made.question.relative
     assert made.question.said(-0.25) == "−0.25 m"
     (fault,) = made.study([(0, 16)]).rows[1].arm.faults
@@ -87,26 +75,19 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
         ({"fault": "gain:scale=0.6"}, "the map sets the size itself; leave '=0.6' out"),
         ({"fault": "gain@observer"}, "name the modules with --against"),
         ({"fault": "gain:noise"}, "errors of both signs"),
-        ({"fault": "gian"}, "did you mean 'gain'"),
         ({"points": 9 * 10**400}, "takes at most 10000"),
         ({"against": ("controller",)}, "--against needs two modules"),
-        ({"against": ("controller", "controller")}, "--against needs two modules"),
         ({"against": ("controller", "controller.inverse")}, "share no place"),
         ({"against": ("controller", "speedometer")}, "unknown consumer"),
         ({"against": ("controller", "observer"), "baseline": "blind"}, "two different variants"),
         ({"up_to": None}, "say how large errors may be"),
         ({"up_to": 1.0}, "less than 1"),
-        ({"up_to": 0.0}, "from 1e-06 to 1e+12"),
         ({"up_to": 1e-13}, "1e-13 is no size"),
-        ({"up_to": float("nan")}, "finite number"),
         ({"points": 24}, "begins with 25"),
-        ({"spread": (0.0,)}, "above 0"),
         ({"spread": (0.1, 1e308)}, "--spread: give standard deviations above 0, up to"),
         ({"spread": (0.1, 0.1, 0.1)}, "one for each module"),
         ({"mean": (0.5,)}, "beyond the map"),
         ({"correlation": 1.5}, "between -1 and 1"),
-        ({"scenes": 1000}, "choose 1 to 100"),
-        ({"repair": "other"}, "unknown variant"),
     ],
 )
 def test_a_mistake_is_one_sentence(given: dict[str, Any], said: str) -> None:

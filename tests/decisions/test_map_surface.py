@@ -17,7 +17,7 @@ from faultpath.decisions.map.lattice import (
     sizes,
     surface_weights,
 )
-from faultpath.decisions.map.surface import Combined, Differences, simultaneous
+from faultpath.decisions.map.surface import Combined, simultaneous
 from faultpath.statistics.effects import success_effect
 from faultpath.statistics.resamples import Resamples
 
@@ -57,18 +57,6 @@ def test_decisions_at_a_point_are_those_of_its_own_score_interval() -> None:
         effect = success_effect(found.repair[i], found.baseline[i], resamples)
         assert effect.interval == pytest.approx((low[i], high[i]), abs=1e-6)
         assert effect.value == pytest.approx(all_.means[i])
-
-
-def test_swapping_the_arms_mirrors_every_decision() -> None:
-    found = grown(reversal(40))
-    mirrored = Differences(found.points, found.baseline, found.repair)
-    weights = surface_weights(found.points)
-    z = simultaneous(weights, found, "toy")
-    assert simultaneous(weights, mirrored, "toy") == pytest.approx(z)
-    one, two = Combined.of(weights, found), Combined.of(weights, mirrored)
-    np.testing.assert_array_equal(one.signs(z), -two.signs(z))
-    assert one.signs(z).any()
-    np.testing.assert_allclose(one.ends(z)[0], -two.ends(z)[1])
 
 
 def test_copies_of_a_seed_decide_nothing_more() -> None:
