@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterator
 
 import pytest
-from outcome_tables import BASELINE, MOST_WORDS, REPAIR, arms, paths, question, rows
+from outcome_tables import BASELINE, MOST_WORDS, REPAIR, Counts, arms, paths, question, rows
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
@@ -27,40 +27,17 @@ PATHS = {
 YES, NO = Status.SUCCESS, Status.TIMEOUT
 
 
-def always(path: str, seed: int, n: int) -> Statuses:
-    return arms((n, 0, 0), n)
-
-
-def never(path: str, seed: int, n: int) -> Statuses:
-    return arms((0, 0, 0), n)
-
-
-def no_discordance(path: str, seed: int, n: int) -> Statuses:
-    return arms((n // 2, 0, 0), n)
-
-
-def ties(path: str, seed: int, n: int) -> Statuses:
-    return arms((0, n // 2, n // 2), n)
-
-
-def for_the_repair(path: str, seed: int, n: int) -> Statuses:
-    return arms((0, n, 0), n)
-
-
-def against_it_when_shared(path: str, seed: int, n: int) -> Statuses:
-    return arms((0, 0, n) if path == SHARED else (0, n, 0), n)
-
-
-def against_it_without_a_fault(path: str, seed: int, n: int) -> Statuses:
-    return arms((0, 0, n) if path == CORRECT else (0, n, 0), n)
-
-
-def near_the_floor(path: str, seed: int, n: int) -> Statuses:
-    return arms((0, n // 12, 0), n)
-
-
-def near_the_ceiling(path: str, seed: int, n: int) -> Statuses:
-    return arms((n - n // 12, 0, n // 12), n)
+COUNTS: dict[str, Callable[[str, int], Counts]] = {
+    "always": lambda path, n: (n, 0, 0),
+    "never": lambda path, n: (0, 0, 0),
+    "no discordance": lambda path, n: (n // 2, 0, 0),
+    "ties": lambda path, n: (0, n // 2, n // 2),
+    "for the repair": lambda path, n: (0, n, 0),
+    "against it when shared": lambda path, n: (0, 0, n) if path == SHARED else (0, n, 0),
+    "against it without a fault": lambda path, n: (0, 0, n) if path == CORRECT else (0, n, 0),
+    "near the floor": lambda path, n: (0, n // 12, 0),
+    "near the ceiling": lambda path, n: (n - n // 12, 0, n // 12),
+}
 
 
 def by_chance(path: str, seed: int, n: int) -> Statuses:
@@ -76,22 +53,14 @@ def leaning(path: str, seed: int, n: int) -> Statuses:
     return {v: [YES if x else NO for x in stream.random(n) < p] for v, p in chances.items()}
 
 
-SHAPES: dict[str, Callable[[str, int, int], Statuses]] = {
-    shape.__name__: shape
-    for shape in (
-        always,
-        never,
-        no_discordance,
-        ties,
-        for_the_repair,
-        against_it_when_shared,
-        against_it_without_a_fault,
-        near_the_floor,
-        near_the_ceiling,
-        by_chance,
-        leaning,
-    )
-}
+CHANCES = {"by chance": by_chance, "leaning": leaning}
+SHAPES = (*COUNTS, *CHANCES)
+
+
+def ends_of(shape: str, path: str, seed: int, n: int) -> Statuses:
+    return arms(COUNTS[shape](path, n), n) if shape in COUNTS else CHANCES[shape](path, seed, n)
+
+
 RUNS = ("one seed", "three seeds", "identical seeds", "void", "never acted", "one path idle")
 RULES: dict[str, tuple[StopWhen, float | None, int]] = {
     "as soon as decided": ("decided", None, 100),
@@ -103,10 +72,6 @@ RULES: dict[str, tuple[StopWhen, float | None, int]] = {
 they did."""
 
 
-def stop_rule(when: StopWhen, margin: float | None) -> StopRule:
-    return StopRule(when=when, margin_pp=margin, order=(), order_seed=0, look=5, trials=8)
-
-
 def run(
     shape: str, over: tuple[str, ...], n: int, how: str, trained: bool, rule: str = ""
 ) -> DecisionRecord:
@@ -114,7 +79,7 @@ def run(
     out = []
     for seed in seeds:
         for path in over:
-            made = SHAPES[shape](path, 0 if how == "identical seeds" else seed, n)
+            made = ends_of(shape, path, 0 if how == "identical seeds" else seed, n)
             idle = how == "never acted" or (how == "one path idle" and path == over[-1])
             for variant, statuses in made.items():
                 ends = list(statuses)
@@ -125,7 +90,8 @@ def run(
     asked = question(n, seeds).model_copy(update={"trained": trained, "rule": decided_by})
     if rule:
         when, margin, most = RULES[rule]
-        update = {"stop": stop_rule(when, margin), "n_scenes": most or n}
+        stop = StopRule(when=when, margin_pp=margin, order=(), order_seed=0, look=5, trials=8)
+        update = {"stop": stop, "n_scenes": most or n}
         asked = asked.model_copy(update=update)
     return decide(asked, paths(*over), OutcomeTable(tuple(out)))
 
@@ -292,8 +258,7 @@ def says_how_it_stopped(made: DecisionRecord) -> None:
         assert effect.minimum_detectable_pp is None
         for other in (effect.time_s, *effect.metrics.values()):
             assert other is None or (other.low, other.high) == (None, None)
-    if "differ by less than" in made.headline:
-        assert asked.primary in held.small
+    assert "differ by less than" not in made.headline or asked.primary in held.small
     whole = made.model_dump_json()
     for fixed in ("Holm", "80 % power", "McNemar", "sign test", "Tango", "bootstrap", "score"):
         assert fixed not in whole
@@ -313,8 +278,3 @@ def test_no_sentence_of_a_sequential_audit_claims_what_was_not_decided(
             check(made)
             reads_well(made)
             says_how_it_stopped(made)
-
-
-def test_without_a_scene_there_is_nothing_to_say() -> None:
-    with pytest.raises(Exception, match=r"no trial|no scene"):
-        run("ties", PATHS["shared"], 0, "one seed", trained=False)

@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterator
 from itertools import product
 
-import pytest
 from outcome_tables import BASELINE, MOST_WORDS, REPAIR, record
 
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
@@ -124,43 +123,30 @@ def test_every_headline_is_short_and_true() -> None:
     assert seen > 1500
 
 
-@pytest.mark.parametrize("correct", PLAIN)
-@pytest.mark.parametrize("turned", ["", "a"])
-@pytest.mark.parametrize(("isolated", "shared"), list(product(PLAIN, PLAIN)))
-def test_what_follows_says_who_is_ahead_where_and_what_sharing_does(
-    isolated: State, shared: State, turned: str, correct: State
-) -> None:
-    it = made({CORRECT: correct, "a": isolated, SHARED: shared}, SHARED, turned)
-    follows = answers(it)["What follows"]
-    states = {CORRECT: correct, "a": isolated, SHARED: shared}
-    for who, sign in SIDES.items():
-        assert (f"{who} succeeds more often" in follows) == any(
-            s[0] == sign for s in states.values()
-        )
-    reverses = isolated[0] * shared[0] < 0
-    assert ("Ask which fault" in follows) == reverses
-    assert ("does not stand for the shared one" in follows) == (turned == "a" and not reverses)
-    assert ("no difference is seen" in follows) == (isolated != OPEN and shared == OPEN)
-    disagree = len({sign for sign, _ in states.values()} - {0}) == 2
-    assert ("depends on which fault occurs" in follows) == (disagree and not reverses)
-
-
-@pytest.mark.parametrize("shared", [FLOOR, IDLE, WON_AT_THE_FLOOR])
-def test_what_cannot_show_is_not_told_as_unseen(shared: State) -> None:
-    it = made({CORRECT: OPEN, "a": GAIN, "b": OPEN, SHARED: shared}, SHARED)
-    follows = answers(it)["What follows"]
-    assert "With the fault at the a alone, new succeeds more often." in follows
-    assert "no difference is seen" not in follows
-
-
-def alone() -> tuple[DecisionRecord, Effect]:
-    """Return a record whose shared interval leaves out 0 while Holm's p is too large."""
-    it = record({CORRECT: (50, 3, 3), "a": (40, 30, 2), "b": (50, 3, 3), SHARED: (60, 1, 8)})
-    return it, it.effects[-1]
+def test_what_follows_says_who_is_ahead_where_and_what_sharing_does() -> None:
+    for correct, isolated, shared, turned in product(PLAIN, PLAIN, PLAIN, ("", "a")):
+        states = {CORRECT: correct, "a": isolated, SHARED: shared}
+        follows = answers(made(states, SHARED, turned))["What follows"]
+        signs = {sign for sign, _ in states.values()} - {0}
+        for who, sign in SIDES.items():
+            assert (f"{who} succeeds more often" in follows) == (sign in signs)
+        reverses = isolated[0] * shared[0] < 0
+        assert ("Ask which fault" in follows) == reverses
+        stands = turned != "a" or reverses
+        assert ("does not stand for the shared one" in follows) == (not stands)
+        unseen = isolated != OPEN and shared == OPEN
+        assert ("no difference is seen" in follows) == unseen
+        assert ("depends on which fault occurs" in follows) == (len(signs) == 2 and not reverses)
+    for shared in (FLOOR, IDLE, WON_AT_THE_FLOOR):
+        it = made({CORRECT: OPEN, "a": GAIN, "b": OPEN, SHARED: shared}, SHARED)
+        follows = answers(it)["What follows"]
+        assert "With the fault at the a alone, new succeeds more often." in follows
+        assert "no difference is seen" not in follows
 
 
 def test_an_interval_that_leaves_out_0_undetected_has_its_p_and_the_reason() -> None:
-    it, shared = alone()
+    it = record({CORRECT: (50, 3, 3), "a": (40, 30, 2), "b": (50, 3, 3), SHARED: (60, 1, 8)})
+    shared = it.effects[-1]
     assert (shared.success.high or 0.0) < 0
     assert not shared.detected
     p = f"p = {shared.adjusted_p_value:.3f} after Holm"

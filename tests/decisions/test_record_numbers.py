@@ -41,15 +41,14 @@ def test_counts_make_the_effect_and_the_p_value(counts):
 def test_cells_count_every_trial():
     made = record({CORRECT: (40, 20, 5), "observer": (10, 0, 30)})
     cells = {(cell.variant, cell.path): cell for cell in made.cells}
-    assert len(cells) == 4
-    assert cells[REPAIR, CORRECT].success == 60
-    assert cells[BASELINE, CORRECT].success == 45
-    assert cells[REPAIR, "observer"].success == 10
-    assert cells[BASELINE, "observer"].success == 40
+    assert {at: cell.success for at, cell in cells.items()} == {
+        (REPAIR, CORRECT): 60,
+        (BASELINE, CORRECT): 45,
+        (REPAIR, "observer"): 10,
+        (BASELINE, "observer"): 40,
+    }
     for cell in made.cells:
         assert cell.success + cell.crash == cell.trials == 100
-        assert cell.timeout == cell.failed == 0
-        assert cell.success_percent == cell.success
         assert cell.faulted_trials == (0 if cell.path == CORRECT else 100)
         altered = cell.path != CORRECT and cell.variant == REPAIR
         assert cell.altered_trials == (100 if altered else 0)
@@ -107,7 +106,7 @@ def test_the_family_is_all_that_may_be_announced():
         assert (each.sign != 0) <= (p <= 0.05)
 
 
-@pytest.mark.parametrize(("n", "enough"), [(3, False), (7, False), (8, True), (30, True)])
+@pytest.mark.parametrize(("n", "enough"), [(3, False), (7, False), (8, True)])
 def test_too_few_scenes_decide_nothing_and_the_number_that_would_is_known(n, enough):
     made = record({CORRECT: (0, n, 0), "a": (0, n, 0), "b": (0, n, 0), SHARED: (0, 0, n)}, n=n)
     assert made.scenes_needed == 8  # 2 / 2^8 <= 0.05 / 6 < 2 / 2^7
@@ -116,13 +115,9 @@ def test_too_few_scenes_decide_nothing_and_the_number_that_would_is_known(n, eno
 
 
 def _with_failures(*failed: tuple[str, str, int]) -> OutcomeTable:
-    """Return trials on three paths of which some failed: variant, path, scene."""
+    """Return trials on two paths of which some failed: variant, path, scene."""
     out = []
-    for path, counts in {
-        CORRECT: (40, 20, 10),
-        "observer": (20, 10, 30),
-        "driver": (20, 9, 3),
-    }.items():
+    for path, counts in {CORRECT: (40, 20, 10), "observer": (20, 10, 30)}.items():
         for variant, statuses in arms(counts).items():
             for v, p, i in failed:
                 if (v, p) == (variant, path):
@@ -147,12 +142,6 @@ def test_a_failed_trial_voids_its_pair_and_shows_and_leaves_its_scene_out_of_eve
     assert cells[REPAIR, "observer"].success_percent == pytest.approx(100 * 30 / 99)
 
 
-def test_when_every_pair_is_void_there_is_nothing_to_decide():
-    every = tuple((REPAIR, CORRECT, i) for i in range(100))
-    with pytest.raises(UserError, match="no scene is left"):
-        decide(question(), paths(CORRECT, "observer"), _with_failures(*every))
-
-
 def test_a_path_without_any_pair_costs_the_others_nothing_and_is_named():
     every = tuple((REPAIR, "observer", i) for i in range(100))
     made = decide(question(), paths(CORRECT, "observer"), _with_failures(*every))
@@ -162,19 +151,13 @@ def test_a_path_without_any_pair_costs_the_others_nothing_and_is_named():
     said = "With the fault at the observer alone, no pair of trials is left to compare"
     assert made.headline.startswith(said)
     assert made.findings[0].startswith(said)
-    assert {(c.path, c.failed) for c in made.cells if c.variant == REPAIR} == {
-        (CORRECT, 0),
-        ("observer", 100),
-    }
+    every += tuple((REPAIR, CORRECT, i) for i in range(100))
+    with pytest.raises(UserError, match="no scene is left"):
+        decide(question(), paths(CORRECT, "observer"), _with_failures(*every))
 
 
 def test_several_seeds_are_averaged_within_each_scene():
-    out = []
-    for seed, counts in ((0, (40, 20, 5)), (1, (40, 10, 5))):
-        for variant, statuses in arms(counts).items():
-            out += rows(variant, CORRECT, statuses, seed=seed)
-    both = decide(question(seeds=(0, 1)), paths(CORRECT), OutcomeTable(tuple(out)))
-    (effect,) = both.effects
+    (effect,) = seeded({CORRECT: [(40, 20, 5), (40, 10, 5)]}).effects
     assert effect.success.value == pytest.approx((15 + 5) / 2)
     assert (effect.wins, effect.losses) == ((20, 10), (5, 5))
     assert effect.scenes == 100

@@ -17,39 +17,25 @@ TOY = SystemSpec(name="examples/toy.py:create")
 
 def told(better: str, values: dict[str, float], *thresholds: float):
     """Return the record of a metric that grows with the scene and is larger in one variant."""
-    rows = [
-        replace(
-            row,
-            outcome=replace(
-                row.outcome, metrics={"error": values[row.variant] + row.scene_index / 100}
-            ),
-        )
-        for row in table(CELLS).rows
-    ]
+    rows = []
+    for row in table(CELLS).rows:
+        error = {"error": values[row.variant] + row.scene_index / 100}
+        rows.append(replace(row, outcome=replace(row.outcome, metrics=error)))
     metrics = {"error": Metric(unit="rad", better=better)}
     update = {"metrics": metrics, "metric": "error", "thresholds": thresholds}
-    asked = question().model_copy(update=update)
-    return decide(asked, paths(*CELLS), OutcomeTable(tuple(rows)))
+    return decide(question().model_copy(update=update), paths(*CELLS), OutcomeTable(tuple(rows)))
 
 
 @pytest.mark.parametrize("better", ["less", "more"])
 def test_success_at_a_threshold_is_no_crash_and_a_metric_that_is_good_enough(better):
-    found = told(better, {"old": 0.0, "new": 0.25}, 0.5)
-    sound = [row for row in table(CELLS).rows if row.path == "correct"]
     offset = {"old": 0.0, "new": 0.25}
-    percent = {
-        name: sum(
-            row.outcome.status is not Status.CRASH
-            and (
-                offset[name] + row.scene_index / 100 <= 0.5
-                if better == "less"
-                else offset[name] + row.scene_index / 100 >= 0.5
-            )
-            for row in sound
-            if row.variant == name
-        )
-        for name in offset
-    }
+    found = told(better, offset, 0.5)
+    percent = dict.fromkeys(offset, 0)
+    for row in table(CELLS).rows:
+        error = offset[row.variant] + row.scene_index / 100
+        good = error <= 0.5 if better == "less" else error >= 0.5
+        if row.path == "correct" and row.outcome.status is not Status.CRASH:
+            percent[row.variant] += good
     (at,) = found.effects[0].thresholds
     assert (at.baseline_percent, at.repair_percent) == (percent["old"], percent["new"])
     assert at.difference.value == pytest.approx(percent["new"] - percent["old"])
@@ -60,10 +46,8 @@ def test_success_at_a_threshold_is_no_crash_and_a_metric_that_is_good_enough(bet
 def test_nothing_that_is_decided_depends_on_it():
     plain = record(CELLS)
     found = told("less", {"old": 0.0, "new": 0.25}, 0.1, 0.5)
-    assert [e.success for e in found.effects] == [e.success for e in plain.effects]
-    assert [e.adjusted_p_value for e in found.effects] == [
-        e.adjusted_p_value for e in plain.effects
-    ]
+    for one, two in zip(found.effects, plain.effects, strict=True):
+        assert (one.success, one.adjusted_p_value) == (two.success, two.adjusted_p_value)
     assert found.headline == plain.headline
 
 
