@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from outcome_tables import MOST_WORDS, SCENES, three
+from outcome_tables import MOST_WORDS, SCENES, question, three
 from outcome_tables import record as audit
 
 from faultpath.core.errors import UserError
@@ -34,22 +34,18 @@ def plan(tmp_path: Path, bounds: str, **given: Any) -> SearchPlan:
 @pytest.mark.parametrize(
     ("bounds", "said"),
     [
-        ("", "is empty, and must be a group of fields"),
         ("isolated: observer\nfaults: []\n", "faults: is .*at least 1"),
         (GAIN.replace("size", "sizes"), "line 3: .*sizes: is no field; did you mean 'size'"),
         (GAIN.replace("[0.6, 1.4]", "[1.4, 0.6]"), "line 3: .*give the lower end first"),
         (GAIN.replace("[0.6, 1.4]", "[-1e308, 1e308]"), "line 3: .*reaches -1e.308: give ends"),
-        (GAIN.replace("[0.6, 1.4]", "[0, 1.7e308]"), "line 3: .*within 1e12"),
         (GAIN.replace("[0.6, 1.4]", "[1, 1]"), "nothing is left to search"),
         (GAIN.replace(", size: [0.6, 1.4]", ""), "declares no uncertainty"),
-        (GAIN.replace("gain", "gian"), "did you mean 'gain'"),
         (GAIN.replace("gain", "'gain:scale=0.6'"), "the search sets size and place"),
         (GAIN.replace("gain", "'gain:freeze'"), "freeze has no size"),
         (GAIN.replace("gain", "'gain:scale,onset=3'") + "onset: [0, 9]", "'onset' has a range"),
         (GAIN.replace("observer", "pilot"), "'pilot' is no module .* controller, observer"),
         (GAIN.replace("gain", "target"), "only the controller gets this fault"),
         (GAIN + "correlation: [0, 1]\n", "correlation is of errors that are drawn"),
-        (GAIN + "onset: [-3, 9]\n", "line 4: onset.*-3"),
     ],
 )
 def test_a_mistake_in_the_bounds_is_one_sentence(bounds: str, said: str, tmp_path: Path) -> None:
@@ -114,20 +110,21 @@ def test_no_scene_changes_its_half_with_the_number_of_scenes(tmp_path: Path) -> 
         halves(LIBRARY, 1)
 
 
-def test_proposals_follow_from_seed_and_values_and_find_a_peak() -> None:
-    def run(seed: int) -> list[np.ndarray]:
-        source, seen = proposals(2, seed, 60), []
-        points = next(source)
-        while points:
-            seen += points
-            try:
-                points = source.send([-float(((p - [0.8, 0.3]) ** 2).sum()) for p in points])
-            except StopIteration:
-                break
-        return seen
+def proposed(seed: int) -> list[np.ndarray]:
+    source, seen = proposals(2, seed, 60), []
+    points = next(source)
+    while points:
+        seen += points
+        try:
+            points = source.send([-float(((p - [0.8, 0.3]) ** 2).sum()) for p in points])
+        except StopIteration:
+            break
+    return seen
 
-    one, again, other = run(0), run(0), run(1)
-    np.testing.assert_array_equal(one, again)
+
+def test_proposals_follow_from_seed_and_values_and_find_a_peak() -> None:
+    one, other = proposed(0), proposed(1)
+    np.testing.assert_array_equal(one, proposed(0))
     assert len(one) == len(other) == 60
     assert not np.array_equal(one, other)
     assert np.min(one) >= 0
@@ -148,20 +145,10 @@ def test_regret_is_what_the_isolated_choice_loses() -> None:
 def record(*counts: Any, regret_pp: float = 40.0) -> SearchRecord:
     confirmed = three(*counts) if counts else None
     fault = confirmed.question.fault if confirmed else "gain:scale=0.7"
-    asked = ResolvedSearch(
-        system="toy",
-        options={},
-        baseline="old",
-        repair="new",
-        bounds=Bounds(isolated="observer", faults=(BoundedFault(fault="gain", size=(0.6, 1.4)),)),
-        candidates=8,
-        search_seed=3,
-        library="made up",
-        library_hash="hash-1",
-        finding=SCENES,
-        confirming=SCENES,
-        seeds=(0,),
-    )
+    bounds = Bounds(isolated="observer", faults=(BoundedFault(fault="gain", size=(0.6, 1.4)),))
+    same = question().model_dump(include={*ResolvedSearch.model_fields})
+    more = {"candidates": 8, "search_seed": 3, "finding": SCENES, "confirming": SCENES}
+    asked = ResolvedSearch.model_validate(same | more | {"bounds": bounds})
     shown = {"isolated_pp": 40.0, "shared_pp": -regret_pp, "regret_pp": regret_pp}
     return conclude(asked, [Tried(fault=fault, **shown)], confirmed)
 

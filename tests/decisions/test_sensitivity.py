@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from declared_toy import Declared
+from outcome_tables import question
 
 from faultpath.core.errors import UserError
 from faultpath.decisions.sensitivity.decide import conclude
@@ -71,36 +71,17 @@ def test_a_given_error_takes_the_place_of_a_declared_one() -> None:
             uncertain(Drawn, VARIANT, (text,))
 
 
-def test_the_toy_declares_what_is_drawn() -> None:
-    system = Declared()
-    groups, _ = uncertain(system, system.variants["calibrated"], ())
-    assert [each.name for each in groups] == ["gain_estimate", "speedometer", "observed_slope"]
-    speed = groups[1]
-    assert speed.parts[0].channels == ("velocity",)
-
-
 NAMES = ("a", "b", "c")
 
 
 def record(weights: tuple[float, ...], scenes: int = 4, together: float = 0.0) -> SensitivityRecord:
     """Return the record of a weighted sum of three errors, and of the product of the first two."""
     drawn = design([1, 1, 1], 256, 3) - 0.5
-    asked = ResolvedSensitivity(
-        system="toy",
-        options={},
-        variant="v",
-        groups=tuple(Uncertain(name=name, parts=(), numbers=1) for name in NAMES),
-        left_out=(),
-        metric="",
-        said="success",
-        unit="%",
-        points=256,
-        design_seed=3,
-        library="made up",
-        library_hash="hash-1",
-        n_scenes=scenes,
-        seeds=(0,),
-    )
+    same = question(scenes).model_dump(include={*ResolvedSensitivity.model_fields} - {"metric"})
+    groups = tuple(Uncertain(name=name, parts=(), numbers=1) for name in NAMES)
+    more = {"variant": "v", "groups": groups, "left_out": (), "points": 256, "design_seed": 3}
+    more |= {"metric": "", "said": "success", "unit": "%"}
+    asked = ResolvedSensitivity.model_validate(same | more)
     return conclude(asked, drawn @ weights + together * drawn[:, 0] * drawn[:, 1], scenes)
 
 
