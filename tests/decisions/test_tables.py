@@ -1,12 +1,12 @@
-"""One table, four renderers: each shows every text, takes it literally and marks what is marked."""
+"""One table in three renderers: each shows every text literally and marks what is marked."""
 
 import io
 
 from rich.console import Console
 
-from faultpath.decisions.tables import Entry, Table, line
+from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
-from faultpath.decisions.tables.markdown import grid
+from faultpath.decisions.tables.markdown import block, grid
 from faultpath.decisions.tables.terminal import drawn
 
 TABLE = Table(
@@ -21,6 +21,7 @@ TABLE = Table(
         line("gru", Entry(text="3", tone="bad"), Entry(text="ab12", name=True)),
     ),
 )
+STRANGE = r"100% of a_b & c#d {$x^2$} ~ \end{tabular} <b> [1] | *"
 
 
 def _terminal(table: Table, width: int = 100, **how: bool) -> str:
@@ -40,6 +41,16 @@ def test_markdown_marks_names_detections_and_alarms() -> None:
     ]
 
 
+def test_markdown_takes_text_literally() -> None:
+    entry = Entry(text=STRANGE, published=STRANGE, detected=True)
+    lines = (Line(label=STRANGE), Line(label=STRANGE, entries=(entry,)))
+    odd = Table(name="odd", title=STRANGE, columns=(STRANGE,), lines=lines, notes=(STRANGE,))
+    text = block(odd)
+    assert "<b>" not in text
+    assert r"a\_b" in text
+    assert r"\[1\] \| \*" in text
+
+
 def test_html_has_a_cell_for_every_column_and_escapes() -> None:
     text = html(TABLE.model_copy(update={"title": "<b>"}))
     assert "<caption>&lt;b&gt;</caption>" in text
@@ -52,20 +63,15 @@ def test_html_has_a_cell_for_every_column_and_escapes() -> None:
 
 
 def test_terminal_shows_everything_and_takes_it_literally() -> None:
-    strange = TABLE.model_copy(update={"corner": "[red]Model[/]"})
-    text = _terminal(strange)
+    text = _terminal(TABLE.model_copy(update={"corner": "[red]Model[/]"}))
     for words in ("[red]Model[/]", "What came out", "wm-a (zero wind)", "(69)", "+5.0 (floor)"):
         assert words in text
 
 
 def test_a_narrow_terminal_cuts_words_but_no_number() -> None:
-    long = Table(
-        corner="Claim",
-        columns=("Estimate", "Words"),
-        words=("Words",),
-        lines=(line("C01", "+57.3 pp [48.3, 66.3]", "word " * 40),),
-    )
-    text = _terminal(long, width=50, one_line=True)
-    assert text.splitlines()[1].startswith("C01    +57.3 pp [48.3, 66.3]  word")
-    assert text.splitlines()[1].rstrip().endswith("…")
-    assert len(text.splitlines()) == 2
+    claim = line("C01", "+57.3 pp [48.3, 66.3]", "word " * 40)
+    columns = ("Estimate", "Words")
+    long = Table(corner="Claim", columns=columns, words=("Words",), lines=(claim,))
+    _, shown = _terminal(long, width=50, one_line=True).splitlines()
+    assert shown.startswith("C01    +57.3 pp [48.3, 66.3]  word")
+    assert shown.rstrip().endswith("…")
