@@ -19,13 +19,13 @@ from cli_runs import ROOT, TOY, faultpath
 from odd_inputs import (
     VALUES,
     alter_folder,
+    alter_table,
     altered,
     cells_of,
     json_text,
     lines_of,
     misspelt,
     sign,
-    table_bytes,
     torn,
 )
 
@@ -61,7 +61,6 @@ STUDY = {
     "seeds": [0],
     "audits": [{"name": "gain", "fault": "gain:scale=0.6"}],
 }
-MAP_FILE = yaml.safe_load(MAP)
 COMMANDS = {
     "audit": ["audit", *RUN, "--scenes", 2, "--fault", "gain:scale=0.6"],
     "map": [
@@ -99,10 +98,10 @@ def _csv() -> str:
 
 
 def judge_table(suffix: str, base: Path, here: Path, rng: Random) -> list[object]:
-    """Judge named columns."""
     path = here / f"all.{suffix}"
     if suffix == "parquet":
-        table_bytes(pa.Table.from_pylist(ROWS), path, rng)
+        pq.write_table(pa.Table.from_pylist(ROWS), path)
+        alter_table(path, rng)
         if rng.random() < 0.15:
             path.write_bytes(torn(path.read_bytes(), rng))
     else:
@@ -114,28 +113,24 @@ def judge_table(suffix: str, base: Path, here: Path, rng: Random) -> list[object
 
 def judge_tool(kind: str, base: Path, here: Path, rng: Random) -> list[object]:
     """Judge what LeRobot, Inspect or lm-eval wrote, one of the two files altered."""
-    odd, names, more = rng.choice(("old", "new")), list[str](), list[object]()
-    for arm, won in WON.items():
-        if kind == "inspect":
-            folder = Path(inspect_log(here / arm, arm, won))
-        elif kind == "lm-eval":
-            folder = Path(lm_eval(here / arm, won).removeprefix("="))
-            more = ["--column", f"success={rng.choice(('exact_match,strict-match', 'acc', 'x,y'))}"]
-        else:
-            folder = Path(lerobot(here / arm, won, kind == "episodes").removeprefix("="))
-        (path,) = (each for each in folder.rglob("*") if each.is_file())
-        if arm == odd:
-            data = path.read_bytes()
-            if kind == "lm-eval":
-                path.write_bytes(lines_of(list(map(json.loads, data.splitlines())), rng))
-            else:
-                path.write_bytes(json_text(json.loads(data), rng))
-        names.append(f"{arm}={folder.name}" if kind != "inspect" else folder.name)
-    return ["judge", *names, *JUDGE, *more]
+    write: Callable[[str, list[bool]], str] = {
+        "inspect": lambda arm, won: inspect_log(here / arm, arm, won),
+        "lm-eval": lambda arm, won: arm + lm_eval(here / arm, won),
+        "tasks": lambda arm, won: arm + lerobot(here / arm, won),
+        "episodes": lambda arm, won: arm + lerobot(here / arm, won, single=True),
+    }[kind]
+    names = [write(arm, won) for arm, won in WON.items()]
+    (path,) = (file for file in (here / rng.choice(("old", "new"))).rglob("*") if file.is_file())
+    data = path.read_bytes()
+    if kind == "lm-eval":
+        path.write_bytes(lines_of(list(map(json.loads, data.splitlines())), rng))
+    else:
+        path.write_bytes(json_text(json.loads(data), rng))
+    metric = rng.choice(("exact_match,strict-match", "acc", "x,y"))
+    return ["judge", *names, *JUDGE, *(("--column", f"success={metric}") * (kind == "lm-eval"))]
 
 
 def report(kind: str, base: Path, here: Path, rng: Random) -> list[object]:
-    """Write the pages of somebody's altered folder again."""
     shutil.copytree(base / kind, here / "run")
     alter_folder(here / "run", rng)
     if kind == "audit" and rng.random() < 0.2:
@@ -149,16 +144,13 @@ def replay(base: Path, here: Path, rng: Random) -> list[object]:
     shutil.copytree(base / "audit", here / "run")
     path = here / "run" / "record.json"
     content = json.loads(path.read_bytes())
-    if rng.random() < 0.6:
-        content["question"] = altered(content["question"], rng)
-        if isinstance(content["question"], dict) and rng.random() < 0.2:
-            named = rng.choice(("os:system", "nowhere:create", f"{TOY}x", "run:create", "a", ":"))
-            content["question"] |= {"system": named, "options": {"command": "true"}}
-        path.write_text(json.dumps(content))
-        sign(here / "run")
-    else:
-        alter_folder(here / "run", rng)
-    return ["replay", "run", *rng.choice(([], ["--signals"], ["--scene", rng.choice(VALUES)]))][:4]
+    content["question"] = altered(content["question"], rng)
+    if isinstance(content["question"], dict) and rng.random() < 0.2:
+        named = rng.choice(("os:system", "nowhere:create", f"{TOY}x", "run:create", "a", ":"))
+        content["question"] |= {"system": named, "options": {"command": "true"}}
+    path.write_text(json.dumps(content))
+    sign(here / "run")
+    return ["replay", "run", *rng.choice(([], ["--signals"], ["--scene", rng.choice(VALUES)]))]
 
 
 def log(base: Path, here: Path, rng: Random) -> list[object]:
@@ -174,7 +166,7 @@ def log(base: Path, here: Path, rng: Random) -> list[object]:
     elif kind == "flight.csv":
         path.write_bytes(cells_of(path.read_text(), rng))
     elif kind == "flight.parquet" and rng.random() < 0.7:
-        table_bytes(pq.read_table(path), path, rng)
+        alter_table(path, rng)
     else:
         path.write_bytes(torn(path.read_bytes(), rng))
     (here / "map.yaml").write_text(said, "utf-8", "surrogatepass")
@@ -183,102 +175,28 @@ def log(base: Path, here: Path, rng: Random) -> list[object]:
     return ["log", kind, "--columns", *where, "--errors", errors, "--json"]
 
 
-def study(base: Path, here: Path, rng: Random) -> list[object]:
-    """Carry an altered study file out."""
-    text = yaml.safe_dump(altered(json.loads(json.dumps(STUDY)), rng), allow_unicode=True)
+def asked(
+    name: str, question: object, line: list[object], base: Path, here: Path, rng: Random
+) -> list[object]:
+    """Give a command an altered file of what is asked: a study, or bounds."""
+    text = yaml.safe_dump(altered(json.loads(json.dumps(question)), rng), allow_unicode=True)
     text = misspelt(text, rng) if rng.random() < 0.3 else text
-    (here / "study.yaml").write_text(text, "utf-8", "surrogatepass")
-    return ["audit", "--study", "study.yaml", "--out", "runs", "--workers", 0]
+    (here / name).write_text(text, "utf-8", "surrogatepass")
+    return line
 
 
-def search(base: Path, here: Path, rng: Random) -> list[object]:
-    """Search within altered bounds."""
-    text = yaml.safe_dump(altered(json.loads(json.dumps(BOUNDS)), rng), allow_unicode=True)
-    text = misspelt(text, rng) if rng.random() < 0.3 else text
-    (here / "bounds.yaml").write_text(text, "utf-8", "surrogatepass")
-    return [*COMMANDS["search"], "--out", "searched"]
-
-
-NUMBERS = ("0", "-0", "1", "-1", "1e308", "-1e308", "1e999", "5e-324", "1e-13", "nan", "٣", "1_0")
-FAULTS = (
-    *("gain:scale={}", "gain:scale={},onset={}", "velocity:offset={}", "velocity:noise={}"),
-    *("velocity:bias={},relative", "gain:delay={}", "gain:hold={}", "velocity:quantise={}"),
-    *("velocity:offset={}/{}", "gain:scale={}@observer", "gain:erase={}", "gain:scale={},for={}"),
-    *("velocity:drift={}", "velocity:offset={} & gain:scale={}", "velocity:rotate={}/0/0", "{}"),
-)
-
-
-def numbers(verb: str, base: Path, here: Path, rng: Random) -> list[object]:
-    """Ask with numbers at their extremes."""
-    one = partial(rng.choice, NUMBERS)
-    fault = rng.choice(FAULTS).format(one(), one())
-    options = {
-        "audit": {"--fault": fault}
-        | {name: one() for name in ("--scenes", "--margin", "--thresholds", "--time-limit")},
-        "plan": {"--fault": fault, "--scenes": one(), "--seeds": one()},
-        "map": {
-            "--up-to": one(),
-            "--spread": f"{one()},{one()}",
-            "--mean": f"{one()},{one()}",
-            "--correlation": one(),
-            "--points": one(),
-        },
-        "sensitivity": {"--points": one(), "--scenes": one(), "--seeds": one()},
-        "judge": {"--success-from": one()},
-    }[verb]
-    (here / "all.csv").write_text(_csv())
-    chosen = dict(rng.sample(sorted(options.items()), rng.choice((1, min(2, len(options))))))
-    line = [*COMMANDS.get(verb, ["plan", TOY, *ARMS, "--fault", "gain:scale=0.6"])]
-    for option, value in chosen.items():
-        if option in line:
-            line[line.index(option) + 1] = value
-        else:
-            line += [option, value]
-    line += ["--points", 25] if verb == "map" and "--points" not in line else []
-    line += ["--no-signals"] if verb == "audit" else []
-    return [*line, "--out", "made.yaml" if verb == "plan" else "made"]
-
-
-def outputs(base: Path, here: Path, rng: Random) -> list[object]:
-    """Write where files of somebody, or of another run, are."""
-    for kind in ("audit", "judge"):
-        shutil.copytree(base / kind, here / kind)
-    (here / "mine").mkdir()
-    names = [each.name for each in (here / "audit").iterdir() if each.is_file()]
-    for name in rng.sample(sorted(names), 3):
-        (here / "mine" / name).write_text(rng.choice(("mine", "{}", "<html>", "")))
-    (here / "all.csv").write_text(_csv())
-    folder = rng.choice(("mine", "audit", "judge", "mine", ".", "all.csv"))
-    file = f"{folder}/{rng.choice([*names, 'new'])}"
-    run = COMMANDS["audit"]
-    return rng.choice(
-        (
-            [*COMMANDS["judge"], "--out", folder],
-            [*run, "--no-signals", "--out", folder],
-            [*COMMANDS["map"], "--points", 25, "--out", folder],
-            [*run, "--no-signals", "--out", "made", "--junit", file],
-            [*run, "--no-signals", "--out", "made", "--junit", "all.csv"],
-            ["plan", TOY, *ARMS, "--fault", "gain:scale=0.6", "--out", file],
-            ["report", "audit", "judge", "--out", file],
-            ["report", "audit", "judge", "--dependent-failures", file],
-        )
-    )
-
-
-TOOLS = ("episodes", "tasks", "inspect", "lm-eval")
+STUDY_LINE: list[object] = ["audit", "--study", "study.yaml", "--out", "runs", "--workers", 0]
+SEARCH_LINE: list[object] = [*COMMANDS["search"], "--out", "searched"]
 CASES: dict[str, Case] = {
     **{f"judge {suffix}": partial(judge_table, suffix) for suffix in ("csv", "jsonl", "parquet")},
-    **{f"judge {kind}": partial(judge_tool, kind) for kind in TOOLS},
+    **{f"judge {k}": partial(judge_tool, k) for k in ("episodes", "tasks", "inspect", "lm-eval")},
     **{f"report {kind}": partial(report, kind) for kind in ("audit", "judge", "map")},
     "replay": replay,
     "log": log,
-    "study": study,
-    **{f"numbers {verb}": partial(numbers, verb) for verb in ("audit", "plan", "map", "judge")},
-    "outputs": outputs,
+    "study": partial(asked, "study.yaml", STUDY, STUDY_LINE),
 }
 """Cases that the quick part tries too."""
 LONG: dict[str, Case] = {
     **{f"report {kind}": partial(report, kind) for kind in ("search", "sensitivity")},
-    "search": search,
-    "numbers sensitivity": partial(numbers, "sensitivity"),
+    "search": partial(asked, "bounds.yaml", BOUNDS, SEARCH_LINE),
 }
