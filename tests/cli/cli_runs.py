@@ -41,7 +41,6 @@ class Ended:
 
 
 def faultpath(*arguments: object) -> Ended:
-    """Run the command in this process."""
     out, err = io.StringIO(), io.StringIO()
     command = ["faultpath", *map(str, arguments)]
     with (
@@ -104,7 +103,6 @@ def shards(folder: Path) -> list[Path]:
 
 
 def edit(path: Path, change: Callable[[dict], object]) -> None:
-    """Change what a JSON file holds."""
     content = json.loads(path.read_text())
     change(content)
     path.write_text(json.dumps(content))

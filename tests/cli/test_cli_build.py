@@ -29,14 +29,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
-def test_a_build_fails_for_what_was_found_and_says_why(folder: Path) -> None:
+def test_a_build_fails_for_what_was_found_and_leaves_its_files(folder: Path) -> None:
     out = " ".join((folder / "out.txt").read_text().split())
     assert "--fail-if reversal: Sharing the fault reverses the ranking" in out
     assert "--fail-if repair-behind: Under the shared fault" in out
     assert "--fail-if void" not in out
 
-
-def test_the_xml_has_a_case_for_each_question(folder: Path) -> None:
     (suite,) = ElementTree.parse(folder / "junit.xml").getroot()
     cases = {case.get("name"): case.find("failure") for case in suite.iter("testcase")}
     failed = {name for name, failure in cases.items() if failure is not None}
@@ -44,8 +42,6 @@ def test_the_xml_has_a_case_for_each_question(folder: Path) -> None:
     assert failed == {"no-reversal", "no-repair-behind"}
     assert (suite.get("tests"), suite.get("failures")) == ("4", "2")
 
-
-def test_the_summary_is_added_to_what_is_there(folder: Path) -> None:
     text = (folder / "summary.md").read_text()
     assert text.startswith("Before.\n### Do not choose by the fault at the observer alone")
     assert "- **passes** `void`" in text

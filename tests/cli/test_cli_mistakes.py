@@ -1,45 +1,31 @@
 """Every mistake ends in one sentence that names what is wrong, with status 2, and harms nothing."""
 
-from pathlib import Path
-
 import pytest
-from cli_runs import HERE, TOY, audit, faultpath
+from cli_runs import TOY, audit, faultpath
 
 from faultpath.core.errors import UserError
 from faultpath.trials.question import CheckQuestion, ask
 
 TOY_MISTAKES = {
     "unknown system": ({"system": "quadcopter"}, ["'quadcopter'", "installed: quadrotor"]),
-    "unknown module": ({"system": "no_such_module:create"}, ["'no_such_module'"]),
     "unknown file": ({"system": "nowhere/toy.py:create"}, ["nowhere/toy.py"]),
-    "unknown function": ({"system": TOY.replace(":create", ":make")}, ["'make'"]),
-    "no system": ({"system": TOY.replace(":create", ":Source")}, ["toy.py"]),
     "baseline": ({"baseline": "calibratd"}, ["'calibratd'", "did you mean", "blind, calibrated"]),
-    "repair": ({"repair": "x"}, ["'x'", "blind, calibrated"]),
-    "both the same": ({"repair": "calibrated"}, ["'calibrated'"]),
     "fault": ({"fault": "gian:scale=2"}, ["'gian'", "did you mean 'gain'", "velocity"]),
     "preset of none": ({"fault": "calibration=0.1"}, ["'calibration'", "none"]),
-    "no scene": ({"scenes": 0}, ["0 scenes", "1 to 100"]),
     "words for scenes": ({"scenes": "few"}, ["--scenes", "audit --help"]),
     "half a seed": ({"seeds": "0,1.5"}, ["'0,1.5'", "0,1,2"]),
-    "a seed twice": ({"seeds": "1,2,1"}, ["seed"]),
     "seed above all": ({"seeds": str(2**63)}, ["--seeds"]),
-    "seed below 0": ({"seeds": "-1"}, ["--seeds"]),
     "long seed": ({"seeds": "9" * 4000}, ["--seeds"]),
     "seed in other digits": ({"seeds": "٣"}, ["--seeds"]),
     "seed as Python writes it": ({"seeds": "1_0"}, ["--seeds"]),
-    "workers": ({"workers": -1}, ["workers", "-1"]),
     "more workers than any machine has": ({"workers": "9" * 30}, ["at most"]),
     "setting": ({"set": "gate"}, ["'gate'", "key=value"]),
     "setting without a key": ({"set": "=3"}, ["'=3'", "key=value"]),
     "unknown setting": ({"set": "gate=3"}, ["'gate'", "none"]),
-    "option of another system": ({"wind": "L1"}, ["--wind", "none"]),
     "unknown option": ({"colour": "red"}, ["--colour", "audit --help"]),
     "page of no arm": ({"fail-if": "reversed"}, ["--fail-if", "'reversed'", "'reversal'"]),
-}
-TOY_MISTAKES |= {
-    f"empty {name}": ({name: ""}, [f"--{name}", "empty"])
-    for name in ("primary", "metric", "library", "thresholds", "out", "seeds", "fault")
+    "empty": ({"metric": ""}, ["--metric", "empty"]),
+    "empty list": ({"thresholds": ""}, ["--thresholds", "empty"]),
 }
 
 
@@ -60,18 +46,9 @@ QUADROTOR_MISTAKES = {
     "plant on a GPU": ({"plant": "my.py:create", "device": "cuda"}, ["CPU", "--device"]),
     "device": ({"device": "tpu"}, ["'tpu'", "cpu, cuda"]),
     "device that is not there": ({"device": "cuda"}, ["GPU", "--device"]),
-    "option": ({"set": "colour=red"}, ["'colour'", "wind, environment, clearance, predictor"]),
-    "option twice": ({"wind": "L1", "set": "wind=L2"}, ["'wind' twice"]),
     "calibration -1": ({"fault": "calibration=-1"}, ["between -1 and 1"]),
-    "calibration -1.5": ({"fault": "calibration=-1.5"}, ["-1.5", "between -1 and 1"]),
-    "calibration 1": ({"fault": "calibration=1"}, ["between -1 and 1"]),
     "calibration without size": ({"fault": "calibration"}, ["size", "calibration=+0.1"]),
     "consumer": ({"fault": "wind:scale=2@reconstruction"}, ["predictor.wind_map"]),
-    "reaches no consumer": (
-        {"repair": "true-wind", "fault": "mass:scale=1.1@reconstruction"},
-        ["neither 'zero-wind' nor 'true-wind'"],
-    ),
-    "scenes": ({"scenes": 101}, ["'held-out'", "1 to 100"]),
 }
 
 
@@ -83,58 +60,44 @@ def test_a_mistake_about_the_quadrotor(options, names, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-ASKED = [TOY, "--baseline", "calibrated", "--repair", "blind", "--fault", "gain:scale=0.6"]
 LINES = [
     (["fly"], ["'fly'", "`faultpath --help`"]),
     (["audit"], ["system", "`faultpath audit --help`"]),
     (["audit", TOY], ["--baseline"]),
-    (["report"], ["folders"]),
     (["report", "nowhere"], ["nowhere"]),
     (["report", "a\u2028b"], ["\\u2028"]),
     (["report", ".", "--out", "a.html"], ["--out", "two or more"]),
-    (["trace", "nothing"], ["'nothing'", "quadrotor"]),
     (["trace", "a\x1b[31mb.py:create"], ["\\x1b[31m"]),
     (["trace", TOY, "--seed", "9" * 30], ["--seed"]),
-    (["check", TOY, "--seed", "9" * 30], ["--seed"]),
     (["check", TOY, "--variants", "blind,,calibrated"], ["--variants", "empty name"]),
     (["audit", TOY, "--library="], ["--library=", "empty"]),
-    (["audit", TOY, "--library", "a", "--library", "a"], ["--library", "twice"]),
-    (["audit", TOY, "--library=a", "--library=a"], ["--library", "twice"]),
+    (["audit", TOY, "--library=a", "--library", "a"], ["--library", "twice"]),
     (["audit", "--study", "absent.yaml"], ["absent.yaml"]),
     (["audit", TOY, "--study", "s.yaml"], [TOY, "--study"]),
-    (["audit", "--study=s.yaml", "--seeds", "0"], ["--seeds", "--study"]),
-    (["audit", "--study", "s", "--fault=a", "--details"], ["--fault=a", "--details", "--study"]),
+    (["audit", "--study=s", "--fault=a", "--details"], ["--fault=a", "--details", "--study"]),
     (["reproduce", "table-9"], ["'table-9'", "table-1, table-2"]),
     (["reproduce", "--profile", "huge"], ["'huge'", "quick, paper"]),
     (["reproduce", "table-4", "--device", "tpu"], ["'tpu'", "cpu, cuda"]),
-    (["reproduce", "table-4", "--workers", "-1"], ["workers", "-1"]),
     (["reproduce", "x" * 5000], ["too long"]),
     (["reproduce", "\udcff"], ["UTF-8"]),
-    (["reproduce", "--judge", "--out", "nowhere"], ["nowhere"]),
-    (["reproduce", "--judge", "--profile", "x"], ["--profile", "--judge"]),
     (["reproduce", "table-4", "--judge", "--workers", "2"], ["--pages", "--workers", "--judge"]),
     (["train", "quadrotor", "--seed", str(2**64)], ["9223372036854775807"]),
     (["train", "quadrotor", "--list", "--ship"], ["--ship", "--list"]),
-    (["train", "quadrotor", "--list", "--seed", "1"], ["--seed", "--list"]),
-    (["train", "quadrotor", "gru", "--list"], ["--names", "--list"]),
-    (["train", "quadrotor", "--list", "--out", "x"], ["--out", "--list"]),
+    (["train", "quadrotor", "gru", "--list", "--seed", "1"], ["--names", "--seed", "--list"]),
 ]
 
 
 @pytest.mark.parametrize(("line", "names"), LINES, ids=lambda part: " ".join(part)[:40])
 def test_a_mistake_about_the_command_itself(line, names, tmp_path):
-    """One that would do nothing is among them: who gives it believes that it did something."""
     assert len(faultpath(*line).refused(*names)) < 800
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("command", [["audit", *ASKED], ["reproduce", "table-4"]])
 @pytest.mark.parametrize(
-    ("limit", "workers", "name"),
-    [("0", 1, "0 s"), ("-1", 1, "-1 s"), ("nan", 1, "nan"), ("inf", 1, "inf"), ("5", 0, "worker")],
+    ("limit", "workers", "name"), [("0", 1, "0 s"), ("nan", 1, "nan"), ("5", 0, "worker")]
 )
-def test_a_time_limit_that_limits_nothing_or_cannot_be_kept(command, limit, workers, name):
-    faultpath(*command, "--time-limit", limit, "--workers", workers).refused("time", name)
+def test_a_time_limit_that_limits_nothing_or_cannot_be_kept(limit, workers, name):
+    audit(**{"time-limit": limit, "workers": workers}).refused("time", name)
 
 
 @pytest.mark.parametrize("arguments", [[], ["train"]])
@@ -149,24 +112,8 @@ def test_options_given_several_times():
     audit("--set", "a=1", "--set", "b=2").refused("'a'")  # the toy has neither
 
 
-@pytest.mark.parametrize("text", [",", "a,", ",a", "a,,b", " ", "a,b,a", "a, a"])
+@pytest.mark.parametrize("text", ["a,", "a,,b", " ", "a, a"])
 def test_lists_of_names_hold_each_name_once_and_no_empty_one(text):
     with pytest.raises(UserError, match=r"empty name|'a' twice"):
         ask(CheckQuestion, {"variants": text})
     assert ask(CheckQuestion, {"variants": "a, b"}).variants == ("a", "b")
-
-
-YAMLS = {
-    "not YAML": ("name: [", "YAML"),
-    "nothing": ("", "no interface"),
-    "code": ("name: !!python/object/apply:os.system ['touch harm']", "tags are not read"),
-    "deep": ("[" * 200 + "]" * 200, "nested too deeply"),
-}
-
-
-@pytest.mark.parametrize(("text", "name"), YAMLS.values(), ids=YAMLS)
-def test_a_malformed_or_unsafe_interface_file(text, name, tmp_path):
-    Path("interface.yaml").write_text(text)
-    system = f"{HERE / 'systems' / 'slow_toy.py'}:from_yaml"
-    faultpath("trace", system, "--set", "interface=interface.yaml").refused("interface.yaml", name)
-    assert [path.name for path in tmp_path.iterdir()] == ["interface.yaml"]

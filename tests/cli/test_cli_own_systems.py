@@ -12,8 +12,6 @@ from cli_runs import COMMAND, ROOT, audit, faultpath
 HEAD = f"""
 import sys
 sys.path.insert(0, {str(ROOT / "examples")!r})
-import numpy as np
-from faultpath.loop import Reading
 from faultpath.trials import Library, SceneRef, System, Variant
 from toy import Toy
 INTERFACE = Toy.interface
@@ -21,60 +19,35 @@ INTERFACE = Toy.interface
 
 BROKEN = {
     "syntax": ("def create(:", "SyntaxError"),
-    "indentation": ("def create() -> System:\nreturn Toy()  # here", "IndentationError"),
-    "import": ("import numpi", "numpi"),
-    "import of a name": ("from toy import Tyo  # here", "ImportError"),
     "while loading": ("1 / 0  # here", "ZeroDivisionError: division by zero"),
-    "ends the program while loading": ("sys.exit(3)  # here", "SystemExit: 3"),
     "ends the program when built": (
         "def create() -> System:\n    sys.exit(0)  # here",
         "SystemExit",
     ),
-    "end of input": (
-        "def create() -> System:\n    raise EOFError('no more')  # here",
-        "EOFError: no more",
-    ),
-    "when built": ("def create() -> System:\n    return Toy(3)  # here", "TypeError"),
     "missing methods": (
         "class Mine(System):\n    name = 'mine'\n"
         "def create() -> System:\n    return Mine()  # here",
         "abstract method",
     ),
     "variant of text": ("Variant('a', 'words', 'abc')  # here", "'abc'"),
-    "variant without a name": ("Variant('', 'words', frozenset())  # here", "empty"),
     "name that steers": ("SceneRef('a\\x1b[31m', 0)  # here", "control characters"),
-    "long name": ("SceneRef('a' * 5000, 0)  # here", "5000 characters"),
     "index above 2^63": ("SceneRef('a', 2 ** 63)  # here", "2^63 - 1"),
-    "index of text": ("SceneRef('a', '0')  # here", "'0'"),
     "scene twice": ("Library('l', (SceneRef('a', 0), SceneRef('a', 1)), 'h')  # here", "'a' twice"),
-    "no scene": ("Library('l', (None,), 'h')  # here", "None"),
     "no hash": ("Library('l', (), '')  # here", "content hash"),
 }
 
 DECLARED = {
     "no step": ("control_dt_s = 0.0", "`control_dt_s` is 0.0"),
-    "no block": ("block_size = 0", "`block_size` is 0"),
-    "interface of text": ("interface = 'toy.yaml'", "`interface` is 'toy.yaml'"),
-    "no variants": ("variants = {}", "`variants` is {}"),
     "variant under another name": ("variants = {'b': Toy().variants['blind']}", "the name of each"),
     "unknown consumer": (
         "variants = {'v': Variant('v', '', frozenset({'nobody.there'}))}",
         "unknown consumer 'nobody.there'",
     ),
-    "list of scenes": ("def library(self, name):\n        return ['a']", "['a']: it must"),
-    "library of nothing": ("def library(self, name):\n        pass", "None: it must"),
-    "library that fails": ("def library(self, name):\n        return {}[name]  # here", "KeyError"),
-    "fingerprint of nothing": ("def fingerprint(self):\n        return None", "fingerprint"),
     "fingerprint that fails": ("def fingerprint(self):\n        return 1 / 0  # here", "Zero"),
 }
 
 FLOWN = {
     "list": ("observer.deliver('velocity', 'difference', [0.0], 0)  # here", "Reading"),
-    "undeclared": (
-        "observer.deliver('velocity', 'x', Reading(np.zeros(len(scenes)), 'speedometer', 0), 0)"
-        "  # here",
-        "velocity -> observer.x",
-    ),
     "unknown module": ("taps.for_module('obsever')  # here", "did you mean 'observer'"),
     "no outcomes": ("return []", "one for each"),
 }
@@ -97,9 +70,7 @@ def test_a_system_that_does_not_load(code, says, tmp_path):
     assert not (tmp_path / "run").exists()
 
 
-@pytest.mark.parametrize(
-    "source", [b"x = 1\0", b"\xff\xfe", b"(" * 5000], ids=["NUL", "UTF-16", "deep"]
-)
+@pytest.mark.parametrize("source", [b"x = 1\0", b"(" * 5000], ids=["NUL", "deep"])
 def test_a_file_that_is_no_python(source, tmp_path):
     (tmp_path / "mine.py").write_bytes(source)
     audit(system="mine.py:create").refused("mine.py")

@@ -15,7 +15,6 @@ pytestmark = pytest.mark.filterwarnings("ignore::FutureWarning", "ignore::Resour
     [
         ("slurm", 1, "'slurm'"),
         ("ray", 0, "1 or more"),
-        ("ray:10.0.0.1", 1, "'10.0.0.1'"),
         ("ray:ray://head:10001", 1, "'ray://head:10001'"),
         ("ray:127.0.0.1:1", 1, "'127.0.0.1:1'"),
     ],

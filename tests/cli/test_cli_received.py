@@ -28,7 +28,7 @@ def test_the_system_that_a_record_names_is_not_imported(run: Path, tmp_path: Pat
     harm, evil = tmp_path / "harm", tmp_path / "evil.py"
     evil.write_text(f"open({str(harm)!r}, 'w')\n")
     shutil.copy(evil, run / "evil.py")
-    for name in (f"{evil}:create", "evil:create", "run/evil.py:create"):
+    for name in ("evil:create", "run/evil.py:create"):
         edit(run / "record.json", lambda content, n=name: content["question"].update(system=n))
         sign(run)
         ended = faultpath("report", run)
@@ -38,7 +38,6 @@ def test_the_system_that_a_record_names_is_not_imported(run: Path, tmp_path: Pat
 
 
 def table(change: Callable[[pa.Table], pa.Table], name: str = "outcomes.parquet") -> Change:
-    """Return what changes a table of a run."""
     return lambda run: pq.write_table(change(pq.read_table(run / name)), run / name)
 
 
@@ -77,7 +76,6 @@ def test_a_changed_file_is_named_and_nothing_is_written(name: str, run: Path) ->
 
 
 def unnamed(path: Path) -> None:
-    """Leave a file's digest out."""
     edit(path.parent / "provenance.json", lambda content: content["files"].pop(path.name))
 
 
@@ -87,9 +85,10 @@ def pipe(path: Path) -> None:
 
 
 SPOILT = {
-    **{f"no digest of {name}": (unnamed, name, "") for name in FILES},
-    **{f"no {name}": (Path.unlink, name, "") for name in FILES},
-    **{f"pipe {name}": (pipe, name, "it is a pipe") for name in (*FILES, "provenance.json")},
+    "no digest": (unnamed, "deliveries.json", ""),
+    "no file": (Path.unlink, "outcomes.parquet", ""),
+    "pipe": (pipe, "system.json", "it is a pipe"),
+    "pipe for the digests": (pipe, "provenance.json", "it is a pipe"),
 }
 
 
@@ -101,7 +100,7 @@ def test_what_is_no_file_or_has_no_digest_is_not_read(
     faultpath("report", run).refused(name, says)
 
 
-@pytest.mark.parametrize("name", ["../../etc/passwd", "/etc/passwd", "a b", "x\ny.json"])
+@pytest.mark.parametrize("name", ["../../etc/passwd", "x\ny.json"])
 def test_a_digest_of_a_file_elsewhere_is_refused(name: str, run: Path) -> None:
     edit(run / "provenance.json", lambda content: content["files"].update({name: "0" * 64}))
     faultpath("report", run).refused("provenance.json")
@@ -109,10 +108,6 @@ def test_a_digest_of_a_file_elsewhere_is_refused(name: str, run: Path) -> None:
 
 def changed(name: str, change: Callable[[dict], object]) -> Change:
     return lambda run: edit(run / name, change)
-
-
-def written(name: str, text: str) -> Change:
-    return lambda run: (run / name).write_text(text)
 
 
 system, record, receipts = (
@@ -123,36 +118,12 @@ PLAN |= {"prisms": [], "pillars": [], "title": "a"}
 TAP = {"channel": "x", "consumer": "y.z", "faulted_steps": 1, "altered_steps": 1}
 FORGED: dict[str, tuple[str, Change]] = {
     "a step of no time": ("system.json", system(lambda c: c.update(control_dt_s=0))),
-    "another format": ("system.json", system(lambda c: c.update(format=2))),
     "a further field": ("system.json", system(lambda c: c.update(code="import os"))),
-    "an interface that does not hold": (
-        "system.json",
-        system(lambda c: c["interface"]["channels"][0].update(sources=["nowhere"])),
-    ),
     "a plan that is not finite": ("system.json", system(lambda c: c["plans"].update(x=PLAN))),
-    "a binding that is not offered": (
-        "system.json",
-        system(lambda c: c["variants"][0].update(bindings={"gain": "odometer"})),
-    ),
-    "a tap that does not exist": (
-        "system.json",
-        system(lambda c: c["variants"][0].update(consumers=["nobody.reads"])),
-    ),
     "other variants": ("variants", system(lambda c: c.update(variants=[]))),
-    "deep": ("system.json", written("system.json", "[" * 100_000)),
-    "an effect on no path": (
-        "conditions",
-        record(lambda c: c["effects"][0].update(path="nowhere")),
-    ),
+    "an effect on no path": ("conditions", record(lambda c: c["effects"][0].update(path="nowhere"))),
     "no effects": ("contradict", record(lambda c: c.update(effects=[]))),
-    "a change of nothing": (
-        "contradict",
-        record(lambda c: c["changes"][0].update(isolated="")),
-    ),
-    "wins without losses": (
-        "contradict",
-        record(lambda c: c["effects"][0].update(wins=[])),
-    ),
+    "wins without losses": ("contradict", record(lambda c: c["effects"][0].update(wins=[]))),
     "no cells": ("versions", record(lambda c: c.update(cells=[]))),
     "another count": ("count", record(lambda c: c["cells"][0].update(success=77))),
     "another library": ("libraries", record(lambda c: c["question"].update(library_hash="x"))),
@@ -165,20 +136,14 @@ FORGED: dict[str, tuple[str, Change]] = {
         "delivery log and result differ",
         receipts(lambda c: [row.update(taps=[]) for row in c["rows"]]),
     ),
-    "no receipts": ("deliveries.json", written("deliveries.json", "[]")),
     "a finding that is kept back": (
         "leaves out a finding",
         receipts(lambda c: c.update(findings=["A trial flown again ended otherwise."])),
     ),
-    "a status of its own": ("outcomes.parquet", first("status", "<b>")),
     "an odd status": ("won", first("status", "won")),
-    "a gap": ("outcomes.parquet", first("scene_index", None)),
     "no seed": ("outcomes.parquet", table(lambda table: table.drop_columns(["seed"]))),
     "no distance": ("no such column", table(lambda t: t.drop_columns(["terminal_distance_m"]))),
-    "no table": ("outcomes.parquet", written("outcomes.parquet", "PAR1 not")),
     "a time that is no number": ("time_s is nan", first("time_s", float("nan"))),
-    "an endless time": ("time_s is inf", first("time_s", float("inf"))),
-    "a time below 0": ("time_s is -1.0", first("time_s", -1.0)),
     "no time": ("no time", first("time_s", None)),
     "no distance in one": ("distance_m is nan", first("terminal_distance_m", float("nan"))),
     "steps below 0": ("steps is below 0", first("faulted_steps", -1)),
@@ -196,26 +161,16 @@ def test_a_forged_folder_with_right_digests_ends_in_one_sentence(
     faultpath("report", run).refused(says)
 
 
-@pytest.mark.parametrize("seeds", [[], [0, 0], [-1], [2**63]])
-def test_a_replay_of_seeds_that_are_none_is_one_sentence(seeds: list[int], run: Path) -> None:
-    edit(run / "record.json", lambda content: content["question"].update(seeds=seeds))
+def test_a_replay_of_seeds_that_are_none_is_one_sentence(run: Path) -> None:
+    edit(run / "record.json", lambda content: content["question"].update(seeds=[-1]))
     sign(run)
     faultpath("replay", run, "--trust").refused("seed")
 
 
 def test_an_older_folder_is_refused_in_one_sentence(run: Path) -> None:
-    """What was written before runs kept what a report needs."""
     edit(run / "provenance.json", lambda content: content.pop("files"))
     (run / "system.json").unlink()
     faultpath("report", run).refused("earlier faultpath", "run it again")
-
-
-def test_pages_are_not_written_through_a_link_out_of_the_folder(run: Path, tmp_path: Path) -> None:
-    (mine := tmp_path / "mine").write_text("mine")
-    (run / "table.md").unlink()
-    (run / "table.md").symlink_to(mine)
-    faultpath("report", run).refused("link out of")
-    assert mine.read_text() == "mine"
 
 
 @pytest.mark.parametrize("name", ["outcomes.parquet", "evidence.parquet"])

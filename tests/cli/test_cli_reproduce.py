@@ -28,8 +28,9 @@ def done(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None) -> 
     return carry_out(PLAN, Job(tmp_path_factory.mktemp("quick"), Here(), DISPLAY))
 
 
-def test_every_file_is_there_and_no_figure_of_ours_is_missing(done: ReproductionRun) -> None:
-    assert done.folder.name == "table-4"
+def test_a_reproduction_leaves_its_files_claims_and_table(
+    done: ReproductionRun, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert {path.name for path in done.folder.iterdir()} == {
         *("deliveries.json", "provenance.json", "reproduction.json"),
         *("evidence.parquet", "outcomes.parquet", "traces.parquet"),
@@ -37,24 +38,21 @@ def test_every_file_is_there_and_no_figure_of_ours_is_missing(done: Reproduction
     }
     (table,) = done.record.tables
     assert MISSING not in {entry.text for line in table.lines for entry in line.entries}
-
-
-def test_the_ledger_holds_the_claims_that_the_table_is_about(done: ReproductionRun) -> None:
     claims = {claim.id for claim in done.record.ledger.claims}
     assert {"C23", "C24", "C26", "C28", "C29"} <= claims
     assert "C05" not in claims
+    show(done, whole=False)
+    assert "Wins:losses" in capsys.readouterr().out
 
 
-def test_the_same_command_again_flies_nothing(done: ReproductionRun) -> None:
+def test_the_same_again_runs_nothing_and_opens_as_it_was_left(done: ReproductionRun) -> None:
     again = carry_out(PLAN, Job(done.folder.parent, Here(), DISPLAY))
     assert '"blocks_computed": 0' in (again.folder / "provenance.json").read_text("utf-8")
     assert again.record.tables == done.record.tables
-
-
-def test_the_folder_opens_as_it_was_left(done: ReproductionRun) -> None:
-    again = faultpath.open_run(done.folder)
-    assert isinstance(again, ReproductionRun)
-    assert (again.record, again.folder) == (done.record, done.folder)
+    opened = faultpath.open_run(done.folder)
+    assert isinstance(opened, ReproductionRun)
+    assert (opened.record, opened.folder) == (done.record, done.folder)
+    command("report", done.folder).refused("pages of the reproduction")
 
 
 @pytest.mark.parametrize("name", ["reproduction.json", "outcomes.parquet", "deliveries.json"])
@@ -65,15 +63,6 @@ def test_a_file_that_was_changed_since_is_named(
     (copy / name).write_bytes((copy / name).read_bytes() + b"\n")
     with pytest.raises(UserError, match=rf"{name} changed since the run"):
         faultpath.open_run(copy)
-
-
-def test_a_reproduction_is_not_reported_as_an_audit(done: ReproductionRun) -> None:
-    command("report", done.folder).refused("pages of the reproduction")
-
-
-def test_the_tables_are_printed(done: ReproductionRun, capsys: pytest.CaptureFixture[str]) -> None:
-    show(done, whole=False)
-    assert "Wins:losses" in capsys.readouterr().out
 
 
 def test_the_shipped_claims_are_json() -> None:

@@ -44,12 +44,3 @@ def create(gate: str) -> System:
 
 def broken(where: str) -> System:
     return Broken(where)
-
-
-def from_yaml(interface: str) -> System:
-    """Read the interface from a file, as a system of a user's may do."""
-    from faultpath.interface import read_interface
-
-    system = toy.Toy()
-    system.interface = read_interface(Path(interface))
-    return system
