@@ -31,13 +31,9 @@ READS = {
 
 
 def halve(size: float) -> Coupled:
-    return Coupled(
-        name="both",
-        faults=(
-            Fault(channel="mass", intervention=Scale(factor=size)),
-            Fault(channel="heat", intervention=Scale(factor=size)),
-        ),
-    )
+    scale = Scale(factor=size)
+    faults = tuple(Fault(channel=name, intervention=scale) for name in ("mass", "heat"))
+    return Coupled(name="both", faults=faults)
 
 
 class Paper(System):

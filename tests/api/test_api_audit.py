@@ -10,6 +10,7 @@ from pathlib import Path
 import pyarrow as pa
 import pytest
 from rich.console import Console
+from toy_audits import AUDIT, FILE, TOY, command
 
 import faultpath
 from faultpath.api.display import Display
@@ -21,17 +22,7 @@ from faultpath.trials.store.folder import OUTCOMES
 from faultpath.trials.store.signals import encode_signals
 from faultpath.trials.store.tables import encode_outcomes, encode_traces
 
-ROOT = Path(__file__).resolve().parents[2]
-FILE = ROOT / "examples" / "toy.py"
-TOY = f"{FILE}:create"
-ASKED = {
-    "baseline": "calibrated",
-    "repair": "blind",
-    "fault": "gain:scale=0.6",
-    "library": "carts",
-    "scenes": 12,
-    "progress": False,
-}
+ASKED = {**AUDIT, "scenes": 12, "signals": False}
 
 
 @pytest.fixture(autouse=True)
@@ -41,13 +32,13 @@ def _elsewhere(tmp_path, monkeypatch):
 
 @pytest.fixture(scope="module")
 def toy():
-    """An object that the caller has made."""
     return type(faultpath.load_system(TOY))()
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory) -> faultpath.Run:
-    return faultpath.audit(TOY, folder=tmp_path_factory.mktemp("door") / "run", workers=0, **ASKED)
+    folder = tmp_path_factory.mktemp("door") / "run"
+    return faultpath.audit(TOY, folder=folder, **ASKED | {"signals": True})
 
 
 def _outcomes(run: faultpath.Run) -> list[tuple]:
@@ -82,7 +73,7 @@ def test_the_rule_is_in_the_record_and_no_verdict_is_redone_by_another(run, tmp_
     stored = json.loads((folder / "record.json").read_text("utf-8"))
     del stored["question"]["rule"]
     (folder / "record.json").write_text(json.dumps(stored), "utf-8")
-    again = faultpath.audit(TOY, folder=folder, workers=0, **ASKED)
+    again = faultpath.audit(TOY, folder=folder, **ASKED)
     assert again.record.question.rule == "exact"
     assert "Tests: exact McNemar" in markdown_table(again.record)
 
@@ -100,65 +91,55 @@ def test_what_is_read_back_is_what_was_held(run):
     assert encode_signals(read.signals) == encode_signals(held.signals)
     assert report_page(read) == report_page(held)
     assert again.table() == run.table() == read_table((run.folder / OUTCOMES).read_bytes())
+
+
+def test_a_folder_that_is_none_is_named_and_a_notebook_shows_a_run(run):
     with pytest.raises(faultpath.UserError, match=r"nowhere holds no provenance\.json"):
         faultpath.open_run("nowhere")
-
-
-def test_a_notebook_shows_verdict_and_table(run):
     shown = run._repr_markdown_()
     assert run.record.headline.partition(" ")[0] in shown
     assert "Won:lost" in shown
 
 
-def test_name_file_path_and_object_fly_the_same(run, toy):
-    ways = {"file": str(FILE), "path": FILE, "loaded": faultpath.load_system(FILE), "object": toy}
-    for name, system in ways.items():
-        other = faultpath.audit(
-            system, folder=name, workers=0 if name != "object" else None, **ASKED
-        )
-        assert _outcomes(other) == _outcomes(run), name
-        assert other.record.effects == run.record.effects
-        named = other.record.question.system
-        assert named == ("Toy object" if name == "object" else TOY)
-
-
-def test_workers_build_what_is_named_or_was_loaded(run):
-    loaded = faultpath.load_system(TOY)
-    other = faultpath.audit(loaded, folder="two", workers=2, **ASKED)
-    assert other.provenance.workers == 2
+@pytest.mark.parametrize(
+    ("way", "workers", "name"),
+    [("path", 0, TOY), ("loaded", 2, TOY), ("object", None, "Toy object")],
+)
+def test_whatever_names_a_system_runs_the_same(way, workers, name, run, toy):
+    ways = {"path": FILE, "loaded": faultpath.load_system(str(FILE)), "object": toy}
+    other = faultpath.audit(ways[way], folder="other", **ASKED | {"workers": workers})
     assert _outcomes(other) == _outcomes(run)
+    assert other.record.effects == run.record.effects
+    assert other.record.question.system == name
+    assert other.provenance.workers == (workers or 0)
 
 
 def test_an_object_that_was_changed_is_not_taken_for_what_was_loaded():
     loaded = faultpath.load_system(TOY)
     loaded.block_size = 3
     with pytest.raises(faultpath.UserError, match="an object cannot be sent to worker processes"):
-        faultpath.audit(loaded, workers=2, **ASKED)
+        faultpath.audit(loaded, **ASKED | {"workers": 2})
 
 
 def test_the_default_folder_is_found_again_by_the_same_call():
-    first = faultpath.audit(TOY, workers=0, **ASKED)
+    first = faultpath.audit(TOY, **ASKED)
     assert first.folder.parent == Path("runs")
-    again = faultpath.audit(TOY, workers=0, **ASKED)
+    again = faultpath.audit(TOY, **ASKED)
     assert again.folder == first.folder
     assert again.provenance.blocks_computed == 0
 
 
 def test_trials_of_an_object_are_never_taken_for_those_of_another(toy):
-    first, second = (faultpath.audit(toy, **ASKED) for _ in range(2))
+    told = io.StringIO()
+    asked = ASKED | {"workers": None}
+    first = faultpath.audit(toy, **asked | {"progress": Display(Console(file=told))})
+    assert "The system is an object, so it runs in this process" in told.getvalue()
+    assert "Running: 96 of 96 trials" in told.getvalue()
+    second = faultpath.audit(toy, **asked)
     assert first.folder != second.folder
     assert second.provenance.blocks_kept == 0
     with pytest.raises(faultpath.UserError, match="holds a run, and whether it was of this same"):
-        faultpath.audit(toy, folder=first.folder, **ASKED)
-
-
-def test_an_object_says_that_it_runs_here(toy):
-    told = io.StringIO()
-    asked = ASKED | {"progress": Display(Console(file=told))}
-    run = faultpath.audit(toy, **asked)
-    assert "The system is an object, so it runs in this process" in told.getvalue()
-    assert "Running: 96 of 96 trials" in told.getvalue()
-    assert run.provenance.workers == 0
+        faultpath.audit(toy, folder=first.folder, **asked)
 
 
 @pytest.mark.parametrize(
@@ -166,22 +147,14 @@ def test_an_object_says_that_it_runs_here(toy):
     [
         (3, {}, "a system is a name, a file or a faultpath.System, not 3"),
         ("octopus", {}, "there is no system 'octopus'"),
-        ("nowhere.py", {}, "there is no file 'nowhere.py'"),
         (TOY, {"options": {"wind": "L3"}}, "'wind': it takes none"),
         (TOY, {"options": {"wind": ["L3"]}}, "the option 'wind' is a list"),
         (TOY, {"baseline": None}, "baseline: is empty, and must be text"),
         (TOY, {"repair": "octopus"}, "unknown variant 'octopus'"),
         (TOY, {"scenes": "12"}, "scenes: is '12', and must be a whole number"),
-        (TOY, {"seeds": "0,a"}, "'0,a' is not a list of whole numbers"),
         (TOY, {"sceens": 3}, "did you mean 'scenes'"),
         (TOY, {"seeds": (0, -1)}, "-1 is not a seed"),
-        (TOY, {"seeds": 2**63}, "is not a seed"),
         (TOY, {"workers": -1}, "the number of workers is -1"),
-        (
-            None,
-            {"workers": 2},
-            "an object cannot be sent to worker processes: .* leave workers out",
-        ),
         (None, {"options": {"wind": "L3"}}, "options build a system, and this one is built"),
     ],
 )
@@ -201,9 +174,9 @@ class Mine(toy.Toy):
     pass
 
 asked = {ASKED!r}
-asked["progress"] = True
-named = faultpath.audit({TOY!r}, workers=2, **asked)
-mine = faultpath.audit(Mine(), **asked)
+asked |= {{"progress": True, "scenes": 4}}
+named = faultpath.audit({TOY!r}, **asked | {{"workers": 2}})
+mine = faultpath.audit(Mine(), **asked | {{"workers": None}})
 print(named.record.effects == mine.record.effects, mine.provenance.system_commit)
 """
 
@@ -214,16 +187,15 @@ def test_what_is_typed_in_flies_and_needs_no_guard(tmp_path):
         [sys.executable, "-"], input=NOTEBOOK, capture_output=True, text=True, timeout=120
     )
     assert done.stdout == "True None\n", done.stderr
-    assert "Running: 96 of 96 trials" in done.stderr
+    assert "Running: 32 of 32 trials" in done.stderr
 
 
-def test_the_command_line_leaves_the_same_record(run, tmp_path):
-    line = ["audit", TOY, "--baseline", "calibrated", "--repair", "blind", "--workers", "0"]
-    line += ["--fault", "gain:scale=0.6", "--library", "carts", "--scenes", "12", "--out", "cli"]
-    code = "from faultpath.cli.main import main; main()"
-    subprocess.run([sys.executable, "-c", code, *line], check=True, capture_output=True)
-    record = json.loads((tmp_path / "cli" / "record.json").read_text())
-    assert record == json.loads((run.folder / "record.json").read_text())
+def test_the_command_line_leaves_the_same_record(run):
+    options = ["--no-signals", "--fault", "gain:scale=0.6", "--library", "carts", "--scenes", 12]
+    arms = ["--baseline", "calibrated", "--repair", "blind", "--workers", 0]
+    assert command("audit", TOY, *arms, *options, "--out", "cli").status == 0
+    record = Path("cli/record.json").read_text()
+    assert record == (run.folder / "record.json").read_text()
 
 
 SEQUENTIAL = {**ASKED, "scenes": 60, "stop_when": "decided"}
@@ -232,7 +204,7 @@ SEQUENTIAL = {**ASKED, "scenes": 60, "stop_when": "decided"}
 @pytest.fixture(scope="module")
 def early(tmp_path_factory) -> faultpath.Run:
     place = tmp_path_factory.mktemp("early") / "run"
-    return faultpath.audit(TOY, folder=place, workers=0, **SEQUENTIAL)
+    return faultpath.audit(TOY, folder=place, **SEQUENTIAL)
 
 
 def test_a_sequential_audit_stops_and_says_so(early):
@@ -250,17 +222,17 @@ def test_a_sequential_audit_stops_and_says_so(early):
 
 
 def test_a_sequential_audit_resumes_to_the_same_record(early, tmp_path):
-    again = faultpath.audit(TOY, folder=early.folder, workers=0, **SEQUENTIAL)
+    again = faultpath.audit(TOY, folder=early.folder, **SEQUENTIAL)
     assert again.record == early.record
     assert again.provenance.blocks_computed == 0
-    other = faultpath.audit(TOY, folder=tmp_path / "two", workers=2, **SEQUENTIAL)
+    other = faultpath.audit(TOY, folder=tmp_path / "two", **SEQUENTIAL | {"workers": 2})
     assert other.record == early.record
     assert faultpath.open_run(early.folder).record == early.record
 
 
 def test_a_sequential_audit_without_an_end_takes_all(tmp_path):
     asked = {**SEQUENTIAL, "scenes": 6, "stop_when": "all-decided", "margin_pp": 15}
-    record = faultpath.audit(TOY, folder=tmp_path / "run", workers=0, **asked).record
+    record = faultpath.audit(TOY, folder=tmp_path / "run", **asked).record
     assert (record.stopped.scenes, record.stopped.reached) == (6, False)
     assert record.headline.startswith("Too few scenes")
 
@@ -270,11 +242,10 @@ def test_a_sequential_audit_without_an_end_takes_all(tmp_path):
     [
         ({"stop_when": None, "margin_pp": 5.0}, "give it with --stop-when"),
         ({"margin_pp": 0.0}, "between 0 and 100"),
-        ({"margin_pp": "5"}, "margin_pp: .*must be a number"),
         ({"stop_when": "soon"}, "'decided' or 'all-decided'"),
         ({"generalise": "models", "seeds": (0, 1)}, "leave --stop-when or"),
     ],
 )
 def test_a_rule_that_cannot_be_is_refused(changed, words, tmp_path):
     with pytest.raises(faultpath.UserError, match=words):
-        faultpath.audit(TOY, folder=tmp_path / "run", workers=0, **{**SEQUENTIAL, **changed})
+        faultpath.audit(TOY, folder=tmp_path / "run", **{**SEQUENTIAL, **changed})

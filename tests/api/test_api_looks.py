@@ -1,23 +1,14 @@
 """An audit that is extended by hand says what was concluded from its trials before."""
 
 from importlib import import_module
-from pathlib import Path
 
 import pytest
+from toy_audits import AUDIT, TOY
 
 import faultpath
 from faultpath.decisions.sentences.answers import answers
 
 AUDIT_MODULE = import_module("faultpath.api.audit")
-TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
-ASKED = {
-    "baseline": "calibrated",
-    "repair": "blind",
-    "fault": "gain:scale=0.6",
-    "library": "carts",
-    "workers": 0,
-    "progress": False,
-}
 FIVE_PERCENT = "at most 5 % of audits would report any difference"
 
 
@@ -27,7 +18,7 @@ def _elsewhere(tmp_path, monkeypatch):
 
 
 def audited(**asked) -> faultpath.Run:
-    return faultpath.audit(TOY, **(ASKED | {"folder": "run"} | asked))
+    return faultpath.audit(TOY, **(AUDIT | {"folder": "run", "signals": False} | asked))
 
 
 def said(run: faultpath.Run) -> str:

@@ -35,7 +35,6 @@ def test_every_name_is_there_and_says_what_it_is(package, name):
     "function", [faultpath.audit, faultpath.map, faultpath.api.audits, faultpath.api.plan]
 )
 def test_every_call_shows_its_fields(function):
-    """They are declared once, in a question; help and signature follow from it."""
     shown = inspect.signature(function).parameters
     assert {"system", "baseline", "repair", "fault", "seeds", "progress"} <= set(shown)
     assert all(f"{each}: " in function.__doc__ for each in shown)
@@ -77,7 +76,6 @@ assert signal.getsignal(signal.SIGINT) is handler
 
 
 def test_calls_leave_the_process_as_it_was(tmp_path):
-    """The quadrotor's is loaded too."""
     toy = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
     code = f"TOY = {str(toy)!r}\n{LEFT_ALONE}"
     there = {**os.environ, "OMP_NUM_THREADS": "4"}

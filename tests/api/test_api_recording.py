@@ -2,41 +2,30 @@
 
 import shutil
 from importlib import import_module
-from pathlib import Path
 
 import numpy as np
 import pytest
+from toy_audits import AUDIT, FILE
 
 import faultpath
 from faultpath.api.folders import read_run
 from faultpath.trials.store.signals import SIGNALS, TOGETHER
 
 AUDIT_MODULE = import_module("faultpath.api.audit")
-FILE = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
-AUDIT = {
-    "baseline": "calibrated",
-    "repair": "blind",
-    "fault": "gain:scale=0.6",
-    "library": "carts",
-    "scenes": 3,
-    "workers": 0,
-    "progress": False,
-}
+ASKED = AUDIT | {"scenes": 3}
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    return faultpath.audit(FILE, **AUDIT, folder=tmp_path_factory.mktemp("recorded") / "run")
+    return faultpath.audit(FILE, **ASKED, folder=tmp_path_factory.mktemp("recorded") / "run")
 
 
 def test_signals_of_the_first_scene_are_there_without_being_asked_for(run) -> None:
     recorded = read_run(run.folder).signals
     assert len({at.scene for at in recorded}) == 1
-    assert {(at.variant, at.path) for at in recorded} == {
-        (variant, path)
-        for variant in ("calibrated", "blind")
-        for path in ("correct", "controller", "observer", "shared")
-    }
+    paths = ("correct", "controller", "observer", "shared")
+    arms = {(variant, path) for variant in ("calibrated", "blind") for path in paths}
+    assert {(at.variant, at.path) for at in recorded} == arms
 
 
 def test_two_errors_add_up_to_what_the_acceleration_differs_by(run) -> None:
@@ -58,11 +47,11 @@ def test_a_second_call_flies_nothing_again_and_completes_what_is_missing(
     kept = (place / SIGNALS).read_bytes()
     with monkeypatch.context() as without:
         without.setattr(AUDIT_MODULE, "run_again", None)
-        again = faultpath.audit(FILE, **AUDIT, folder=place)
+        again = faultpath.audit(FILE, **ASKED, folder=place)
     assert (place / SIGNALS).read_bytes() == kept
     assert SIGNALS in again.provenance.files
     (place / SIGNALS).unlink()  # as where a run was killed before they were written
-    faultpath.audit(FILE, **AUDIT, folder=place)
+    faultpath.audit(FILE, **ASKED, folder=place)
     assert (place / SIGNALS).read_bytes() == kept
 
 
@@ -71,7 +60,7 @@ def test_a_stop_while_signals_are_recorded_leaves_a_finished_audit(tmp_path, mon
         raise KeyboardInterrupt
 
     monkeypatch.setattr(AUDIT_MODULE, "run_again", stopped)
-    run = faultpath.audit(FILE, **AUDIT, folder=tmp_path / "run")
+    run = faultpath.audit(FILE, **ASKED, folder=tmp_path / "run")
     assert (run.folder / "report.html").is_file()
     assert not (run.folder / SIGNALS).exists()
     assert not run.record.findings
@@ -99,7 +88,7 @@ def test_a_system_that_does_not_fly_again_is_a_finding(tmp_path, second) -> None
         "create = Odd\n",
         "utf-8",
     )
-    run = faultpath.audit(system, **AUDIT, folder=tmp_path / "run")
+    run = faultpath.audit(system, **ASKED, folder=tmp_path / "run")
     assert not (run.folder / SIGNALS).exists()
     said = next(each for each in run.record.findings if "signals" in each.lower())
     assert {"raises": "not again", "ends": "sys.exit(3)", "differs": "time_s"}[second] in said
@@ -108,5 +97,5 @@ def test_a_system_that_does_not_fly_again_is_a_finding(tmp_path, second) -> None
 
 def test_without_signals_nothing_is_flown_again(tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(AUDIT_MODULE, "run_again", None)
-    run = faultpath.audit(FILE, **AUDIT, folder=tmp_path / "run", signals=False)
+    run = faultpath.audit(FILE, **ASKED, folder=tmp_path / "run", signals=False)
     assert not (run.folder / SIGNALS).exists()

@@ -1,28 +1,18 @@
 """A fault of several sizes: an audit each."""
 
-from pathlib import Path
-
 import pytest
+from toy_audits import ARMS, TOY
 
 import faultpath
 from faultpath.core.errors import UserError
 from faultpath.faults import each_size
 
-TOY = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
-ASKED = {
-    "baseline": "calibrated",
-    "repair": "blind",
-    "library": "carts",
-    "scenes": 12,
-    "workers": 0,
-    "progress": False,
-}
+ASKED = {**ARMS, "scenes": 4, "workers": 0, "progress": False, "signals": False}
 
 
 @pytest.mark.parametrize(
     ("text", "each"),
     [
-        ("gain:scale=0.8", ("gain:scale=0.8",)),
         ("gain:scale=0.8,0.9", ("gain:scale=0.8", "gain:scale=0.9")),
         ("c=+0.1,-0.1", ("c=+0.1", "c=-0.1")),
         (
@@ -30,15 +20,11 @@ ASKED = {
             ("v:noise=0.1,relative,onset=3@p+q", "v:noise=0.2,relative,onset=3@p+q"),
         ),
         ("v:noise=0.1@p,0.2", ("v:noise=0.1@p", "v:noise=0.2@p")),
-        ("v:noise=0.1,0.2@p", ("v:noise=0.1@p", "v:noise=0.2@p")),
         ("w:offset=1/0/0,0/1/0", ("w:offset=1/0/0", "w:offset=0/1/0")),
         ("w:freeze,onset=3", ("w:freeze,onset=3",)),
         ("c=-0.2..0.2/5", ("c=-0.2", "c=-0.1", "c=0", "c=0.1", "c=0.2")),
         ("c=+1..-1/2", ("c=1", "c=-1")),
-        (
-            "g:scale=.8..1.1/4@p,onset=3",
-            tuple(f"g:scale={s},onset=3@p" for s in (0.8, 0.9, 1, 1.1)),
-        ),
+        ("g:scale=.8..1/2@p,onset=3", ("g:scale=0.8,onset=3@p", "g:scale=1,onset=3@p")),
         ("g:scale=0.8..0.9/2,1.5", ("g:scale=0.8", "g:scale=0.9", "g:scale=1.5")),
     ],
 )
@@ -52,9 +38,7 @@ def test_a_text_for_each_size(text, each):
         ("gain:scale=0.8,0.80", "names a size twice"),
         ("gain:freeze,0.8", "0.8 is a further size, and there is no first"),
         ("gain:scale=0.8..0.9", "write FROM..TO/COUNT"),
-        ("gain:scale=0.8..x/3", "write FROM..TO/COUNT"),
         ("gain:offset=1/0/0..2/0/0/3", "write FROM..TO/COUNT"),
-        ("gain:scale=0.8..0.9/1", "a range takes 2 to 99"),
         ("gain:scale=0.8..0.9/1000000000", "a range takes 2 to 99"),
         ("gain:scale=0.8..0.8/3", "names a size twice"),
     ],

@@ -1,29 +1,22 @@
 """The record says which taps were faulted in flight, from receipts and not from the plan."""
 
-from pathlib import Path
-
 import pytest
+from toy_audits import TOY
 
 from faultpath.decisions.model import DecisionRecord, FaultedTap
 from faultpath.decisions.planning import Audit, plan_audit
-from faultpath.trials import Deliveries, SystemSpec, load_system
+from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.execution.runner import run_study
 from faultpath.trials.question import AuditQuestion
-from faultpath.trials.store.folder import read_outcomes
 
-TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
 STEPS = 100
 
 
 def asked(text: str) -> Audit:
     spec = SystemSpec(name=TOY)
     system = load_system(spec)
-    return plan_audit(
-        system,
-        spec,
-        AuditQuestion(baseline="calibrated", repair="blind", fault=text, scenes=4),
-        system.library("carts"),
-    )
+    question = AuditQuestion(baseline="calibrated", repair="blind", fault=text, scenes=4)
+    return plan_audit(system, spec, question, system.library("carts"))
 
 
 def faulted(record: DecisionRecord) -> dict[str, tuple[tuple[FaultedTap, ...], ...]]:
@@ -62,13 +55,3 @@ def test_a_fault_after_the_end_faulted_nothing(tmp_path):
     result = run_study(audit.study, tmp_path, workers=0)
     record = audit.conclude(result.outcomes, result.deliveries)
     assert set(faulted(record).values()) == {((), ())}
-
-
-def test_a_stored_run_is_concluded_without_flying(tmp_path):
-    audit = asked("gain:scale=0.6")
-    result = run_study(audit.study, tmp_path, workers=0)
-    stored = audit.conclude(
-        read_outcomes(tmp_path / "outcomes.parquet"),
-        Deliveries.model_validate_json((tmp_path / "deliveries.json").read_bytes()),
-    )
-    assert stored == audit.conclude(result.outcomes, result.deliveries)

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from judged_files import HEADER, Successes, inspect_log, lerobot, lm_eval, table
+from toy_audits import AUDIT, TOY
 
 import faultpath
 from faultpath import Run, UserError
@@ -14,7 +15,6 @@ from faultpath.decisions.model import AS_RUN, SHARED
 from faultpath.report.html import report_page
 from faultpath.trials.store.tables import encode_outcomes
 
-TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
 WON: Successes = {
     "old": [n < 6 or n % 3 == 0 for n in range(30)],
     "new": [n % 5 != 0 for n in range(30)],
@@ -30,18 +30,13 @@ def judged(results: object, folder: Path, **more: Any) -> Run:
 
 
 def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None:
-    arms = {"baseline": "calibrated", "repair": "blind"}
-    more: dict[str, Any] = {"scenes": 40, "workers": 0, "signals": False, "progress": False}
-    run = faultpath.audit(
-        TOY, **arms, fault="gain:scale=0.6", library="carts", folder=tmp_path / "run", **more
-    )
+    more = {"scenes": 40, "signals": False, "folder": tmp_path / "run"}
+    run = faultpath.audit(TOY, **AUDIT | more)
     columns = {"arm": "variant", "condition": "path", "success": "status"}
-    metrics = {"metrics": ["terminal_distance_m:less"]}
-    results = tmp_path / "run" / "outcomes.parquet"
-    folder = tmp_path / "judged"
-    again = judged(
-        results, folder, **arms, columns={**columns, "initial": "initial_hash"}, **metrics
-    )
+    named = {"columns": columns | {"initial": "initial_hash"}}
+    named["metrics"] = ["terminal_distance_m:less"]
+    results, folder = tmp_path / "run" / "outcomes.parquet", tmp_path / "judged"
+    again = judged(results, folder, baseline="calibrated", repair="blind", **named)
 
     for one, two in zip(run.record.effects, again.record.effects, strict=True):
         for name in ("sign", "wins", "losses", "p_value", "adjusted_p_value", "baseline_percent"):
@@ -147,7 +142,7 @@ def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("n", [1, 2, 4])
-@pytest.mark.parametrize("won", [(True, False), (True, True), (False, False)])
+@pytest.mark.parametrize("won", [(True, False), (True, True)])
 def test_few_scenes_and_ties_claim_nothing(n: int, won: tuple[bool, bool], tmp_path: Path) -> None:
     arms = {"old": [won[0]] * n, "new": [won[1]] * n}
     run = judged(table(tmp_path / "few.csv", {"": arms}), tmp_path / "run")
@@ -160,17 +155,9 @@ REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
     "arm": (HEADER + ROW, {"repair": "newer"}, "unknown version 'newer'; did you mean 'new'?"),
     "twice": (HEADER + ROW + ROW, {}, "all.csv, line 4 and .*all.csv, line 2 are the same trial"),
     "unpaired": (HEADER + ROW.replace("new,s0", "new,s1"), {}, "no trial of 'old' has its pair"),
-    "condition": (
-        HEADER + ROW.replace(",0,,", ",0,fog,"),
-        {},
-        r"no condition is nominal \(fog\): say with --nominal",
-    ),
+    "condition": (HEADER + ROW.replace(",0,,", ",0,fog,"), {}, r"no condition is nominal \(fog\)"),
     "one arm": (HEADER + ROW + "new,s0,0,shared,1,h\n", {}, "'old' has no trial under the shared"),
-    "score": (
-        HEADER + ROW.replace(",,1,", ",,0.5,"),
-        {},
-        "line 2: success is 0.5: give 0 or 1, or",
-    ),
+    "score": (HEADER + ROW.replace(",,1,", ",,0.5,"), {}, "line 2: success is 0.5: give 0 or 1"),
     "word": (HEADER + ROW.replace(",,1,", ",,won,"), {}, "success is 'won': give true or false"),
     "hashes": (HEADER + ROW.replace("h\nnew", "\nnew"), {}, "line 2 has no hash of its initial"),
     "cells": (HEADER + "old,s0\n", {}, "all.csv, line 2: has 2 cells where the first line names 6"),
@@ -194,11 +181,8 @@ def test_what_cannot_be_judged_is_refused(
 
 DAMAGED: dict[str, tuple[str, bytes, str]] = {
     "kind": ("a.txt", b"", "is of no kind that is read"),
-    "pickle": ("a.pkl", b"\x80\x04.", "is of no kind that is read"),
     "json": ("a.json", b'{"per_task": [{"task_id": 1}]}', "lacks 'task_group'"),
-    "not a list": ("a.json", b'{"per_task": 3}', "is not laid out as files of its kind are"),
     "neither": ("a.json", b"{}", "is neither LeRobot's eval_info.json"),
-    "nan": ("a.json", b'{"per_task": NaN}', "holds NaN, which is no number of JSON"),
     "line": ("a.jsonl", b'{"arm": 1}\n{', "a.jsonl, line 2: is not JSON"),
     "parquet": ("a.parquet", b"PAR1", "a.parquet: cannot be read"),
 }
@@ -212,12 +196,12 @@ def test_a_damaged_file_is_one_sentence(name: str, data: bytes, says: str, tmp_p
 
 
 def test_the_same_results_keep_their_tests_and_others_take_todays(tmp_path: Path) -> None:
-    results, folder = table(tmp_path / "all.csv", {"nominal": WON}), tmp_path / "run"
-    judged(results, folder)
+    folder = tmp_path / "run"
+    fewer = {arm: won[:9] for arm, won in WON.items()}
+    judged(table(tmp_path / "all.csv", {"nominal": WON}), folder)
     record = json.loads((folder / "record.json").read_text("utf-8"))
     record["question"]["rule"] = "exact"
-    for name, rule in (("nominal", "exact"), ("fewer", "graded")):
+    for arms, rule in ((WON, "exact"), (fewer, "graded")):
         (folder / "record.json").write_text(json.dumps(record), "utf-8")
-        if name == "fewer":
-            results = table(tmp_path / "fewer.csv", {"nominal": {a: w[:9] for a, w in WON.items()}})
+        results = table(tmp_path / "all.csv", {"nominal": arms})
         assert judged(results, folder).record.question.rule == rule

@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from judged_files import HEADER, inspect_log, lm_eval, samples
+from judged_files import HEADER, inspect_log, samples
 
 import faultpath
 from faultpath import UserError
@@ -61,7 +61,7 @@ def written(path: Path, cell: object) -> Path:
 FORMATS = ("a.csv", "a.jsonl", "a.parquet", "eval_info.json", "log.json", LM_EVAL)
 
 
-@pytest.mark.parametrize("cell", [[1], [], {"0": True}, {"value": 1}, [[1, 0]]], ids=repr)
+@pytest.mark.parametrize("cell", [[1], {"value": 1}], ids=repr)
 @pytest.mark.parametrize("name", FORMATS)
 def test_a_list_or_group_is_no_success(name: str, cell: object, tmp_path: Path) -> None:
     label = "old=" if name in ("eval_info.json", LM_EVAL) else ""
@@ -69,50 +69,49 @@ def test_a_list_or_group_is_no_success(name: str, cell: object, tmp_path: Path) 
     assert "success is" in refused(f"{label}{path}", tmp_path)
 
 
-@pytest.mark.parametrize("name", ["scene", "arm", "seed", "task", "condition", "initial"])
-def test_a_list_is_no_name(name: str, tmp_path: Path) -> None:
-    row = {"arm": "old", "scene": "s0", "success": 1, name: ["x"]}
-    (tmp_path / "a.jsonl").write_text(json.dumps(row))
-    assert f"line 1: the {name} is" in refused(tmp_path / "a.jsonl", tmp_path)
+LAYOUT = "is not laid out as files of its kind are"
 
 
-@pytest.mark.parametrize("value", [{"0": True, "1": False}, "0101", 3, None], ids=repr)
-def test_successes_are_a_list(value: object, tmp_path: Path) -> None:
-    """Keys of a group and letters of a text could be gone through as a list's items are."""
-    task = {"task_group": "g", "task_id": 0, "metrics": {"successes": value}}
-    (tmp_path / "eval_info.json").write_text(json.dumps({"per_task": [task]}))
-    said = refused(f"old={tmp_path / 'eval_info.json'}", tmp_path)
-    assert "is not laid out as files of its kind are" in said
+def scored(scores: object) -> dict[str, Any]:
+    about = {"task": "t", "model": "old"}
+    return {"eval": about, "samples": [{"id": 0, "scores": scores}]}
 
 
-@pytest.mark.parametrize("more", [{}, {"metrics": []}, {"metrics": {"a": 1}}, {"metrics": "acc"}])
-def test_samples_without_a_metric(more: dict[str, Any], tmp_path: Path) -> None:
-    (tmp_path / LM_EVAL).write_text(json.dumps({"doc_id": 0, **more}))
-    said = refused(f"old={tmp_path / LM_EVAL}", tmp_path)
-    assert "names no metric" in said or "is not laid out" in said
+def task(successes: object) -> dict[str, Any]:
+    metrics = {"successes": successes}
+    return {"per_task": [{"task_group": "g", "task_id": 0, "metrics": metrics}]}
 
 
-@pytest.mark.parametrize("scores", [[{"value": 1}], ["C"], "C", 3, {"match": 1}, {"match": []}])
-def test_scores_are_a_group(scores: object, tmp_path: Path) -> None:
-    log = {"eval": {"task": "t", "model": "old"}, "samples": [{"id": 0, "scores": scores}]}
-    (tmp_path / "log.json").write_text(json.dumps(log))
-    assert "is not laid out as files of its kind are" in refused(tmp_path / "log.json", tmp_path)
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("a.jsonl", {"arm": "old", "scene": ["x"], "success": 1}, "line 1: the scene is"),
+        ("a.jsonl", {"arm": "old", "scene": "x", "success": 1, "initial": []}, "the initial is"),
+        # Keys of a group and letters of a text could be gone through as a list's items are.
+        ("eval_info.json", task({"0": True, "1": False}), LAYOUT),
+        ("eval_info.json", task("0101"), LAYOUT),
+        ("eval_info.json", task(None), LAYOUT),
+        (LM_EVAL, {"doc_id": 0}, "names no metric"),
+        (LM_EVAL, {"doc_id": 0, "metrics": {"a": 1}}, LAYOUT),
+        ("log.json", scored([{"value": 1}]), LAYOUT),
+        ("log.json", scored("C"), LAYOUT),
+        ("log.json", scored({"match": 1}), LAYOUT),
+    ],
+)
+def test_lists_groups_and_names_are_what_they_should_be(
+    name: str, content: object, says: str, tmp_path: Path
+) -> None:
+    (tmp_path / name).write_text(json.dumps(content))
+    label = "old=" if name in ("eval_info.json", LM_EVAL) else ""
+    assert says in refused(f"{label}{tmp_path / name}", tmp_path)
 
 
-def test_a_header_alone_holds_no_trial(tmp_path: Path) -> None:
-    (tmp_path / "a.csv").write_text(HEADER)
-    assert "a.csv: holds no trial" in refused(tmp_path / "a.csv", tmp_path)
-
-
-@pytest.mark.parametrize("separator", ["\u2028", "\u2029", "\x85", "\x0b", "\x1e"])
+@pytest.mark.parametrize("separator", ["\u2028", "\x85", "\x1e"])
 def test_lines_of_json_end_at_line_feeds_alone(separator: str, tmp_path: Path) -> None:
+    trials = [(arm, n, won) for arm in ("old", "new") for n, won in enumerate(WON)]
     lines = [
-        json.dumps(
-            {"arm": arm, "scene": f"s{n}", "success": won, "note": f"a{separator}b"},
-            ensure_ascii=False,
-        )
-        for arm in ("old", "new")
-        for n, won in enumerate(WON)
+        f'{{"arm": "{arm}", "scene": "s{n}", "success": {int(won)}, "note": "a{separator}b"}}'
+        for arm, n, won in trials
     ]
     if separator < " ":  # JSON wants these escaped
         lines = [line.replace(separator, f"\\u{ord(separator):04x}") for line in lines]
@@ -121,7 +120,6 @@ def test_lines_of_json_end_at_line_feeds_alone(separator: str, tmp_path: Path) -
 
 
 def test_a_label_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
-    """It would turn the verdict round."""
     for arm, won in (("old", 0), ("new", 1)):
         rows = "".join(f"{arm},s{n},0,nominal,{won},h\n" for n in range(20))
         (tmp_path / f"{arm}.csv").write_text(HEADER + rows)
@@ -150,7 +148,6 @@ class Sample(SimpleNamespace):
 
 
 def packed(path: Path, texts: Iterable[bytes] = ()) -> str:
-    """Write a zip file that is called a log."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for n, text in enumerate(texts):
             archive.writestr(f"samples/{n}.json", text)
@@ -168,8 +165,6 @@ def reading(monkeypatch: pytest.MonkeyPatch, read: Callable[[str], Any]) -> None
 def test_packed_logs_are_read_by_their_package(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """`tests/foreign/test_inspect_logs.py` reads logs that the package itself wrote."""
-
     def read(path: str) -> Any:
         about = SimpleNamespace(model=Path(path).stem, task="sums")
         return SimpleNamespace(eval=about, samples=[Sample(**each) for each in samples(WON)])
@@ -188,7 +183,7 @@ def test_a_packed_log_needs_its_package(tmp_path: Path, monkeypatch: pytest.Monk
         assert part in message
 
 
-@pytest.mark.parametrize("error", [KeyError("eval"), ValueError("two\nlines"), RuntimeError()])
+@pytest.mark.parametrize("error", [ValueError("two\nlines"), RuntimeError()])
 def test_a_damaged_log_is_one_sentence(
     error: Exception, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -211,12 +206,13 @@ def test_a_small_log_does_not_fill_the_memory(
     assert "unpacks to more than 256 MiB; give it in parts" in refused(path, tmp_path)
 
 
-@pytest.mark.parametrize("store_schema", [True, False])
-@pytest.mark.parametrize(("rows", "letters"), [(2**25, 1), (2**10, 2**19)])
+@pytest.mark.parametrize(
+    ("rows", "letters", "store_schema"),
+    [(2**25, 1, True), (2**10, 2**19, True), (2**10, 2**19, False)],
+)
 def test_a_small_table_does_not_fill_the_memory(
     rows: int, letters: int, store_schema: bool, tmp_path: Path
 ) -> None:
-    """Columns of equal cells take no room in a file, long texts among them."""
     which, path = np.zeros(rows, np.int32), tmp_path / "a.parquet"
     column = pa.DictionaryArray.from_arrays(which, pa.array(["x" * letters]))
     pq.write_table(pa.table({"arm": column}), path, compression="zstd", store_schema=store_schema)
@@ -236,9 +232,3 @@ def test_names_that_are_no_text_are_a_damaged_table(tmp_path: Path) -> None:
     )
     pq.write_table(pa.table({"arm": data, "scene": ["s"], "success": [1]}), tmp_path / "a.parquet")
     assert "a.parquet: cannot be read" in refused(tmp_path / "a.parquet", tmp_path)
-
-
-def test_lm_eval_samples_are_still_read(tmp_path: Path) -> None:
-    files = [f"{arm}{lm_eval(tmp_path / arm, WON)}" for arm in ("old", "new")]
-    run = judged(files, tmp_path, columns=["success=exact_match,strict-match"])
-    assert run.record.scenes == 12
