@@ -8,6 +8,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,14 +28,12 @@ if TYPE_CHECKING:
 
 TOPOLOGIES = ("clutter", "corridors", "doorways", "intersections", "rooms")
 BASELINE, REPAIR = "gru", "gru-dcc"
-ARGUMENTS = (
-    "--no-sandbox",
-    "--disable-gpu",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-)
+ARGUMENTS = [
+    *("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"),
+    *("--disable-component-update", "--disable-sync"),
+]
+ROOT = FilePath(__file__).resolve().parents[2]
+HASH = "9d0c31f2" * 8
 NASTY = '<script>alert("x")</script> & 100 % of _it_'
 
 # Chance of success by path: (baseline, repair). They share one draw, so pairs are correlated.
@@ -89,7 +88,7 @@ def make_input(
         repair=REPAIR,
         fault="calibration=+0.1",
         library=library,
-        library_hash="9d0c31f2" * 8,
+        library_hash=HASH,
         n_scenes=n_scenes,
         seeds=seeds,
     )
@@ -127,7 +126,7 @@ def browser() -> Iterator["Browser"]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        running = playwright.chromium.launch(executable_path=chromium, args=list(ARGUMENTS))
+        running = playwright.chromium.launch(executable_path=chromium, args=ARGUMENTS)
         yield running
         running.close()
 
@@ -170,7 +169,7 @@ def _paths() -> tuple[Path, ...]:
     predictor = ("predictor.dynamics", "predictor.wind_map", "predictor.trim")
     head = ("reconstruction.head",)
     return (
-        Path(name="correct", title="Correct inputs", consumers=(), baseline_consumers=()),
+        _path("correct", "Correct inputs", ()),
         _path("predictor", "Predictor only", predictor),
         _path("reconstruction", "Reconstruction only", head),
         _path("shared", "Shared fault", (*predictor, *head)),
@@ -202,11 +201,8 @@ def _rows(
             hard = 0.8 * np.random.default_rng([99, index]).random() + 0.2 * rng.random()
             for path, chances in law.items():
                 for variant, chance in zip((BASELINE, REPAIR), chances, strict=True):
-                    failed = (
-                        void
-                        and (index, path, variant) == (17, "shared", REPAIR)
-                        and seed == seeds[0]
-                    )
+                    at = (seed, index, path, variant)
+                    failed = void and at == (seeds[0], 17, "shared", REPAIR)
                     draw = hard + 0.11 * rng.standard_normal()
                     outcome = _outcome(index, seed, draw < chance, failed, path != "correct", rng)
                     yield TrialRow(variant, path, seed, index, TOPOLOGIES[index % 5], outcome)
@@ -246,10 +242,8 @@ def _track(index: int, status: Status, rng: np.random.Generator) -> np.ndarray:
     """Fly from start to goal round the middle; a crash stops on the way, a timeout takes long."""
     plan = _plan(index)
     start, goal = np.array(plan.start), np.array(plan.goal)
-    steps = {
-        Status.SUCCESS: int(rng.integers(55, 90)),
-        Status.CRASH: int(rng.integers(60, 80)),
-    }.get(status, 240)
+    lasts = {Status.SUCCESS: rng.integers(55, 90), Status.CRASH: rng.integers(60, 80)}
+    steps = int(lasts.get(status, 240))
     u = np.linspace(0.0, 1.0, steps)[:, None]
     side = np.array([0.0, 1.0, 0.0]) * rng.choice([-1.0, 1.0]) * rng.uniform(0.9, 1.7)
     sink = np.array([0.0, 0.0, 1.0]) * rng.uniform(-0.6, 0.3)
@@ -278,22 +272,13 @@ def _plan(index: int) -> FloorPlan:
 
 
 def _provenance() -> RunProvenance:
-    return RunProvenance(
-        faultpath_version="0.1.0",
-        commit="5c0ffee5c0ffee5c0ffee5c0ffee5c0ffee5c0ff",
-        dirty=True,
-        command=("faultpath", "audit", "quadrotor", "--library", NASTY),
-        python="3.11.2",
-        packages={"numpy": "2.4.6", "scipy": "1.18.0", "pyarrow": "26.0.1", "torch": "2.13.0"},
-        platform="Linux x86_64",
-        processor="2 cores",
-        workers=2,
-        started="2026-11-21T08:00:00Z",
-        finished="2026-11-21T08:11:42Z",
-        wall_s=702.4,
-        blocks_computed=32,
-        blocks_kept=8,
-        system_fingerprint="b7e1" * 16,
-        library_hash="9d0c31f2" * 8,
-        outcomes_sha256="77ab" * 16,
-    )
+    stored = ROOT / "docs" / "reference" / "toy" / "provenance.json"
+    changes = {
+        "command": ("faultpath", "audit", "quadrotor", "--library", NASTY),
+        "python": "3.11.2",
+        "packages": {"numpy": "2.4.6", "torch": "2.13.0"},
+        "blocks_kept": 8,
+        "library_hash": HASH,
+        "system_fingerprint": "b7e1" * 16,
+    }
+    return RunProvenance.model_validate_json(stored.read_bytes()).model_copy(update=changes)

@@ -28,7 +28,6 @@ def errors(one: float, other: float):
 
 @pytest.fixture
 def heard(one_seed: ReportInput) -> ReportInput:
-    """The first scene of the viewer's choice, with the errors of all its trials."""
     scene, seed = choose(one_seed.record, pairs_of(one_seed))[0]
     asked = one_seed.record.question
     signals = {
@@ -84,7 +83,6 @@ def test_the_lines_are_drawn_anew_in_the_time_that_they_took(
 
 
 def test_a_few_large_values_do_not_squeeze_the_others(heard) -> None:
-    """Where a run begins with a jump, what comes after it is what a reader has to see."""
     jump = {
         at: tuple(replace(each, values=_jumped(each.values)) for each in named)
         for at, named in heard.signals.items()

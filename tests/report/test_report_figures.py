@@ -8,7 +8,7 @@ from faultpath.decisions.pairs import read_pairs
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, panel, shared_axis
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pair_grid import pair_grid, pair_key
-from faultpath.report.svg import Svg, covering, shortened, text_width
+from faultpath.report.svg import covering, shortened, text_width
 from faultpath.report.taps import fork_panel, forks
 from faultpath.statistics.estimate import BreakEven, Region
 
@@ -83,12 +83,3 @@ def test_long_labels_are_cut() -> None:
     cut = shortened("a_very_long_name_indeed", 60, 12)
     assert cut.endswith("…")
     assert text_width(cut, 12) <= 60
-
-
-def test_text_is_escaped() -> None:
-    svg = Svg(10, 10, "<t>", "&")
-    svg.text(0, 0, "<script>", tip='"')
-    with svg.group("g", "<tip>", data_scene='"x"'):
-        svg.rect(0, 0, 1, 1, '"')
-    assert "<script>" not in svg.render()
-    ElementTree.fromstring(svg.render())

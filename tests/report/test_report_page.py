@@ -3,7 +3,6 @@
 import json
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -13,12 +12,10 @@ from faultpath.decisions.pairs import PairKind, read_pairs
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 
-FIGURE_NAMESPACE = "http://www.w3.org/2000/svg"
 
-
-@pytest.fixture(scope="module", params=[(0,), (0, 1, 2)], ids=["one seed", "three seeds"])
-def source(request: pytest.FixtureRequest, make: Callable[..., ReportInput]) -> ReportInput:
-    return make(seeds=request.param)
+@pytest.fixture(scope="module", params=["one_seed", "three_seeds"])
+def source(request: pytest.FixtureRequest) -> ReportInput:
+    return request.getfixturevalue(request.param)
 
 
 @pytest.fixture(scope="module")
@@ -31,27 +28,6 @@ def page(html: str) -> Page:
     return Page(html)
 
 
-def test_page_loads_nothing(html: str, page: Page) -> None:
-    for _, attributes in page.tags:
-        assert attributes.get("src") is None
-        target = attributes.get("href") or "#"
-        assert target.startswith(("#", "data:,"))
-    assert set(re.findall(r"https?://[^\s\"'<>)]+", html)) <= {FIGURE_NAMESPACE}
-    assert "@import" not in html
-    assert set(re.findall(r"url\(([^)]*)\)", html)) <= set(re.findall(r"url\((#fig-[^)]*)\)", html))
-
-
-def test_page_is_the_same_every_time(source: ReportInput, html: str) -> None:
-    assert report_page(source) == html
-
-
-def test_names_of_users_are_escaped(html: str, page: Page) -> None:
-    assert "<script>alert" not in html
-    assert "&lt;script&gt;alert" in html
-    assert "<b>no</b>" not in html
-    assert [tag for tag, _ in page.tags].count("script") == 2
-
-
 def test_verdict_comes_first_and_headings_do_not_skip(source: ReportInput, page: Page) -> None:
     levels = [int(tag[1]) for tag, _ in page.tags if re.fullmatch(r"h[1-6]", tag)]
     assert levels[0] == 1
@@ -59,16 +35,13 @@ def test_verdict_comes_first_and_headings_do_not_skip(source: ReportInput, page:
     assert all(b - a <= 1 for a, b in pairwise(levels))
     assert source.record.headline in page.text
     assert page.text.index(source.record.headline) < page.text.index("in the same scenes")
+    assert [tag for tag, _ in page.tags].count("script") == 2
 
 
-def test_ids_are_unique_and_links_lead_somewhere(page: Page, source: ReportInput) -> None:
-    ids = page.ids
-    assert len(ids) == len(set(ids))
-    links = [a["href"] for tag, a in page.tags if tag == "a" and a.get("href")]
-    trials = {link for link in links if link.startswith("#scene=")}
-    assert {link.removeprefix("#") for link in links if link not in trials} <= set(ids)
-    cells = [a for tag, a in page.tags if tag == "a" and a.get("class") == "pair"]
-    assert len(cells) == len(trials) == len(source.outcomes.rows) / 2
+def test_every_pair_leads_to_its_trials(page: Page, source: ReportInput) -> None:
+    cells = [a["href"] for tag, a in page.tags if tag == "a" and a.get("class") == "pair"]
+    assert len(cells) == len(source.outcomes.rows) / 2
+    assert all((link or "").startswith("#scene=") for link in cells)
 
 
 def test_every_figure_is_named(page: Page) -> None:
@@ -89,10 +62,9 @@ def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
             assert kinds.count(PairKind.REPAIR_ONLY) == won
             assert kinds.count(PairKind.BASELINE_ONLY) == lost
         kinds = [p.kind for p in pairs if p.path == effect.path]
-        assert kinds.count(PairKind.VOID) == effect.void_pairs
-        assert len(kinds) - kinds.count(PairKind.VOID) - kinds.count(PairKind.LEFT_OUT) == (
-            effect.scenes * len(source.record.question.seeds)
-        )
+        void, out = kinds.count(PairKind.VOID), kinds.count(PairKind.LEFT_OUT)
+        assert void == effect.void_pairs
+        assert len(kinds) - void - out == effect.scenes * len(source.record.question.seeds)
 
 
 def test_a_path_of_which_every_trial_failed_costs_the_others_nothing(
@@ -110,17 +82,10 @@ def test_a_path_of_which_every_trial_failed_costs_the_others_nothing(
 
 
 def test_viewer_data_cannot_close_its_element(html: str) -> None:
-    found = re.search(r'id="viewer-data">(.*?)</script>', html, re.DOTALL)
-    assert found is not None
-    assert "<" not in found[1]
-    assert len(unpack(json.loads(found[1])["packed"])[0]["scenes"]) > 6
+    (data,) = re.findall(r'id="viewer-data">(.*?)</script>', html, re.DOTALL)
+    assert "<" not in data
+    assert len(unpack(json.loads(data)["packed"])[0]["scenes"]) > 6
 
 
-def test_page_without_flights_and_void_pairs(make: Callable[..., ReportInput]) -> None:
-    source = make(void=False, n_scenes=60)
-    system = source.system.model_copy(update={"plans": {}})
-    bare = replace(source, outcomes=with_traces(source.outcomes, lambda track: None), system=system)
-    page = Page(report_page(bare))
-    ids = {attributes.get("id") for _, attributes in page.tags}
-    assert ids.isdisjoint({"flights", "viewer", "viewer-data"})
-    assert "A void pair" not in page.text
+def test_page_without_void_pairs(make: Callable[..., ReportInput]) -> None:
+    assert "A void pair" not in Page(report_page(make(void=False, n_scenes=20))).text

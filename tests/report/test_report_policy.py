@@ -1,4 +1,4 @@
-"""The content-security policy of the pages: our own styles and scripts, and nothing else."""
+"""Pages are closed to the network, and run and show our own styles and scripts alone."""
 
 import hashlib
 import re
@@ -8,20 +8,35 @@ from pathlib import Path
 
 import pytest
 from faultpath_paper.report.page import reproduction_page
+from page_reader import Page
 from playwright.sync_api import Browser
 from reproduction_toys import reproduction
 
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 
-PAGES = ("report", "reproduction")
 
-
-@pytest.fixture(scope="module", params=PAGES)
+@pytest.fixture(scope="module", params=["report", "reproduction"])
 def html(request: pytest.FixtureRequest, one_seed: ReportInput) -> str:
     if request.param == "report":
         return report_page(one_seed)
     return reproduction_page(reproduction(), one_seed.provenance, None)
+
+
+def test_page_loads_nothing_escapes_names_and_links_lead_somewhere(html: str) -> None:
+    page = Page(html)
+    for _, attributes in page.tags:
+        assert attributes.get("src") is None
+        assert (attributes.get("href") or "#").startswith(("#", "data:,"))
+    assert set(re.findall(r"https?://[^\s\"'<>)]+", html)) <= {"http://www.w3.org/2000/svg"}
+    assert "@import" not in html
+    assert set(re.findall(r"url\(([^)]*)\)", html)) <= set(re.findall(r"url\((#fig-[^)]*)\)", html))
+    assert "<script>alert" not in html
+    assert html.count("&lt;script&gt;alert") > 1
+    assert len(page.ids) == len(set(page.ids))
+    links = {a["href"] for tag, a in page.tags if tag == "a" and a.get("href")}
+    inside = {link.removeprefix("#") for link in links if not link.startswith("#scene=")}
+    assert inside - {"C26"} <= set(page.ids), "the toy's ledger has no C26"
 
 
 def _policy(html: str) -> dict[str, str]:
@@ -99,7 +114,6 @@ class TestInABrowser:
         assert sum("Content Security Policy" in text for text in said) >= 4
 
     def test_a_policy_that_blocked_our_own_would_be_noticed(self, opened) -> None:
-        """The browser tests fail on any message; this shows that there is one."""
         _, quiet = opened(("<main>", "<main>"))
         assert quiet == []
         for place in ("style-src &#39;sha256-", "script-src &#39;sha256-"):
