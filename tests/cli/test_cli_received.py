@@ -121,7 +121,10 @@ FORGED: dict[str, tuple[str, Change]] = {
     "a further field": ("system.json", system(lambda c: c.update(code="import os"))),
     "a plan that is not finite": ("system.json", system(lambda c: c["plans"].update(x=PLAN))),
     "other variants": ("variants", system(lambda c: c.update(variants=[]))),
-    "an effect on no path": ("conditions", record(lambda c: c["effects"][0].update(path="nowhere"))),
+    "an effect on no path": (
+        "conditions",
+        record(lambda c: c["effects"][0].update(path="nowhere")),
+    ),
     "no effects": ("contradict", record(lambda c: c.update(effects=[]))),
     "wins without losses": ("contradict", record(lambda c: c["effects"][0].update(wins=[]))),
     "no cells": ("versions", record(lambda c: c.update(cells=[]))),

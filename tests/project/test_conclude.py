@@ -12,7 +12,6 @@ REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 
 
 def test_a_run_decided_anew_is_still_enough_for_report(tmp_path: Path) -> None:
-    """Digests are those of what was written anew, and trials and traces stay as they are."""
     toy = Path(shutil.copytree(REFERENCE / "toy", tmp_path / "toy"))
     traces = (toy / "traces.parquet").read_bytes()
     record = json.loads((toy / "record.json").read_bytes())

@@ -17,7 +17,6 @@ BROUGHT_BY = {"pydantic-core": "pydantic", "markupsafe": "jinja2", "click": "typ
 
 
 def _imported(source: str) -> Iterator[str]:
-    """Top-level names of every absolute import, at any depth of the code."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             yield from (alias.name.partition(".")[0] for alias in node.names)

@@ -21,7 +21,6 @@ MACHINE_PATH = re.compile(rf"(?<![\w.~/}}])/(?:{'|'.join(MACHINE_DIRECTORIES)})/
 
 @pytest.fixture(scope="module")
 def texts(tracked: list[Path]) -> dict[Path, str]:
-    """Every tracked file that is text."""
     texts: dict[Path, str] = {}
     for path in tracked:
         with suppress(UnicodeDecodeError):

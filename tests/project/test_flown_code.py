@@ -16,7 +16,6 @@ TOY = "examples/toy.py:create"
 
 @pytest.fixture(scope="module")
 def made() -> RunProvenance:
-    """A run of the toy by the code that is here."""
     stored = ROOT / "docs" / "reference" / "toy" / "provenance.json"
     here = flown_code._state(TOY, ())
     assert "toy.py" in here.files

@@ -29,7 +29,6 @@ def test_no_module_of_the_engine_loads_torch_when_imported(run: Run) -> None:
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
-    """Circles that only the type checker sees count: they are dependencies of the design too."""
     graph = grimp.build_graph("faultpath", "faultpath_quadrotor")
     left = {
         module: set(graph.find_modules_directly_imported_by(module)) for module in graph.modules

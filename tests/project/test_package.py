@@ -73,7 +73,6 @@ def test_every_room_but_the_one_with_torch_is_checked_strictly(
 
 
 def test_what_is_to_be_installed_exists(declared: dict[str, Any], root: Path) -> None:
-    """No index has faultpath: hints name its checkout, and extras that it has."""
     extras = set(declared["project"]["optional-dependencies"])
     named: set[str] = set()
     for file in (*(root / "src").rglob("*.py"), *(root / "docs").glob("*.md"), root / "README.md"):

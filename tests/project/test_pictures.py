@@ -15,26 +15,20 @@ SVG = "{http://www.w3.org/2000/svg}"
 DARK = "@media screen and (prefers-color-scheme: dark)"
 
 
-def drawn() -> dict[str, str]:
-    """The pictures that follow from numbers, by name."""
-    record = open_run(ROOT / "docs" / "reference" / "map-toy").record
-    maps = {"map.svg": map_picture(record), "correlation.svg": correlation_picture(record)}
-    return {name: svg.render(standalone=True) for name, svg in maps.items()}
-
-
 def test_labels_fit_and_colours_follow_the_reader() -> None:
-    for name, text in drawn().items():
-        assert DARK in text, name
+    record = open_run(ROOT / "docs" / "reference" / "map-toy").record
+    for picture in (map_picture(record), correlation_picture(record)):
+        text = picture.render(standalone=True)
+        assert DARK in text
         root = ElementTree.fromstring(text)
         left, _, width, _ = map(float, root.attrib["viewBox"].split())
-        assert root.find(f".//{SVG}text[@class='head']") is not None, f"{name} has no title"
+        assert root.find(f".//{SVG}text[@class='head']") is not None
         for label in root.iter(f"{SVG}text"):
             words, at = label.text or "", float(label.attrib["x"])
-            size = 11 if "small" in label.get("class", "") else 12
-            long = text_width(words, size)
+            long = text_width(words, 11 if "small" in label.get("class", "") else 12)
             share = {"middle": 0.5, "end": 1.0}.get(label.get("text-anchor", ""), 0.0)
-            assert at - share * long >= left - 1, f"{name}: {words}"
-            assert at + (1 - share) * long <= left + width + 1, f"{name}: {words}"
+            assert at - share * long >= left - 1, words
+            assert at + (1 - share) * long <= left + width + 1, words
 
 
 def test_a_figure_of_the_paper_stands_alone_under_its_title() -> None:

@@ -22,11 +22,9 @@ def test_every_stored_audit_and_map_is_flown_again_and_the_quickest_first() -> N
 
 def test_an_example_of_another_package_runs_where_that_is_installed() -> None:
     runs = references.by_time()
-    here = f"{sys.version_info.major}.{sys.version_info.minor}"
-    if here == "3.11":
-        assert references.environment(runs["motulator"]) == ".venv-3.12"
-        assert references.environment(runs["toy"]) == ".venv"
-    assert references.environment(runs["do-mpc"]).startswith(".venv")
+    here = references.environment(runs["toy"])
+    assert here.startswith(".venv")
+    assert sys.version_info[:2] != (3, 11) or references.environment(runs["motulator"]) != here
 
 
 def test_a_run_keeps_to_the_instruction_set_by_which_it_was_flown() -> None:

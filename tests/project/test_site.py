@@ -38,7 +38,6 @@ def links(page: Path) -> list[tuple[str, str]]:
 
 
 def fetched(site: Path) -> Iterator[tuple[str, str]]:
-    """Yield what pages and style sheets load from elsewhere."""
     for page in site.rglob("*.html"):
         yield from ((page.name, to) for tag, to in links(page) if tag in FETCHED and "//" in to)
     for sheet in site.rglob("*.css"):
@@ -46,7 +45,6 @@ def fetched(site: Path) -> Iterator[tuple[str, str]]:
 
 
 def broken(site: Path) -> Iterator[tuple[str, str]]:
-    """Yield what pages link to in the site that is not there."""
     for page in site.rglob("*.html"):
         for _, to in links(page):
             parts = urlsplit(to)

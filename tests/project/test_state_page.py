@@ -30,23 +30,24 @@ def test_few_scenes_are_inconclusive(scenes):
     assert "2 (filter under bias and filter under bias)" in last
 
 
-def test_no_audit_is_no_sentence_about_repairs():
-    first, last = blocks.sentences([])
-    assert first.startswith("Of 0 audits ")
-    assert last.endswith("at the sensor: none.")
+DETECTS = "detects {} (significantly different from the shared effect: {})"
 
 
-def test_many_scenes_say_which_side_and_what_an_isolated_test_detects():
-    first, alone, last = blocks.sentences([audit(40, 1, -1)])
-    assert first.endswith("in none and less often in 1 (filter under bias).")
-    assert "detects none (significantly different from the shared effect: 1)" in alone
-    assert last.startswith("A reversal was found in 1;")
-    first, alone, last = blocks.sentences([audit(40, 0, 1)])
-    assert "in 1 (filter under bias) and less often in none." in first
-    assert "detects none (significantly different from the shared effect: 1)" in alone
-    assert last.startswith("No reversal was found")
-    _, alone, _ = blocks.sentences([audit(40, 1, 1)])
-    assert "detects 1 (significantly different from the shared effect: none)" in alone
+@pytest.mark.parametrize(
+    ("effects", "helps", "harms", "detects", "reversal"),
+    [
+        ((1, -1), "none", "1 (filter under bias)", ("none", "1"), "A reversal was found in 1;"),
+        ((0, 1), "1 (filter under bias)", "none", ("none", "1"), "No reversal was found"),
+        ((1, 1), "1 (filter under bias)", "none", ("1", "none"), "No reversal was found"),
+    ],
+)
+def test_many_scenes_say_which_side_and_what_an_isolated_test_detects(
+    effects, helps, harms, detects, reversal
+):
+    first, alone, last = blocks.sentences([audit(40, *effects)])
+    assert f"in {helps} and less often in {harms}." in first
+    assert DETECTS.format(*detects) in alone
+    assert last.startswith(reversal)
 
 
 def test_every_audit_is_shown_once_and_a_repair_has_no_name_of_a_sensor():

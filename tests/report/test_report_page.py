@@ -6,7 +6,7 @@ from collections.abc import Callable
 from itertools import pairwise
 
 import pytest
-from page_reader import Page, unpack, with_traces
+from page_reader import Page, unpack
 
 from faultpath.decisions.pairs import PairKind, read_pairs
 from faultpath.report.html import report_page
