@@ -156,17 +156,8 @@ def test_an_installed_system_needs_no_word_and_a_changed_part_is_told() -> None:
     ReceivedCode("record.json", True, said.append, {"mine": "0" * 64}).check(spec, ())
     assert "mine.py:create" in said[-1]
     assert "changed since" in said[-1]
-<<<<<<< HEAD
-
-
-def test_an_installed_system_needs_no_word() -> None:
-    pytest.importorskip("faultpath_quadrotor")
-    said: list[str] = []
-    file = ReceivedCode("record.json", False, said.append)
-=======
     said.clear()
     file = ReceivedCode("record.json", False, said.append)
->>>>>>> fc6bb208 (Leave to lower rooms what the command line only passes on)
     file.check(SystemSpec(name="quadrotor", options={"wind": "L3"}), ("gru", "gru+dcc"))
     assert said == ["Importing quadrotor, which record.json names."]
     with pytest.raises(UserError, match="no file found"):

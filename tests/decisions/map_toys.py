@@ -51,5 +51,4 @@ def reversal(scenes: int) -> Seen:
 
 
 def alike(scenes: int) -> Seen:
-    """Two arms that always tie."""
     return lambda x, y: (np.arange(scenes) % 2 > 0, np.arange(scenes) % 2 > 0)

@@ -123,7 +123,6 @@ def seeded(
 
 
 def three(correct: Counts, isolated: Counts, shared: Counts) -> DecisionRecord:
-    """Return the record of a fault that reaches an observer and others."""
     return record({CORRECT: correct, "observer": isolated, SHARED: shared})
 
 

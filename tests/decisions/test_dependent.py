@@ -62,9 +62,10 @@ def test_a_group_is_a_source_a_cause_or_what_reconstructions_pass_on() -> None:
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> list[faultpath.Run]:
     asked = {"baseline": "blind", "repair": "logged", "library": "carts", "scenes": 8}
+    asked |= {"signals": False, "progress": False}
     place = tmp_path_factory.mktemp("runs")
     return [
-        faultpath.audit(Logged(), fault=fault, folder=place / str(number), progress=False, **asked)
+        faultpath.audit(Logged(), fault=fault, folder=place / str(number), **asked)
         for number, fault in enumerate(("gain:scale=0.6", "velocity:offset=0.1@controller"))
     ]
 
@@ -95,7 +96,7 @@ def test_only_what_is_decided_is_called_evidence_for_an_arm(runs) -> None:
         for path in first.record.paths
     )
     held = replace(first, record=first.record.model_copy(update={"effects": effects}))
-    alone, _, shared = [line.entries[3].text for line in of_runs([held]).lines if line.entries][:3]
+    alone, _, shared, *_ = (e[3].text for line in of_runs([held]).lines if (e := line.entries))
     assert (alone, shared) == ("logged succeeds more often", "run, nothing significant")
     lost = replace(first, record=first.record.model_copy(update={"effects": ()}))
     entries = next(line.entries for line in of_runs([lost]).lines if line.entries)

@@ -34,7 +34,6 @@ def judged(trials: list[tuple[str, str, str]], blank: int | None = None, **asked
 
 
 def test_two_scenes_with_an_extra_seed_leave_the_other_28():
-    """They alone were compared: the others, with one seed, counted as void."""
     trials = [("", f"s{n}", "7") for n in range(30)]
     made = judged([*trials, ("", "s3", "1"), ("", "s4", "9")])
     whole = judged(trials)
@@ -55,7 +54,6 @@ def test_one_scene_of_a_hundred_without_a_seed_costs_that_scene_alone():
 
 
 def test_tasks_with_a_scene_less_are_compared_by_what_all_tasks_have():
-    """Half of the tasks were lost."""
     trials = [(f"t{n}", f"{scene}", "") for n in range(20) for scene in range(10 - n % 2)]
     made = judged(trials, cluster="task")
     assert made.scenes == 20
@@ -64,7 +62,6 @@ def test_tasks_with_a_scene_less_are_compared_by_what_all_tasks_have():
 
 @pytest.mark.parametrize("seeds", [1, 2])
 def test_a_metric_with_a_blank_is_told_of_the_other_scenes_and_that_is_said(seeds):
-    """It vanished without a word."""
     trials = [("", f"s{n}", f"{seed}") for n in range(12) for seed in range(seeds)]
     made = judged(trials, blank=4, metrics=["metres:more"])
     effect = made.effects[0]

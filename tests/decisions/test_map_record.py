@@ -114,7 +114,6 @@ def test_better_is_said_only_of_who_is_ahead_at_a_point(strong: int, sign: int) 
 
 @pytest.mark.parametrize("name", ["sizes", "difference", "sign"])
 def test_a_surface_has_a_row_and_a_column_for_each_size(name: str) -> None:
-    """A record that somebody changed is read, too."""
     held = record(alike(8)).model_dump()
     whole = held["surface"][name]
     for odd in ((), whole[:-1], [whole[0][:-1], *whole[1:]] if name != "sizes" else whole * 2):

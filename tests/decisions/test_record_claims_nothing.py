@@ -136,6 +136,7 @@ def may_be_said(made: DecisionRecord) -> tuple[dict[str, int], dict[str, int]]:
     signs: list[int] = []
     adjusted = shared_out(made, tested) if made.stopped else holm(made, tested)
     for each, p in zip(tested, adjusted, strict=True):
+        assert each.adjusted_p_value == pytest.approx(p)
         shown = each.success if isinstance(each, Effect) else each.change
         low, high = shown.low or 0.0, shown.high or 0.0
         signs.append((low > 0) - (high < 0) if p <= 0.05 and not each.unsettled else 0)
@@ -197,7 +198,7 @@ def check(made: DecisionRecord) -> None:
     frequencies = [(item, CORRECT, item.path) for item in made.break_even]
     for item, *at in (*frequencies, *((b, b.path, SHARED) for b in made.break_even_beta)):
         ends = {effects.get(path, 0) for path in at} - {0}
-        for who, sign in ((REPAIR, 1), (BASELINE, -1)):
+        for who, sign in SIDES:
             assert not claimed(item.words, who) or sign in ends
         shown = wording.break_even(item.result)
         part = " is ahead where " in item.words
@@ -251,9 +252,7 @@ def says_how_it_stopped(made: DecisionRecord) -> None:
     for effect in made.effects:
         small = effect.path in held.small
         assert not small or asked.stop.margin_pp
-        low, high = effect.success.low, effect.success.high
-        assert low is not None
-        assert high is not None
+        low, high = effect.success.low or 0.0, effect.success.high or 0.0
         assert not small or max(-low, high) < (asked.stop.margin_pp or 0.0)
         assert effect.minimum_detectable_pp is None
         for other in (effect.time_s, *effect.metrics.values()):

@@ -103,7 +103,6 @@ def holds(said: str, it: DecisionRecord) -> None:
 
 
 def places(clause: str, paths: list[str]) -> Iterator[str]:
-    """Yield the paths that a clause names."""
     alone = re.search(r"with only the ((?:\w+)(?: or the \w+)*) faulted", clause)
     yield from alone[1].split(" or the ") if alone else ()
     yield from (path for path in (CORRECT, SHARED) if path in paths and where(path) in clause)

@@ -15,17 +15,23 @@ EVEN = [YES, NO] * (SCENES // 2)
 Ends = list[Status]
 
 
-def audit(correct: tuple[Ends, Ends], shared: tuple[Ends, Ends] | None = None) -> DecisionRecord:
-    """Return the record of ends of repair and baseline, by the rule in force."""
-    over = {CORRECT: correct} | ({} if shared is None else {"observer": correct, SHARED: shared})
+def audit(
+    correct: tuple[Ends, Ends], shared: tuple[Ends, Ends] | None = None, *seeds: tuple[Ends, Ends]
+) -> DecisionRecord:
+    """Return the record of ends of repair and baseline, by the rule in force; `seeds` are the ends
+    under correct inputs with further seeds."""
+    over = [(CORRECT, 0, correct), *((CORRECT, n, each) for n, each in enumerate(seeds, 1))]
+    if shared is not None:
+        over += [("observer", 0, correct), (SHARED, 0, shared)]
     out = [
         row
-        for path, ends in over.items()
+        for path, seed, ends in over
         for variant, statuses in zip((REPAIR, BASELINE), ends, strict=True)
-        for row in rows(variant, path, statuses)
+        for row in rows(variant, path, statuses, seed)
     ]
-    asked = question(len(correct[0])).model_copy(update={"rule": "graded"})
-    return decide(asked, paths(*over), OutcomeTable(tuple(out)))
+    asked = question(len(correct[0]), range(1 + len(seeds))).model_copy(update={"rule": "graded"})
+    names = dict.fromkeys(path for path, _, _ in over)
+    return decide(asked, paths(*names), OutcomeTable(tuple(out)))
 
 
 def ends(success: np.ndarray, failed: np.ndarray | None = None) -> Ends:
@@ -48,7 +54,6 @@ def raises_on_its_failures(stream: np.random.Generator) -> tuple[Ends, Ends]:
 
 @pytest.mark.parametrize("case", [dies_in_hard_scenes, raises_on_its_failures])
 def test_an_arm_whose_bad_trials_fail_is_not_announced(case):
-    """Before, most of the first and a fifth of the second were `new is ahead`."""
     stream = np.random.default_rng(11)
     made = [audit(case(stream)) for _ in range(20)]
     assert sum("new is ahead" in each.headline for each in made) == 0
@@ -109,19 +114,6 @@ def test_no_reversal_rests_on_a_path_where_one_arm_fails_more_often():
     assert "Do not choose" not in made.headline
 
 
-def seeded(ends_of: list[tuple[Ends, Ends]], path: str = CORRECT) -> DecisionRecord:
-    """Return the record of ends of repair and baseline, a pair of them for each seed."""
-    out = [
-        row
-        for seed, pair in enumerate(ends_of)
-        for variant, statuses in zip((REPAIR, BASELINE), pair, strict=True)
-        for row in rows(variant, path, statuses, seed)
-    ]
-    asked = question(len(ends_of[0][0]), range(len(ends_of)))
-    asked = asked.model_copy(update={"rule": "graded"})
-    return decide(asked, paths(path), OutcomeTable(tuple(out)))
-
-
 def test_what_is_missing_of_a_seed_that_repeats_another_is_open():
     """The seeds agree in every scene that both have: 16 wins without a loss, p = .00017 before."""
     scene = np.arange(SCENES)
@@ -129,7 +121,7 @@ def test_what_is_missing_of_a_seed_that_repeats_another_is_open():
     first = ends(wins), ends(losses)
     # Of the second, the repair says nothing of the scenes that it loses, the baseline of others.
     second = ends(wins, losses), ends(losses, (scene >= 40) & (scene < 60))
-    made = seeded([first, second])
+    made = audit(first, None, second)
     effect = made.effects[0]
     assert len(effect.wins) == 2
     assert effect.failed is not None
@@ -148,7 +140,6 @@ def mixed(stream: np.random.Generator) -> DecisionRecord:
 
 
 def test_a_break_even_frequency_holds_whatever_failed_trials_would_have_been():
-    """`ahead from 35 % on` was said where it is from 45 % on with those trials lost."""
     stream = np.random.default_rng(2)
     for _ in range(5):
         made = mixed(stream)

@@ -89,8 +89,6 @@ def test_the_fault_frequency_is_said_where_it_is_decided(correct, fault, said):
 
 
 def test_a_fault_that_never_acted_was_not_tested():
-    """Not: no difference is significant."""
-
     def made(altered: dict[str, int | None]) -> DecisionRecord:
         out = []
         for path in (CORRECT, "observer", SHARED):
