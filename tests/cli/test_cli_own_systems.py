@@ -104,22 +104,6 @@ def test_a_system_that_flies_wrongly(what, workers, tmp_path):
     assert "faultpath: " in told.err.splitlines()[-1]
 
 
-def test_a_module_that_does_what_it_does_not_declare(tmp_path):
-    module = """
-        from toy import Controller, Observer
-        class Mine(Observer):
-            def step(self, inputs, memory):
-                inputs['position', 'x']  # here
-        class Looped(Toy):
-            def modules(self, variant, seed):
-                return Mine(variant == "calibrated"), Controller()
-        def create() -> System:
-            return Looped()
-        """
-    system, place = _system(tmp_path, dedent(module))
-    audit(system=system, out="run").refused(place, "a port that it does not declare: add")
-
-
 def test_an_error_of_ours_below_a_system_keeps_its_traceback_too(tmp_path):
     """The user's code called, but no argument of his can be the cause."""
     code = """
