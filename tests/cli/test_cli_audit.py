@@ -96,7 +96,7 @@ def test_a_folder_of_another_run_is_left_alone(options, change, name, run):
 def test_a_quick_look_grows_into_the_whole(toy_run, tmp_path, monkeypatch):
     monkeypatch.chdir(ROOT)
     look = tmp_path / "look"
-    assert again(look, scenes=10).status == 0
+    assert again(look, scenes=20).status == 0
     assert again(look, workers=2).status == 0
     assert (look / "outcomes.parquet").read_bytes() == (toy_run / "outcomes.parquet").read_bytes()
     assert json.loads((look / "provenance.json").read_text())["blocks_kept"] > 0

@@ -27,7 +27,7 @@ SAID = {
 }
 
 
-def line(verb: str, folder: Path, *more: object, **options: object) -> list[object]:
+def line(verb: str, folder: Path, **options: object) -> list[object]:
     (folder / "bounds.yaml").write_text(BOUNDS)
     arms = {"baseline": "calibrated", "repair": "blind"}
     own: dict[str, dict[str, object]] = {
@@ -39,8 +39,8 @@ def line(verb: str, folder: Path, *more: object, **options: object) -> list[obje
     faults = ("--fault", "gain:scale=1.05", "--fault", "velocity:offset=0.5")
     question = {"system": TOY, "library": "carts", "workers": 0, "out": folder / "run"}
     question |= own[verb] | options
-    system = question.pop("system")
-    return [verb, system, *(faults if verb == "sensitivity" else ()), *flags(question), *more]
+    system, default = question.pop("system"), verb == "sensitivity" and "fault" not in question
+    return [verb, system, *(faults if default else ()), *flags(question)]
 
 
 @pytest.fixture(scope="module")
@@ -156,7 +156,7 @@ def test_a_changed_record_is_refused(verb: str, runs: dict[str, Path]) -> None:
         ("sensitivity", {"points": 100}, ("--points", "100", "64 or 128")),
         ("sensitivity", {"points": 32}, ("--points", "32", "64")),
         ("sensitivity", {"metric": "speed"}, ("'speed'",)),
-        ("sensitivity", {"variant": "blind"}, ("blind", "gain_estimate")),
+        ("sensitivity", {"variant": "blind", "fault": "gain:scale=2"}, ("blind", "gain_estimate")),
         ("sensitivity", {"fault": "gain"}, ("--fault gain",)),
         ("sensitivity", {}, ("pip install '.[sensitivity]'",)),
     ],

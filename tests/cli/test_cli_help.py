@@ -25,9 +25,9 @@ def test_every_verb_stands_in_a_group_with_an_example() -> None:
 
 def test_what_few_ask_for_stands_below_what_everybody_does() -> None:
     ordinary, advanced = faultpath("audit", "--help").out.split("Advanced")
-    options = re.findall(r"^│ [* ] *(--[\w-]+)", ordinary, flags=re.MULTILINE)
-    assert {"--baseline", "--study"} <= {*options}
-    assert len(options) <= 14
+    assert len(re.findall(r"^│ [* ] *--", ordinary, flags=re.MULTILINE)) <= 14
+    assert "--baseline" in ordinary
+    assert "│ --study " in ordinary
     assert "--fail-if" in advanced
     assert "--study" in faultpath("audit", "--study", "x", "--help").out
 
