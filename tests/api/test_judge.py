@@ -156,6 +156,7 @@ REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
     "twice": (HEADER + ROW + ROW, {}, "all.csv, line 4 and .*all.csv, line 2 are the same trial"),
     "unpaired": (HEADER + ROW.replace("new,s0", "new,s1"), {}, "no trial of 'old' has its pair"),
     "condition": (HEADER + ROW.replace(",0,,", ",0,fog,"), {}, r"no condition is nominal \(fog\)"),
+    "nominal": (HEADER + ROW, {"nominal": "fog"}, "no such condition: unknown condition 'fog'"),
     "one arm": (HEADER + ROW + "new,s0,0,shared,1,h\n", {}, "'old' has no trial under the shared"),
     "score": (HEADER + ROW.replace(",,1,", ",,0.5,"), {}, "line 2: success is 0.5: give 0 or 1"),
     "word": (HEADER + ROW.replace(",,1,", ",,won,"), {}, "success is 'won': give true or false"),

@@ -62,6 +62,7 @@ def test_workers_build_the_part_too_and_what_they_find_is_shown_once():
 @pytest.mark.parametrize(
     ("repair", "name"),
     [
+        ("mine.py", "'mine.py:create'"),
         ("other.py:create", "'other.py'"),
         ("mine.py:OPTIONS", "'OPTIONS'"),
         ("mine.py:exact/gur", "did you mean 'mine.py:exact/gru'"),

@@ -15,9 +15,9 @@ SLOW = f"{HERE / 'systems' / 'slow_toy.py'}:create"
 BOUNDS = "isolated: observer\nfaults:\n- {fault: gain, size: [0.6, 1.4]}\n"
 VERBS = ("map", "search", "sensitivity")
 SAID = {
-    "map": ("25 pairs of errors first, 200 trials",),
+    "map": ("25 pairs of errors first, 600 trials",),
     "search": (
-        "8 faults are tried in 40 scenes",
+        "12 faults are tried in 40 scenes",
         "A reversal was confirmed at gain:scale=",
     ),
     "sensitivity": (
@@ -32,8 +32,8 @@ def line(verb: str, folder: Path, **options: object) -> list[object]:
     arms = {"baseline": "calibrated", "repair": "blind"}
     own: dict[str, dict[str, object]] = {
         "map": {**arms, "fault": "gain", "against": "controller,observer", "up-to": 0.4}
-        | {"points": 30, "scenes": 4},
-        "search": {**arms, "within": folder / "bounds.yaml", "candidates": 8, "scenes": 80},
+        | {"points": 30, "scenes": 12},
+        "search": {**arms, "within": folder / "bounds.yaml", "candidates": 12, "scenes": 80},
         "sensitivity": {"variant": "calibrated", "metric": "terminal_distance_m", "scenes": 1},
     }
     faults = ("--fault", "gain:scale=1.05", "--fault", "velocity:offset=0.5")
