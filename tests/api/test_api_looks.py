@@ -37,7 +37,7 @@ def test_more_scenes_in_the_same_folder_leave_a_trace_that_stays(monkeypatch):
     with monkeypatch.context() as killed:
         killed.setattr(AUDIT_MODULE, "seal", lambda *_: 1 / 0)
         with pytest.raises(ZeroDivisionError):
-            audited(scenes=20)
+            audited(scenes=20, signals=True)
     assert audited(scenes=20).record == more.record
     back = audited(scenes=12)
     assert [look.scenes for look in back.record.earlier] == [20]

@@ -106,10 +106,8 @@ def test_without_a_folder_the_run_is_called_after_its_question_and_not_its_place
     for place, fault in (("one", "0.6"), ("one", "0.5"), ("two", "0.6")):
         (tmp_path / place).mkdir(exist_ok=True)
         system = f"{shutil.copy(ROOT / 'examples' / 'toy.py', tmp_path / place)}:create"
-        ended = audit(
-            "--no-signals", system=system, scenes=2, seeds="3", fault=f"gain:scale={fault}"
-        )
-        assert ended.status == 0
+        question = {"system": system, "scenes": 2, "seeds": "3", "fault": f"gain:scale={fault}"}
+        assert audit("--no-signals", **question).status == 0
     names = sorted(folder.name for folder in Path("runs").iterdir())
     assert len(names) == 3
     for name, fault in zip(names, ("0.5", "0.6", "0.6"), strict=True):
