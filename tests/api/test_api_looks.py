@@ -30,7 +30,7 @@ def test_more_scenes_in_the_same_folder_leave_a_trace_that_stays(monkeypatch):
     assert audited(scenes=12).record == first.record
     assert FIVE_PERCENT in said(first)
     assert not first.record.earlier
-    more = audited(scenes=20)
+    more = audited(scenes=20, signals=True)
     assert [look.scenes for look in more.record.earlier] == [12]
     assert "concluded before with 12 scenes" in said(more)
     assert FIVE_PERCENT not in said(more)
