@@ -216,8 +216,8 @@ def test_the_plan_of_the_toy(planned):
         ("velocity:offset=0.1", "input of observer, which makes observed_slope"),
         ("slope:offset=0.2", "output of observer"),
     ]
-    roles = [(arm.path, arm.role) for arm in audits[0].arms if arm.path != arm.role]
-    assert roles == [("controller", "attribution"), ("observer", "repaired")]
+    roles = {arm.path: arm.role for arm in audits[0].arms if arm.path != arm.role}
+    assert roles == {"controller": "attribution", "observer": "repaired"}
     assert planned.plan.trials == (24, 32, 16)
     said = " ".join(planned.sentences)
     assert "72 trials in all" in said

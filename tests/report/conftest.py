@@ -278,6 +278,7 @@ def _provenance() -> RunProvenance:
         "python": "3.11.2",
         "packages": {"numpy": "2.4.6", "torch": "2.13.0"},
         "blocks_kept": 8,
+        "dirty": True,
         "library_hash": HASH,
         "system_fingerprint": "b7e1" * 16,
     }
