@@ -56,4 +56,4 @@ def test_correct_inputs_that_are_the_same_trials_count_once(one_seed: ReportInpu
 
     first = together([low(run) for run in runs])[0].family
     assert first is not None
-    assert first[CORRECT][1] == pytest.approx((3 * own - 2) * lowest)
+    assert first[CORRECT][1] == pytest.approx((3 * own - 2) * lowest, abs=0)
