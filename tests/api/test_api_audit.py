@@ -138,7 +138,7 @@ def test_trials_of_an_object_are_never_taken_for_those_of_another(toy):
     second = faultpath.audit(toy, **asked)
     assert first.folder != second.folder
     assert second.provenance.blocks_kept == 0
-    with pytest.raises(faultpath.UserError, match="holds a run, and whether it was of this same"):
+    with pytest.raises(faultpath.UserError, match="nothing shows whether it was of this same"):
         faultpath.audit(toy, folder=first.folder, **asked)
 
 
