@@ -75,8 +75,9 @@ def contrast(name: str) -> str:
         rows.append((place, difference(success.value, *success.interval, bold=True), f"`{ahead}`"))
     return (
         f"{pipes(('The fault reaches', minus, 'ahead'), rows, words=(0, 2))}\n\n"
-        f"{run.record.scenes} scenes, {wording.seeds(question.seeds)}; bold: significant at "
-        f"5 % after Holm's correction. Run at commit `{run.provenance.commit[:12]}`."
+        f"{run.record.scenes} scenes, {wording.seeds(question.seeds)}; pp: percentage points; "
+        "bold: significant at 5 % after Holm's correction. "
+        f"Run at commit `{run.provenance.commit[:12]}`."
     )
 
 

@@ -28,7 +28,7 @@ def test_a_plan_is_told_written_flown_and_resumed(monkeypatch: pytest.MonkeyPatc
     assert ended.status == 0
     assert "gain_estimate comes first: 2 readers, as speedometer" in " ".join(ended.out.split())
     assert "output of observer" in ended.out
-    assert re.search(r"the largest known probe response \(0\.\d+\)", " ".join(ended.out.split()))
+    assert re.search(r"moves the commands most \(0\.\d+ of their", " ".join(ended.out.split()))
     assert "Written: study.yaml" in ended.out
     assert [each.name for each in read_study(Path("study.yaml")).audits] == [
         "gain_estimate",

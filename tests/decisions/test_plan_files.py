@@ -166,7 +166,7 @@ def test_consumers_come_first_then_the_probe():
         ([candidate("a", 3, 0.1), candidate("b", 2, 9.0)], "more than any other source"),
         ([candidate("a", 3), candidate("b", 3, **UNSIZED)], "a and b tie: 3 readers each"),
         ([candidate("a", 3, **UNSIZED), candidate("b", 2)], "b is the first in the ranking that"),
-        ([candidate("a", 2, 0.5), candidate("b", 2)], "largest known probe response (0.5)"),
+        ([candidate("a", 2, 0.5), candidate("b", 2)], "moves the commands most (0.5 of"),
     ],
 )
 def test_the_words_say_what_put_a_source_first(planned, given, said):

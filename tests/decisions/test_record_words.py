@@ -97,7 +97,7 @@ def test_a_fault_that_never_acted_was_not_tested():
         return decide(question(), paths(CORRECT, "observer", SHARED), OutcomeTable(tuple(out)))
 
     never = made({"observer": 0, SHARED: 0})
-    assert never.headline == "The fault never acted: nothing was tested."
+    assert never.headline == "The fault never changed a reading: no effect of it was tested."
     assert in_short(never, never.effects[-1]) == "the fault never acted: not tested"
     assert never.break_even == ()
     partly = made({"observer": 0})

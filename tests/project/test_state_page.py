@@ -30,7 +30,7 @@ def test_few_scenes_are_inconclusive(scenes):
     assert "2 (filter under bias and filter under bias)" in last
 
 
-DETECTS = "detects {} (significantly different from the shared effect: {})"
+DETECTS = "shows {} (significantly different from the shared effect: {})"
 
 
 @pytest.mark.parametrize(

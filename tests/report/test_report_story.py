@@ -1,17 +1,20 @@
 """The first screen tells what was faulted and decided, and nothing else."""
 
+import io
 import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path as FilePath
 
 import pytest
+from rich.console import Console
 
 from faultpath.decisions.model import Path
 from faultpath.faults import Fault, Scale
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.taps import Fork, fork_panel, forks
+from faultpath.report.terminal import decision
 
 TOY = FilePath(__file__).resolve().parents[2] / "examples" / "toy.py"
 IMPERATIVE = re.compile(r"\b(Ask|Do not|Don't|Choose|Prefer|Use|Take|Compare|Deploy|Keep)\b")
@@ -45,21 +48,15 @@ def test_each_path_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
     assert "wrong for all" in fork_panel(told["Shared fault"])
 
 
-def test_a_source_with_one_reader_names_it(one_seed: ReportInput) -> None:
-    record, fault = one_seed.record, Fault(channel="mass", intervention=Scale(factor=0.6))
-    question = record.question.model_copy(update={"faults": (fault,)})
-
-    def told(*names: str) -> str:
-        paths = tuple(path for path in record.paths if path.name in names)
-        effects = tuple(effect for effect in record.effects if effect.path in names)
-        cells = tuple(cell for cell in record.cells if cell.path in names)
-        update = {"question": question, "paths": paths, "effects": effects, "cells": cells}
-        shares = tuple(share for share in record.break_even if share.path in names)
-        update |= {"changes": (), "break_even": shares, "break_even_beta": ()}
-        return screen(replace(one_seed, record=record.model_copy(update=update)))
-
-    assert "mass scaled by 0.6 at every consumer" in told("correct", "predictor", "shared")
-    assert "mass scaled by 0.6 at predictor" in told("correct", "predictor")
+@pytest.mark.parametrize("readers", [("*",), ("predictor.trim",)])
+def test_the_fault_is_in_words_whoever_gets_it(one_seed: ReportInput, readers) -> None:
+    fault = Fault(channel="mass", consumers=readers, intervention=Scale(factor=0.6))
+    question = one_seed.record.question.model_copy(update={"faults": (fault,)})
+    record = one_seed.record.model_copy(update={"question": question})
+    console = Console(file=io.StringIO(), width=100)
+    console.print(decision(record))
+    assert "Fault: mass scaled by 0.6.\n" in console.file.getvalue()
+    assert "mass scaled by 0.6</" in report_page(replace(one_seed, record=record))
 
 
 def test_the_legend_names_the_grey_box_where_there_is_one(one_seed: ReportInput) -> None:
@@ -67,8 +64,8 @@ def test_the_legend_names_the_grey_box_where_there_is_one(one_seed: ReportInput)
     without = tuple(effect.model_copy(update=unknown) for effect in record.effects)
     bare = replace(one_seed, record=record.model_copy(update={"effects": without}))
     assert not all(effect.sign for effect in record.effects)
-    assert "Grey: differences too small" in screen(one_seed)
-    assert "Grey: differences too small" not in screen(bare)
+    assert "Grey: smaller differences" in screen(one_seed)
+    assert "Grey: smaller differences" not in screen(bare)
 
 
 def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> None:

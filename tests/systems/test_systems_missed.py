@@ -44,7 +44,7 @@ def audit(system: ComposedSystem, fault: str, folder: Path) -> faultpath.Run:
 
 def test_a_fault_that_changes_no_reading_never_acted(system, tmp_path) -> None:
     run = audit(system, "pole:scale=1", tmp_path / "run")
-    assert run.record.headline == "The fault never acted: nothing was tested."
+    assert run.record.headline == "The fault never changed a reading: no effect of it was tested."
     assert run.record.headline in PAGE
 
 

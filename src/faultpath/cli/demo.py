@@ -11,7 +11,7 @@ from faultpath.cli.options import path as as_path
 _TOY = "toy.py"
 _STORY = (
     "A cart: its controller and its observer read one estimate of the motor's gain. The fault: the "
-    "estimate is 0.6 times what it was. In `calibrated` the observer uses it, in `blind` the "
+    "estimate is 0.6 times the true gain. In `calibrated` the observer uses it, in `blind` the "
     "number on the nameplate.\n"
 )
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
+from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.decisions.pairs import PairKind, read_pairs
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.answers import answers
@@ -29,8 +29,6 @@ def report_page(source: ReportInput) -> str:
     decided = any(effect.sign for effect in record.effects)
     why = adding(source, pairs) if decided else None
     tables = (ended(record), secondary(record), by_threshold(record))
-    # A source that one module reads has no shared fault.
-    readers = ["*"] if SHARED in titles else [name for name in titles if name != CORRECT]
     return render(
         "report.html.j2",
         (*STYLES, "viewer.css"),
@@ -52,8 +50,7 @@ def report_page(source: ReportInput) -> str:
         effects=effect_rows(record),
         axis=effect_axis(record),
         numbers=Markup(html(by_path(record, SHOWN, "Effects; bold is significant"))),
-        fault="; ".join(fault.aimed_at(*readers).describe() for fault in question.faults)
-        or "As the system defines it.",
+        fault=wording.faults(question) or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.system.variants, strict=True)),
         forks=[Markup(fork_panel(fork)) for fork in forks(source)],
         frequency=[(Markup(picture), words) for picture, words in frequency_panels(record)],

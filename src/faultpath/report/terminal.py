@@ -10,6 +10,8 @@ from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.search.model import SearchRecord
 from faultpath.decisions.sensitivity.model import SensitivityRecord
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.sentences.phrases import not_standing
 from faultpath.decisions.tables import Line, Table, line
 from faultpath.decisions.tables.terminal import Parted, drawn
@@ -33,15 +35,20 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     success = by_quantity(record, ("baseline", "repair"))
     effects = by_path(record, names, f"{question.repair} minus {question.baseline}")
     parts: list[RenderableType] = [Text(record.headline, style="bold")]
+    if fault := wording.faults(question):
+        parts += [Text(f"Fault: {fault}.", style="dim")]
     if record.stopping:
         parts += [Text(f"A sequential audit: {record.stopping}.")]
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
     if any(share.result.kind in ("interval", "two pieces") for share in record.break_even):
         explained = (
             "Break-even: shares of trials with the fault, in percent, at which neither is shown to "
-            "be ahead; any: no bound could be shown."
+            "be ahead, after the estimate; none: one is ahead at every share; any: no bound could "
+            "be shown."
         )
         parts += [Text(explained, style="dim")]
+    if not details and (follows := answers(record).get("What follows")):
+        parts += [Text(""), Text(follows)]
     for sentence in not_standing(record):
         parts += [Text(""), Text(sentence)]
     table = by_threshold(record)

@@ -170,7 +170,10 @@ def sentences(plan: Plan) -> Iterator[str]:
         )
     if plan.unplanned:
         due = "; ".join(f"{name} ({why})" for name, why in plan.unplanned.items())
-        yield f"Of these the recursion leads to the following, where the same audit is due: {due}."
+        yield (
+            "To audit next, once their errors are known, since repaired modules depend on them or "
+            f"make them: {due}."
+        )
     if plan.repaired:
         yield f"Taken as changed by the repair: {series(plan.repaired)}."
     else:
@@ -206,7 +209,7 @@ def _first(plan: Plan) -> str:
         named = series([first.name, *tied])
         return f"{named} tie: {count} each, and nothing tells them apart."
     return (
-        f"{first.name} comes first: {count}, as {series(alike)}, and the largest known probe "
-        f"response ({first.response:.3g}), a point estimate from "
-        f"{counted(plan.probed, 'scene')} that no test compares."
+        f"{first.name} comes first: {count}, as {series(alike)}, and its error moves the commands "
+        f"most ({first.response:.3g} of their root mean square, a point estimate from "
+        f"{counted(plan.probed, 'scene')} that no test compares)."
     )

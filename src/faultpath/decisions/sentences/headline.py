@@ -23,7 +23,7 @@ def headline(record: DecisionRecord) -> str:
             f"fewer than {record.scenes_needed}."
         )
     if not main.acted and all(effect.path == CORRECT for effect in tested):
-        return "The fault never acted: nothing was tested."
+        return "The fault never changed a reading: no effect of it was tested."
     if not main.acted:
         return f"{capital(where(primary))}, the fault never acted: nothing was tested there."
     ends = {rate for effect in tested for rate in (effect.baseline_percent, effect.repair_percent)}

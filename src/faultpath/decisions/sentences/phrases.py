@@ -217,7 +217,7 @@ def looks(record: DecisionRecord) -> str:
     with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
     led = series([f"'{name}'" for name in dict.fromkeys(look.primary for look in record.earlier)])
     return (
-        f"This audit was concluded before{with_scenes}, led by {led}: after such a look, a "
-        "significant result is wrong in more than 5 % of audits. Run it in scenes that no audit "
-        "has looked at, or with --stop-when, which allows for looks."
+        f"This audit was concluded before{with_scenes}, led by {led}: after such a look, more "
+        "than 5 % of audits would report a difference between equally good versions. Run it in "
+        "scenes that no audit has looked at, or with --stop-when, which allows for looks."
     )

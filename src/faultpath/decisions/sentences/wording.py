@@ -108,6 +108,12 @@ def ended(question: Question, status: str) -> str:
     return question.ends.get(status, status)
 
 
+def faults(question: Question) -> str:
+    """Return what the fault does to each channel, whoever gets it; empty in records without it."""
+    words = (fault.aimed_at("*").describe() for fault in question.faults)
+    return "; ".join(text.replace(" at every consumer", "") for text in words)
+
+
 def unit(name: str) -> str:
     """Return a unit with its exponents raised: `m/s²` for `m/s^2`."""
     return re.sub(r"\^(-?\d)", lambda match: match[1].translate(_RAISED), name)
