@@ -7,22 +7,14 @@ from these models. Texts are taken where the command line gives them, as in `see
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, ValidationError
+from pydantic import BeforeValidator, Field, ValidationError
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.validation_messages import misfit_of
-from faultpath.trials.texts import (
-    LARGEST,
-    power_of_two,
-    read_names,
-    read_seeds,
-    read_sizes,
-    several,
-)
+from faultpath.trials.texts import LARGEST, File, Names, Place, PowerOfTwo, Seeds, Several, Sizes
 
 Generalise = Literal["scenes", "models"]
 StopWhen = Literal["decided", "all-decided"]
@@ -41,13 +33,7 @@ class Flag:
 
 ADVANCED = "Advanced"
 """Heading of what few ask for; it stands last in a help."""
-Several = Annotated[tuple[str, ...], BeforeValidator(several)]
-Sizes = Annotated[tuple[float, ...], BeforeValidator(read_sizes)]
-_path = BeforeValidator(lambda place: Path(place) if isinstance(place, str) else place)
-Place = Annotated[Path | None, _path, PlainSerializer(lambda path: path and str(path))]
 Scenes = Annotated[str, Field(description="Library of scenes, by name or file.")]
-_SEEDS = "Seeds of the noise, and of trained models where there are any."
-Seeds = Annotated[tuple[int, ...], BeforeValidator(read_seeds), Field(description=_SEEDS)]
 
 
 class Asked(Frozen, strict=True, allow_inf_nan=False):
@@ -116,7 +102,7 @@ class TraceQuestion(Request):
 class CheckQuestion(Request):
     """Question of a check."""
 
-    variants: Annotated[tuple[str, ...], BeforeValidator(read_names)] = Field(
+    variants: Names = Field(
         default=(),
         description="Variants to check: old,new. Default all, or two of more than 4.",
     )
@@ -224,7 +210,7 @@ class MapQuestion(Running):
     fault: Annotated[str, Flag(panel=RepairQuestion.panel)] = Field(
         description="Without its size: `gain`, `gain:offset`, `gain,onset=9`."
     )
-    against: Annotated[tuple[str, ...], BeforeValidator(read_names)] = Field(
+    against: Names = Field(
         description="The two modules whose errors are mapped: controller,observer."
     )
     up_to: float | None = Field(
@@ -252,7 +238,7 @@ class SearchQuestion(Running):
 
     panel: ClassVar[str] = "What is searched"
 
-    within: Annotated[Path, _path, PlainSerializer(str)] = Field(
+    within: File = Field(
         description="File of bounds: the faults with their sizes, and the module that the isolated "
         "fault reaches."
     )
@@ -278,7 +264,7 @@ class SensitivityQuestion(Placed, Request):
     metric: str = Field(default="", description="Metric to explain; default success.")
     scenes: int | None = Field(default=8, description="Run the first N scenes.")
     seeds: Seeds = (0,)
-    points: Annotated[int, AfterValidator(power_of_two)] = Field(
+    points: PowerOfTwo = Field(
         default=64,
         ge=64,
         le=65_536,

@@ -1,8 +1,11 @@
-"""How questions take what is given as text, by itself, or as one of several."""
+"""Types of questions whose values may be texts, or one of several by itself."""
 
 import re
 from collections.abc import Sequence
-from typing import cast
+from pathlib import Path
+from typing import Annotated, cast
+
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 
 LARGEST = 2**63 - 1
 """The largest seed that the tables hold."""
@@ -59,3 +62,15 @@ def power_of_two(points: int) -> int:
         below = 1 << (points.bit_length() - 1)
         raise ValueError(f"is {points}: a design takes a power of two, as {below} or {2 * below}")
     return points
+
+
+_path = BeforeValidator(lambda place: Path(place) if isinstance(place, str) else place)
+_DRAWN = "Seeds of the noise, and of trained models where there are any."
+
+File = Annotated[Path, _path, PlainSerializer(str)]
+Names = Annotated[tuple[str, ...], BeforeValidator(read_names)]
+Place = Annotated[Path | None, _path, PlainSerializer(lambda path: path and str(path))]
+PowerOfTwo = Annotated[int, AfterValidator(power_of_two)]
+Seeds = Annotated[tuple[int, ...], BeforeValidator(read_seeds), Field(description=_DRAWN)]
+Several = Annotated[tuple[str, ...], BeforeValidator(several)]
+Sizes = Annotated[tuple[float, ...], BeforeValidator(read_sizes)]

@@ -5,8 +5,8 @@ from typing import Annotated, ClassVar, Literal, cast
 
 from pydantic import BeforeValidator, Field
 
-from faultpath.trials.question import Asked, Flag, Generalise, Place
-from faultpath.trials.texts import several
+from faultpath.trials.question import Asked, Flag, Generalise
+from faultpath.trials.texts import Place, several
 
 COLUMNS = (
     "arm",
