@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from statistics import median
 from typing import Any
 
-from benchmarks.results import DEVICE, WAITS, Record, load, record
+from benchmarks.results import DEVICE, EARLIER, WAITS, Record, load, record
 from benchmarks.waits import STEPS, TESTS
 from faultpath.decisions.tables import MISSING, Line, Table, line
 from faultpath.decisions.tables.markdown import grid
@@ -50,6 +50,20 @@ def machine() -> str:
     )
 
 
+def elsewhere() -> str:
+    """Return the ratios to other planners on another machine: they depend on the processor."""
+    then, now = load(EARLIER), {record.name: record for record in load().records}
+    ratios = "; ".join(
+        f"{record.name}: {_ratio(record)} there, {_ratio(now[record.name])} here"
+        for record in then.records
+        if "replan" in record.name and record.ratio
+    )
+    return (
+        f"On another machine ({then.machine.processor}, kernels `{then.machine.kernels}`, "
+        f"{then.machine.date}) the ratios to other planners were not the same. {ratios}."
+    )
+
+
 def number(value: float) -> str:
     """Return three significant digits, thousands apart."""
     if value >= 1000:
@@ -78,18 +92,21 @@ def _ratio(record: Record) -> str:
 
 def waits() -> str:
     """Return what each step took that a user waits for."""
-    figures = json.loads(WAITS.read_text())
+    clones = json.loads(WAITS.read_text())
     steps = STEPS | TESTS
     lines = [
         line(step, steps[step], f"{number(seconds)} s", name=True)
-        for step, seconds in figures["seconds"].items()
+        for clone in clones.values()
+        for step, seconds in clone["seconds"].items()
     ]
+    measured = (
+        f"{clone['date']}, {clone['processor']}, {clone['cores']} cores, commit "
+        f"`{clone['commit'][:12]}`"
+        for clone in clones.values()
+    )
     columns = ("what it does", "time")
     table = grid(Table(corner="command", columns=columns, lines=tuple(lines), words=columns[:1]))
-    return (
-        f"{table}\n\nMeasured on {figures['date']}: {figures['processor']}, {figures['cores']} "
-        f"cores; commit `{figures['commit'][:12]}`."
-    )
+    return f"{table}\n\nMeasured: {'; '.join(dict.fromkeys(measured))}."
 
 
 def gpu() -> str:

@@ -10,6 +10,8 @@ from pydantic import BaseModel, ConfigDict
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results.json"
+EARLIER = ROOT / "benchmarks" / "earlier.json"
+"""What was measured before on another machine."""
 DEVICE = ROOT / "benchmarks" / "device.json"
 WAITS = ROOT / "benchmarks" / "waits.json"
 
@@ -98,9 +100,9 @@ class Results(_Frozen):
     records: tuple[Record, ...] = ()
 
 
-def load() -> Results:
-    """Read `results.json`."""
-    return Results.model_validate_json(RESULTS.read_bytes())
+def load(path: Path = RESULTS) -> Results:
+    """Read `results.json`, or a file like it."""
+    return Results.model_validate_json(path.read_bytes())
 
 
 def save(results: Results) -> None:

@@ -1,7 +1,7 @@
 """Time every step that a user waits for, from a clone to reports; `waits.json` keeps the figures.
 
 python -m benchmarks.waits           clone the last commit, take each step once, some minutes
-python -m benchmarks.waits --tests   `make test` too
+python -m benchmarks.waits --tests   the tests alone, in a clone of their own
 
 A step is timed by the clock on the wall, set-up and imports included. Packages come from wherever
 pip is told to find them, so the times of the two set-ups depend on the network.
@@ -39,11 +39,14 @@ TESTS = {"make test": "set-up for development, and all tests"}
 def main() -> None:
     """Take the steps, and keep what they took."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.waits")
-    parser.add_argument("--tests", action="store_true", help="run the tests too")
-    options = parser.parse_args()
+    parser.add_argument("--tests", action="store_true", help="run the tests alone")
+    tests = parser.parse_args().tests
+    kept = json.loads(WAITS.read_text()) if WAITS.is_file() else {}
     with TemporaryDirectory() as folder:
-        figures = taken(Path(folder, "faultpath"), STEPS | (TESTS if options.tests else {}))
-    WAITS.write_text(json.dumps(figures, indent=1) + "\n")
+        kept["tests" if tests else "steps"] = taken(
+            Path(folder, "clone"), TESTS if tests else STEPS
+        )
+    WAITS.write_text(json.dumps(kept, indent=1) + "\n")
 
 
 def taken(clone: Path, steps: dict[str, str]) -> dict[str, object]:

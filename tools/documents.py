@@ -73,6 +73,7 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
     **{f"latent:{part}": function for part, function in latent_blocks.KIND.items()},
     "performance:machine": performance.machine,
     "performance:rows": performance.all_rows,
+    "performance:elsewhere": performance.elsewhere,
     "performance:waits": performance.waits,
     "performance:gpu": performance.gpu,
 }
@@ -100,7 +101,8 @@ MARKER = re.compile(r"^<!-- (?:begin|end):\S+ -->$", flags=re.MULTILINE)
 
 def documents() -> list[Path]:
     """Return the documents that may have blocks."""
-    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    places = ("README.md", "docs/*.md", "experiments/*/README.md")
+    return [path for place in places for path in sorted(ROOT.glob(place))]
 
 
 def split(name: str) -> tuple[str, list[str]]:
