@@ -52,9 +52,9 @@ def machine() -> str:
 
 def elsewhere() -> str:
     """Return the ratios to other planners on another machine: they depend on the processor."""
-    then, now = load(EARLIER), {record.name: record for record in load().records}
+    then, here = load(EARLIER), {record.name: record for record in load().records}
     ratios = "; ".join(
-        f"{record.name}: {_ratio(record)} there, {_ratio(now[record.name])} here"
+        f"{record.name}: {_ratio(record)} there, {_ratio(here[record.name])} here"
         for record in then.records
         if "replan" in record.name and record.ratio
     )

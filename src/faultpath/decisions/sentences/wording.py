@@ -111,7 +111,7 @@ def ended(question: Question, status: str) -> str:
 def faults(question: Question) -> str:
     """Return what the fault does to each channel, whoever gets it; empty in records without it."""
     words = (fault.aimed_at("*").describe() for fault in question.faults)
-    return "; ".join(text.replace(" at every consumer", "") for text in words)
+    return "; ".join(re.sub(" at every [a-z]+", "", text) for text in words)
 
 
 def unit(name: str) -> str:
