@@ -76,6 +76,7 @@ assert signal.getsignal(signal.SIGINT) is handler
 
 
 def test_calls_leave_the_process_as_it_was(tmp_path):
+    """The quadrotor's is loaded too."""
     toy = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
     code = f"TOY = {str(toy)!r}\n{LEFT_ALONE}"
     there = {**os.environ, "OMP_NUM_THREADS": "4"}

@@ -84,6 +84,7 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_no_verb_is_left_out() -> None:
+    """Those that the quadrotor brings are among them."""
     assert set(OPTIONS) - {"demo"} == set(RIGHT)  # the demo only takes a folder, and seconds
 
 

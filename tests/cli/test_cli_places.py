@@ -168,7 +168,7 @@ def test_a_judgement_that_was_killed_goes_on() -> None:
 def test_a_run_folder_is_no_loop_and_its_lock_no_link(tmp_path: Path):
     """Taking the lock empties the file: through a link that would be somebody else's."""
     (tmp_path / "loop").symlink_to("loop")
-    faultpath("report", "loop").refused("leads back to itself")
+    faultpath("report", "loop").refused("loop")  # what else it says depends on the Python
     (mine := tmp_path / "mine").write_text("mine")
     (tmp_path / "run").mkdir()
     (tmp_path / "run" / ".lock").symlink_to(mine)
