@@ -56,7 +56,6 @@ def elsewhere() -> str:
     ratios = "; ".join(
         f"{record.name}: {_ratio(record)} there, {_ratio(here[record.name])} here"
         for record in then.records
-        if "replan" in record.name and record.ratio
     )
     return (
         f"On another machine ({then.machine.processor}, kernels `{then.machine.kernels}`, "

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results.json"
 EARLIER = ROOT / "benchmarks" / "earlier.json"
-"""Measurements of before, on another machine."""
+"""Comparisons with other planners, measured before on another machine."""
 DEVICE = ROOT / "benchmarks" / "device.json"
 WAITS = ROOT / "benchmarks" / "waits.json"
 

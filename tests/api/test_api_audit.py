@@ -131,15 +131,15 @@ def test_the_default_folder_is_found_again_by_the_same_call():
 
 def test_trials_of_an_object_are_never_taken_for_those_of_another(toy):
     told = io.StringIO()
-    asked = ASKED | {"workers": None}
-    first = faultpath.audit(toy, **asked | {"progress": Display(Console(file=told))})
+    question = ASKED | {"workers": None}
+    first = faultpath.audit(toy, **question | {"progress": Display(Console(file=told))})
     assert "The system is an object, so it runs in this process" in told.getvalue()
     assert "Running: 96 of 96 trials" in told.getvalue()
-    second = faultpath.audit(toy, **asked)
+    second = faultpath.audit(toy, **question)
     assert first.folder != second.folder
     assert second.provenance.blocks_kept == 0
     with pytest.raises(faultpath.UserError, match="nothing shows whether it was of this same"):
-        faultpath.audit(toy, folder=first.folder, **asked)
+        faultpath.audit(toy, folder=first.folder, **question)
 
 
 @pytest.mark.parametrize(

@@ -58,9 +58,9 @@ def test_a_replay_is_the_run_and_hears_what_the_fault_did(found) -> None:
 def test_signals_stay_with_the_run_and_a_changed_file_is_refused(folder, found, tmp_path) -> None:
     run = tmp_path / "run"
     shutil.copytree(folder, run)
-    held = read_run(run)
+    source = read_run(run)
     few = [each for each in found if each.address.path == "shared"]
-    written = keep_signals(run, held, few)
+    written = keep_signals(run, source, few)
     assert written[0] == run / SIGNALS
     more = read_run(run)
     assert len(more.signals) == 2
@@ -72,12 +72,12 @@ def test_signals_stay_with_the_run_and_a_changed_file_is_refused(folder, found, 
 
 
 def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
-    held = read_run(folder)
+    source = read_run(folder)
     rows = tuple(
         replace(row, outcome=replace(row.outcome, time_s=9.0)) if row.path == "shared" else row
-        for row in held.outcomes.rows
+        for row in source.outcomes.rows
     )
-    changed = replace(held, outcomes=replace(held.outcomes, rows=rows))
+    changed = replace(source, outcomes=replace(source.outcomes, rows=rows))
     found = replay(changed, (SCENE,), ("shared", "observer"), trust=True)
     differs = {each.address.path: bool(each.differs) for each in found}
     assert differs == {"shared": True, "observer": False}
@@ -87,15 +87,15 @@ def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
 
 
 def test_only_scenes_and_paths_of_a_run_that_can_be_built_are_run_again(folder) -> None:
-    held = read_run(folder)
-    assert len(chosen_scenes(held, (), ())) == 3
-    assert chosen_scenes(held, (SCENE, SCENE), ("shared",)) == (SCENE,)
+    source = read_run(folder)
+    assert len(chosen_scenes(source, (), ())) == 3
+    assert chosen_scenes(source, (SCENE, SCENE), ("shared",)) == (SCENE,)
     with pytest.raises(UserError, match=r"unknown scene"):
-        chosen_scenes(held, ("cart/09",), ())
+        chosen_scenes(source, ("cart/09",), ())
     with pytest.raises(UserError, match=r"unknown condition"):
-        chosen_scenes(held, (), ("both",))
-    question = held.record.question.model_copy(update={"system": "Toy object"})
-    lost = replace(held, record=held.record.model_copy(update={"question": question}))
+        chosen_scenes(source, (), ("both",))
+    question = source.record.question.model_copy(update={"system": "Toy object"})
+    lost = replace(source, record=source.record.model_copy(update={"question": question}))
     with pytest.raises(UserError, match="is of a Toy object, which only its own process had"):
         replay(lost, (SCENE,), trust=True)
 

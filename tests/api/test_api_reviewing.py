@@ -13,25 +13,25 @@ ASKED = {"library": "carts", "scenes": 2, "workers": 0, "progress": False}
 
 
 def test_a_check_of_a_name_and_of_an_object_is_that_of_the_command():
-    found = check(FILE, variants=["blind"], **ASKED)
-    assert found.failures == ()
-    assert found.variants == ("blind",)
+    report = check(FILE, variants=["blind"], **ASKED)
+    assert report.failures == ()
+    assert report.variants == ("blind",)
     line = ["check", TOY, "--variants", "blind", "--library", "carts"]
     said = command(*line, "--scenes", "2", "--workers", "0", "--json")
-    assert json.loads(said.out) == found.model_dump(mode="json")
+    assert json.loads(said.out) == report.model_dump(mode="json")
 
     class Own(type(faultpath.load_system(FILE))):
         pass
 
     own = check(Own(), variants=["blind"], **ASKED)
-    assert [each.status for each in own.checks] == [each.status for each in found.checks]
+    assert [each.status for each in own.checks] == [each.status for each in report.checks]
     with pytest.raises(faultpath.UserError, match="an object cannot be sent to worker processes"):
         check(Own(), workers=2)
 
 
 def test_a_trace_tells_whom_a_fault_reaches():
-    found = trace(FILE, variant="calibrated", library="carts", steps=2, fault="gain:scale=0.6")
-    faulted = {read.consumer for read in found.reads if read.altered_by}
+    report = trace(FILE, variant="calibrated", library="carts", steps=2, fault="gain:scale=0.6")
+    faulted = {read.consumer for read in report.reads if read.altered_by}
     assert faulted == {"controller.inverse", "observer.model"}
-    assert {read.step for read in found.reads} == {0, 1}
+    assert {read.step for read in report.reads} == {0, 1}
     assert trace(faultpath.load_system(FILE), library="carts").variant == "calibrated"

@@ -237,9 +237,9 @@ def test_the_trials_told_are_those_flown(planned, tmp_path):
 
 def test_a_repair_that_changes_nothing_to_be_seen_says_so():
     arms = {"baseline": "ranges", "repair": "wheels", "library": "floors"}
-    said = " ".join(plan(DOCK, **arms, fault="range:scale=0.7").sentences)
-    assert "range_rate (output of speedometer)" in said
-    assert "wheel_odometry" in said
+    words = " ".join(plan(DOCK, **arms, fault="range:scale=0.7").sentences)
+    assert "range_rate (output of speedometer)" in words
+    assert "wheel_odometry" in words
 
 
 def test_nothing_to_plan_and_an_object_are_refused_with_what_to_do():

@@ -44,8 +44,8 @@ def median(moved: np.ndarray, commands: np.ndarray) -> float:
 
 def test_the_controller_alone_divides_by_the_error():
     commands, _ = flight("blind")
-    found = responses("blind", gain="gain:scale=1.25@controller")
-    assert found["gain"] == pytest.approx(median(commands * (1 / 1.25 - 1), commands), rel=1e-5)
+    moved = responses("blind", gain="gain:scale=1.25@controller")
+    assert moved["gain"] == pytest.approx(median(commands * (1 / 1.25 - 1), commands), rel=1e-5)
 
 
 def test_the_observer_alone_works_on_the_commands_of_the_flight_and_remembers():

@@ -79,9 +79,9 @@ def run(
     out = []
     for seed in seeds:
         for path in over:
-            made = ends_of(shape, path, 0 if how == "identical seeds" else seed, n)
+            drawn = ends_of(shape, path, 0 if how == "identical seeds" else seed, n)
             idle = how == "never acted" or (how == "one path idle" and path == over[-1])
-            for variant, statuses in made.items():
+            for variant, statuses in drawn.items():
                 ends = list(statuses)
                 if how == "void" and variant == REPAIR and path == over[-1]:
                     ends[0] = Status.FAILED

@@ -29,18 +29,18 @@ def told(better: str, values: dict[str, float], *thresholds: float):
 @pytest.mark.parametrize("better", ["less", "more"])
 def test_success_at_a_threshold_is_no_crash_and_a_metric_that_is_good_enough(better):
     offset = {"old": 0.0, "new": 0.25}
-    found = told(better, offset, 0.5)
+    thresholds = told(better, offset, 0.5)
     percent = dict.fromkeys(offset, 0)
     for row in table(CELLS).rows:
         error = offset[row.variant] + row.scene_index / 100
         good = error <= 0.5 if better == "less" else error >= 0.5
         if row.path == "correct" and row.outcome.status is not Status.CRASH:
             percent[row.variant] += good
-    (at,) = found.effects[0].thresholds
+    (at,) = thresholds.effects[0].thresholds
     assert (at.baseline_percent, at.repair_percent) == (percent["old"], percent["new"])
     assert at.difference.value == pytest.approx(percent["new"] - percent["old"])
-    assert found.effects[0].metric_means == pytest.approx((0.495, 0.745))
-    assert found.effects[0].metrics["error"].unit == "rad"
+    assert thresholds.effects[0].metric_means == pytest.approx((0.495, 0.745))
+    assert thresholds.effects[0].metrics["error"].unit == "rad"
 
 
 def test_nothing_that_is_decided_depends_on_it():

@@ -29,9 +29,9 @@ def audit(
         for variant, statuses in zip((REPAIR, BASELINE), ends, strict=True)
         for row in rows(variant, path, statuses, seed)
     ]
-    asked = question(len(correct[0]), range(1 + len(seeds))).model_copy(update={"rule": "graded"})
+    graded = question(len(correct[0]), range(1 + len(seeds))).model_copy(update={"rule": "graded"})
     names = dict.fromkeys(path for path, _, _ in over)
-    return decide(asked, paths(*names), OutcomeTable(tuple(out)))
+    return decide(graded, paths(*names), OutcomeTable(tuple(out)))
 
 
 def ends(success: np.ndarray, failed: np.ndarray | None = None) -> Ends:
@@ -121,13 +121,13 @@ def test_what_is_missing_of_a_seed_that_repeats_another_is_open():
     first = ends(wins), ends(losses)
     # Of the second, the repair says nothing of the scenes that it loses, the baseline of others.
     second = ends(wins, losses), ends(losses, (scene >= 40) & (scene < 60))
-    made = audit(first, None, second)
-    effect = made.effects[0]
+    result = audit(first, None, second)
+    effect = result.effects[0]
     assert len(effect.wins) == 2
     assert effect.failed is not None
     assert effect.failed.against_pp < effect.success.value
     assert (effect.sign, effect.failed.unsettled) == (0, True)
-    assert "new is ahead" not in made.headline
+    assert "new is ahead" not in result.headline
 
 
 def mixed(stream: np.random.Generator) -> DecisionRecord:

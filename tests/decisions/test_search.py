@@ -147,9 +147,9 @@ def record(*counts: Any, regret_pp: float = 40.0) -> SearchRecord:
     bounds = Bounds(isolated="observer", faults=(BoundedFault(fault="gain", size=(0.6, 1.4)),))
     same = question().model_dump(include={*ResolvedSearch.model_fields})
     more = {"candidates": 8, "search_seed": 3, "finding": SCENES, "confirming": SCENES}
-    asked = ResolvedSearch.model_validate(same | more | {"bounds": bounds})
+    resolved = ResolvedSearch.model_validate(same | more | {"bounds": bounds})
     shown = {"isolated_pp": 40.0, "shared_pp": -regret_pp, "regret_pp": regret_pp}
-    return conclude(asked, [Tried(fault=fault, **shown)], confirmed)
+    return conclude(resolved, [Tried(fault=fault, **shown)], confirmed)
 
 
 def test_a_reversal_is_announced_where_the_audit_decides_it_and_nowhere_else() -> None:

@@ -81,8 +81,8 @@ def record(weights: tuple[float, ...], scenes: int = 4, together: float = 0.0) -
     groups = tuple(Uncertain(name=name, parts=(), numbers=1) for name in NAMES)
     more = {"variant": "v", "groups": groups, "left_out": (), "points": 256, "design_seed": 3}
     more |= {"metric": "", "said": "success", "unit": "%"}
-    asked = ResolvedSensitivity.model_validate(same | more)
-    return conclude(asked, drawn @ weights + together * drawn[:, 0] * drawn[:, 1], scenes)
+    resolved = ResolvedSensitivity.model_validate(same | more)
+    return conclude(resolved, drawn @ weights + together * drawn[:, 0] * drawn[:, 1], scenes)
 
 
 @pytest.mark.parametrize("scenes", [1, 2, 4])

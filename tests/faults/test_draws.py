@@ -77,8 +77,8 @@ def test_two_faults_of_one_cause_have_the_correlation_of_their_loadings(a: float
     )
     errors = [biases(Bias(std=0.1), 1, fault.draws(SCENES, 0))[0] for fault in (mass, thrust)]
     assert np.corrcoef(errors)[0, 1] == pytest.approx(a * b, abs=0.04)
-    for each in errors:
-        assert each.std() == pytest.approx(0.1, rel=0.05)
+    for error in errors:
+        assert error.std() == pytest.approx(0.1, rel=0.05)
 
 
 def test_a_fault_that_draws_nothing_has_no_loading() -> None:

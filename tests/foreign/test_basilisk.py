@@ -31,16 +31,16 @@ SCENE, STEPS = "seed/7", 300
 @pytest.fixture
 def example(monkeypatch):
     """The example, flown for a shorter time and without errors of its sensors."""
-    made = loaded(EXAMPLE)
-    made.TRACKER = made.BIAS = made.NOISE = 0.0
-    made.episodes = []
+    module = loaded(EXAMPLE)
+    module.TRACKER = module.BIAS = module.NOISE = 0.0
+    module.episodes = []
 
     def plant(*given, **named):
-        named |= {"steps": STEPS, "succeeded": lambda each: made.episodes.append(each) or True}
+        named |= {"steps": STEPS, "succeeded": lambda each: module.episodes.append(each) or True}
         return FunctionPlant(*given, **named)
 
-    made.FunctionPlant = plant
-    return made
+    module.FunctionPlant = plant
+    return module
 
 
 def theirs(example, variant):
@@ -131,6 +131,6 @@ def test_a_fault_reaches_who_reads(example):
 
 
 def test_it_is_audited(example):
-    asked = {"baseline": "gyro", "repair": "filtered", "fault": "wheel_speeds:freeze,onset_s=50"}
-    found = audit(example.create(), **asked, scenes=2, signals=False)
-    assert [path.name for path in found.record.paths] == ["correct", "control", "filter", "shared"]
+    question = {"baseline": "gyro", "repair": "filtered", "fault": "wheel_speeds:freeze,onset_s=50"}
+    run = audit(example.create(), **question, scenes=2, signals=False)
+    assert [path.name for path in run.record.paths] == ["correct", "control", "filter", "shared"]

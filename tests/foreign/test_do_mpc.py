@@ -58,12 +58,12 @@ def test_a_fault_at_one_reader_reaches_that_reader_alone(masses):
 def test_the_audit_strikes_mhe_and_mpc_alone_and_together(masses, monkeypatch):
     monkeypatch.setattr(masses, "STEPS", 4)
     monkeypatch.setattr(masses, "JUDGED", 2)
-    asked = {"baseline": "fixed", "repair": "estimated", "fault": "inertia:scale=1.1"}
+    question = {"baseline": "fixed", "repair": "estimated", "fault": "inertia:scale=1.1"}
     how = {"scenes": 2, "workers": 0, "signals": False}
-    found = audit(masses.create(), **asked, library="training", **how)
-    names = [path.name for path in found.record.paths]
+    run = audit(masses.create(), **question, library="training", **how)
+    names = [path.name for path in run.record.paths]
     assert names == ["correct", "controller", "estimator", "shared"]
-    assert not found.record.findings
+    assert not run.record.findings
 
 
 def test_what_their_objects_share_is_what_the_page_says(masses):

@@ -94,9 +94,9 @@ def test_what_its_parts_share_is_found(example) -> None:
 
 
 def test_it_is_audited_with_a_path_for_each_part(example, tmp_path) -> None:
-    asked = {"baseline": "fixed", "repair": "adapted", "fault": "psi_f:scale=1.11"}
+    question = {"baseline": "fixed", "repair": "adapted", "fault": "psi_f:scale=1.11"}
     how = {"workers": 0, "signals": False, "folder": tmp_path}
-    run = audit(example.create(), **asked, scenes=2, library="training", **how)
+    run = audit(example.create(), **question, scenes=2, library="training", **how)
     paths = [path.name for path in run.record.paths]
     assert paths == ["correct", "current_ctrl", "observer", "reference_gen", "shared"]
     assert sum(effect.void_pairs for effect in run.record.effects) == 0

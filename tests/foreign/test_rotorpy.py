@@ -129,8 +129,8 @@ def test_it_is_audited(example, monkeypatch):
     monkeypatch.setattr(example, "STEPS", 12)
     system = example.create()
     asked = {"baseline": "alone", "repair": "fed-forward", "fault": "mass:scale=0.8"}
-    found = audit(system, **asked, library="training", scenes=2, workers=0, signals=False)
-    paths = [path.name for path in found.record.paths]
+    run = audit(system, **asked, library="training", scenes=2, workers=0, signals=False)
+    paths = [path.name for path in run.record.paths]
     assert paths == ["correct", "controller", "feedforward", "filter", "shared"]
 
 

@@ -112,9 +112,9 @@ def test_a_calibrated_camera_changes_no_pixel_and_a_rectified_picture_is_its(exa
 
 def test_it_is_audited(example, monkeypatch):
     monkeypatch.setattr(example, "STEPS", 10)
-    asked = {"baseline": "plain", "repair": "rectified", "fault": "exposure:scale=0.85"}
+    question = {"baseline": "plain", "repair": "rectified", "fault": "exposure:scale=0.85"}
     how = {"scenes": 2, "workers": 0, "signals": False}
-    run = audit(example.create(), **asked, library="training", **how)
+    run = audit(example.create(), **question, library="training", **how)
     names = [path.name for path in run.record.paths]
     assert names == ["correct", "goal", "observation", "shared"]
 

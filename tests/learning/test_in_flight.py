@@ -56,15 +56,15 @@ def fly(made: ComposedSystem, variant: str, *faults: Fault, scenes=("seed/1", "s
 
 def test_a_withheld_channel_is_not_read_and_its_neutral_value_arrives() -> None:
     inner, repair = Brake(), withholding("gain", value=1.25)
-    made = system(Brake(), withheld(inner, repair, system(Brake()).interface))
-    reading, blind = (made.variants[f"variant_{i}"].consumers for i in (0, 1))
+    deployed = system(Brake(), withheld(inner, repair, system(Brake()).interface))
+    reading, blind = (deployed.variants[f"variant_{i}"].consumers for i in (0, 1))
     assert reading - blind == {"brake.model"}
     inner.got.clear()
-    fly(made, "variant_1")
+    fly(deployed, "variant_1")
     assert {float(value) for got in inner.got for value in got[Port("gain", "model")]} == {1.25}
     assert all(got[Port("gain", "model")].shape == (2,) for got in inner.got)
     with pytest.raises(UserError, match="reaches no consumer in this variant"):
-        fly(made, "variant_1", Fault(channel="gain", intervention=Scale(factor=2.0)))
+        fly(deployed, "variant_1", Fault(channel="gain", intervention=Scale(factor=2.0)))
 
 
 def test_what_is_withheld_in_flight_is_what_was_in_the_fit() -> None:

@@ -36,10 +36,10 @@ def test_the_answer_is_a_reversal_only_where_a_run_decides_one() -> None:
     assert central.detail([]) == central.by_training(one) == ""
     for count, verb in ((0, "show"), (1, "shows"), (3, "show")):
         several = one.model_copy(update={"reversing": count, "trainings": 3})
-        told = central.detail([several, case(0, 0)])
-        assert f"{count} of 3 trained models {verb} the reversal" in told
-        assert f"more often ({SIGNS[1]}" in told
-        assert f"less often ({SIGNS[-1]}" in told
+        sentence = central.detail([several, case(0, 0)])
+        assert f"{count} of 3 trained models {verb} the reversal" in sentence
+        assert f"more often ({SIGNS[1]}" in sentence
+        assert f"less often ({SIGNS[-1]}" in sentence
 
 
 def test_an_effect_takes_its_side_from_its_text_only_where_it_is_detected() -> None:

@@ -40,12 +40,12 @@ def short() -> Iterator[None]:
 def run(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None, short: None) -> Path:
     """A folder with the whole of page one."""
     folder = tmp_path_factory.mktemp("run")
-    asked = ReproductionPlan((ONE,), TINY)
+    reproduction = ReproductionPlan((ONE,), TINY)
     job = Job(folder, Here(), SILENT)
-    flown = flights.fly(asked.legs(), folder, job.run, lambda now: None)
-    evidence = measure_all(asked, folder, 0, lambda done, total: None)
-    results = asked.results(flown.outcomes, evidence)
-    save(folder, flown, results, conclude(asked, results))
+    flown = flights.fly(reproduction.legs(), folder, job.run, lambda now: None)
+    evidence = measure_all(reproduction, folder, 0, lambda done, total: None)
+    results = reproduction.results(flown.outcomes, evidence)
+    save(folder, flown, results, conclude(reproduction, results))
     return folder
 
 

@@ -1,4 +1,4 @@
-"""What a page may name: files, the names of the project's code, commands and flags."""
+"""Check what a page names: files, the names of the project's code, commands and flags."""
 
 import ast
 import builtins

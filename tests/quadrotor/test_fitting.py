@@ -104,9 +104,9 @@ def test_a_finished_model_is_left_alone_and_a_damaged_one_fitted_again(reference
     assert (path.stat().st_mtime_ns, card.read_bytes()) == before
     for broken, content in ((path, path.read_bytes()[:-1] + b" "), (card, b"{")):
         broken.write_bytes(content)
-        said: list[str] = []
-        assert fit(Toy(), tmp_path, notice=said.append).read_bytes() == reference
-        assert [text.startswith("toy-0 is fitted again") for text in said] == [True]
+        messages: list[str] = []
+        assert fit(Toy(), tmp_path, notice=messages.append).read_bytes() == reference
+        assert [text.startswith("toy-0 is fitted again") for text in messages] == [True]
 
 
 CHANGES = {

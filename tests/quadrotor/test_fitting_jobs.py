@@ -42,11 +42,11 @@ def test_the_catalogue_asks_for_pools_that_can_be_collected() -> None:
 
 
 def test_pools_are_missing_until_their_last_file_is_there(tmp_path: Path) -> None:
-    wanted = choose(["wm-a", "wm-a-wind", "clearance"])
-    assert missing_pools(wanted, tmp_path) == ("nominal", "wind", "clearance")
+    chosen = choose(["wm-a", "wm-a-wind", "clearance"])
+    assert missing_pools(chosen, tmp_path) == ("nominal", "wind", "clearance")
     (tmp_path / "nominal.parquet").touch()
     (tmp_path / "wind.json").touch()
-    assert missing_pools(wanted, tmp_path) == ("nominal", "clearance")
+    assert missing_pools(chosen, tmp_path) == ("nominal", "clearance")
 
 
 @pytest.mark.parametrize("pool", ["nominal", "trajectory"])

@@ -117,17 +117,17 @@ def test_motor_lag_and_its_impulse_are_exact():
         mass_kg=mass, drag_kgps=NO_DRAG, thrust_scale=scale, motor_time_constant_s=tau
     )
     plant = TorchPlant(Vehicle.stack([parameters]))
-    now = plant.start(hovering(1))
+    state = plant.start(hovering(1))
     hover, target = mass * GRAVITY_MPS2 / scale, 16.0
     command = column(target, 0.0, 0.0, 0.0)
     for step in range(1, 51):
-        now = plant.advance(now, command, calm(1, 1))
+        state = plant.advance(state, command, calm(1, 1))
         left = math.exp(-step * 0.002 / tau)
         expected = target + (hover - target) * left
-        assert now.thrusts.sum().item() == pytest.approx(expected, rel=1e-12)
+        assert state.thrusts.sum().item() == pytest.approx(expected, rel=1e-12)
     impulse = target * 0.1 + (hover - target) * tau * (1 - left)
     velocity = scale * impulse / mass - GRAVITY_MPS2 * 0.1
-    assert now.state.velocity[2].item() == pytest.approx(velocity, rel=1e-9)
+    assert state.state.velocity[2].item() == pytest.approx(velocity, rel=1e-9)
 
 
 def test_the_plant_is_second_order():

@@ -70,16 +70,16 @@ def test_hover_thrust_of_the_calibration_holds_the_vehicle(predictor):
 @pytest.mark.parametrize("error", [-0.1, 0.1])
 def test_calibration_error_scales_thrust_and_wind_pushes_by_the_nominal_linear_map(error):
     """Thrust acceleration scales by (1 - e)/(1 + e), and wind adds R (c o R^T w)/m~ (paper, IV)."""
-    given = inputs(mass=1 + error, scale=1 - error, wind=(2.0, -1.0, 4.0))
-    end = rollout(STILL_AIR, given, commands(GRAVITY_MPS2)).velocities[:, 0, -1, 0]
+    readings = inputs(mass=1 + error, scale=1 - error, wind=(2.0, -1.0, 4.0))
+    end = rollout(STILL_AIR, readings, commands(GRAVITY_MPS2)).velocities[:, 0, -1, 0]
     expected = 0.30 * torch.tensor([2.0, -1.0, 4.0], dtype=F64) / (1 + error)
     expected[2] += GRAVITY_MPS2 * ((1 - error) / (1 + error) - 1)
     torch.testing.assert_close(end, expected * HORIZON * DT)
 
 
 def test_drag_and_the_lag_of_the_rate_have_their_closed_forms():
-    given = inputs(velocity=(3.0, 0.0, 0.0))
-    rolled = rollout(DRAGGED, given, commands(GRAVITY_MPS2, (0.0, 0.0, 1.0)))
+    readings = inputs(velocity=(3.0, 0.0, 0.0))
+    rolled = rollout(DRAGGED, readings, commands(GRAVITY_MPS2, (0.0, 0.0, 1.0)))
     exact = 3.0 * math.exp(-0.30 * HORIZON * DT)
     assert float(rolled.velocities[0, 0, -1, 0]) == pytest.approx(exact, rel=0.01)
     time, lag = HORIZON * DT, 0.05
@@ -88,8 +88,8 @@ def test_drag_and_the_lag_of_the_rate_have_their_closed_forms():
 
 
 def test_true_parameter_follows_a_thrust_step_with_the_motor_lag():
-    given = inputs(thrust=0.0, drag=(0.0, 0.0, 0.0))
-    rolled = rollout(TrueParameter(), given, commands(GRAVITY_MPS2))
+    readings = inputs(thrust=0.0, drag=(0.0, 0.0, 0.0))
+    rolled = rollout(TrueParameter(), readings, commands(GRAVITY_MPS2))
     # From still motors, gravity acts until the thrust is there: the loss of speed tends to
     # g times the motor time constant.
     lost_mps = GRAVITY_MPS2 * NOMINAL_MOTOR_TIME_CONSTANT_S

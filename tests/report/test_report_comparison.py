@@ -130,8 +130,8 @@ def test_only_what_differs_is_told(one_seed: ReportInput) -> None:
     second = run(one_seed, 2, fault="calibration=-0.1", options=options, seeds=(0, 1))
     other = {"packages": {**second.provenance.packages, "torch": "2.14.0"}, "python": "3.12.1"}
     other |= {"system_fingerprint": "1" * 64}
-    made = second.provenance.model_copy(update=other)
-    second = replace(second, source=replace(second.source, provenance=made))
+    provenance = second.provenance.model_copy(update=other)
+    second = replace(second, source=replace(second.source, provenance=provenance))
     told = dict(differing((first, second)))
     assert len(set(told.pop("Code, data and packages"))) == 2
     assert told == {

@@ -43,9 +43,9 @@ def test_draws_are_the_quantiles_of_the_windows_of_the_resampled_scenes_in_any_o
     values, scenes = windows(n_scenes=6, each=5)
     order = generator("test-order", "clustered", 0).permutation(len(values))
     drawn = WindowQuantiles([scenes[i] for i in order], n_resamples=30)
-    found = drawn.value(values[order], 0.5).draws
+    draws = drawn.value(values[order], 0.5).draws
     by_scene = values.reshape(6, 5)
-    for draw, counts in zip(found, drawn.resamples.counts, strict=True):
+    for draw, counts in zip(draws, drawn.resamples.counts, strict=True):
         repeated = np.repeat(by_scene, counts.astype(int), axis=0)
         assert draw == np.median(repeated)
 

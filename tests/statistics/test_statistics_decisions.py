@@ -35,11 +35,11 @@ def test_effects_and_changes_are_tested_by_the_signs_of_scenes():
         (one, first, "sign test on scene means"),
         (change(one, two), second - first, "sign test on scene differences"),
     ):
-        found = with_test(contrasted, "exact").test
+        test = with_test(contrasted, "exact").test
         sums = difference.sum(axis=1)
         wins, losses = int((sums > 0).sum()), int((sums < 0).sum())
-        assert (found.name, found.leans) == (name, np.sign(wins - losses))
-        assert found.p_value == pytest.approx(binomtest(wins, wins + losses).pvalue)
+        assert (test.name, test.leans) == (name, np.sign(wins - losses))
+        assert test.p_value == pytest.approx(binomtest(wins, wins + losses).pvalue)
 
 
 def test_interval_and_test_have_to_point_the_same_way():

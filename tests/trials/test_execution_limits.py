@@ -1,4 +1,4 @@
-"""What a system that hangs, exits, fails or returns nonsense may cost."""
+"""Costs of a system that hangs, exits, fails or returns nonsense."""
 
 import math
 import os
@@ -83,25 +83,25 @@ UNRULY = f"{__file__}:unruly"
     [("unruly", SCENES[5:6], {"time_limit_s": 3.0}), ("bounded", SCENES[4:6], {})],
 )
 def test_a_scene_that_takes_too_long_loses_itself_alone(tmp_path, factory, scenes, limits):
-    asked = study_of(f"{__file__}:{factory}", scenes, does="hang", where="s05")
-    (failure,) = run_study(asked, tmp_path, workers=1, **limits).failures
+    trials = study_of(f"{__file__}:{factory}", scenes, does="hang", where="s05")
+    (failure,) = run_study(trials, tmp_path, workers=1, **limits).failures
     assert failure.scene == "s05"
     assert "stopped at the time limit of 3 s" in failure.error
 
 
 @pytest.mark.parametrize(("workers", "status"), [(0, "0"), (1, "1")])
 def test_a_system_that_exits_has_failed(tmp_path, workers, status):
-    asked = study_of(UNRULY, SCENES[:8], does="exit", where="s05", status=status)
-    (failure,) = run_study(asked, tmp_path, workers=workers).failures
+    trials = study_of(UNRULY, SCENES[:8], does="exit", where="s05", status=status)
+    (failure,) = run_study(trials, tmp_path, workers=workers).failures
     assert failure.scene == "s05"
     assert f"called sys.exit({status})" in failure.error
 
 
 @pytest.mark.parametrize(("workers", "does"), [(0, "exit"), (2, "raise")])
 def test_a_system_that_fails_everywhere_is_stopped_after_a_few(tmp_path, does, workers):
-    asked = study_of(UNRULY, count=12, does=does, status="0")
+    trials = study_of(UNRULY, count=12, does=does, status="0")
     with pytest.raises(UserError, match=f"all of the first {FEW} trials failed") as caught:
-        run_study(asked, tmp_path / "run", workers=workers)
+        run_study(trials, tmp_path / "run", workers=workers)
     said = str(caught.value)
     assert ("ValueError: no air anywhere" if does == "raise" else "sys.exit(0)") in said
     assert "\n" not in said
@@ -120,9 +120,9 @@ def test_a_limit_that_cannot_be_kept_is_refused(tmp_path, limit, workers, says):
 
 def test_a_system_that_is_never_built_in_a_worker_is_not_waited_for(tmp_path, monkeypatch):
     monkeypatch.setattr(dispatch, "LEAST_S", 1.0)
-    asked = study_of(f"{__file__}:slow_worker", parent=str(os.getpid()))
+    trials = study_of(f"{__file__}:slow_worker", parent=str(os.getpid()))
     with pytest.raises(UserError, match=r"was not built in a worker process within 2 s: look"):
-        run_study(asked, tmp_path, workers=1, time_limit_s=2.0)
+        run_study(trials, tmp_path, workers=1, time_limit_s=2.0)
 
 
 @pytest.mark.parametrize(
@@ -130,14 +130,14 @@ def test_a_system_that_is_never_built_in_a_worker_is_not_waited_for(tmp_path, mo
     [("distance", 0), ("status", 0), ("object", 1), ("surrogate", 1), ("error", 1)],
 )
 def test_a_malformed_outcome_fails_its_trial_alone(tmp_path, wrong, workers):
-    asked = study_of(UNRULY, does=wrong, where="s05")
-    result = run_study(asked, tmp_path, workers=workers)
+    trials = study_of(UNRULY, does=wrong, where="s05")
+    result = run_study(trials, tmp_path, workers=workers)
     statuses = {row.outcome.scene: row.outcome.status for row in result.outcomes.rows}
     assert [scene for scene in SCENES if statuses[scene] is Status.FAILED] == ["s05"]
     (failure,) = result.failures
     assert failure.error
     assert failure.error in failure.details.read_text()
-    assert run_study(asked, tmp_path, workers=0).outcomes_sha256 == result.outcomes_sha256
+    assert run_study(trials, tmp_path, workers=0).outcomes_sha256 == result.outcomes_sha256
 
 
 @pytest.mark.parametrize(
@@ -150,8 +150,8 @@ def test_no_outcomes_at_all_stop_the_study(tmp_path, wrong, said, workers):
 
 
 def test_a_reading_that_is_no_number_costs_its_scene_alone(tmp_path):
-    asked = study_of(UNRULY, SCENES[4:8], does="lose its mass", where="s05")
-    (failure,) = run_study(asked, tmp_path, workers=0).failures
+    trials = study_of(UNRULY, SCENES[4:8], does="lose its mass", where="s05")
+    (failure,) = run_study(trials, tmp_path, workers=0).failures
     assert failure.scene == "s05"
     assert "tap mass -> planner.thrust: the first reading is not finite" in failure.error
 

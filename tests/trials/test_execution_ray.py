@@ -199,8 +199,8 @@ def test_a_unit_that_is_its_workers_end_or_takes_too_much_loses_itself_alone(
     hands, tmp_path, does, limit, says
 ):
     """One is killed in the moment in which its flight begins, each time."""
-    asked = study_of(f"{UNRULY}:unruly", ("s00", "s05"), does=does, where="s05", dies="s05")
-    found = run_study(asked, tmp_path, executor=hands, recheck=False, **limit)
+    trials = study_of(f"{UNRULY}:unruly", ("s00", "s05"), does=does, where="s05", dies="s05")
+    found = run_study(trials, tmp_path, executor=hands, recheck=False, **limit)
     (failure,) = found.failures
     assert (failure.scene, found.blocks_computed) == ("s05", 2)
     assert re.search(says, failure.error)

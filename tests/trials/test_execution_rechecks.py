@@ -88,11 +88,11 @@ def _study(kind: str, count: int = 1, **options: str):
     ],
 )
 def test_an_oddity_is_named_and_kept(tmp_path, kind, said):
-    asked = _study(kind)
-    result = run_study(asked, tmp_path, workers=int(kind == "writes"))
+    trials = _study(kind)
+    result = run_study(trials, tmp_path, workers=int(kind == "writes"))
     found = [finding for finding in result.findings if re.search(said, finding)]
     assert found, result.findings
-    again = run_study(asked, tmp_path, workers=0)
+    again = run_study(trials, tmp_path, workers=0)
     assert again.blocks_computed == 0
     assert again.findings == result.findings
     held = json.loads((tmp_path / "deliveries.json").read_text())
@@ -104,23 +104,23 @@ def test_an_oddity_is_named_and_kept(tmp_path, kind, said):
     [("clock", "4"), ("random", "10"), ("cache", "10"), ("by-place", "4"), ("by-place", "10")],
 )
 def test_what_does_not_repeat_is_seen_whatever_the_reason(tmp_path, kind, block):
-    found = run_study(_study(kind, count=12, block=block), tmp_path, workers=0).findings
-    assert found
-    assert all(said.startswith("Results do not repeat: ") for said in found)
+    findings = run_study(_study(kind, count=12, block=block), tmp_path, workers=0).findings
+    assert findings
+    assert all(said.startswith("Results do not repeat: ") for said in findings)
 
 
 @pytest.mark.parametrize("kind", ["", "crowded"])
 def test_a_run_killed_between_second_runs_ends_with_the_same_tables(tmp_path, kind, monkeypatch):
-    asked = _study(kind, count=12, block="10")
-    whole = run_study(asked, tmp_path / "whole", workers=0)
+    trials = _study(kind, count=12, block="10")
+    whole = run_study(trials, tmp_path / "whole", workers=0)
     assert len(whole.rechecks) == 2
     for flights in range(2):
         folder = tmp_path / str(flights)
         with monkeypatch.context() as patched:
             patched.setattr(Rechecks, "settle", _stopping(flights))
             with pytest.raises(Stopped):
-                run_study(asked, folder, workers=0)
-        result = run_study(asked, folder, workers=0)
+                run_study(trials, folder, workers=0)
+        result = run_study(trials, folder, workers=0)
         assert result.rechecks == whole.rechecks
         for name in ("outcomes.parquet", "deliveries.json", "rechecks.json"):
             assert (folder / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()

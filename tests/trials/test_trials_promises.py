@@ -1,4 +1,4 @@
-"""What a system declares is looked at before anything flies, and what of it a run keeps."""
+"""Declarations of a system are looked at before anything flies, and a run keeps some."""
 
 import sys
 from dataclasses import replace

@@ -111,6 +111,7 @@ def ended(question: Question, status: str) -> str:
 def faults(question: Question) -> str:
     """Return what the fault does to each channel, whoever gets it; empty in records without it."""
     words = (fault.aimed_at("*").describe() for fault in question.faults)
+    # `describe` says at whom a fault aims, and an audit aims it at each in turn.
     return "; ".join(re.sub(" at every [a-z]+", "", text) for text in words)
 
 
