@@ -40,12 +40,8 @@ HOUSE = {
     "verdict": (r"verdicts?|judge?ments?|receipts?", "result; delivery log"),
     "tap": (r"tap(?:s|ped|ping)?", "injection point"),
     "tell": (r"told|hears?|heard|hearing|tells of", "replay; what is meant"),
-    # Files and compiled code have paths too.
-    "path": (
-        r"(?<!check the )(?<!choose another )(?<!portable )(?<!empty )(?<!give )(?<!are )(?<!\Aa )"
-        r"paths?(?! of (?:a|an|the file|weights)\b|/| cannot| has a)",
-        "condition; where the fault acts",
-    ),
+    # Files and compiled code have paths too: those are counted with the others.
+    "path": (r"paths?", "condition; where the fault acts"),
 }
 """Words that users do not meet, by their pattern, and what to write instead."""
 FIELD = {
