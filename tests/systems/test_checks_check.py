@@ -36,7 +36,7 @@ def failed(report) -> dict[str, tuple[str, ...]]:
 INDEPENDENCE = "scene independence"
 SAID = {
     "raises": ("trials end", "Variant 'bare': ValueError: no air"),
-    "never repeats": ("determinism", "first at step 1 in tap range -> pilot.approach, scene 'w0'"),
+    "never repeats": ("determinism", "first at step 1 in range -> pilot.approach, scene 'w0'"),
     "by place": ("scene independence", "Variant 'bare' run in another order, without"),
     "crowded": ("scene independence", "without some of the scenes beside it, differs"),
     "barely crowded": ("scene independence", "differs in"),
@@ -47,7 +47,10 @@ SAID = {
     "nosy": ("declared reads", "tap range -> guard.limit: this variant has no such consumer"),
     "of the future": ("declared reads", "the reading is of step 1, which is after step 0"),
     "another source": ("declared reads", "the reading is of source 'sonar'"),
-    "keeps": ("fault delivery", "Tap range -> guard.limit of variant 'guarded', faulted in 4"),
+    "keeps": (
+        "fault delivery",
+        "Injection point range -> guard.limit of variant 'guarded', faulted in 4",
+    ),
     "nan": ("shape and unit", "source 'laser' at step 10, read by pilot.approach, is not finite"),
     "shape": ("shape and unit", "'laser' declares `shape: []`"),
     "millimetres": ("shape and unit", "its largest reading is 2.78e+03; give it in m"),
@@ -103,17 +106,20 @@ def test_a_fault_that_alters_another_tap_is_seen_without_the_taps_own_counts(mon
     monkeypatch.setattr(Taps, "_add", misplaced)
     monkeypatch.setattr(Taps, "verify", lambda self, last_step: None)
     lead = (
-        "Tap range -> pilot.approach of variant 'guarded', faulted in 4 trials, altered a reading"
+        "Injection point range -> pilot.approach of variant 'guarded', faulted in 4 trials, "
+        "altered a reading"
     )
     failures = failed(check(broken=""))["fault delivery"]
-    assert any(said.startswith(f"{lead} at tap range -> guard.limit too") for said in failures)
+    assert any(said.startswith(f"{lead} at range -> guard.limit too") for said in failures)
 
 
 def test_an_error_is_told_with_its_line_and_an_if_on_a_reading_with_what_to_take():
     trials = check(broken="raises").checks[0]
     assert (trials.status, trials.says) == ("failed", "none did")
     (said,) = trials.failures
-    assert re.search(r"ValueError: no air \(\S*broken\.py, line \d+\); let every trial", said)
+    assert re.search(
+        r"ValueError: no air \(\S*broken\.py, line \d+\); correct the system: every trial", said
+    )
     assert "np.where" in remedy("ValueError: The truth value of an array is ambiguous")
 
 
@@ -218,7 +224,7 @@ def test_a_consumer_that_ignores_its_reading_is_remarked_and_not_failed():
     report = check(broken="ignores")
     assert failed(report) == {}
     (remarks,) = (each.remarks for each in report.checks if each.remarks)
-    assert "Tap mass -> pilot.thrust of variant 'bare'" in remarks[0]
+    assert "Injection point mass -> pilot.thrust of variant 'bare'" in remarks[0]
 
 
 @pytest.mark.parametrize(

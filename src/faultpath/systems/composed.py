@@ -14,6 +14,7 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import unknown
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Loop, Module, Reading, graph, interface_of
+from faultpath.systems.arguments import channels_of, modules_of, seeds_of, units_of, variants_of
 from faultpath.systems.episodes import SCENE, EpisodePlant
 from faultpath.systems.modules import FunctionModule
 from faultpath.trials import Library, LoopSystem, SceneRef, Wiring
@@ -79,24 +80,21 @@ class ComposedSystem(LoopSystem):
     ) -> None:
         self.name, self.control_dt_s = name, plant.dt_s
         self.metrics = {key: measure.metric for key, measure in plant.metrics.items()}
-        self._plant, self._scenes = plant, dict(scenes)
+        self._plant, self._scenes = plant, seeds_of(scenes)
         self._data_files = tuple(data_files)
-        self._parts = {
-            key: parts
-            if isinstance(parts, Parts)
-            else Parts(f"Modules: {', '.join(map(str, parts))}.", parts)
-            for key, parts in variants.items()
-        }
         self.components = dict[str, tuple[str, ...]]()
-        several = dict(channels or {})
-        self._wirings: dict[str, Wiring] = {}
-        for variant, parts in self._parts.items():
-            written = [name for module in parts.of(None) for name in module.writes]
+        units, several = units_of(units), channels_of(channels or {})
+        self._parts, self._wirings = dict[str, Parts](), dict[str, Wiring]()
+        for variant, given in variants_of(variants).items():
+            modules = modules_of(variant, given.of(None) if isinstance(given, Parts) else given)
+            listed = Parts(f"Modules: {', '.join(map(str, modules))}.", modules)
+            self._parts[variant] = given if isinstance(given, Parts) else listed
+            written = [name for module in modules for name in module.writes]
             bindings = {
                 channel: next((n for n in (*written, *plant.senses) if n in sources), sources[0])
                 for channel, sources in several.items()
             }
-            self._wirings[variant] = Wiring(parts.description, bindings)
+            self._wirings[variant] = Wiring(self._parts[variant].description, bindings)
         self._interface = self._declared(units, several, plant.shapes)
         seen = _Shapes()
         for variant in self._parts:
@@ -137,7 +135,7 @@ class ComposedSystem(LoopSystem):
             (name,) = self._scenes
         if name not in self._scenes:
             raise UserError(f"{self.name}: {unknown('library', name, self._scenes)}")
-        seeds = [int(seed) for seed in self._scenes[name]]
+        seeds = list(self._scenes[name])
         content = sha256(f"{self._plant.identity}{seeds}".encode()).hexdigest()[:16]
         return Library(name, tuple(SceneRef(f"{SCENE}{s}", s) for s in seeds), content)
 
@@ -180,6 +178,11 @@ class ComposedSystem(LoopSystem):
                     )
                     mistake.place = module.place if isinstance(module, FunctionModule) else ""
                     raise mistake
+        if plant.action in feeds and not {*feeds[plant.action]} & {*written}:
+            raise SystemMistake(
+                f"system '{self.name}': no module writes what the plant's action names: "
+                f"{unknown('source', plant.action, dict.fromkeys(written))}"
+            )
         names = (*plant.senses, *written, *(n for fed in feeds.values() for n in fed))
         self._check_units(units, names)
         sources = {

@@ -12,6 +12,7 @@ from faultpath.core.arrays import HostArray, to_numpy
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import listed, unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
+from faultpath.systems.arguments import check_episode
 from faultpath.systems.observed import stacked
 from faultpath.trials import Metric
 
@@ -140,6 +141,7 @@ class EpisodePlant(Plant):
         trace: Show | None = None,
         render: Show | None = None,
     ) -> None:
+        check_episode(steps, dt_s, succeeded, metrics or {})
         self.dt_s, self.steps, self.metrics = dt_s, steps, dict(metrics or {})
         self._trace, self._render = trace, render
         self.reads = frozenset({Port(action, "actuator")})

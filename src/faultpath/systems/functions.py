@@ -7,6 +7,7 @@ import numpy as np
 from typing_extensions import override
 
 from faultpath.core.arrays import HostArray
+from faultpath.core.errors import SystemMistake
 from faultpath.core.streams import generator
 from faultpath.systems.episodes import Episode, EpisodePlant, Look, Measure, SceneInstance, Show
 from faultpath.systems.observed import hashed
@@ -63,12 +64,19 @@ class FunctionPlant(EpisodePlant):
 
     @override
     def world(self, scene: str, seed: int) -> SceneInstance:
-        state = self._start(generator("plant/start", scene, 0))
+        state = _given("start", self._start(generator("plant/start", scene, 0)))
 
         def step(action: HostArray, step: int) -> tuple[Any, float, bool, bool, dict[str, Any]]:
             nonlocal state
-            state = self._step(state, action, generator("plant/step", scene, seed, step))
+            draws = generator("plant/step", scene, seed, step)
+            state = _given("step", self._step(state, action, draws))
             return state, 0.0, self._over is not None and self._over(state), False, {}
 
         # What a step draws is addressed by scene and seed, so these are all that decides it.
         return SceneInstance(state, {}, hashed(state), hashed(scene, seed), step, lambda: state)
+
+
+def _given(name: str, state: Any) -> Any:
+    if state is None:
+        raise SystemMistake(f"`{name}` returned nothing: it must return the state")
+    return state

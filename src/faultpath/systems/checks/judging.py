@@ -82,7 +82,7 @@ class Seen:
         if odd:
             scene, step, channel, consumer = min(odd, key=lambda key: key[1])
             words = words or "differs in its readings alone"
-            words += f", first at step {step} in tap {channel} -> {consumer}, scene {scene!r}"
+            words += f", first at step {step} in {channel} -> {consumer}, scene {scene!r}"
         return words
 
 
@@ -132,7 +132,7 @@ def remedy(error: str) -> str:
     """Return what to do about an error that kept a trial from its end."""
     if "truth value of an array" in error:
         return "; a reading has one value for each scene: take `np.where` in place of `if`"
-    return "; let every trial end in an outcome, see it with `faultpath audit --workers 0`"
+    return "; correct the system: every trial must end in an outcome"
 
 
 def _determinism(name: str, seen: Seen) -> Check:
@@ -203,7 +203,9 @@ def _pairing(name: str, seen: Seen) -> Check:
         f"{text[0].upper()}{text[1:].rstrip('.')}; {remedy}" for text in mismatch_words(mismatches)
     ]
     failures += unproven([outcome for _, run in firsts for outcome in run.outcomes])
-    says = f"{len(sides)} arms, the same initial states, disturbances and planner noise"
+    says = (
+        f"the same initial states, disturbances and planner noise in {len(sides)} runs of a scene"
+    )
     return Check(name=name, says=says, failures=tuple(failures))
 
 
@@ -212,7 +214,7 @@ def _reads(name: str, seen: Seen) -> Check:
     failures = tuple(unread((v, count) for v, run in seen.firsts() for count in run.counts))
     taps = sum(len({read.tap for read in run.reads}) for _, run in seen.firsts())
     remarks = other_names(seen.system, [variant for variant, _ in seen.firsts()])
-    says = f"{taps} taps declared and read"
+    says = f"{taps} injection points declared and read"
     return Check(name=name, says=says, failures=failures, remarks=remarks)
 
 
@@ -222,8 +224,8 @@ def _delivery(name: str, seen: Seen) -> Check:
     altered, elsewhere = 0, 0
     alone = {key: run for key, run in seen.runs.items() if key[1] == "tap"}
     for (variant, _, tap), run in alone.items():
-        lead = f"Tap {tap[0]} -> {tap[1]} of variant '{variant}', faulted in {len(seen.scenes)} "
-        lead += "trials,"
+        lead = f"Injection point {tap[0]} -> {tap[1]} of variant '{variant}', faulted in "
+        lead += f"{len(seen.scenes)} trials,"
         here = [read for read in run.reads if read.tap == tap]
         count = sum(read.altered for read in here)
         altered += count
@@ -231,7 +233,7 @@ def _delivery(name: str, seen: Seen) -> Check:
         elsewhere += sum(read.altered for read in others)
         for channel, consumer in dict.fromkeys(read.tap for read in others):
             failures.append(
-                f"{lead} altered a reading at tap {channel} -> {consumer} too, which "
+                f"{lead} altered a reading at {channel} -> {consumer} too, which "
                 "the fault does not name; trust no result of this version of faultpath, and report "
                 "it."
             )
@@ -257,12 +259,12 @@ def _delivery(name: str, seen: Seen) -> Check:
             and not (ends and difference(first.outcomes, Done(ends, ())))
         ):
             remarks.append(
-                f"{lead} changed nothing else, in no outcome and at no other tap, in the steps "
-                "that were looked at; its module may use it later, or not at all, or may use "
-                "something else than it was handed."
+                f"{lead} changed nothing else, in no outcome and at no other injection point, in "
+                "the steps that were looked at; its module may use it later, or not at all, or may "
+                "use something else than it was handed."
             )
-    says = f"{len(alone)} taps, each faulted alone: {altered} readings altered, "
-    says += f"{elsewhere} at other taps" if elsewhere else "at no other tap"
+    says = f"{len(alone)} injection points, each faulted alone: {altered} readings altered, "
+    says += f"{elsewhere} elsewhere" if elsewhere else "none elsewhere"
     return Check(name=name, says=says, failures=tuple(failures), remarks=tuple(remarks))
 
 
