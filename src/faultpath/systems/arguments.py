@@ -1,4 +1,4 @@
-"""Check the arguments of systems and plants where they are passed.
+"""What a user hands to systems and plants, checked where it is handed over.
 
 Each function raises `SystemMistake` with a sentence that says what is wrong and what to give.
 """
@@ -67,14 +67,14 @@ def units_of(units: Any) -> Mapping[str, Any]:
 def channels_of(channels: Any) -> dict[str, tuple[str, ...]]:
     """Return the sources of each channel that several may feed."""
     example = "such as {'speed': ['wheels', 'filter']}"
-    sources_by_channel: dict[str, tuple[str, ...]] = {}
+    found: dict[str, tuple[str, ...]] = {}
     for channel, sources in _mapping("channels", channels, example).items():
         if isinstance(sources, str) or not isinstance(sources, Sequence) or not sources:
             raise SystemMistake(
                 f"channels: '{channel}' is {shown(sources)}: give a list of its sources"
             )
-        sources_by_channel[channel] = tuple(cast("Sequence[str]", sources))
-    return sources_by_channel
+        found[channel] = tuple(cast("Sequence[str]", sources))
+    return found
 
 
 def check_episode(steps: Any, dt_s: Any, succeeded: Any, metrics: Any) -> None:

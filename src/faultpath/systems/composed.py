@@ -85,10 +85,10 @@ class ComposedSystem(LoopSystem):
         self.components = dict[str, tuple[str, ...]]()
         units, several = units_of(units), channels_of(channels or {})
         self._parts, self._wirings = dict[str, Parts](), dict[str, Wiring]()
-        for variant, parts in variants_of(variants).items():
-            modules = modules_of(variant, parts.of(None) if isinstance(parts, Parts) else parts)
+        for variant, given in variants_of(variants).items():
+            modules = modules_of(variant, given.of(None) if isinstance(given, Parts) else given)
             listed = Parts(f"Modules: {', '.join(map(str, modules))}.", modules)
-            self._parts[variant] = parts if isinstance(parts, Parts) else listed
+            self._parts[variant] = given if isinstance(given, Parts) else listed
             written = [name for module in modules for name in module.writes]
             bindings = {
                 channel: next((n for n in (*written, *plant.senses) if n in sources), sources[0])
