@@ -38,18 +38,18 @@ MODEL.set_meas("encoders", vertcat(ANGLES, ORDERS))
 MODEL.setup()
 
 
-def ready(made, limits=(), scenarios=(), **settings):
+def ready(solver, limits=(), scenarios=(), **settings):
     """Set up an object of theirs; return it with what it looks up at each of its steps."""
     known = {"inertia": NOMINAL, "setpoint": 0.0}
-    made.set_param(t_step=0.1, **settings)
-    inertias, course = made.get_p_template(*scenarios), made.get_tvp_template()
-    made.set_p_fun(lambda _: inertias(known["inertia"]))
-    made.set_tvp_fun(lambda _: course(known["setpoint"]))
+    solver.set_param(t_step=0.1, **settings)
+    inertias, course = solver.get_p_template(*scenarios), solver.get_tvp_template()
+    solver.set_p_fun(lambda _: inertias(known["inertia"]))
+    solver.set_tvp_fun(lambda _: course(known["setpoint"]))
     for kind, name, low, high in limits:
-        made.bounds["lower", kind, name], made.bounds["upper", kind, name] = low, high
-    made.setup()
-    made.set_initial_guess()
-    return made, known
+        solver.bounds["lower", kind, name], solver.bounds["upper", kind, name] = low, high
+    solver.setup()
+    solver.set_initial_guess()
+    return solver, known
 
 
 def mhe_of(estimates):
@@ -69,16 +69,16 @@ def mpc_of():
 # --- modules ---
 def modules(estimates):
     @writes("belief", of=lambda: mhe_of(estimates))
-    def estimator(made, encoders, inertia):
-        mhe, known = made
+    def estimator(estimation, encoders, inertia):
+        mhe, known = estimation
         known["inertia"] = inertia[estimates:]
         state = mhe.make_step(encoders[:, None])
-        held = mhe.opt_x_num["_p_est"] if estimates else mhe.opt_p_num["_p_set"]
-        return np.append(state, held.full()[0])  # the inertia of disc 1 as this MHE has it
+        moment = mhe.opt_x_num["_p_est"] if estimates else mhe.opt_p_num["_p_set"]
+        return np.append(state, moment.full()[0])  # the inertia of disc 1 as this MHE has it
 
     @writes("command", of=mpc_of)
-    def controller(made, belief, inertia, setpoint):
-        mpc, known = made
+    def controller(control, belief, inertia, setpoint):
+        mpc, known = control
         known.update(inertia=[*belief[8:][:estimates], *inertia[estimates:]], setpoint=setpoint)
         return mpc.make_step(belief[:8, None])[:, 0]
 
@@ -97,8 +97,8 @@ def start(rng):
 def advance(state, command, rng):
     simulator, step = state["simulator"], state["step"] + 1
     seen = simulator.make_step(command[:, None], v0=1e-2 * rng.standard_normal((5, 1)))
-    now = {"step": step, "encoders": seen[:, 0], "setpoint": state["course"][step : step + 21]}
-    return state | now | {"off": abs(float(simulator.x0["phi", 1]) - now["setpoint"][0])}
+    read = {"step": step, "encoders": seen[:, 0], "setpoint": state["course"][step : step + 21]}
+    return state | read | {"off": abs(float(simulator.x0["phi", 1]) - read["setpoint"][0])}
 
 
 def create() -> ComposedSystem:

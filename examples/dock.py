@@ -77,15 +77,15 @@ class Dock(System):
         for step in range(150):
             gauge = Reading(distance, "rangefinder", step)
             if variant == "ranges":
-                now = speedometer.deliver("range", "difference", gauge, step)
-                rate = (before - now) / self.control_dt_s if step else speed
-                seen, before = Reading(rate, "range_rate", step), now
+                measured = speedometer.deliver("range", "difference", gauge, step)
+                rate = (before - measured) / self.control_dt_s if step else speed
+                seen, before = Reading(rate, "range_rate", step), measured
             else:
                 seen = Reading(shown * speed, "wheel_odometry", step)
 
             left = np.maximum(approach.deliver("range", "profile", gauge, step), 0.0)
-            wanted = np.minimum(np.sqrt(2.0 * left), 0.8 * left)
-            push = 3.0 * (wanted - approach.deliver("speed", "feedback", seen, step))
+            desired = np.minimum(np.sqrt(2.0 * left), 0.8 * left)
+            push = 3.0 * (desired - approach.deliver("speed", "feedback", seen, step))
             speed = np.maximum(speed + np.clip(push, -grip, grip) * self.control_dt_s, 0.0)
             distance = distance - speed * self.control_dt_s
 

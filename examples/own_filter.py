@@ -26,7 +26,7 @@ class Filter(Estimator):
         fix = inputs[FIX].numpy()
         if memory is None:
             start = inputs.truth("vehicle")
-            filters = [kalman(each) for each in fix]
+            filters = [kalman(position) for position in fix]
             attitude = start["attitude"]
         else:
             filters, attitude = memory
@@ -35,24 +35,24 @@ class Filter(Estimator):
                 attitude = attitude @ exp(0.2 * DT_S * rates[:, sample].T).movedim(-1, 0)
                 moved.append((attitude @ forces[:, sample, :, None])[..., 0])
             pushes = torch.stack(moved).mean(0).numpy() + GRAVITY
-            for each, push, seen in zip(filters, pushes, fix, strict=True):
-                each.predict(u=push)
-                each.update(seen + LATE_S * each.x[3:])
-        states = torch.from_numpy(np.stack([each.x for each in filters]))
+            for tracker, push, seen in zip(filters, pushes, fix, strict=True):
+                tracker.predict(u=push)
+                tracker.update(seen + LATE_S * tracker.x[3:])
+        states = torch.from_numpy(np.stack([tracker.x for tracker in filters]))
         known = (states[:, :3], states[:, 3:], attitude, rates[:, -1])
         return dict(zip(self.writes, known, strict=True)), (filters, attitude)
 
 
 def kalman(fix):
     one = np.eye(3)
-    found = KalmanFilter(dim_x=6, dim_z=3, dim_u=3)
-    found.x = np.concatenate((fix, np.zeros(3)))
-    found.F = np.block([[one, DT_S * one], [0 * one, one]])
-    found.B = np.vstack((0.5 * DT_S**2 * one, DT_S * one))
-    found.H = np.hstack((one, 0 * one))
-    found.Q = found.B @ found.B.T * 0.5**2
-    found.R, found.P = one * 0.05**2, np.eye(6) * 0.05**2
-    return found
+    tracker = KalmanFilter(dim_x=6, dim_z=3, dim_u=3)
+    tracker.x = np.concatenate((fix, np.zeros(3)))
+    tracker.F = np.block([[one, DT_S * one], [0 * one, one]])
+    tracker.B = np.vstack((0.5 * DT_S**2 * one, DT_S * one))
+    tracker.H = np.hstack((one, 0 * one))
+    tracker.Q = tracker.B @ tracker.B.T * 0.5**2
+    tracker.R, tracker.P = one * 0.05**2, np.eye(6) * 0.05**2
+    return tracker
 
 
 def create(seed) -> Filter:

@@ -53,7 +53,7 @@ class OwnModel(nn.Module, Predictor):
         to_body = state.rotation.transpose(0, 1)
         velocity = (to_body * state.velocity).sum(1)
         features = [velocity / 3, state.rate / 3, command[:1] / (10 * mass_kg), command[1:] / 3]
-        x = torch.cat([each.expand(-1, *batch) for each in features]).flatten(1)
+        x = torch.cat([feature.expand(-1, *batch) for feature in features]).flatten(1)
         x = self.last(torch.relu(self.second(torch.relu(self.first(x))))).unflatten(1, batch)
         linear = (state.rotation * (8 * torch.tanh(x[:3]))).sum(1)
         correction = Residual(linear_mps2=linear, angular_radps2=40 * torch.tanh(x[3:]))
@@ -61,7 +61,7 @@ class OwnModel(nn.Module, Predictor):
 
 
 def create(seed: int | None) -> Predictor:
-    """What `examples/own_model.py:create` names; without a seed only its reads count."""
+    """Return the model of a seed; without one, a model of which only the reads count."""
     model = OwnModel()
     if seed is not None:
         path = weights(seed)
@@ -98,9 +98,10 @@ def fit(seed: int, episodes: int, epochs: int) -> None:
             optimiser.step()
         schedule.step()
     save_file(model.state_dict(), weights(seed))
-    for name, each in (("integrator alone", KinematicIntegrator(wind=False)), ("own model", model)):
+    predictors = {"integrator alone": KinematicIntegrator(wind=False), "own model": model}
+    for name, predictor in predictors.items():
         with torch.no_grad():
-            *_, end = predict(each, validation, correct(each, validation))
+            *_, end = predict(predictor, validation, correct(predictor, validation))
         missed = (end.position[..., 0] - validation.position[:, -1]).norm(dim=0)
         print(f"{name}: median error after 1 s {missed.median():.3f} m")
 
@@ -111,11 +112,11 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--episodes", type=int, default=1500)
     parser.add_argument("--epochs", type=int, default=20)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     torch.set_num_threads(1)
     started = time.monotonic()
-    fit(asked.seed, asked.episodes, asked.epochs)
-    print(f"Fitted in {time.monotonic() - started:.0f} s; weights in {weights(asked.seed)}")
+    fit(options.seed, options.episodes, options.epochs)
+    print(f"Fitted in {time.monotonic() - started:.0f} s; weights in {weights(options.seed)}")
 
 
 if __name__ == "__main__":

@@ -37,14 +37,14 @@ def wind_ukf():
 
 
 @writes("estimate", of=wind_ukf, past="command")
-def filter(made, mocap, imu, rates, command):
+def filter(objects, mocap, imu, rates, command):
     pose = dict(zip("xvqw", np.split(mocap, [3, 6, 10]), strict=True))
-    made.waiting.append(({"w": rates}, pose))
+    objects.waiting.append(({"w": rates}, pose))
     if command.any():  # in their loop the first step comes after the first command
-        for truth, pose in made.waiting:
-            made.ukf.step(truth, {"cmd_thrust": command[0]}, {"accel": imu}, pose)
-        made.waiting.clear()
-    return made.ukf.filter.x
+        for truth, pose in objects.waiting:
+            objects.ukf.step(truth, {"cmd_thrust": command[0]}, {"accel": imu}, pose)
+        objects.waiting.clear()
+    return objects.ukf.filter.x
 
 
 @writes("push", of=SimpleNamespace)
@@ -101,7 +101,7 @@ def offset_m(episode):
 def create() -> ComposedSystem:
     known = {"mass": "kg", "k_eta": "N s^2", "drag": "N s^2/m^2", "drag_z": "N s^2/m^2"}
     observes = {n: n for n in (*known, "imu")} | {"rates": ("state", "w"), "place": ("state", "x")}
-    observes["mocap"] = lambda scene: np.hstack([scene["mocap"][each] for each in "xvqw"])
+    observes["mocap"] = lambda scene: np.hstack([scene["mocap"][part] for part in "xvqw"])
     plant = FunctionPlant(
         start,
         step,

@@ -63,7 +63,7 @@ def drawn(scene):
 
 @dataclass(frozen=True)
 class Carts:
-    """Every array is `[B]`; `draws` is what decides a scene."""
+    """`draws` `[B, 3]` is what decides a scene; every other array is `[B]`."""
 
     draws: np.ndarray
     gain: np.ndarray
@@ -81,8 +81,8 @@ class Cart(Plant):
     reads = frozenset({Port("push", "motor")})
 
     def start(self, batch):
-        draws, made = map(np.array, zip(*map(drawn, batch.scenes), strict=True))
-        gain, slope, goal = made.T
+        draws, values = map(np.array, zip(*map(drawn, batch.scenes), strict=True))
+        gain, slope, goal = values.T
         return Carts(draws, gain, slope, goal, *np.zeros((2, len(draws))))
 
     def sense(self, carts):
@@ -150,8 +150,8 @@ class Controller(Module):
 
     def step(self, inputs, memory):
         left = inputs["target", "reference"] - inputs["position", "feedback"]
-        wanted = left - 2.0 * inputs["velocity", "feedback"] - inputs["slope", "feedforward"]
-        return {"command": wanted / inputs["gain", "inverse"]}, memory
+        acceleration = left - 2.0 * inputs["velocity", "feedback"] - inputs["slope", "feedforward"]
+        return {"command": acceleration / inputs["gain", "inverse"]}, memory
 
 
 def gain_error(trial):

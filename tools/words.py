@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
 MOST = ROOT / "tools" / "words.json"
-ROOMS = ("src", "quadrotor/src", "paper/src", "tools", "benchmarks")
+ROOMS = ("src", "quadrotor/src", "paper/src", "tools", "benchmarks", "examples")
 SHOWING = ROOMS[:3]
 NAMES = {"each", "found", "asked", "given", "held", "said", "told", "made", "wanted", "now"}
 OPENINGS = ("What", "Of")

@@ -61,7 +61,7 @@ def test_a_file_of_ones_own_is_not_written_over(planned, file, tmp_path):
     [
         (lambda d: d["audits"][0]["arms"].pop(), "plan anew"),
         (lambda d: d["audits"][0]["arms"][1].update(repair=[]), "what the system now has"),
-        (lambda d: d.update(library_hash="other"), "library 'carts' is not the one"),
+        (lambda d: d.update(library_hash="other"), "library 'carts' has changed since"),
         (lambda d: d.update(faultpath_study=2), "faultpath_study: is 2, and must be 1"),
         (lambda d: d.update(audits=d["audits"] + d["audits"]), "two audits have the name"),
         (

@@ -72,9 +72,8 @@ def compared(
 ) -> ComparedTrials:
     """Return the trials of two variants that are compared; `UserError` when no scene is left.
 
-    Of seeds that repeat others one is kept, unless not only those that are `distinct` are asked
-    for: a sequential audit keeps all, because which differ is only seen later, and the value of a
-    scene has to be what it was when it was run. Where trials are `judged` that other tools ran, a
+    With `distinct`, one of several seeds with the same outcomes is kept. A sequential audit keeps
+    all: which of them differ is only seen later, and the value of a scene must not change then. Where trials are `judged` that other tools ran, a
     pair that is missing in both arms could have gone either way too.
     """
     pairs = {path: pair(table, Side(repair, path), Side(baseline, path)) for path in paths}

@@ -1,4 +1,4 @@
-"""Failures that depend on each other: groups of consumers with one source, and what was flown.
+"""Failures that depend on each other: groups of consumers with one source, and what was run.
 
 The words are those of ISO 26262-1 and -9: an error of the source is the initiator, the coupling
 factor is why it reaches several elements. What reaches them by the source itself is a common cause

@@ -16,7 +16,7 @@ Extreme = Literal["floor", "ceiling"]
 
 
 class FaultedTap(Result):
-    """A tap at which a fault was in force, by its receipts: all scenes and seeds together."""
+    """A tap at which a fault was in force, by the delivery log: all scenes and seeds together."""
 
     channel: str
     consumer: str
@@ -197,7 +197,7 @@ class StoppedAudit(Result):
     """How far a sequential audit went."""
 
     scenes: int
-    """Flown; void pairs included."""
+    """Run; void pairs included."""
     reached: bool
     """Whether what it was to stop for came about."""
     small: tuple[str, ...]
@@ -217,7 +217,7 @@ class DecisionRecord(Result):
     """Over the frequency of the fault, each path but that of correct inputs."""
     break_even_beta: tuple[PathBreakEven, ...] = ()
     """Over the beta factor, each isolated path: of the faults of that module, the share that
-    strikes all modules at once."""
+    reaches all modules at once."""
     scenes: int
     """Scenes that are compared, those with a void pair left out."""
     scenes_needed: int

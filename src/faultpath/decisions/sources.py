@@ -144,8 +144,8 @@ def _candidate(
         one, two = (bound(variant, interface, channel) for variant in variants)
         if one != two:
             note = (
-                f"A fault on '{channel}' is one of {one} in {variants[0].name} and of {two} in "
-                f"{variants[1].name}, which feed it there."
+                f"Channel '{channel}' is fed by {one} in {variants[0].name} and by {two} in "
+                f"{variants[1].name}, so a fault on it alters another source in each."
             )
             break
     return Candidate(

@@ -42,9 +42,9 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
     if any(share.result.kind in ("interval", "two pieces") for share in record.break_even):
         explained = (
-            "Break-even: shares of trials with the fault, in percent, at which neither is shown to "
-            "be ahead, after the estimate; none: one is ahead at every share; any: no bound could "
-            "be shown."
+            "Break-even, % of trials with the fault: the estimate where there is one, and in "
+            "brackets where neither is shown to be ahead; none: one is ahead everywhere; any: no "
+            "bound could be shown."
         )
         parts += [Text(explained, style="dim")]
     if not details and (follows := answers(record).get("What follows")):

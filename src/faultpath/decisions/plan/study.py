@@ -112,7 +112,7 @@ def check_arms(study: StudyFile, planned: StudyAudit, audit: Audit) -> None:
     """Raise `UserError` unless the system still lays out the arms and scenes of the file."""
     if study.library_hash and audit.question.library_hash != study.library_hash:
         raise UserError(
-            f"library '{study.library}' is not the one of the study file any more: plan anew."
+            f"library '{study.library}' has changed since the study file was written: plan anew."
         )
     current = {(arm.path, arm.baseline, arm.repair) for arm in arms_of(audit)}
     then = {(arm.path, arm.baseline, arm.repair) for arm in planned.arms}

@@ -52,7 +52,7 @@ class Bounds(Frozen, allow_inf_nan=False):
     """Bounds of a search: the faults listed act together, each with a size of its own."""
 
     isolated: str
-    """The module that an isolated audit strikes."""
+    """The module that alone gets the fault in the isolated audit."""
     faults: tuple[BoundedFault, ...] = Field(min_length=1, max_length=8)
     onset: Steps | None = None
     duration: Steps | None = None

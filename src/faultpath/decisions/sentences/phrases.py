@@ -124,7 +124,7 @@ BETA = Shares(
     "where most of its faults are common cause; how few may be is open",
     "where few of its faults are common cause; how many may be is open",
 )
-"""The beta factor: of the faults of a module, the share that strikes all modules at once."""
+"""The beta factor: of the faults of a module, the share that reaches all modules at once."""
 
 
 def shares(

@@ -17,8 +17,8 @@ from faultpath.trials.question import CheckQuestion
 from faultpath.trials.work.processes import local
 
 MOST = 4
-"""Most variants of which all are checked unless some are named; of more, the first two or as many
-as the user has named parts: a system lists those first that run with them."""
+"""A system of up to so many variants is checked whole, unless some are named; of a larger one the
+first two, or one for each part of the user's own: a system lists those that run with them first."""
 _AFTER = 20
 """Control steps for which a tap is faulted."""
 

@@ -96,7 +96,7 @@ def judged(seen: Seen) -> tuple[Check, ...]:
         "declared reads": _reads,
         "fault delivery": _delivery,
         "shape and unit": _readings,
-        "data files": lambda name, _: Check(name=name, says="Python opens declared ones alone"),
+        "data files": lambda name, _: Check(name=name, says="Python opened only declared files"),
     }
     ends = {name: run.outcomes for name, run in seen.firsts()}
     checks = [Check(name=TRIALS, says=successes(ends), remarks=without_room(ends))]
