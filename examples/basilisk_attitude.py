@@ -94,9 +94,9 @@ def filter(of, sensed, wheel_speeds):
 
 def sweeping():
     of = Software(messaging.NavAttMsg())
-    wanted = of.add("inertial3D", {}).attRefOutMsg
-    wanted = of.add("eulerRotation", {"attRef": wanted}, angleRates=[0, SWEEP, 0]).attRefOutMsg
-    error = of.add("attTrackingError", {"attRef": wanted, "attNav": of.sensed}).attGuidOutMsg
+    course = of.add("inertial3D", {}).attRefOutMsg
+    course = of.add("eulerRotation", {"attRef": course}, angleRates=[0, SWEEP, 0]).attRefOutMsg
+    error = of.add("attTrackingError", {"attRef": course, "attNav": of.sensed}).attGuidOutMsg
     torque = of.add("mrpFeedback", {"guid": error}, K=3.5, P=30.0, Ki=-1.0).cmdTorqueOutMsg
     of.add("rwMotorTorque", {"vehControl": torque}, controlAxes_B=np.eye(3))
     return of
@@ -127,17 +127,17 @@ class Craft:
         self.sim.InitializeSimulation()
 
     def move(self, torque, rng):
-        wanted = np.array([0, np.tan(SWEEP * self.ns * 1e-9 / 4), 0])
+        target = np.array([0, np.tan(SWEEP * self.ns * 1e-9 / 4), 0])
         write(self.torque, self.ns, motorTorque=torque)
         self.ns += TICK
         self.sim.ConfigureStopTime(self.ns)
         self.sim.ExecuteSimulation()
         body, noise = self.body.scStateOutMsg.read(), rng.normal(size=(2, 3))
         seen = body.sigma_BN + TRACKER * noise[0], body.omega_BN_B + self.bias + NOISE * noise[1]
-        off = np.linalg.norm(RigidBodyKinematics.subMRP(np.array(body.sigma_BN), wanted))
+        off = np.linalg.norm(RigidBodyKinematics.subMRP(np.array(body.sigma_BN), target))
         speeds = np.array(self.rotors.rwSpeedOutMsg.read().wheelSpeeds[:3])
-        made = {"craft": self, "sensed": np.concatenate(seen), "wheel_speeds": speeds}
-        return made | {"error_deg": np.degrees(4 * np.arctan(off))}
+        readings = {"craft": self, "sensed": np.concatenate(seen), "wheel_speeds": speeds}
+        return readings | {"error_deg": np.degrees(4 * np.arctan(off))}
 
 
 # --- system ---
