@@ -20,6 +20,8 @@ from pathlib import Path
 import documents
 from blocks import PROVENANCE, REFERENCE, ROOT, Run, load
 
+from faultpath.trials.execution.provenance import processor
+
 TREE = ROOT / "build" / "references"
 APART = ("carry-over", "paper")
 SYSTEMS = {
@@ -49,6 +51,7 @@ def main() -> None:
     commit = checkout()
     for name in chosen:
         print(f"{name}: {' '.join(runs[name].provenance.command)}", flush=True)
+        print(elsewhere(runs[name]), end="", flush=True)
         fly(runs[name], commit)
     if chosen:
         sys.exit(documents.main(["--images"]))
@@ -104,6 +107,14 @@ def instructions(run: Run) -> dict[str, str]:
         "ATEN_CPU_CAPABILITY": "avx2",
         "ONEDNN_MAX_CPU_ISA": "AVX2",
     }
+
+
+def elsewhere(run: Run) -> str:
+    """Return a line for a run of another kind of processor, which rounds differently."""
+    before, here = run.provenance.processor, processor()
+    if before == here:
+        return ""
+    return f"It was flown on {before}, and here is {here}: single trials may end differently.\n"
 
 
 def environment(run: Run) -> str:

@@ -36,6 +36,14 @@ def test_a_run_keeps_to_the_instruction_set_by_which_it_was_flown() -> None:
         assert kernels == ("avx2" if by_avx2 else "auto")
 
 
+def test_a_run_of_another_kind_of_processor_says_that_trials_may_end_differently() -> None:
+    toy = references.load("toy")
+    here = toy.provenance.model_copy(update={"processor": references.processor()})
+    assert references.elsewhere(replace(toy, provenance=here)) == ""
+    there = toy.provenance.model_copy(update={"processor": "Abacus"})
+    assert "flown on Abacus" in references.elsewhere(replace(toy, provenance=there))
+
+
 def test_only_a_run_of_other_code_is_stale_and_flown_again(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
