@@ -109,23 +109,25 @@ class MujocoPlant(Plant):
     def __init__(self, vehicle: Vehicle) -> None:
         super().__init__(vehicle)
         parameters = _parameters(vehicle)
-        models = {one: build_model(one) for one in set(parameters)}  # padded lanes repeat a vehicle
-        self._models = [models[one] for one in parameters]
+        models = {
+            each: build_model(each) for each in set(parameters)
+        }  # padded lanes repeat a vehicle
+        self._models = [models[each] for each in parameters]
         self._scratch = [mujoco.MjData(self._models[0])]
         self._pool = rollout.Rollout(nthread=0)
         self._inertia = vehicle.inertia_kgm2.numpy().T.copy()
 
-    def advance(self, plant_state: PlantState, command: Tensor, winds: Tensor) -> PlantState:
+    def advance(self, now: PlantState, command: Tensor, winds: Tensor) -> PlantState:
         """Advance as every plant does; a lane with a number that is none has none from there on."""
-        physics = _pack(plant_state)
-        commands = command.double().numpy().T
+        physics = _pack(now)
+        asked = command.double().numpy().T
         for wind_mps in winds.double().numpy():
-            physics = self._step(physics, commands, wind_mps.T)
+            physics = self._step(physics, asked, wind_mps.T)
         return _unpack(physics)
 
-    def _step(self, physics: Array, commands: Array, wind_mps: Array) -> Array:
+    def _step(self, physics: Array, asked: Array, wind_mps: Array) -> Array:
         control = np.zeros((len(physics), 1, len(_MIX) + _DRAGS))
-        control[:, 0, : len(_MIX)] = self._motor_commands(commands, physics[:, _RATE])
+        control[:, 0, : len(_MIX)] = self._motor_commands(asked, physics[:, _RATE])
         before = physics.copy()
         before[:, _VELOCITY] -= wind_mps
         lost = ~(np.isfinite(before).all(1) & np.isfinite(control).all((1, 2)))
@@ -148,11 +150,11 @@ class MujocoPlant(Plant):
         after[lost] = np.nan
         return after
 
-    def _motor_commands(self, commands: Array, rate: Array) -> Array:
+    def _motor_commands(self, asked: Array, rate: Array) -> Array:
         limit = np.array(RATE_LIMIT_RADPS)
-        error = np.clip(commands[:, 1:], -limit, limit) - rate
+        error = np.clip(asked[:, 1:], -limit, limit) - rate
         torque = self._inertia * RATE_GAIN_PER_S * error + np.cross(rate, self._inertia * rate)
-        collective = np.clip(commands[:, :1], 0.0, COLLECTIVE_MAX_N)
+        collective = np.clip(asked[:, :1], 0.0, COLLECTIVE_MAX_N)
         shares = np.concatenate((collective, torque), axis=1)[:, None] * _MIX
         level = np.clip(shares[..., :3].sum(-1), 0.0, MOTOR_THRUST_MAX_N)
         stroke = shares[..., 3]
@@ -169,13 +171,13 @@ def _parameters(vehicle: Vehicle) -> list[VehicleParameters]:
     return [VehicleParameters(**dict(zip(columns, row, strict=True))) for row in rows]
 
 
-def _pack(plant_state: PlantState) -> Array:
-    state = plant_state.state
-    physics = np.zeros((plant_state.thrusts.shape[-1], len(_REST)))
+def _pack(now: PlantState) -> Array:
+    state = now.state
+    physics = np.zeros((now.thrusts.shape[-1], len(_REST)))
     physics[:, _POSITION] = state.position.numpy().T
     physics[:, _VELOCITY] = state.velocity.numpy().T
     physics[:, _RATE] = state.rate.numpy().T
-    physics[:, _THRUSTS] = plant_state.thrusts.numpy().T
+    physics[:, _THRUSTS] = now.thrusts.numpy().T
     matrices = state.rotation.flatten(0, 1).numpy().T.copy()
     for row, matrix in zip(physics, matrices, strict=True):
         mujoco.mju_mat2Quat(row[_QUATERNION], matrix)
