@@ -1,8 +1,10 @@
 """The page about sensors' faults says what is significant, and nothing of what is not."""
 
+import blocks as blocks_of
 import numpy as np
 import pytest
 import state_blocks as blocks
+from state_design import Design
 
 from faultpath.decisions.family import decide_paths
 
@@ -54,3 +56,15 @@ def test_every_audit_is_shown_once_and_a_repair_has_no_name_of_a_sensor():
     rows, audits = blocks.effects().splitlines()[2:], blocks.audits_of()
     assert len(rows) == len(audits)
     assert not {audit["repair"] for audit in audits} & {"accelerometer", "gyroscope"}
+
+
+def test_the_design_names_what_it_flies():
+    design = Design.read(blocks_of.ROOT / "experiments" / "state-errors" / "design.yaml")
+    assert {fault for fault, _ in design.audits} <= {*design.faults}
+    assert {repair for _, repair in design.audits} <= {*design.repairs}
+    assert design.variants["gyroscope bias"] == {
+        "gru": "eskf-no-bias",
+        "wm-a-nowind": "eskf-no-bias",
+        "dob-inertial": "eskf-no-bias",
+        "eskf/gru": "eskf",
+    }
