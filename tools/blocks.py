@@ -14,7 +14,7 @@ from flown_code import ROOT, changed, flown_by
 from pydantic import BaseModel, ValidationError
 from rich.console import Console, RenderableType
 
-from faultpath.api.folders import MADE_FROM, MAP, MAP_MADE_FROM, RECORD
+from faultpath.api.folders import MADE_FROM, MAP, MAP_MADE_FROM, OUTCOMES, RECORD
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.sentences import wording
@@ -22,16 +22,18 @@ from faultpath.decisions.tables import Entry, Line, Table
 from faultpath.decisions.tables.markdown import grid
 from faultpath.trials.provenance import RunProvenance
 
-sys.path.insert(0, str(ROOT / "experiments" / "carry-over"))
+sys.path += [str(ROOT / "experiments" / study) for study in ("carry-over", "state-errors")]
 from carry_design import Flown
+from state_design import SensorAudits
 
 REFERENCE = ROOT / "docs" / "reference"
 IMAGES = ROOT / "docs" / "images"
-PROVENANCE, CELLS = "provenance.json", "cells.json"
+PROVENANCE, CELLS, AUDITS = "provenance.json", "cells.json", "audits.json"
 RUNS: dict[str, tuple[type[BaseModel], tuple[str, ...]]] = {
     RECORD: (DecisionRecord, (*MADE_FROM, PROVENANCE, "report.html", "table.md")),
     MAP: (MapRecord, (*MAP_MADE_FROM, PROVENANCE, "table.md")),
     CELLS: (Flown, (CELLS, PROVENANCE)),
+    AUDITS: (SensorAudits, (AUDITS, OUTCOMES, PROVENANCE)),
 }
 """Kinds of reference runs, by the file of their record: its model, and the files that are kept."""
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from blocks import Wrong, difference, load, pipes
 from latent_blocks import FAULTS
 from latent_blocks import audits_of as audits_of_rooms
-from state_blocks import PLACES, audits_of
+from state_blocks import audits_of
 
 from faultpath.decisions import model
 from faultpath.decisions.sentences import wording
@@ -150,7 +150,7 @@ def _of_studies() -> Iterator[Audit]:
             acted = {n: t for n, t in audit["turns"].items() if effects[n] != effects["correct"]}
             named = {"fault": FAULTS[audit["fault"]], "repair": f"`{audit['repair']}`"}
             yield _of_study(title, "latent-camera", audit | named | {"turns": acted})
-    for audit in audits_of("sensors"):
+    for audit in audits_of():
         yield _of_study("Quadrotor's filter", "state-errors", audit)
 
 
@@ -163,7 +163,7 @@ def _row(audits: Sequence[Audit]) -> tuple[str, ...]:
     first, word = audits[0], audits[0].word
     page = f"[{first.title}]({{docs}}/{first.page}.md)"
     faults, repairs = (audit.fault for audit in audits), (audit.repair for audit in audits)
-    modules = dict.fromkeys(PLACES.get(audit.module, audit.module) for audit in audits)
+    modules = dict.fromkeys(audit.module for audit in audits)
     alone = [audit.effects[audit.module] for audit in audits]
     return (
         ", ".join(filter(None, dict.fromkeys((page, *faults, *repairs)))),

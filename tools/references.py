@@ -5,8 +5,8 @@
     python tools/references.py --list     say which are stale, and how long each took
 
 Runs fly from a checkout of the last commit, in `build/references`. Each becomes the reference as
-soon as it ends; one that was cut short is resumed. `carry-over` and `paper` have commands of their
-own, which their pages show.
+soon as it ends; one that was cut short is resumed. `carry-over`, `state-errors` and `paper` have
+commands of their own, which their pages show.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from blocks import PROVENANCE, REFERENCE, ROOT, Run, load
 from faultpath.trials.execution.provenance import processor
 
 TREE = ROOT / "build" / "references"
-APART = ("carry-over", "paper")
+APART = ("carry-over", "state-errors", "paper")
 SYSTEMS = {
     "basilisk": "Basilisk",
     "do_mpc": "do_mpc",

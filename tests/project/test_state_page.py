@@ -1,8 +1,10 @@
 """The page about sensors' faults says what is significant, and nothing of what is not."""
 
+import blocks as blocks_of
 import numpy as np
 import pytest
 import state_blocks as blocks
+from state_design import Design
 
 from faultpath.decisions.family import decide_paths
 
@@ -14,7 +16,7 @@ def audit(scenes: int, alone: int, shared: int) -> dict:
         won, lost = (np.full((scenes, 1), side == of) for of in (1, -1))
         return won, lost
 
-    success = {"correct": arms(0), "present": arms(alone), "shared": arms(shared)}
+    success = {"correct": arms(0), "observer": arms(alone), "shared": arms(shared)}
     family = decide_paths(success, rule="unconditional")
     effects = {
         n: [e.value, *(e.interval or (-100, 100)), e.sign] for n, e in family.effects.items()
@@ -51,8 +53,18 @@ def test_many_scenes_say_which_side_and_what_an_isolated_test_detects(
 
 
 def test_every_audit_is_shown_once_and_a_repair_has_no_name_of_a_sensor():
-    tables = [blocks.effects(), *map(blocks.rest, blocks.SOURCES)]
-    rows = [row for table in tables for row in table.splitlines()[2:]]
-    audits = [audit for library in blocks.SOURCES for audit in blocks.audits_of(library)]
+    rows, audits = blocks.effects().splitlines()[2:], blocks.audits_of()
     assert len(rows) == len(audits)
     assert not {audit["repair"] for audit in audits} & {"accelerometer", "gyroscope"}
+
+
+def test_the_design_names_what_it_flies():
+    design = Design.read(blocks_of.ROOT / "experiments" / "state-errors" / "design.yaml")
+    assert {fault for fault, _ in design.audits} <= {*design.faults}
+    assert {repair for _, repair in design.audits} <= {*design.repairs}
+    assert design.variants["gyroscope bias"] == {
+        "gru": "eskf-no-bias",
+        "wm-a-nowind": "eskf-no-bias",
+        "dob-inertial": "eskf-no-bias",
+        "eskf/gru": "eskf",
+    }
