@@ -73,8 +73,9 @@ def compared(
     """Return the trials of two variants that are compared; `UserError` when no scene is left.
 
     With `distinct`, one of several seeds with the same outcomes is kept. A sequential audit keeps
-    all: which of them differ is only seen later, and the value of a scene must not change then. Where trials are `judged` that other tools ran, a
-    pair that is missing in both arms could have gone either way too.
+    all: which of them differ is only seen later, and the value of a scene must not change then.
+    Where trials are `judged` that other tools ran, a pair that is missing in both arms could have
+    gone either way too.
     """
     pairs = {path: pair(table, Side(repair, path), Side(baseline, path)) for path in paths}
     mismatches = tuple(mismatch for path in pairs.values() for mismatch in path.mismatches)
