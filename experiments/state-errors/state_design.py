@@ -50,7 +50,7 @@ class Design(Frozen):
 
 
 class Audit(Frozen):
-    """What was found of a repair under a fault, by condition."""
+    """Findings on a repair under a fault, by condition."""
 
     fault: str
     repair: str
