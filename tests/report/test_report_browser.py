@@ -119,4 +119,4 @@ def test_the_list_of_scenes_is_filtered_by_who_succeeds(page: Page) -> None:
     assert "baseline: ✓" not in column.inner_text()
     page.goto(page.url.partition("#")[0] + "#scene=" + "no")
     page.locator("[data-pairs] svg a").first.click()
-    assert scenes.locator("option").count() == whole
+    expect(scenes.locator("option")).to_have_count(whole)
