@@ -64,6 +64,11 @@ class Run:
         return flown_by(self.provenance, *self._system)
 
     @property
+    def processor(self) -> str:
+        """On which processor it was flown."""
+        return self.provenance.processor.replace("(R)", "")
+
+    @property
     def stale(self) -> bool:
         """Whether the code or the data that it was flown with are not those that are here."""
         return changed(self.provenance, *self._system)

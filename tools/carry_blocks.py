@@ -102,7 +102,7 @@ def cost(name: str) -> str:
         f"{counted(len(flown.cells), 'cell')}, {design.first} to {design.most} scenes each of "
         f"`{design.library}`, {wording.seeds((design.seed,))}; {counted(flown.trials, 'trial')}. "
         f"{counted(timed, 'trial')} took {spent:.0f} minutes on {workers} "
-        f"({run.provenance.processor}); on {NODES} nodes of two cores the same blocks would take "
+        f"({run.processor}); on {NODES} nodes of two cores the same blocks would take "
         f"{60 * hours(flown, NODES):.0f} minutes, without what sending them costs.{whole}{left} "
         f"{run.flown}"
     )

@@ -179,7 +179,7 @@ def origin() -> str:
     again = "" if _former() else _flown_again()
     return (
         f"Finished on {run.provenance.finished[:10]}, with {run.provenance.workers} workers on "
-        f"{run.provenance.processor.replace('(R)', '')}, and concluded anew by the code that is "
+        f"{run.processor}, and concluded anew by the code that is "
         f"here, which a test repeats. {run.flown} {again}Everything is in "
         f"[`docs/reference/{place}`]({{reference}}/{place}): the report, the ledger and all tables."
     )

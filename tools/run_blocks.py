@@ -112,7 +112,7 @@ def times(*names: str) -> str:
             str(len(run.record.question.seeds)),
             str(trials(run)),
             duration(run),
-            run.provenance.processor.replace("(R)", ""),
+            run.processor,
             str(run.provenance.workers),
         )
         for run in runs
@@ -142,10 +142,10 @@ def duration(run: Run) -> str:
 
 
 def map_sentences(name: str) -> str:
-    """Return headline and sentences of a map as a quotation, and by which code it was flown."""
+    """Return headline and sentences of a map as a quotation, and how it was flown."""
     run = load(name)
     lines = [f"> **{run.record.headline}**", *(f"> {text}" for text in run.record.sentences)]
-    return "\n>\n".join(lines) + f"\n\n{run.flown}"
+    return "\n>\n".join(lines) + f"\n\nProcessor: {run.processor}. {run.flown}"
 
 
 def map_picture_of(name: str, part: str) -> Picture:
