@@ -48,8 +48,8 @@ def _paths(record: MapRecord) -> Table:
         lines=tuple(lines),
         notes=(
             f"{wording.counted(record.scenes, 'scene')} of {question.library}, "
-            f"{wording.seeds(question.seeds)}. Bold: significant. Intervals hold at all "
-            f"{len(record.points)} pairs of errors at once.",
+            f"{wording.seeds(question.seeds)}. Intervals hold at all {len(record.points)} pairs of "
+            "errors at once. Significant: the interval leaves out 0, and a sign test agrees.",
         ),
     )
 
