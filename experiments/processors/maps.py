@@ -47,4 +47,6 @@ for folder, flown in ((HERE, before), (THERE, now)):
 
 shared = signs[0].keys() & signs[1].keys()
 alike = sum(signs[0][at] == signs[1][at] for at in shared)
-print(f"\nOf {len(shared)} pairs of errors, {alike} come out alike.")
+more = len(signs[1].keys() - shared)
+print(f"\nOf {len(shared)} pairs of errors run on both, {alike} come out alike.")
+print(f"Pairs of errors run on the second alone: {more}.")
