@@ -46,10 +46,11 @@ def test_two_scenes_with_an_extra_seed_leave_the_other_28():
     )
 
 
-def test_one_scene_of_a_hundred_without_a_seed_costs_that_scene_alone():
+def test_a_scene_without_a_seed_counts_by_its_other_seeds():
     trials = [("", f"s{n}", f"{seed}") for n in range(100) for seed in range(3)]
     made = judged(trials[1:])
-    assert made.scenes == 99
+    assert made.scenes == 100
+    assert made.effects[0].void_pairs == 1
     assert len(made.effects[0].wins) == 3
 
 

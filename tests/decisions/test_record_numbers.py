@@ -106,16 +106,16 @@ def _with_failures(*failed: tuple[str, str, int]) -> OutcomeTable:
     return OutcomeTable(tuple(out))
 
 
-def test_a_failed_trial_voids_its_pair_and_shows_and_leaves_its_scene_out_of_every_path():
+def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_paths_nothing():
     # Scene 45 is won by the repair alone under correct inputs, and lost to the baseline otherwise.
     made = decide(question(), paths(CORRECT, "observer"), _with_failures((REPAIR, "observer", 45)))
     correct, observer = made.effects
     assert (correct.void_pairs, observer.void_pairs) == (0, 1)
-    assert correct.scenes == observer.scenes == made.scenes == 99
-    assert correct.wins == (19,)
+    assert (correct.scenes, observer.scenes, made.scenes) == (100, 99, 100)
+    assert correct.wins == (20,)
     assert observer.losses == (29,)
-    assert correct.success.value == pytest.approx(100 * (19 - 10) / 99)
-    assert correct.p_value == pytest.approx(exact_p(19, 10))
+    assert observer.success.value == pytest.approx(100 * (10 - 29) / 99)
+    assert correct.p_value == pytest.approx(exact_p(20, 10))
     cells = {(cell.variant, cell.path): cell for cell in made.cells}
     assert cells[REPAIR, "observer"].failed == 1
     assert cells[REPAIR, "observer"].trials == 100

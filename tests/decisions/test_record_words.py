@@ -5,6 +5,7 @@ import re
 import pytest
 from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows, seeded, three
 
+from faultpath.core.errors import UserError
 from faultpath.decisions.decide import decide
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
 from faultpath.decisions.sentences import phrases
@@ -119,15 +120,24 @@ def test_results_of_trained_models_are_said_to_be_theirs():
     assert "models trained anew may differ" in " ".join(trained.sentences)
 
 
-def test_newly_trained_models_need_no_qualification_but_a_caution_with_few():
-    by_seed = [(40, 30, 2), (42, 28, 3), (38, 31, 1)]
+def test_what_is_said_of_newly_trained_models_names_its_condition_and_a_sign_test():
+    by_seed = [(40, 30, 2), (42, 28, 3), (38, 31, 1), (39, 30, 2), (41, 29, 0)]
     cells = {CORRECT: by_seed, "observer": by_seed}
     made = seeded(cells, trained=True, generalise="models")
     assert made.estimand.endswith("models newly trained with other seeds")
     assert "these trained models" not in made.headline
-    assert "Caution: 3 trainings say little about new ones" in " ".join(made.sentences)
+    whole = " ".join(made.sentences)
+    assert "5 trainings stand for new ones as far as trainings spread evenly" in whole
+    assert "Under correct inputs, new is ahead in 5 of 5 trainings, p = 0.062 (sign test" in whole
     assert all("t test" in effect.test for effect in made.effects)
-    by_number = {n: [(40 - i, 30 + i, 2) for i in range(n)] for n in (9, 10)}
-    for number, drawn in by_number.items():
-        several = seeded(dict.fromkeys(cells, drawn), trained=True, generalise="models")
-        assert ("Caution" in " ".join(several.sentences)) == (number < 10)
+
+
+@pytest.mark.parametrize("kept", [4, 5])
+def test_of_few_trainings_or_of_copies_nothing_is_said_of_new_ones(kept):
+    trainings = [(40 - seed, 30 + seed, 2) for seed in range(kept)]
+    by_seed = [*trainings, *[trainings[0]] * (6 - kept)]
+    if kept < 5:
+        with pytest.raises(UserError, match="only 4 of the 6 trainings gave different outcomes"):
+            seeded({CORRECT: by_seed}, trained=True, generalise="models")
+    else:
+        assert seeded({CORRECT: by_seed}, trained=True, generalise="models").effects

@@ -316,7 +316,7 @@ def detection(scenes: int, truth: Population, alpha: float, runs: int = 20) -> f
     shares: list[float] = []
     for _ in range(runs):
         difference = truth.outcomes(stream.random((scenes, truth.seeds + 2)))
-        least = detectable(difference > 0.0, difference < 0.0, rule=RULE, alpha=alpha)
+        least = detectable(difference, rule=RULE, alpha=alpha)
         if least is None:
             continue
         rate = max(truth.rate, least / 100.0)

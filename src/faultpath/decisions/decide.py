@@ -2,10 +2,13 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from faultpath.core.errors import UserError
 from faultpath.decisions.compared import ComparedTrials
+from faultpath.decisions.contrasts import change_name, effect_name, led
 from faultpath.decisions.descriptive import cells_of, percent, secondary, untested_paths
-from faultpath.decisions.family import Family, change_name, effect_name, family_of, led
+from faultpath.decisions.family import Family, family_of
 from faultpath.decisions.model import (
     AS_RUN,
     CORRECT,
@@ -15,18 +18,19 @@ from faultpath.decisions.model import (
     Effect,
     Extreme,
     FailedTrials,
+    Invalid,
     Path,
     PathBreakEven,
 )
 from faultpath.decisions.question import Question
 from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.sentences.answers import in_words
+from faultpath.decisions.sentences.phrases import BETA, FREQUENCY
 from faultpath.decisions.stopping import stopped
 from faultpath.statistics.breakeven import break_even, mixture_curve, only
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import EM, Region
 from faultpath.statistics.power import detectable
-from faultpath.statistics.resamples import Resamples
 from faultpath.trials.pairing import mismatch_words
 from faultpath.trials.table import OutcomeTable
 
@@ -34,52 +38,59 @@ FLOOR_PERCENT, CEILING_PERCENT = 10.0, 90.0
 
 
 def decide(
-    question: Question, paths: Sequence[Path], table: OutcomeTable, findings: Sequence[str] = ()
+    question: Question,
+    paths: Sequence[Path],
+    table: OutcomeTable,
+    findings: Sequence[str] = (),
+    repeats: bool = True,
 ) -> DecisionRecord:
     """Return the decision record of an audit.
 
-    Scenes in which a pair is void on any path are left out of all of them, so that every effect
-    speaks of the same scenes; a path that would leave no scene is left out itself, and named. Seeds
-    that gave the same outcomes everywhere are counted once. The record carries `findings`, and what
-    was found about its pairs. `UserError` when no scene is left under correct inputs, for a primary
-    path that the audit does not have, and where newly trained models are asked for and all seeds
-    gave the same.
+    Each effect rests on the scenes that have its trials, each change on those that both have; a
+    path that has none is left out, and named. The record carries `findings`, and what was found
+    about its pairs. Where trials do not `repeats`, or a pair met different conditions, nothing is
+    significant. `UserError` when no pair is left on any path, for a primary path that the audit
+    does not have, and where newly trained models are asked for and too few trainings differ.
     """
     question = question.model_copy(update={"primary": primary_path(question.primary, paths)})
     cells = cells_of(question, paths, table)
     # Whether a fault acted is told by receipts, and other tools' results have none.
     untested = () if question.judged else untested_paths(paths, cells)
-    # Only times and metrics rest on resamples, and of very many scenes these take gigabytes.
-    timed = any(cell.median_time_s is not None for cell in cells)
-    resampled = question.judged is None or timed or bool(question.metrics)
-    n_resamples = 10_000 if resampled else 1
-    trials, resamples, family = family_of(question, paths, table, untested, n_resamples)
+    trials, family = family_of(question, paths, table, untested)
+    invalid: Invalid | None = "unpaired" if trials.mismatches else None
+    if not repeats:
+        invalid = "unrepeatable"
+    if invalid:
+        family = family.without_claims()
     effects = {
-        path: _effect(question, path, trials, family, resamples, path not in untested)
-        for path in trials.arms
+        path: _effect(question, path, trials, family, path not in untested)
+        for path in trials.success
     }
+
+    def between(none: str, every: str, shares: phrases.Shares) -> PathBreakEven:
+        ends = effects[none], effects[every]
+        return _break_even(question, trials, family, ends, shares)
+
+    faulted = [
+        path
+        for path in effects
+        if path not in (CORRECT, AS_RUN, *untested) and trials.in_common(CORRECT, path)
+    ]
+    state = stopped(question, family, table)
     record = DecisionRecord(
         question=question,
         paths=tuple(paths),
         cells=cells,
         effects=tuple(effects.values()),
         changes=tuple(_change(question, path, family) for path in family.changes),
-        break_even=tuple(
-            _break_even(
-                question, path, family, (effects[CORRECT], effects[path]), phrases.FREQUENCY
-            )
-            for path in effects
-            if path not in (CORRECT, AS_RUN, *untested)
-        ),
-        break_even_beta=tuple(
-            _break_even(question, path, family, (effects[path], effects[SHARED]), phrases.BETA)
-            for path in family.changes
-        ),
-        scenes=trials.n_scenes,
+        break_even=tuple(between(CORRECT, path, FREQUENCY) for path in faulted),
+        break_even_beta=tuple(between(path, SHARED, BETA) for path in family.changes),
+        scenes=max(effect.scenes for effect in effects.values()),
+        invalid=invalid,
         scenes_needed=family.scenes_needed,
         hypotheses=family.hypotheses,
         estimand=phrases.estimand(question),
-        stopped=stopped(question, family, table),
+        stopped=state and state.model_copy(update={"small": ()} if invalid else {}),
     )
     noted = (
         *(f"{phrases.no_pair(path)}: the table shows what failed." for path in trials.void),
@@ -106,39 +117,38 @@ def primary_path(named: str, paths: Sequence[Path]) -> str:
 
 
 def _effect(
-    question: Question,
-    path: str,
-    trials: ComparedTrials,
-    family: Family,
-    resamples: Resamples,
-    acted: bool,
+    question: Question, path: str, trials: ComparedTrials, family: Family, acted: bool
 ) -> Effect:
-    repair, baseline = trials.arms[path]
+    repair, baseline = trials.success[path]
     effect, pairs = family.effects[path], trials.pairs[path]
     assert effect.counts is not None
     assert effect.test is not None
+    assert effect.pairs is not None
     counts = effect.counts.per_seed
     wins, losses = (tuple(getattr(c, f) for c in counts) for f in ("first_only", "second_only"))
-    rates = percent(baseline), percent(repair)
+    unpaired = np.isnan(repair - baseline)
+    rates = tuple(percent(np.where(unpaired, np.nan, part)) for part in (baseline, repair))
     extreme: Extreme | None = "floor" if max(rates) < FLOOR_PERCENT else None
     if min(rates) > CEILING_PERCENT:
         extreme = "ceiling"
     failed, least = None, None
     if path in family.fills:
-        (against, favour), voids = family.fills[path], trials.voids[path]
+        against, favour = family.fills[path]
+        ours, theirs = (int(side.failed.sum()) for side in pairs.ended)
         failed = FailedTrials(
-            repair=voids.failed[0],
-            baseline=voids.failed[1],
+            repair=ours,
+            baseline=theirs,
             against_pp=against.value,
             favour_pp=favour.value,
-            uneven=voids.uneven,
+            uneven=path in family.uneven,
             unsettled=effect_name(path) in family.unsettled,
+            repairs=family.repairs.get(path),
         )
     # None is known for newly trained models, whose spread a few seeds do not give, and of an audit
     # that stops where it has decided.
     if effect.decision and question.generalise == "scenes" and question.stop is None:
         level = effect.decision.critical_p
-        least = detectable(repair, baseline, rule=question.rule, alpha=level, on_top=True)
+        least = detectable(effect.pairs, rule=question.rule, alpha=level, on_top=True)
     return Effect(
         path=path,
         success=effect.estimate().model_copy(update={"estimand": phrases.estimand(question)}),
@@ -147,7 +157,8 @@ def _effect(
         p_value=effect.test.p_value,
         adjusted_p_value=effect.decision.adjusted_p if effect.decision else None,
         mcnemar_p_value=sign_p_value(wins[0], losses[0]) if effect.test.name == EM else None,
-        scenes=len(pairs.scenes),
+        scenes=effect.n_scenes,
+        ahead=effect.ahead,
         void_pairs=pairs.void,
         failed=failed,
         wins=wins,
@@ -157,7 +168,7 @@ def _effect(
         extreme=extreme,
         acted=acted,
         minimum_detectable_pp=least,
-        **secondary(pairs, resamples, question),
+        **secondary(pairs, question),
     )
 
 
@@ -180,15 +191,17 @@ def _change(question: Question, path: str, family: Family) -> Change:
 
 def _break_even(
     question: Question,
-    path: str,
+    trials: ComparedTrials,
     family: Family,
     ends: tuple[Effect, Effect],
     shares: phrases.Shares,
 ) -> PathBreakEven:
-    """Return where baseline and repair are even between the effects at two ends of a share."""
+    """Return where baseline and repair are even between the effects at two ends of a share, over
+    the scenes that both have, as a result of the condition with the fault, or of the one module."""
     at_none, at_all = ends
-    tested = family.effects[at_none.path], family.effects[at_all.path]
-    level = 1.0 - min(end.decision.critical_p for end in tested if end.decision)
+    decided = [family.effects[end.path].decision for end in ends]
+    level = 1.0 - min(decision.critical_p for decision in decided if decision)
+    tested = family.measure.together(trials.success[at_none.path], trials.success[at_all.path])
     filled = [family.fills[end.path] for end in ends if end.path in family.fills]
     # Both ends with what failed trials leave open against the repair, and for it.
     fills = tuple(zip(*filled, strict=True)) if any(a.value != b.value for a, b in filled) else ()
@@ -203,7 +216,7 @@ def _break_even(
         if low and high and shown and not inner:
             kept.append(region)
     return PathBreakEven(
-        path=path,
+        path=at_all.path if shares is FREQUENCY else at_none.path,
         result=only(result, kept),
         curve=mixture_curve(*tested, level=level, fills=fills),
         words=phrases.shares(question, result.regions, at_none, at_all, shares),

@@ -1,6 +1,7 @@
 """Descriptive numbers of a path, which decide nothing: how trials ended, times, metrics."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 from math import isfinite
 from statistics import median
 from typing import Any
@@ -10,17 +11,19 @@ import numpy as np
 from faultpath.decisions.model import CORRECT, ArmCounts, AtThreshold, Path
 from faultpath.decisions.question import Question
 from faultpath.statistics.contrast import MIN_SCENES
-from faultpath.statistics.effects import mean_effect, median_effect, success_effect
+from faultpath.statistics.effects import mean_effect, median_effect, seed_sums, success_effect
 from faultpath.statistics.estimate import Estimate
+from faultpath.statistics.inputs import Floats
 from faultpath.statistics.resamples import Resamples
 from faultpath.trials.outcome import Status
-from faultpath.trials.pairing import Bools, Pairs, Trials
+from faultpath.trials.pairing import Pairs, Trials
 from faultpath.trials.table import OutcomeTable
 
 
-def percent(success: Bools) -> float:
-    """Return success in percent."""
-    return 100.0 * float(success.sum()) / success.size
+def percent(success: Floats) -> float:
+    """Return success `[scenes, seeds]` in percent, over scenes; NaN where a pair did not run."""
+    ran = success[~np.isnan(success).all(axis=1)]
+    return 100.0 * float(seed_sums(ran).sum()) / ran.size
 
 
 def cells_of(
@@ -59,14 +62,19 @@ def untested_paths(paths: Sequence[Path], cells: Sequence[ArmCounts]) -> tuple[s
     return tuple(path.name for path in paths if path.name != CORRECT and path.name not in acted)
 
 
-def secondary(pairs: Pairs, resamples: Resamples, question: Question) -> dict[str, Any]:
-    """Return the fields of an `Effect` on time and metrics, for new scenes and the seeds run."""
+def secondary(pairs: Pairs, question: Question) -> dict[str, Any]:
+    """Return the fields of an `Effect` on time and metrics, over the scenes of which every seed has
+    both outcomes, for new scenes and the seeds run."""
+    if not pairs.scenes:
+        return {"time_s": None, "joint_successes": 0, "metrics": {}}
     first, second = pairs.first, pairs.second
+    library, scenes = question.library_hash, len(pairs.scenes)
     joint = first.success & second.success
     joint &= np.isfinite(first.time_s) & np.isfinite(second.time_s)  # no times, in some results
     time_s = None
     if joint.any():
-        time_s = median_effect(first.time_s, second.time_s, joint, resamples).estimate()
+        drawn = _resamples(library, scenes)
+        time_s = median_effect(first.time_s, second.time_s, joint, drawn).estimate()
         time_s = _honest(time_s, "median", question)
     metrics: dict[str, Estimate] = {}
     means, thresholds = None, list[AtThreshold]()
@@ -76,9 +84,8 @@ def secondary(pairs: Pairs, resamples: Resamples, question: Question) -> dict[st
         full = np.asarray(np.isfinite(first.metrics[name] + second.metrics[name]).all(axis=1))
         if not (n_scenes := int(full.sum())):
             continue
-        baseline, repair, drawn = second.only(full), first.only(full), resamples
-        if n_scenes < len(full):  # of a scene in which a trial has no value nothing is told
-            drawn = Resamples.draw(drawn.label, n_scenes, n_resamples=drawn.n_resamples)
+        # Of a scene in which a trial has no value nothing is told.
+        baseline, repair, drawn = second.only(full), first.only(full), _resamples(library, n_scenes)
         values = baseline.metrics[name], repair.metrics[name]
         difference = mean_effect(values[1], values[0], drawn, metric.unit)
         metrics[name] = _honest(difference.estimate(), "mean", question)
@@ -94,6 +101,11 @@ def secondary(pairs: Pairs, resamples: Resamples, question: Question) -> dict[st
         "metric_means": means,
         "thresholds": tuple(thresholds),
     }
+
+
+@lru_cache(maxsize=2)
+def _resamples(label: str, scenes: int) -> Resamples:
+    return Resamples.draw(label, scenes)
 
 
 def _honest(estimate: Estimate, what: str, question: Question) -> Estimate:
@@ -123,7 +135,7 @@ def _at_threshold(
     difference = success_effect(new, old, resamples, sequential=sequential, rule=question.rule)
     return AtThreshold(
         threshold=threshold,
-        baseline_percent=percent(old),
-        repair_percent=percent(new),
+        baseline_percent=percent(old.astype(np.float64)),
+        repair_percent=percent(new.astype(np.float64)),
         difference=difference.estimate(),
     )

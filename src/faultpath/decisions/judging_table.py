@@ -7,6 +7,7 @@ from itertools import product
 
 from faultpath.core.errors import UserError
 from faultpath.trials.outcome import Outcome, Status, failed_outcome
+from faultpath.trials.question import FEWEST_TRAININGS
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import Received
 from faultpath.trials.table import OutcomeTable, TrialRow
@@ -46,10 +47,10 @@ def units_of(trials: Iterable[Address], request: JudgeQuestion) -> Units:
     different = set(map(frozenset, compared.values()))
     # Seeds that are the same everywhere are seeds; others only number the trials of a scene.
     alike = len(different) == 1
-    if request.generalise == "models" and (not alike or len(min(different)) < 2):
+    if request.generalise == "models" and (not alike or len(min(different)) < FEWEST_TRAININGS):
         raise UserError(
-            "newly trained models need several seeds, the same ones in every scene: leave "
-            "--generalise models out."
+            f"newly trained models need {FEWEST_TRAININGS} seeds or more, the same ones in every "
+            "scene: leave --generalise models out."
         )
     seeds = tuple(range(most))
     if alike and all(label.isdecimal() and len(label) < 19 for label in min(different)):

@@ -11,6 +11,10 @@ CORRECT = "correct"
 SHARED = "shared"
 AS_RUN = "as-run"
 """The only path of results that name no condition; no module can be called so."""
+Invalid = Literal["unrepeatable", "unpaired"]
+"""Trials that came out otherwise when they ran again; pairs that met different conditions."""
+FEW_DIFFER = 10
+"""With fewer scenes that differ, a headline says how many there are."""
 Extreme = Literal["floor", "ceiling"]
 """Both arms below 10 %, or both above 90 %."""
 
@@ -67,13 +71,16 @@ class FailedTrials(Result):
     """Failed trials of the repair on this path."""
     baseline: int
     against_pp: float
-    """The difference where the trials of pairs of which one failed go against the repair."""
+    """The difference over all scenes where all trials that failed go against the repair."""
     favour_pp: float
     """Where they go for it."""
     uneven: bool
     """Whether one arm failed more often than chance explains: then no headline rests on it."""
     unsettled: bool
-    """Whether the scenes compared decide for an arm, and what is open could undo that."""
+    """Whether the trials that ran decide for a variant, and those that failed could undo that."""
+    repairs: tuple[int, int] | None = None
+    """Where they could: how many failed trials of the repair and of the baseline have to run to
+    settle it, if they come out as the others did."""
 
 
 class AtThreshold(Result):
@@ -87,7 +94,7 @@ class AtThreshold(Result):
 
 
 class Effect(Result):
-    """The repair minus the baseline on one path, over scenes in which every arm ran."""
+    """The repair minus the baseline on one path, over the scenes of which a pair ran there."""
 
     path: str
     success: Estimate
@@ -102,7 +109,10 @@ class Effect(Result):
     mcnemar_p_value: float | None = None
     """Exact McNemar's, to stand beside that of another test of one seed; it decides nothing."""
     scenes: int
-    """Pairs that the effect rests on: a scene is one, whatever the number of seeds."""
+    """Scenes that the effect rests on: those of which a pair has both outcomes with any seed."""
+    ahead: tuple[int, int] | None = None
+    """Scenes in which the repair succeeded with more seeds than the baseline, and those in which
+    the baseline did; unknown in older results."""
     void_pairs: int
     """Pairs of trials, seed by seed, that count for nothing."""
     failed: FailedTrials | None = None
@@ -111,7 +121,7 @@ class Effect(Result):
     """Scenes where only the repair succeeded, one count for each seed that differs."""
     losses: tuple[int, ...]
     baseline_percent: float
-    """Success over the scenes that are compared."""
+    """Success over the pairs that are compared."""
     repair_percent: float
     extreme: Extreme | None
     """Where both arms are at the floor or at the ceiling; such an effect makes no headline."""
@@ -134,6 +144,11 @@ class Effect(Result):
     def detected(self) -> bool:
         """Whether the family decides for one of the arms."""
         return self.sign != 0
+
+    @property
+    def few_differ(self) -> bool:
+        """Whether so few scenes differ that a headline says how many."""
+        return self.ahead is not None and sum(self.ahead) < FEW_DIFFER
 
     @property
     def leads(self) -> bool:
@@ -219,7 +234,9 @@ class DecisionRecord(Result):
     """Over the beta factor, each isolated path: of the faults of that module, the share that
     reaches all modules at once."""
     scenes: int
-    """Scenes that are compared, those with a void pair left out."""
+    """Scenes that are compared: the most that any effect rests on."""
+    invalid: Invalid | None = None
+    """Why no result follows from these trials: then nothing is significant."""
     scenes_needed: int
     """With fewer, nothing can be decided, whatever comes out."""
     hypotheses: int

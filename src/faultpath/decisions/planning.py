@@ -12,6 +12,7 @@ from faultpath.decisions.decide import decide, primary_path
 from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, FaultedTap, Path
 from faultpath.decisions.question import Question, StopRule, resolve
+from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.stopping import stops
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import module_of
@@ -28,7 +29,7 @@ from faultpath.trials import (
     SystemSpec,
     Variant,
 )
-from faultpath.trials.question import AuditQuestion, RepairQuestion
+from faultpath.trials.question import FEWEST_TRAININGS, AuditQuestion, RepairQuestion
 
 LOOK = 5
 """Scenes from one look to the next of a sequential audit, where the system runs as many at once:
@@ -64,7 +65,7 @@ class Audit(Analysis[None]):
             )
             for path in self.paths
         ]
-        return decide(question, paths, table, findings=deliveries.findings)
+        return decide(question, paths, table, deliveries.findings, repeats=deliveries.repeats)
 
     def stops(self, table: OutcomeTable) -> bool:
         """Return whether a sequential audit ends with these trials."""
@@ -224,10 +225,11 @@ def _check(system: System, question: AuditQuestion) -> None:
         raise UserError(
             f"{system.name} has no trained models to generalise to: leave --generalise models out."
         )
-    if len(question.seeds) < 2:
+    if len(question.seeds) < FEWEST_TRAININGS:
         raise UserError(
-            "one seed says nothing about newly trained models: give several, such as "
-            "--seeds 0,1,2, or leave --generalise models out."
+            f"{counted(len(question.seeds), 'seed')} cannot show how newly trained models would "
+            f"spread: give {FEWEST_TRAININGS} or more, such as --seeds 0,1,2,3,4, or leave "
+            "--generalise models out."
         )
 
 

@@ -15,8 +15,7 @@ def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> boo
     """Return whether a sequential audit stops with these trials; their order does not matter."""
     untested = untested_paths(paths, cells_of(question, paths, table))
     try:
-        # What is decided of a sequential audit rests on no resamples.
-        _, _, family = family_of(question, paths, table, untested, n_resamples=1)
+        _, family = family_of(question, paths, table, untested)
     except UserError:  # no pair is sound so far
         return False
     state = stopped(question, family, table)

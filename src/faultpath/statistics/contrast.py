@@ -41,8 +41,8 @@ class Contrast:
     ``draws`` [resamples] are its bootstrap draws; ``per_seed`` the same quantity from each seed
     alone, in seed order. Bounded outcomes have their ``scenes`` as well, and a score interval in
     place of the bootstrap's; for new seeds that of Student's t over ``per_seed`` stands beside it.
-    What has none of these has no interval. ``arms`` are both arms' outcomes [scenes, seeds] where
-    these are yes or no.
+    What has none of these has no interval. ``pairs`` [scenes, seeds] are the differences of yes or
+    no, not a number where a pair has not both outcomes.
     """
 
     value: float
@@ -54,7 +54,7 @@ class Contrast:
     per_seed: tuple[float, ...] = ()
     draws: Floats = field(default_factory=lambda: np.empty(0), repr=False)
     resamples: Resamples | None = field(default=None, repr=False)
-    arms: tuple[Floats, Floats] | None = field(default=None, repr=False)
+    pairs: Floats | None = field(default=None, repr=False)
     scenes: SceneValues | None = field(default=None, repr=False)
     against_zero: bool = True
     """Whether 0 is no difference; not so for rates, ratios and what is counted."""
@@ -67,20 +67,25 @@ class Contrast:
 
     @property
     def counts(self) -> SeedCounts | None:
-        """Return seed by seed in how many scenes only one of the arms succeeded."""
-        if self.arms is None:
+        """Return seed by seed in how many scenes only one of the variants succeeded."""
+        if self.pairs is None:
             return None
-        first, second = self.arms
         return SeedCounts(
             per_seed=tuple(
                 Discordant(
                     first_only=int((column > 0).sum()),
                     second_only=int((column < 0).sum()),
-                    n_pairs=len(column),
+                    n_pairs=int(np.isfinite(column).sum()),
                 )
-                for column in (first - second).T
+                for column in self.pairs.T
             )
         )
+
+    @property
+    def ahead(self) -> tuple[int, int]:
+        """In how many scenes the first was ahead over the seeds, and in how many the second."""
+        values = np.zeros(0) if self.scenes is None else self.scenes.values
+        return int((values > 0).sum()), int((values < 0).sum())
 
     @property
     def rounding(self) -> float:
@@ -171,8 +176,8 @@ class Contrast:
 
         None where no difference would, or where 0 is not what it is set against.
         """
-        if self.arms is not None:
-            return detectable(*self.arms, rule="exact")
+        if self.pairs is not None:
+            return detectable(self.pairs, rule="exact")
         if not (self.against_zero and self.enough and self.interval):
             return None
         half_width = normal_quantile(0.975)  # of a 95 % interval, in standard errors
@@ -222,7 +227,7 @@ def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Con
         per_seed=tuple(_dot(weights, values) for values in by_seed),
         method=method,
         n_seeds=max(part.n_seeds for part in contrasts),
-        arms=None,
+        pairs=None,
         scenes=scenes,
         test=None,
         decision=None,

@@ -41,19 +41,19 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
     elif scenes.sequential:
         name = "bets on the mean"
         p, ahead = betting.p_value(*scenes.kinds(), scenes.bound)
-    elif scenes.graded and (contrast.arms is None or seeds > 1):
+    elif scenes.graded and (contrast.pairs is None or seeds > 1):
         name, p = DEGREES, score.degrees_p_value(*scenes.kinds(), scenes.bound)
-    elif rule != "exact" and (contrast.arms is None or seeds > 1):
+    elif rule != "exact" and (contrast.pairs is None or seeds > 1):
         name = FLIPS
         p = max(signflip.p_value(scenes.values, seeds), score.p_value(*scenes.kinds(), scenes.far))
     else:
-        first, second = int((scenes.values > 0).sum()), int((scenes.values < 0).sum())
+        first, second = contrast.ahead
         ahead = first - second
         if rule != "exact":
             name, p = EM, unconditional.p_value(first, second, contrast.n_scenes)
         else:
             name = "exact McNemar" if seeds == 1 else "sign test on scene means"
-            name = "sign test on scene differences" if contrast.arms is None else name
+            name = "sign test on scene differences" if contrast.pairs is None else name
             p = sign_p_value(first, second)
     leans = 1 if ahead > 0 else -1 if ahead < 0 else 0
     return replace(contrast, test=PairedTest(name, p, leans))

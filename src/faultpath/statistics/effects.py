@@ -25,15 +25,30 @@ def success_effect(
 ) -> Contrast:
     """Return the difference in success in percentage points, from binary [scenes, seeds].
 
-    ``models`` speaks of newly trained ones as well, of which each seed is one. ``sequential`` says
-    that the number of scenes was not fixed beforehand: its interval and test hold at whatever scene
-    one stops. A ``rule`` says how far the unseen may lie, of several seeds.
+    A pair of which a trial has no outcome (not a number) is left out: a scene's difference is the
+    mean over the seeds that it has, and scenes without any do not count. ``resamples`` are of those
+    that do. ``models`` speaks of newly trained ones as well, of which each seed is one.
+    ``sequential`` says that the number of scenes was not fixed beforehand: its interval and test
+    hold at whatever scene one stops. A ``rule`` says how far the unseen may lie, of several seeds.
     """
     one, two = paired(first, second, binary=True)
+    pairs = one - two
+    pairs = pairs[~np.isnan(pairs).all(axis=1)]
+    if not len(pairs):
+        raise ValueError("no pair has both outcomes, so there is no difference")
+    if models:  # a training without any pair says nothing of trainings
+        pairs = pairs[:, ~np.isnan(pairs).all(axis=0)]
     # Summed first, so that wins and losses of a scene cancel exactly.
-    values = (one - two).sum(axis=1) / one.shape[1]
+    values = seed_sums(pairs) / pairs.shape[1]
     scenes = SceneValues.paired(values, 1.0, 100.0, sequential, RULES[rule])
-    return replace(_mean(one - two, resamples, "pp", scenes, models), arms=(one, two))
+    return replace(_mean(pairs, resamples, "pp", scenes, models), pairs=pairs)
+
+
+def seed_sums(values: Floats) -> Floats:
+    """Return the sum over the seeds [scenes] of ``values`` [scenes, seeds], with the mean of those
+    that a scene has in the place of what is not a number."""
+    ran = (~np.isnan(values)).sum(axis=1)
+    return np.nansum(values, axis=1) * (values.shape[1] / ran)
 
 
 def mean_effect(first: Numbers, second: Numbers, resamples: Resamples, unit: str) -> Contrast:
@@ -75,15 +90,20 @@ def _mean(
     scale = scenes.scale if scenes else 1.0
     # Sums of binary outcomes are whole numbers and so exact; dividing last makes a resampled mean
     # of 0 exactly 0, on which "the interval excludes 0" depends.
-    sums = resamples.counts @ values.sum(axis=1)
+    ran = ~np.isnan(values)
+    totals = seed_sums(values)
+    sums = resamples.counts @ totals
     return Contrast(
-        value=float(scale * values.sum() / (n_scenes * n_seeds)),
+        value=float(scale * (values if ran.all() else totals).sum() / (n_scenes * n_seeds)),
         unit=unit,
         n_scenes=n_scenes,
         method=method,
         estimand=SCENES_AND_SEEDS if models else SCENES,
         n_seeds=n_seeds,
-        per_seed=tuple(float(scale * total / n_scenes) for total in values.sum(axis=0)),
+        per_seed=tuple(
+            float(scale * total / max(1, count))
+            for total, count in zip(np.nansum(values, axis=0), ran.sum(axis=0), strict=True)
+        ),
         draws=scale * sums / (n_scenes * n_seeds),
         resamples=resamples,
         scenes=scenes,

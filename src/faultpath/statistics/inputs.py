@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 def by_scene_and_seed(values: Numbers, name: str = "values", *, binary: bool = False) -> Floats:
     """Return ``values`` ([scenes, seeds], or [scenes] for one seed) as float64 [scenes, seeds].
 
-    ``binary`` ones are zeros and ones.
+    ``binary`` ones are zeros and ones, and not a number where a trial has no outcome.
     """
     array = np.asarray(values, dtype=np.float64)
     array = array[:, np.newaxis] if array.ndim == 1 else array
@@ -20,10 +20,11 @@ def by_scene_and_seed(values: Numbers, name: str = "values", *, binary: bool = F
         raise ValueError(f"{name} must be [scenes, seeds] or [scenes], not {array.ndim}-d")
     if array.size == 0:
         raise ValueError(f"{name} holds no outcomes: its shape is {array.shape}")
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} holds NaN or infinity; leave void pairs out before")
-    if binary and not ((array == 0.0) | (array == 1.0)).all():
-        raise ValueError(f"{name} must hold only 0 and 1 (or booleans)")
+    if binary:
+        if not ((array == 0.0) | (array == 1.0) | np.isnan(array)).all():
+            raise ValueError(f"{name} must hold only 0 and 1 (or booleans), or NaN for no outcome")
+    elif not np.isfinite(array).all():
+        raise ValueError(f"{name} holds NaN or infinity; leave such trials out before")
     return array
 
 

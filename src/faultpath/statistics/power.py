@@ -13,7 +13,7 @@ from faultpath.core.streams import generator
 from faultpath.statistics import signflip, unconditional
 from faultpath.statistics.distributions import binomial_cdf, binomial_pmf
 from faultpath.statistics.estimate import ALPHA, RULES, RuleName
-from faultpath.statistics.inputs import Floats, Numbers, paired
+from faultpath.statistics.inputs import Floats, Numbers, by_scene_and_seed
 from faultpath.statistics.score import degrees_rejects, quantile, reach, rejects
 
 LEVEL = 0.95
@@ -21,6 +21,8 @@ LEVEL = 0.95
 AUDITS = 2000
 """Simulated audits, where power has no closed form."""
 _PRECISION = 1e-3
+_MISSING = 2.0
+"""Stands for a pair without both outcomes, where columns of pairs are compared."""
 _PRIOR_ALIKE, _PRIOR_SCENES = 0.5, 1.0
 """Counts of seeds that end alike, taken as seen before anything was."""
 
@@ -126,15 +128,15 @@ def detected(
 
 
 def detectable(
-    first: Numbers,
-    second: Numbers,
+    pairs: Numbers,
     *,
     rule: RuleName,
     alpha: float = ALPHA,
     power: float = 0.8,
     on_top: bool = False,
 ) -> float | None:
-    """Return the detectable difference in success (pp) of binary arms [scenes, seeds].
+    """Return the detectable difference in success (pp) of pairs [scenes, seeds]: 1, 0 or -1, and
+    not a number where a pair has not both outcomes.
 
     None where the test cannot reject at ``alpha`` with that power, whatever the difference. As many
     pairs are taken to be discordant as were, or with all of them on one side what the difference
@@ -144,18 +146,22 @@ def detectable(
     ``on_top`` takes what was seen for noise that favours neither arm, and the difference for wins
     beside it, so that pairs are discordant more often: the number to plan by.
     """
-    one, two = paired(first, second, binary=True)
-    n_scenes = len(one)
-    seeds = np.unique(one - two, axis=1)
-    rate, alike = float(np.abs(seeds).mean()), 1.0
+    seeds = np.unique(by_scene_and_seed(np.nan_to_num(pairs, nan=_MISSING), "pairs"), axis=1)
+    ran = seeds != _MISSING
+    seeds = np.where(ran, seeds, 0.0)
+    n_scenes, n_seeds = seeds.shape
+    rate, alike = float(np.abs(seeds).sum() / ran.sum()), 1.0
     if rate == 0.0:
         rate = 1.0 - ((1.0 - LEVEL) / 2.0) ** (1.0 / n_scenes)
-    elif (n_seeds := seeds.shape[1]) > 1:
+    elif n_seeds > 1:
         # Two seeds' product has the mean ``alike * rate + (1 - alike) * mean ** 2``. A little is
         # added as if seen, on either side, because few discordant pairs tell little.
         sums = seeds.sum(axis=1) ** 2 - np.abs(seeds).sum(axis=1)
-        products = float(sums.sum()) / (n_seeds * (n_seeds - 1))
-        by_chance = n_scenes * float(seeds.mean()) ** 2
+        together = ran.sum(axis=1) * (
+            ran.sum(axis=1) - 1
+        )  # ordered pairs of seeds that a scene has
+        products = n_scenes * float(sums.sum()) / max(1, int(together.sum()))
+        by_chance = n_scenes * float(seeds.sum() / ran.sum()) ** 2
         seen = n_scenes * rate - by_chance + _PRIOR_SCENES
         alike = min(1.0, max(0.0, (products - by_chance + _PRIOR_ALIKE * _PRIOR_SCENES) / seen))
 
@@ -164,7 +170,7 @@ def detectable(
         if alike == 1.0:
             return rule_power(n_scenes, share, difference, alpha, rule=rule)
         lean = difference / share
-        return simulated_power(n_scenes, seeds.shape[1], share, lean, alike, alpha, rule)
+        return simulated_power(n_scenes, n_seeds, share, lean, alike, alpha, rule)
 
     if reached(1.0) < power:
         return None

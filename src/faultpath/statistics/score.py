@@ -25,9 +25,8 @@ from faultpath.statistics.inputs import Floats
 _HALVINGS = 44
 _DIGITS = 9
 """Digits of a combined value, so that values which cancel leave exactly 0."""
-PRIOR, _DOUBT = 3.0, 10.0
-"""Scenes of the largest possible difference that `reach` adds by itself, where a rule has not its
-own; and those of the test of degrees, before anything was seen."""
+PRIOR = 3.0
+"""Scenes of the largest possible difference that `reach` adds, where a rule has not its own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,13 +56,14 @@ class SceneValues:
         sequential: bool = False,
         rule: DecisionRule = RULES["exact"],
     ) -> "SceneValues":
-        """Return differences between two arms; what was not observed lies within `reach`.
+        """Return differences between two variants.
 
-        Of a ``sequential`` audit it may lie anywhere within the bound.
+        A difference that was not observed may lie anywhere within the bound; by rules that are not
+        graded it lies within `reach`, unless the audit was ``sequential``.
         """
-        if sequential:
-            return cls(values, bound, far=bound, scale=scale, sequential=True)
-        scenes = cls(values, bound, bound, scale, graded=rule.graded)
+        if sequential or rule.graded:
+            return cls(values, bound, bound, scale, sequential=sequential, graded=not sequential)
+        scenes = cls(values, bound, bound, scale)
         kinds, often = scenes.kinds()
         # Summed in both orders, since swapping the arms turns the order round.
         orders = ((kinds, often), (kinds[::-1], often[::-1]))
@@ -82,7 +82,7 @@ class SceneValues:
         if self.sequential:
             return betting.interval(values, counts, far, level)
         if self.graded:
-            return degrees_interval(values, counts, far, bound, level)
+            return degrees_interval(values, counts, bound, level)
         return interval(values, counts, far, quantile(level))
 
     def kinds(self) -> tuple[Floats, Floats]:
@@ -126,55 +126,48 @@ def reach(values: Floats, counts: Floats, bound: Floats | float, prior: float = 
 def degrees_p_value(values: Floats, counts: Floats, bound: float) -> float:
     """Return the two-sided p of "the mean is 0" for scenes that differ by degrees.
 
-    It is the larger of the score's and of E+M's (`unconditional`) for as many scenes as would tell
-    as much if they differed wholly: ``(sum |y|)^2 / sum y^2``, at ``z = sum y / sqrt(sum y^2)``. Of
-    scenes that differ wholly or not at all these are its own numbers.
+    It is the larger of the score's, for which a difference that was not seen may be a whole one,
+    and of E+M's (`unconditional`) for as many scenes as would tell as much if they differed wholly:
+    ``(sum |y|)^2 / sum y^2``, at ``z = sum y / sqrt(sum y^2)``. Of scenes that differ wholly or not
+    at all these are its own numbers.
     """
     if counts @ values < 0.0:  # one order of sums for both arms
         values, counts = -values[::-1].copy(), counts[::-1].copy()
-    z, discordants, far = map(float, _degrees(values, counts, bound))
+    z, discordants = map(float, _degrees(values, counts))
     p = unconditional.degrees_p_value(z, discordants, round(counts.sum()))
-    return max(p, p_value(values, counts, far))
+    return max(p, p_value(values, counts, bound))
 
 
 def degrees_rejects(
     values: Floats, counts: Floats, bound: Floats | float, alpha: float
 ) -> NDArray[np.bool_]:
     """Return [...]: whether that p is at most ``alpha``; all samples have as many scenes."""
-    z, discordants, far = _degrees(values, counts, bound)
-    beyond = rejects(values, counts, 0.0, far, quantile(1.0 - alpha))
+    z, discordants = _degrees(values, counts)
+    beyond = rejects(values, counts, 0.0, bound, quantile(1.0 - alpha))
     most = round(float(counts.sum(axis=-1).max()))
     beyond[beyond] = unconditional.degrees_rejects(z[beyond], discordants[beyond], most, alpha)
     return beyond
 
 
 def degrees_interval(
-    values: Floats, counts: Floats, far: Floats, bound: Floats | float, level: float
+    values: Floats, counts: Floats, bound: Floats | float, level: float
 ) -> tuple[Floats, Floats]:
-    """Return both ends [...] of `interval`, of which one is moved where it and the test of degrees
-    disagree on 0: onto it, or to the end at the reach of that test."""
-    z, beyond = quantile(level), degrees_rejects(values, counts, bound, 1.0 - level)
-    low, high = interval(values, counts, far, z)
-    near, most = interval(values, counts, _degrees(values, counts, bound)[2], z)
-    low = np.where(beyond & (near > 0.0), np.where(low > 0.0, low, near), np.minimum(low, 0.0))
-    high = np.where(beyond & (most < 0.0), np.where(high < 0.0, high, most), np.maximum(high, 0.0))
-    return low, high
+    """Return both ends [...] of `interval`, which leaves out 0 only where the test does."""
+    beyond = degrees_rejects(values, counts, bound, 1.0 - level)
+    low, high = interval(values, counts, np.asarray(bound, dtype=np.float64), quantile(level))
+    return np.where(beyond, low, np.minimum(low, 0.0)), np.where(
+        beyond, high, np.maximum(high, 0.0)
+    )
 
 
-def _degrees(
-    values: Floats, counts: Floats, bound: Floats | float
-) -> tuple[Floats, Floats, Floats]:
-    """Return [...]: z of scenes that differ by degrees, how many whole ones they are worth, and
-    `reach` as this test takes it: with fewer whole scenes added, the more was seen, and maybe
-    shorter than the largest seen, since losses need not be as large as gains."""
+def _degrees(values: Floats, counts: Floats) -> tuple[Floats, Floats]:
+    """Return [...]: z of scenes that differ by degrees, and how many whole ones they are worth."""
     total, sizes, squares = (  # in both orders, since swapping the arms turns the order round
         0.5 * ((counts * y).sum(axis=-1) + (counts * y)[..., ::-1].copy().sum(axis=-1))
         for y in (values, np.abs(values), np.square(values))
     )
-    added = _DOUBT * np.square(bound) / (1.0 + squares / np.square(bound))
-    far = np.minimum((squares + added) / (sizes + added / bound), bound)
     squares = np.where(squares > 0.0, squares, 1.0)
-    return np.abs(total) / np.sqrt(squares), np.square(sizes) / squares, np.asarray(far)
+    return np.abs(total) / np.sqrt(squares), np.square(sizes) / squares
 
 
 def rejects(

@@ -17,6 +17,14 @@ from faultpath.core.validation_messages import misfit_of
 from faultpath.trials.texts import LARGEST, File, Names, Place, PowerOfTwo, Seeds, Several, Sizes
 
 Generalise = Literal["scenes", "models"]
+FEWEST_TRAININGS = 5
+"""With fewer nothing is said of newly trained models: their spread is not known."""
+GENERALISE = (
+    "What intervals are valid for: new scenes, or newly trained models too, one a seed "
+    f"({FEWEST_TRAININGS} or more). The latter takes trainings to spread evenly around their mean: "
+    "a rare collapse that no training had is not seen."
+)
+"""Help of the option."""
 StopWhen = Literal["decided", "all-decided"]
 
 
@@ -178,9 +186,7 @@ class AuditQuestion(Running):
         description="Where the fault acts in the primary contrast: a module, or shared (default).",
     )
     generalise: Annotated[Generalise, Flag(panel=ADVANCED)] = Field(
-        default="scenes",
-        description="What intervals are valid for: new scenes, or newly trained models too (with "
-        "several seeds).",
+        default="scenes", description=GENERALISE
     )
     metric: str = Field(default="", description="Metric of the system to show beside success.")
     thresholds: Annotated[Sizes, Flag(panel=ADVANCED)] = Field(

@@ -115,6 +115,8 @@ class Deliveries(Result):
     rows: tuple[RowDeliveries, ...] = ()
     findings: tuple[str, ...] = ()
     """Findings that a reader of the run's results has to know, a sentence or two each."""
+    repeats: bool = True
+    """Whether all trials that ran a second time came out the same."""
 
     @classmethod
     def of(
@@ -123,6 +125,7 @@ class Deliveries(Result):
         arms: Mapping[str, tuple[TapCount, ...]],
         table: OutcomeTable,
         findings: tuple[str, ...],
+        repeats: bool = True,
     ) -> Self:
         """Lay the counts, by arm key, out in the order of the study's rows.
 
@@ -138,6 +141,7 @@ class Deliveries(Result):
         return cls(
             rows=rows,
             findings=(*findings, *unread(reads), *unproven([row.outcome for row in table.rows])),
+            repeats=repeats,
         )
 
     def at(self, variant: str, path: str) -> tuple[TapCount, ...]:

@@ -130,11 +130,16 @@ class MapPlan(Analysis[list[Point]]):
         if comparison.void:
             raise UserError(
                 f"at the errors {' and '.join(comparison.void[:3])} no pair is left to compare, "
-                "because trials failed there: mend what made them fail, or choose a smaller "
+                "because trials failed there: fix what made them fail, or choose a smaller "
                 "--up-to."
             )
-        arms = zip(*(comparison.arms[name] for name in names), strict=True)
-        repair, baseline = (np.array(arm, dtype=np.float64) for arm in arms)
+        success = np.array([comparison.success[name] for name in names])
+        whole = ~np.isnan(success).any(axis=(0, 1, 3))
+        if not whole.any():
+            raise UserError(
+                "no scene has all of its trials at every pair of errors: fix what made them fail."
+            )
+        repair, baseline = success[:, 0, whole], success[:, 1, whole]
         return Differences(tuple(points), repair, baseline), mismatch_words(comparison.mismatches)
 
 

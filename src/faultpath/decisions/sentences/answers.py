@@ -3,18 +3,23 @@
 Whoever reads nothing else reads these, so what qualifies a decision is said here too.
 """
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from typing import Any
 
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect, Invalid
 from faultpath.decisions.sentences import phrases
 from faultpath.decisions.sentences.headline import headline, reversed_at
 from faultpath.decisions.sentences.phrases import margin, places
 from faultpath.decisions.sentences.wording import capital, counted, detectable, series, where
 from faultpath.decisions.tables import MISSING
 
-_FEW_TRAININGS = 10
-"""With fewer, an interval for newly trained models rests on how trainings are distributed."""
+_WHY_NO_RESULT: dict[Invalid, str] = {
+    "unrepeatable": "Trials that ran a second time came out otherwise, so every difference may be "
+    "chance: see the remark on what differed, fix the system and run it again.",
+    "unpaired": "Trials that were to be compared met different conditions, so a difference may be "
+    "theirs: see the remark on what differed, fix what draws them and run it again.",
+}
 _PAIRED = {
     "keys": "Trials are paired by their keys alone: nothing shows that both versions started "
     "alike.",
@@ -25,7 +30,7 @@ _PAIRED = {
 
 def in_words(record: DecisionRecord) -> dict[str, Any]:
     """Return the fields in which a record says what it decides."""
-    changes = [phrases.change(record, change) for change in record.changes]
+    changes = [phrases.change(record, change) for change in record.changes if not record.invalid]
     return {
         "headline": headline(record),
         "sentences": (*changes, *sum(_answers(record).values(), list[str]())),
@@ -43,6 +48,8 @@ def answers(record: DecisionRecord) -> dict[str, str]:
 
 def _answers(record: DecisionRecord) -> dict[str, list[str]]:
     question, significant = record.question, any(effect.sign for effect in record.effects)
+    if record.invalid:
+        return {"Left open": [_WHY_NO_RESULT[record.invalid]]}
     sure = [*reach(record), *phrases.hardly_acted(record)]
     if record.few:
         few = (
@@ -74,8 +81,10 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
             )
         elif any(effect.sign for effect in tested):
             yield "What is significant lies at the floor or ceiling: no choice can rest on it."
+        elif tested and all(record.is_small(effect) for effect in tested):
+            yield f"Neither is to be preferred: each difference is below {margin(record)}."
         else:
-            yield "Nothing that was tested gives a reason to prefer either."
+            yield _unknown(tested)
     turned = reversed_at(record)
     if turned:
         one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
@@ -104,6 +113,18 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
             yield f"Depending on how often the fault occurs, {where(result.path)}: {result.words}."
 
 
+def _unknown(tested: Sequence[Effect]) -> str:
+    """Say that no choice follows, and how large a difference could have been missed."""
+    missed = [effect.minimum_detectable_pp for effect in tested if not effect.extreme]
+    largest = max((size for size in missed if size is not None), default=None)
+    if largest is None or None in missed:
+        return "Not enough is known to prefer either."
+    return (
+        f"Not enough is known to prefer either: a difference of {math.ceil(largest)} pp could have "
+        "been missed."
+    )
+
+
 def reach(record: DecisionRecord) -> Iterator[str]:
     """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
     question = record.question
@@ -119,17 +140,16 @@ def reach(record: DecisionRecord) -> Iterator[str]:
             "tools do not say whether it was."
         )
     run = len(question.seeds)
-    if question.generalise == "models" and run < _FEW_TRAININGS:
+    if question.generalise == "models":
         yield (
-            f"Caution: {run} trainings say little about new ones. With fewer than "
-            f"{_FEW_TRAININGS}, intervals hold only as far as trainings spread evenly around their "
-            "mean."
+            f"{run} trainings stand for new ones as far as trainings spread evenly around their "
+            "mean, as a Gaussian does: a rare collapse that none of them had is not seen."
         )
-    differ = len(record.effects[0].wins) if record.effects else run
-    if differ < run:
-        same = "All" if differ == 1 else "Some of the"
-        once = "together they count as one" if differ == 1 else f"they count as {differ}"
-        yield f"{same} {run} seeds gave the same outcome in every trial: {once}."
+        for effect in record.effects:
+            yield f"{phrases.trainings(record, effect)} (sign test, whatever their distribution)."
+    tasks = question.judged is not None and question.judged.unit == "task"
+    if run > 1 and not tasks and record.effects and len(record.effects[0].wins) == 1:
+        yield f"All {run} seeds gave the same outcome in every trial: together they count as one."
     yield from _stopped(record)
 
 
@@ -163,8 +183,9 @@ def _stopped(record: DecisionRecord) -> Iterator[str]:
 def _left_open(record: DecisionRecord) -> Iterator[str]:
     if idle := [where(effect.path) for effect in record.effects if not effect.acted]:
         yield f"The fault never acted {series(idle)}: nothing was tested there."
-    if unsettled := [where(effect.path) for effect in record.effects if effect.unsettled]:
-        yield f"Who is ahead {series(unsettled)} depends on trials that failed."
+    for effect in record.effects:
+        if effect.unsettled:
+            yield phrases.missing_trials(record, effect)
     yield from _insignificant(record)
     yield from phrases.not_standing(record)
     if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:

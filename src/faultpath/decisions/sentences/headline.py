@@ -6,12 +6,21 @@ Names of modules and variants count as one word each.
 from collections.abc import Sequence
 
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
-from faultpath.decisions.sentences.phrases import margin, no_pair, places
+from faultpath.decisions.sentences.phrases import (
+    NO_RESULT,
+    in_few_scenes,
+    margin,
+    no_pair,
+    places,
+)
 from faultpath.decisions.sentences.wording import capital, where
 
 
 def headline(record: DecisionRecord) -> str:
-    """Return a sentence that rests on significant effects, led by the primary contrast."""
+    """Return a sentence that rests on significant effects, led by the primary contrast, and in how
+    many scenes they show where these are few."""
+    if record.invalid:
+        return NO_RESULT[record.invalid]
     primary = record.question.primary
     main = next((effect for effect in record.effects if effect.path == primary), None)
     tested = [effect for effect in record.effects if effect.acted]
@@ -30,9 +39,23 @@ def headline(record: DecisionRecord) -> str:
     if ends <= {0.0, 100.0} and not any(any((*e.wins, *e.losses)) for e in tested):
         every = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
         return f"No difference could show: in every scene both versions {' or '.join(every)}."
-    if turned := reversed_at(record):
-        return _reversal(record, main, turned)
-    return _ranking(record, main, [effect for effect in tested if effect is not main])
+    turned = reversed_at(record)
+    if turned:
+        text = _reversal(record, main, turned)
+    else:
+        text = _ranking(record, main, [effect for effect in tested if effect is not main])
+    return f"{text[:-1]}{_few_scenes(record)}." if " is ahead" in text else text
+
+
+def _few_scenes(record: DecisionRecord) -> str:
+    """Return in how few scenes the versions differ, of the effects that lead; else nothing."""
+    leading = [effect for effect in record.effects if effect.leads]
+    few = [effect for effect in leading if effect.few_differ]
+    if not few:
+        return ""
+    least = min(few, key=lambda effect: sum(effect.ahead or ()))
+    at = f"{where(least.path)} " if len(leading) > 1 else ""
+    return f" ({at}{in_few_scenes(least)})"
 
 
 def reversed_at(record: DecisionRecord) -> list[Effect]:

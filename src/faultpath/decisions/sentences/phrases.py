@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from faultpath.decisions.model import CORRECT, SHARED, Change, DecisionRecord, Effect
+from faultpath.decisions.model import CORRECT, SHARED, Change, DecisionRecord, Effect, Invalid
 from faultpath.decisions.question import Question
 from faultpath.decisions.sentences.wording import (
     capital,
@@ -15,8 +15,16 @@ from faultpath.decisions.sentences.wording import (
     series,
     signed,
     where,
+    with_interval,
 )
+from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import Region
+
+NO_RESULT: dict[Invalid, str] = {
+    "unrepeatable": "No result: trials do not repeat.",
+    "unpaired": "No result: the two versions did not meet the same conditions.",
+}
+"""Headlines of results in which nothing can be significant."""
 
 
 def estimand(question: Question) -> str:
@@ -48,6 +56,45 @@ def only_alone(of: Effect | Change) -> bool:
     return tested and (low > 0 or high < 0)
 
 
+def in_few_scenes(effect: Effect) -> str:
+    """Return in how many scenes the version that is ahead is so, and in how many the other one."""
+    more, less = sorted(effect.ahead or (0, 0), reverse=True)
+    never = "never the other way" if not less else f"the other way in {less}"
+    return f"in {counted(more, 'scene')}, {never}"
+
+
+def trainings(record: DecisionRecord, effect: Effect) -> str:
+    """Return in how many trainings which version is ahead, with a sign test's p-value: it holds
+    whatever the distribution of trainings."""
+    values = effect.success.per_seed or ()
+    repair, baseline = sum(value > 0 for value in values), sum(value < 0 for value in values)
+    ahead = record.winner(1 if repair >= baseline else -1)
+    p = p_value(sign_p_value(repair, baseline))
+    return (
+        f"{capital(where(effect.path))}, {ahead} is ahead in {max(repair, baseline)} of "
+        f"{len(values)} trainings, p {p if p.startswith('<') else f'= {p}'}"
+    )
+
+
+def missing_trials(record: DecisionRecord, effect: Effect) -> str:
+    """Say what the trials that ran show where only those that failed stand in the way, and how many
+    of these would have to run."""
+    failed, question = effect.failed, record.question
+    assert failed is not None
+    ahead = record.winner(1 if effect.success.value > 0 else -1)
+    text = (
+        f"{capital(where(effect.path))}, the trials that ran favour {ahead} "
+        f"({with_interval(effect.success)} pp, {adjusted(record, effect)}), which holds if failing "
+        "has nothing to do with how a trial would have ended"
+    )
+    if failed.repairs is None:
+        return f"{text}."
+    of = zip(failed.repairs, (question.repair, question.baseline), strict=True)
+    needed = series([f"{count} of {name}" for count, name in of if count])
+    how = "give their outcomes" if question.judged else "the same command tries them again"
+    return f"{text}; otherwise at least {needed} that failed have to run ({how})."
+
+
 def places(effects: Sequence[Effect]) -> str:
     """Return where effects are, the first one's kind first, modules faulted alone together."""
     alone = [effect.path for effect in effects if effect.path not in (CORRECT, SHARED)]
@@ -62,12 +109,14 @@ def in_short(record: DecisionRecord, effect: Effect | None) -> str:
         return "no pair of trials to compare"
     if not effect.acted:
         return "the fault never acted: not tested"
+    if record.invalid:
+        return NO_RESULT[record.invalid].rstrip(".").lower()
     if effect.sign:
         at = f", but at the {effect.extreme}" if effect.extreme else ""
         at = at or (", but trials failed unevenly" if effect.uneven else "")
         return f"{record.winner(effect.sign)} succeeds more often{at}"
     if effect.unsettled:
-        return "open: it depends on trials that failed"
+        return "not significant: trials that failed could undo it"
     if record.few:
         return "too few scenes"
     p = f" ({adjusted(record, effect)})" if only_alone(effect) else ""
@@ -205,8 +254,8 @@ def failed_trials(record: DecisionRecord) -> Iterator[str]:
         yield (
             f"{capital(where(effect.path))}, {failed.repair} trials of {question.repair} failed"
             f"{' or are missing' if question.judged else ''} and {failed.baseline} of "
-            f"{question.baseline}: depending on how they would have ended, the "
-            f"difference over all scenes lies anywhere from {signed(failed.against_pp)} to "
+            f"{question.baseline}: depending on how they would have ended, the difference over "
+            f"all scenes lies anywhere from {signed(failed.against_pp)} to "
             f"{signed(failed.favour_pp)} pp."
         )
 

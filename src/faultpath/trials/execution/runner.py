@@ -134,7 +134,8 @@ def run_study(
                     waiting = iter(again.tasks())
                     work(lambda worker: next(waiting, None), again.settle)
             table, findings = state.table(), (*state.findings(), *again.findings())
-            deliveries = Deliveries.of(study, state.taps(), table, findings)
+            repeats = not any(recheck.differs for recheck in again.flown())
+            deliveries = Deliveries.of(study, state.taps(), table, findings, repeats)
             digest = run.save_tables(table, deliveries)
     except KeyboardInterrupt:
         # What is on disk counts: the run may have been stopped between storing and noting.

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal, cast
 
 from pydantic import BeforeValidator, Field
 
-from faultpath.trials.question import Asked, Flag, Generalise
+from faultpath.trials.question import GENERALISE, Asked, Flag, Generalise
 from faultpath.trials.texts import Place, several
 
 COLUMNS = (
@@ -86,9 +86,7 @@ class JudgeQuestion(Asked):
         description="Where the fault acts in the primary contrast: a module, or shared (default).",
     )
     generalise: Annotated[Generalise, Flag(panel="How it is tested")] = Field(
-        default="scenes",
-        description="What intervals are valid for: new scenes, or newly trained models too, one a "
-        "seed.",
+        default="scenes", description=GENERALISE
     )
     folder: Annotated[Place, Flag("--out")] = Field(
         default=None, description="Run folder; default runs/judged-<versions>-<results>."

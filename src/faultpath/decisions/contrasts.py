@@ -1,0 +1,89 @@
+"""The contrasts of an audit: effects, changes, and their shares of the error rate."""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from faultpath.decisions.compared import Outcomes, paired_scenes
+from faultpath.decisions.model import CORRECT, SHARED
+from faultpath.statistics.contrast import Contrast, change
+from faultpath.statistics.decisions import with_test
+from faultpath.statistics.effects import success_effect
+from faultpath.statistics.estimate import RuleName
+from faultpath.statistics.inputs import Floats
+from faultpath.statistics.resamples import Resamples
+
+
+@dataclass(frozen=True)
+class Measure:
+    """How success under one condition becomes a contrast."""
+
+    rule: RuleName
+    models: bool
+    sequential: bool
+
+    def effect(self, repair: Floats, baseline: Floats) -> Contrast:
+        """Return the effect over the scenes of which a pair has both outcomes."""
+        # Nothing rests on resamples where outcomes are yes or no.
+        scenes = int(paired_scenes(repair, baseline).sum())
+        resamples = Resamples.draw("family", scenes, n_resamples=1)
+        return success_effect(
+            repair,
+            baseline,
+            resamples,
+            models=self.models,
+            sequential=self.sequential,
+            rule=self.rule,
+        )
+
+    def together(self, one: Outcomes, two: Outcomes) -> tuple[Contrast, Contrast]:
+        """Return the effects under two conditions over the scenes that both have."""
+        kept = paired_scenes(*one) & paired_scenes(*two)
+        return self.effect(one[0][kept], one[1][kept]), self.effect(two[0][kept], two[1][kept])
+
+    def contrasts(
+        self, success: Mapping[str, Outcomes], alone: Mapping[str, Outcomes], tested: Sequence[str]
+    ) -> Iterator[tuple[str, Contrast]]:
+        """Yield the tested effects, and their changes from those `alone` to the shared one, by
+        name."""
+        for path in tested:
+            yield effect_name(path), self.effect(*success[path])
+        for path in isolated(tested):
+            if (paired_scenes(*alone[path]) & paired_scenes(*success[SHARED])).any():
+                yield change_name(path), change(*self.together(alone[path], success[SHARED]))
+
+    def tested(self, contrasts: Iterator[tuple[str, Contrast]]) -> dict[str, Contrast]:
+        """Return contrasts by name, each with its test."""
+        return {name: with_test(contrast, self.rule) for name, contrast in contrasts}
+
+
+def led(primary: str, paths: Collection[str]) -> str:
+    """Return the primary path: as named, else the shared one, else the isolated."""
+    isolated = [name for name in paths if name not in (CORRECT, SHARED)]
+    return primary or (SHARED if SHARED in paths else (isolated or list(paths))[0])
+
+
+def alpha_shares(paths: Collection[str], primary: str) -> dict[str, float]:
+    """Return each contrast's share of the error rate, by its name, where they are not equal.
+
+    The effect on the primary path, for which sequential audits stop, has a half; all others share
+    the rest. Where that path has none, the others' shares are equal.
+    """
+    named = [*map(effect_name, paths), *map(change_name, isolated(paths))]
+    others = [name for name in named if name != effect_name(primary)]
+    shares = dict.fromkeys(others, 0.5 / max(1, len(others)))
+    return {effect_name(primary): 0.5 if others else 1.0, **shares}
+
+
+def effect_name(path: str) -> str:
+    """Name the effect on a path among the contrasts of a family."""
+    return f"effect/{path}"
+
+
+def change_name(path: str) -> str:
+    """Name the change from an isolated path to the shared one, likewise."""
+    return f"change/{path}"
+
+
+def isolated(tested: Collection[str]) -> list[str]:
+    """Return the paths of which the change to the shared one is tested."""
+    return [path for path in tested if path not in (CORRECT, SHARED)] if SHARED in tested else []

@@ -1,0 +1,100 @@
+"""What trials without an outcome leave open: each could have gone either way, in either version."""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+
+from faultpath.decisions.compared import Outcomes, paired_scenes
+from faultpath.decisions.contrasts import Measure
+from faultpath.statistics.contrast import Contrast
+from faultpath.statistics.decisions import with_test
+from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.estimate import ALPHA, PairedTest
+
+Decide: TypeAlias = Callable[[Mapping[str, Contrast]], dict[str, Contrast]]
+"""The joint decision of tested contrasts, by name."""
+
+
+def filled(success: Outcomes, favour: bool) -> Outcomes:
+    """Return outcomes in which all that is missing goes for the repair, or against it."""
+    repair, baseline = success
+    return np.nan_to_num(repair, nan=float(favour)), np.nan_to_num(baseline, nan=1.0 - favour)
+
+
+def any_missing(success: Mapping[str, Outcomes]) -> bool:
+    """Return whether a trial under any condition has no outcome."""
+    return any(np.isnan(part).any() for pair in success.values() for part in pair)
+
+
+def uneven(success: Outcomes) -> bool:
+    """Return whether one version failed more often than chance explains."""
+    repair, baseline = map(np.isnan, success)
+    alone = int((repair & ~baseline).sum()), int((baseline & ~repair).sum())
+    return sign_p_value(*alone) <= ALPHA
+
+
+def nearest_to_nothing(
+    measure: Measure,
+    low: Mapping[str, Outcomes],
+    high: Mapping[str, Outcomes],
+    tested: Sequence[str],
+    names: Collection[str],
+) -> dict[str, Contrast]:
+    """Return the tested contrasts, each as near to no difference as missing outcomes allow, from
+    successes with these against the repair and for it."""
+    least: dict[str, Contrast] = {}
+    lowest = measure.tested(measure.contrasts(low, high, tested))
+    highest = measure.tested(measure.contrasts(high, low, tested))
+    for name in names:
+        one, two = lowest[name], highest[name]
+        assert one.test is not None
+        assert two.test is not None
+        if one.test.leans <= 0:
+            nothing = replace(one, test=PairedTest(one.test.name, 1.0, 0))
+            one = two if two.test.leans < 0 else nothing
+        least[name] = one
+    return least
+
+
+def repairs_needed(
+    decided: Mapping[str, Contrast],
+    name: str,
+    success: Outcomes,
+    measure: Measure,
+    decide: Decide,
+) -> tuple[int, int]:
+    """Return how many failed trials of the repair and of the baseline have to run before those that
+    are still missing cannot undo an effect, if they come out as the others did: first those of the
+    version that failed more often."""
+    sign = decided[name].sign
+    adverse = filled(success, favour=sign < 0)
+    failed = sorted(
+        [
+            (version, tuple(place))
+            for version in (0, 1)
+            for place in np.argwhere(np.isnan(success[version]))
+        ],
+        key=lambda trial: -int(np.isnan(success[trial[0]]).sum()),
+    )
+
+    def counts(some: int) -> tuple[int, int]:
+        repair = sum(version == 0 for version, _ in failed[:some])
+        return repair, some - repair
+
+    def settled(some: int) -> bool:
+        """Return whether the effect holds where as many of the failed trials ran."""
+        rest = adverse[0].copy(), adverse[1].copy()
+        for version, place in failed[:some]:
+            rest[version][place] = np.nan
+        if not paired_scenes(*rest).any():
+            return False
+        contrast = with_test(measure.effect(*rest), measure.rule)
+        return decide({**decided, name: contrast})[name].sign == sign
+
+    low, high = 0, len(failed)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if settled(middle) else (middle, high)
+    return counts(high)
