@@ -13,7 +13,8 @@ from pathlib import Path
 
 import yaml
 
-from faultpath.decisions.family import Family, compared, decide_paths
+from faultpath.decisions.compared import compared
+from faultpath.decisions.family import Family, decide_paths
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.faults import resolve
 from faultpath.statistics.estimate import RULE
@@ -82,8 +83,8 @@ def decided(design: Design, repair: str, table: OutcomeTable) -> list[dict]:
     found = []
     for fault in design.faults:
         paths = {CORRECT: CORRECT} | {path: f"{fault}/{path}" for path in PATHS}
-        arms = compared(repair, design.baseline, paths.values(), table).arms
-        success = {name: arms[path] for name, path in paths.items()}
+        outcomes = compared(repair, design.baseline, paths.values(), table).success
+        success = {name: outcomes[path] for name, path in paths.items()}
         alpha = 0.05 / (len(design.faults) * len(design.repairs))
         family = decide_paths(success, rule=RULE, alpha=alpha)
         found.append({"fault": fault, "repair": repair, **_said(success, family)})

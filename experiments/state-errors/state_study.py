@@ -126,8 +126,10 @@ def decided(design: Design, table: OutcomeTable) -> tuple[Audit, ...]:
     audits = list[Audit]()
     for fault, repair in design.audits:
         paths = {name: f"{fault}/{name}" for name in (SHARED, *design.modules)} | {CORRECT: CORRECT}
-        arms = compared(design.repairs[repair][0], design.baseline, paths.values(), table).arms
-        success = {name: arms[path] for name, path in paths.items()}
+        outcomes = compared(
+            design.repairs[repair][0], design.baseline, paths.values(), table
+        ).success
+        success = {name: outcomes[path] for name, path in paths.items()}
         family = decide_paths(success, rule="unconditional", alpha=0.05 / len(design.audits))
         audits.append(
             Audit(

@@ -133,14 +133,14 @@ def test_the_question_names_its_primary_contrast_and_what_it_generalises_to():
 
 
 def test_newly_trained_models_need_trained_models_and_several_seeds(monkeypatch):
-    asked = {"generalise": "models", "seeds": (0, 1)}
+    asked = {"generalise": "models", "seeds": (0, 1, 2, 3, 4)}
     with pytest.raises(UserError, match="no trained models to generalise to"):
         planned("plain", "observed", "mass:scale=2", **asked)
     monkeypatch.setattr(Paper, "trained", True)
     question = planned("plain", "observed", "mass:scale=2", **asked).question
     assert (question.generalise, question.trained) == ("models", True)
-    with pytest.raises(UserError, match=r"one seed says nothing.*--seeds 0,1,2"):
-        planned("plain", "observed", "mass:scale=2", generalise="models")
+    with pytest.raises(UserError, match=r"4 seeds cannot show how .*--seeds 0,1,2,3,4"):
+        planned("plain", "observed", "mass:scale=2", generalise="models", seeds=(0, 1, 2, 3))
 
 
 def test_the_question_knows_what_the_system_calls_its_ends(monkeypatch):

@@ -98,21 +98,21 @@ def test_missing_pairs_are_named_and_bound_what_is_decided(tmp_path: Path) -> No
     assert [each.sign for each in whole.record.effects] == [1, 1]
 
     lines = file.read_text().splitlines(keepends=True)
-    alone = [line for line in lines if line.startswith("new") and "shared" in line][:7]
+    alone = [line for line in lines if line.startswith("new") and "shared" in line][:9]
     both = [line for line in lines if ",s19,0,nominal" in line]
     file.write_text("".join(line for line in lines if line not in (*alone, *both)))
     run = judged(file, tmp_path / "run")
     nominal, shared = run.record.effects
-    assert (shared.path, shared.void_pairs, shared.scenes) == (SHARED, 7, 12)
-    for each, against, favour in ((nominal, 55.0, 65.0), (shared, 25.0, 60.0)):
+    assert (shared.path, shared.void_pairs, shared.scenes) == (SHARED, 9, 11)
+    for each, against, favour in ((nominal, 55.0, 65.0), (shared, 15.0, 60.0)):
         assert each.failed is not None
         assert each.failed.against_pp == pytest.approx(against)
         assert each.failed.favour_pp == pytest.approx(favour)
     assert not shared.sign
     found = " ".join(run.record.findings)
-    assert "Under the shared fault, 7 trials of new are missing, for example that in s0" in found
+    assert "Under the shared fault, 9 trials of new are missing, for example that in s0" in found
     assert "1 trial of old is missing, for example that in s19 (seed 0)" in found
-    assert run.failed == 9
+    assert run.failed == 11
 
 
 def test_trials_that_began_otherwise_are_no_pair(tmp_path: Path) -> None:
@@ -120,6 +120,8 @@ def test_trials_that_began_otherwise_are_no_pair(tmp_path: Path) -> None:
     file.write_text(file.read_text().replace("new,s3,0,,1,h3", "new,s3,0,,1,other"))
     run = judged(file, tmp_path / "run")
     assert run.record.effects[0].void_pairs == 1
+    assert run.headline == "No result: the two versions did not meet the same conditions."
+    assert run.broken
     assert any("are no pair in scene 's3'" in said for said in run.record.findings)
 
 
@@ -166,7 +168,7 @@ REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
     "no success": ("arm,scene\nold,s0\n", {}, "line 2 has no success: name the column"),
     "metric": (HEADER + ROW, {"metrics": "reward"}, "line 2: unknown metric 'reward'"),
     "task": (HEADER + ROW, {"cluster": "task"}, "not every trial names its task"),
-    "models": (HEADER + ROW, {"generalise": "models"}, "newly trained models need several seeds"),
+    "models": (HEADER + ROW, {"generalise": "models"}, "newly trained models need 5 seeds"),
 }
 
 

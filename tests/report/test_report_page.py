@@ -62,9 +62,9 @@ def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
             assert kinds.count(PairKind.REPAIR_ONLY) == won
             assert kinds.count(PairKind.BASELINE_ONLY) == lost
         kinds = [p.kind for p in pairs if p.path == effect.path]
-        void, out = kinds.count(PairKind.VOID), kinds.count(PairKind.LEFT_OUT)
-        assert void == effect.void_pairs
-        assert len(kinds) - void - out == effect.scenes * len(source.record.question.seeds)
+        assert kinds.count(PairKind.VOID) == effect.void_pairs
+        scenes = {p.scene for p in pairs if p.path == effect.path and p.kind is not PairKind.VOID}
+        assert len(scenes) == effect.scenes
 
 
 def test_a_path_of_which_every_trial_failed_costs_the_others_nothing(
@@ -76,9 +76,8 @@ def test_a_path_of_which_every_trial_failed_costs_the_others_nothing(
     assert f"40 of {40 * len(source.record.paths)} pairs are void." in page.text
     assert "other pair" not in page.text
     assert page.text.count("no pair of trials is left to compare") == 2  # headline and finding
-    assert {
-        p.kind for p in read_pairs(source.outcomes, source.record) if p.path != lost
-    }.isdisjoint({PairKind.VOID, PairKind.LEFT_OUT})
+    pairs = read_pairs(source.outcomes, source.record)
+    assert PairKind.VOID not in {p.kind for p in pairs if p.path != lost}
 
 
 def test_viewer_data_cannot_close_its_element(html: str) -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from faultpath.decisions.family import CORRECT
+from faultpath.decisions.model import CORRECT
 from faultpath.decisions.sweep import contrasts
 from faultpath.report.compared import Compared, together
 from faultpath.report.inputs import ReportInput

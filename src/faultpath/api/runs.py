@@ -83,6 +83,11 @@ class Run(FinishedRun):
         return len(self.held.outcomes.failed())
 
     @property
+    def broken(self) -> bool:
+        """Whether a trial failed, or no result follows from the trials: a build ends with 1."""
+        return bool(self.failed or self.record.invalid)
+
+    @property
     def repair_holds_when_shared(self) -> Answer:
         """Whether the repair is significantly ahead under the shared fault; a failed assert shows
         what was found instead. `UserError` where the audit has no shared fault."""

@@ -82,7 +82,7 @@ class Gate:
             # A build's summary holds that of its other steps too.
             before = contents(self.summary) if self.summary.exists() else b""
             write_file(self.summary, before + summary(records, self.conditions).encode())
-        status = FOUND if any(run.failed for run in runs) else 0
+        status = FOUND if any(run.broken for run in runs) else 0
         for record in records:
             for name, answer in broken(record, self.conditions).items():
                 say(f"--fail-if {name}: {answer.said}", markup=False, style="bold red")

@@ -66,9 +66,8 @@ def captions(pairs: Sequence[Pair]) -> dict[At, str]:
 
 def _patterns(pairs: Sequence[Pair]) -> dict[At, tuple[tuple[str, PairKind], ...]]:
     """Return who succeeded, path by path, in every scene and seed without a void pair."""
-    out = (PairKind.VOID, PairKind.LEFT_OUT)
     return {
         at: tuple((path, pair.kind) for path, pair in group.items())
         for at, group in by_scene(pairs).items()
-        if not any(pair.kind in out for pair in group.values())
+        if not any(pair.kind is PairKind.VOID for pair in group.values())
     }

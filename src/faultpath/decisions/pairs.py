@@ -1,7 +1,7 @@
 """Pairs of trials, both arms in the same scene, path and seed, as pages and examples show them."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 
 from faultpath.decisions.model import DecisionRecord
@@ -16,7 +16,6 @@ class PairKind(StrEnum):
     REPAIR_ONLY = "repair-only"
     BASELINE_ONLY = "baseline-only"
     NEITHER = "neither"
-    LEFT_OUT = "left-out"
     VOID = "void"
 
     @property
@@ -30,7 +29,6 @@ WORDS = {
     PairKind.REPAIR_ONLY: "only the repair succeeds",
     PairKind.BASELINE_ONLY: "only the baseline succeeds",
     PairKind.NEITHER: "neither succeeds",
-    PairKind.LEFT_OUT: "left out: a pair of this scene is void under another condition or seed",
     PairKind.VOID: "void: a trial failed to run, or the two are not the same trial",
 }
 
@@ -46,8 +44,6 @@ class Pair:
     topology: str
     baseline: Outcome | None
     repair: Outcome | None
-    left_out: bool = False
-    """Another pair of the scene is void, so no effect counts the scene."""
 
     @property
     def void_reason(self) -> str | None:
@@ -66,8 +62,6 @@ class Pair:
         """Kind of the pair."""
         if self.void_reason is not None or self.baseline is None or self.repair is None:
             return PairKind.VOID
-        if self.left_out:
-            return PairKind.LEFT_OUT
         one, two = (t.status is Status.SUCCESS for t in (self.baseline, self.repair))
         if one is two:
             return PairKind.BOTH if one else PairKind.NEITHER
@@ -81,7 +75,7 @@ class Pair:
 
 def read_pairs(outcomes: OutcomeTable, record: DecisionRecord) -> tuple[Pair, ...]:
     """Return every pair of the record's arms, ordered by path, topology, scene index and seed."""
-    question, compared = record.question, {effect.path for effect in record.effects}
+    question = record.question
     named = [path.name for path in record.paths]
     trials: dict[tuple[str, str, int, str], Outcome] = {}
     places: dict[tuple[str, int, str], TrialRow] = {}
@@ -103,8 +97,6 @@ def read_pairs(outcomes: OutcomeTable, record: DecisionRecord) -> tuple[Pair, ..
         )
         for place, row in places.items()
     ]
-    void = {p.scene for p in pairs if p.kind is PairKind.VOID and p.path in compared}
-    pairs = [replace(pair, left_out=pair.scene in void) for pair in pairs]
     return tuple(sorted(pairs, key=lambda p: (paths.index(p.path), p.topology, p.index, p.seed)))
 
 

@@ -78,8 +78,7 @@ def _cell(
         f"{arm} {names.get(trial.status, trial.status) if trial else 'did not run'}"
         for arm, trial in (("baseline", pair.baseline), ("repair", pair.repair))
     )
-    note = f" ({WORDS[PairKind.LEFT_OUT]})" if pair.kind is PairKind.LEFT_OUT else ""
-    tip = f"{pair.scene}, seed {pair.seed}: {pair.void_reason or ends}{note}"
+    tip = f"{pair.scene}, seed {pair.seed}: {pair.void_reason or ends}"
     # By key, scenes are chosen from the viewer's list.
     tab = {"tabindex": "-1"} if link else {}
     with svg.group("pair", tip, link, data_scene=pair.scene, **tab):
@@ -99,7 +98,5 @@ def _sign(svg: Svg, kind: PairKind, left: float, top: float, side: float) -> Non
             svg.polygon([(x - 5.5, y - 4.5), (x + 5.5, y - 4.5), (x, y + 5.5)], "baseline-only")
         case PairKind.NEITHER:
             svg.circle((x, y), 2.2, "neither")
-        case PairKind.LEFT_OUT:
-            svg.path(f"M{x - 3.5} {y + 3.5}l7 -7", "neither")
         case PairKind.VOID:
             svg.path(f"M{x - 4} {y - 4}L{x + 4} {y + 4}M{x - 4} {y + 4}L{x + 4} {y - 4}", "void")

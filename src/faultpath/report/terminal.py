@@ -12,7 +12,7 @@ from faultpath.decisions.search.model import SearchRecord
 from faultpath.decisions.sensitivity.model import SensitivityRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.answers import answers
-from faultpath.decisions.sentences.phrases import not_standing
+from faultpath.decisions.sentences.phrases import in_trials_that_ran, not_standing
 from faultpath.decisions.tables import Line, Table, line
 from faultpath.decisions.tables.terminal import Parted, drawn
 from faultpath.interface import Gap, Interface, rank, transitive_consumers
@@ -47,9 +47,10 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
             "bound could be shown."
         )
         parts += [Text(explained, style="dim")]
-    if not details and (follows := answers(record).get("What follows")):
+    said = answers(record)
+    if not details and (follows := said.get("Left open" if record.invalid else "What follows")):
         parts += [Text(""), Text(follows)]
-    for sentence in not_standing(record):
+    for sentence in (*not_standing(record), *in_trials_that_ran(record)):
         parts += [Text(""), Text(sentence)]
     table = by_threshold(record)
     if table is not None:

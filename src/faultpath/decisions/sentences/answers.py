@@ -183,9 +183,7 @@ def _stopped(record: DecisionRecord) -> Iterator[str]:
 def _left_open(record: DecisionRecord) -> Iterator[str]:
     if idle := [where(effect.path) for effect in record.effects if not effect.acted]:
         yield f"The fault never acted {series(idle)}: nothing was tested there."
-    for effect in record.effects:
-        if effect.unsettled:
-            yield phrases.missing_trials(record, effect)
+    yield from phrases.in_trials_that_ran(record)
     yield from _insignificant(record)
     yield from phrases.not_standing(record)
     if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:

@@ -76,9 +76,12 @@ def trainings(record: DecisionRecord, effect: Effect) -> str:
     )
 
 
-def missing_trials(record: DecisionRecord, effect: Effect) -> str:
-    """Say what the trials that ran show where only those that failed stand in the way, and how many
-    of these would have to run."""
+def in_trials_that_ran(record: DecisionRecord) -> Iterator[str]:
+    """Say what the trials that ran show where only those that failed stand in the way."""
+    yield from (_ran(record, effect) for effect in record.effects if effect.unsettled)
+
+
+def _ran(record: DecisionRecord, effect: Effect) -> str:
     failed, question = effect.failed, record.question
     assert failed is not None
     ahead = record.winner(1 if effect.success.value > 0 else -1)
@@ -210,7 +213,7 @@ def no_pair(path: str) -> str:
 
 def not_standing(record: DecisionRecord) -> Iterator[str]:
     """Say of each interval that excludes 0 without a significant difference why it is not one."""
-    for effect in filter(only_alone, record.effects):
+    for effect in () if record.invalid else filter(only_alone, record.effects):
         yield (
             f"{capital(where(effect.path))}, the interval excludes 0, but "
             f"{adjusted(record, effect)} ({record.hypotheses} contrasts): the difference is not "
@@ -251,10 +254,10 @@ def failed_trials(record: DecisionRecord) -> Iterator[str]:
         failed = effect.failed
         if failed is None or not (failed.repair or failed.baseline or failed.unsettled):
             continue
+        lost = "failed or missing" if question.judged else "failed"
         yield (
-            f"{capital(where(effect.path))}, {failed.repair} trials of {question.repair} failed"
-            f"{' or are missing' if question.judged else ''} and {failed.baseline} of "
-            f"{question.baseline}: depending on how they would have ended, the difference over "
+            f"{capital(where(effect.path))}, {counted(failed.repair, 'trial')} of "
+            f"{question.repair} {lost}, {failed.baseline} of {question.baseline}: depending on how they would have ended, the difference over "
             f"all scenes lies anywhere from {signed(failed.against_pp)} to "
             f"{signed(failed.favour_pp)} pp."
         )
