@@ -1,6 +1,6 @@
 """From the differences at the points of a map to its record."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -16,43 +16,52 @@ from faultpath.decisions.map.lattice import (
     surface_weights,
 )
 from faultpath.decisions.map.model import Flip, MapPoint, MapRecord, MapSurface, ResolvedMap
-from faultpath.decisions.map.surface import Combined, Differences, sign_of, simultaneous
+from faultpath.decisions.map.surface import (
+    Combined,
+    Differences,
+    Signs,
+    sign_of,
+    simultaneous,
+)
+from faultpath.decisions.model import Invalid
 from faultpath.decisions.sentences import maps
 from faultpath.statistics.estimate import Sign
-from faultpath.statistics.inputs import Floats
-
-_BETWEEN = 4
-"""Looks at a ray for each unit."""
 
 
 def decided(
-    question: ResolvedMap, differences: Differences, failed: int = 0, findings: Sequence[str] = ()
+    question: ResolvedMap,
+    differences: Differences,
+    failed: int = 0,
+    findings: Sequence[str] = (),
+    invalid: Invalid | None = None,
 ) -> MapRecord:
-    """Return the record of differences, which may be simulated ones."""
-    ways = rays(question.against)
-    looks = {key: _ray_weights(differences, way) for key, way in ways.items()}
+    """Return the record of differences, which may be simulated ones.
+
+    What is said rests on the pairs of errors that were run alone: between them the surface is
+    interpolated, and its bands leave out the error of that. Where the trials are `invalid`, nothing
+    is significant.
+    """
     points, between = np.eye(len(differences.points)), surface_weights(differences.points)
-    # One critical value for all that is said of places: points, surface and paths.
-    every = np.concatenate([points, between, *looks.values()])
-    z = simultaneous(every, differences, question.library_hash)
-    flips = tuple(
-        _flip(path, sign_of(direction), differences, way, signs, question.up_to)
-        for (path, direction), way in ways.items()
-        for signs in [Combined.of(looks[path, direction], differences).signs(z).tolist()]
-    )
-    surface = Combined.of(between, differences)
+    # One critical value for all places that are shown.
+    z = simultaneous(np.concatenate([points, between]), differences, question.library_hash)
+    at, surface = Combined.of(points, differences), Combined.of(between, differences)
+    decided, shaded = (part.signs(z) * (invalid is None) for part in (at, surface))
+    signs = dict(zip(differences.points, decided.tolist(), strict=True))
     side = 2 * UNITS // SHOWN + 1
-    means, signs = (values.reshape(side, side) for values in (surface.means, surface.signs(z)))
     record = MapRecord(
         question=question,
         scenes=differences.values.shape[1],
-        points=_points(question, differences, Combined.of(points, differences), z),
+        invalid=invalid,
+        points=_points(question, differences, at, decided, z),
         surface=MapSurface(
             sizes=tuple(question.size(u) for u in range(-UNITS, UNITS + 1, SHOWN)),
-            difference=tuple(tuple(float(v) for v in row) for row in means),
-            sign=tuple(tuple(sign_of(v) for v in row) for row in signs),
+            difference=tuple(tuple(map(float, row)) for row in surface.means.reshape(side, side)),
+            sign=tuple(tuple(sign_of(v) for v in row) for row in shaded.reshape(side, side)),
         ),
-        flips=flips,
+        flips=tuple(
+            _flip(path, sign_of(direction), differences, way, signs, question.up_to)
+            for (path, direction), way in rays(question.against).items()
+        ),
         joint=joint(question, differences),
         critical=z,
         failed=failed,
@@ -66,10 +75,10 @@ def decided(
 
 
 def _points(
-    question: ResolvedMap, differences: Differences, at: Combined, z: float
+    question: ResolvedMap, differences: Differences, at: Combined, signs: Signs, z: float
 ) -> tuple[MapPoint, ...]:
     low, high = at.ends(z)
-    signs, means = at.signs(z), at.means
+    means = at.means
     return tuple(
         MapPoint(
             errors=(question.size(x), question.size(y)),
@@ -86,22 +95,20 @@ def _points(
     )
 
 
-def _ray_weights(differences: Differences, way: Point) -> Floats:
-    known = sizes(way, differences.points)
-    looks = np.arange(_BETWEEN * UNITS + 1) / _BETWEEN
-    weights = np.zeros((len(looks), len(differences.points)))
-    for row, size in zip(np.eye(len(known)), known, strict=True):
-        weights[:, differences.points.index(along(way, size))] = np.interp(looks, known, row)
-    return weights
-
-
 def _flip(
-    path: str, direction: Sign, differences: Differences, way: Point, signs: list[int], up_to: float
+    path: str,
+    direction: Sign,
+    differences: Differences,
+    way: Point,
+    decided: Mapping[Point, int],
+    up_to: float,
 ) -> Flip:
-    """Return what `signs`, decided at each look at a ray, say of the error along it."""
+    """Return what the sizes of an error that were run along one way say of it."""
+    known = sizes(way, differences.points)
+    signs = [decided[along(way, size)] for size in known]
 
     def until_other(begin: int) -> int:
-        """Return the last look from `begin` on with the same sign."""
+        """Return the last of the sizes from `begin` on with the same sign."""
         end = begin
         while end + 1 < len(signs) and signs[end + 1] == signs[begin]:
             end += 1
@@ -111,15 +118,15 @@ def _flip(
     kept = until_other(0) if start else None
     first = next((i for i, sign in enumerate(signs) if sign and sign != start), None)
     last = None if first is None else until_other(first)
-    known = sizes(way, differences.points)
     means = [differences.mean(along(way, size)) for size in known]
     turn, crossing = first_turn(known, means), None
     if turn is not None:
         low, high = (means[known.index(size)] for size in turn)
-        crossing = (turn[0] + (turn[1] - turn[0]) * low / (low - high)) * _BETWEEN
-    unit = direction * up_to / (UNITS * _BETWEEN)
-    until, estimate, begin, end = (
-        None if size is None else round(size * unit, 12) for size in (kept, crossing, first, last)
+        crossing = turn[0] + (turn[1] - turn[0]) * low / (low - high)
+    places = (None if at is None else known[at] for at in (kept, first, last))
+    until, begin, end, estimate = (
+        None if size is None else round(size * direction * up_to / UNITS, 12)
+        for size in (*places, crossing)
     )
     return Flip(
         path=path,

@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from faultpath.core.results import Result
 from faultpath.decisions.map.lattice import UNITS
+from faultpath.decisions.model import Invalid
 from faultpath.decisions.question import Resolved
 from faultpath.decisions.sentences.wording import MINUS
 from faultpath.statistics.estimate import Sign
@@ -77,7 +78,7 @@ class MapSurface(Result, allow_inf_nan=False):
     sizes: tuple[float, ...]
     difference: tuple[tuple[float, ...], ...]
     sign: tuple[tuple[Sign, ...], ...]
-    """Where it is decided who is ahead; the zero contour lies where it is not."""
+    """Where the interpolated difference leaves out 0, but for the error of interpolating it."""
 
     @model_validator(mode="after")
     def _square(self) -> Self:
@@ -88,7 +89,8 @@ class MapSurface(Result, allow_inf_nan=False):
 
 
 class Flip(Result, allow_inf_nan=False):
-    """On one path, in one direction of the error: how large an error reverses the ranking."""
+    """On one path, in one direction of the error: at which of the sizes that were run the ranking
+    is reversed."""
 
     path: str
     """A module, or `shared`."""
@@ -100,7 +102,8 @@ class Flip(Result, allow_inf_nan=False):
     until: float | None
     """Largest error up to which what is decided under correct inputs stays decided."""
     estimate: float | None
-    """Smallest error at which the estimate has the other sign than under correct inputs."""
+    """Smallest error at which the interpolated estimate has the other sign than under correct
+    inputs."""
     first: float | None
     last: float | None
 
@@ -124,7 +127,8 @@ class CorrelationRegion(Result, allow_inf_nan=False):
 
 
 class JointErrors(Result, allow_inf_nan=False):
-    """The expected difference under the joint distribution, over all correlations."""
+    """The expected difference under the joint distribution, over all correlations: of the surface
+    interpolated between the points, whose error no interval here includes."""
 
     curve: tuple[Expectation, ...]
     asked: tuple[Expectation, ...]
@@ -146,6 +150,8 @@ class MapRecord(Result, allow_inf_nan=False):
     question: ResolvedMap
     scenes: int
     """Compared: those without a void pair at any point."""
+    invalid: Invalid | None = None
+    """Why no result follows from these trials: then nothing is significant."""
     points: tuple[MapPoint, ...]
     surface: MapSurface
     flips: tuple[Flip, ...]

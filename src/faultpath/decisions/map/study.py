@@ -14,7 +14,7 @@ from faultpath.decisions.map.decide import decided
 from faultpath.decisions.map.lattice import COARSE, Point, lattice
 from faultpath.decisions.map.model import MapRecord, ResolvedMap
 from faultpath.decisions.map.surface import Differences, next_points
-from faultpath.decisions.model import CORRECT
+from faultpath.decisions.model import CORRECT, Invalid
 from faultpath.decisions.planning import rows_of, scenes_of, two_variants
 from faultpath.decisions.question import resolve
 from faultpath.faults import AnyFault, FaultText
@@ -83,7 +83,10 @@ class MapPlan(Analysis[list[Point]]):
         """
         differences, unlike = self.differences(sorted(items), table)
         findings = (*unlike, *deliveries.findings)
-        return decided(self.question, differences, len(table.failed()), findings)
+        invalid: Invalid | None = "unpaired" if unlike else None
+        if not deliveries.repeats:
+            invalid = "unrepeatable"
+        return decided(self.question, differences, len(table.failed()), findings, invalid)
 
     def path(self, point: Point) -> str:
         """Return what rows of a point are called in the outcome table."""

@@ -257,9 +257,9 @@ def failed_trials(record: DecisionRecord) -> Iterator[str]:
         lost = "failed or missing" if question.judged else "failed"
         yield (
             f"{capital(where(effect.path))}, {counted(failed.repair, 'trial')} of "
-            f"{question.repair} {lost}, {failed.baseline} of {question.baseline}: depending on how they would have ended, the difference over "
-            f"all scenes lies anywhere from {signed(failed.against_pp)} to "
-            f"{signed(failed.favour_pp)} pp."
+            f"{question.repair} {lost}, {failed.baseline} of {question.baseline}: depending on how "
+            "they would have ended, the difference over all scenes lies anywhere from "
+            f"{signed(failed.against_pp)} to {signed(failed.favour_pp)} pp."
         )
 
 
