@@ -1,15 +1,14 @@
 """Pictures in a real browser: nothing lies outside its picture, and no two marks of a key touch."""
 
 import itertools
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page
 
 from faultpath.decisions.pairs import Pair
 from faultpath.report.frame import STYLES
-from faultpath.report.inputs import ReportInput
 from faultpath.report.html import report_page
+from faultpath.report.inputs import ReportInput
 from faultpath.report.pair_grid import pair_grid
 from faultpath.report.svg import template
 from faultpath.trials import Outcome, Status
@@ -26,6 +25,9 @@ OUTSIDE = """() => [...document.querySelectorAll("svg.fig")].flatMap((svg) => {
     .map(([part]) => `${svg.querySelector("title").textContent}: ${part.outerHTML}`);
 })"""
 """What lies outside its picture by more than a pixel, of every picture that is shown."""
+
+PLACES = """() => [...document.querySelectorAll(".pair")].map((cell) => cell.getBoundingClientRect())
+  .map((box) => [Math.round(box.x), Math.round(box.y)])"""
 
 
 def shown(browser: Browser, text: str, width: int = 1280) -> Page:
@@ -57,10 +59,7 @@ def test_all_cells_of_a_grid_lie_in_its_picture(
     cells = page.locator(".pair rect")
     assert cells.count() == len(pairs)
     assert page.evaluate(OUTSIDE) == []
-    places = page.evaluate(
-        "() => [...document.querySelectorAll('.pair')].map((e) => e.getBoundingClientRect().toJSON())"
-    )
-    assert len({(round(place["x"]), round(place["y"])) for place in places}) == len(pairs)
+    assert len(set(map(tuple, page.evaluate(PLACES)))) == len(pairs)
     page.close()
 
 
