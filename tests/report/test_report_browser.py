@@ -4,13 +4,14 @@ import re
 import shlex
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from page_reader import with_traces
 from playwright.sync_api import Browser, Page, expect
 
-from faultpath.report.html import report_page, write_report
+from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.trials import OutcomeTable
 from faultpath.trials.store.signals import Signal
@@ -137,7 +138,7 @@ def test_the_list_of_scenes_is_filtered_by_who_succeeds(page: Page) -> None:
 
 
 def test_a_trial_that_was_not_recorded_shows_its_end_and_how_to_run_it_again(
-    one_seed: ReportInput, browser: Browser
+    one_seed: ReportInput, browser: Browser, tmp_path: Path
 ) -> None:
     names = {"rooms-004": "it's <here>"}
     rows = [
@@ -155,14 +156,20 @@ def test_a_trial_that_was_not_recorded_shows_its_end_and_how_to_run_it_again(
         signals={at: (Signal("thrust", "thrust", "N", steps),)},
     )
     page = browser.new_page(offline=True)
-    page.set_content(report_page(source))
+    page.goto(write_report(source, tmp_path / "a run")[0].as_uri())
     show = page.locator("#viewer-show option").first
     expect(show).to_have_text("1 of 80 scenes recorded", use_inner_text=True)
     page.locator('[data-condition="shared"] [data-scene="it\'s <here>"]').click()
     dialog = page.locator("#cells")
     assert re.search(r"it's <here>, seed 0: baseline \w+, repair \w+", dialog.inner_text())
     command = shlex.split(dialog.locator("code").inner_text())
-    assert command == ["faultpath", "replay", ".", "--scene=it's <here>", "--path=shared"]
+    assert command == [
+        "faultpath",
+        "replay",
+        str(tmp_path / "a run"),
+        "--scene=it's <here>",
+        "--path=shared",
+    ]
     dialog.get_by_role("button", name="Close").click()
     expect(dialog).not_to_be_visible()
     page.close()

@@ -3,11 +3,12 @@
 for (const grids of document.querySelectorAll("[data-pairs]")) {
   const dialog = document.getElementById("cells"), finger = 24;
   const make = (tag, text, attributes = {}) => Object.assign(document.createElement(tag), { textContent: text, ...attributes });
+  const run = location.protocol === "file:" ? decodeURIComponent(location.pathname).replace(/\/[^/]*$/, "") : "RUN";
   const quoted = (text) => (/^[\w.\/-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
   const entry = (cell, condition) => {
     const item = make("li", cell.querySelector("title").textContent), link = cell.getAttribute("href");
-    if (link) item.append(" ", make("a", "See both trials", { href: link }));
-    else if ("replay" in grids.dataset) item.append(make("code", `faultpath replay . --scene=${quoted(cell.dataset.scene)} --path=${quoted(condition)}`));
+    if (link) item.append(make("a", "See both trials", { href: link }));
+    else if ("replay" in grids.dataset) item.append(make("code", `faultpath replay ${quoted(run)} --scene=${quoted(cell.dataset.scene)} --path=${quoted(condition)}`));
     return item;
   };
   grids.addEventListener("click", (event) => {
