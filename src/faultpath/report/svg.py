@@ -14,12 +14,11 @@ Point = tuple[float, float]
 
 # Advance widths of wide sans serifs (thousandths of the size), none of them less than DejaVu's:
 # labels are placed by them, and a label that is narrower than foretold overlaps nothing.
-_NARROW = dict.fromkeys("ilj'", 290) | dict.fromkeys("I.,:;|", 340)
-_NARROW |= dict.fromkeys('ft()[]/-r "!', 415)
-_SMALL = dict.fromkeys("cksz", 580)
+_THIN = dict.fromkeys("ilj'", 290) | dict.fromkeys("I.,:;|", 340)
+_NARROW = dict.fromkeys('ft()[]/-r "!', 415) | dict.fromkeys("cksz", 580)
 _DIGITS = dict.fromkeys("0123456789", 640)  # they have one width, and a wide one in some fonts
 _WIDE = dict.fromkeys("mwMW%@→−+=<>≤≥…", 1000) | dict.fromkeys("ABCDEFGHKNOPQRSTUVXYZ&", 790)
-_ADVANCE = _NARROW | _SMALL | _DIGITS | _WIDE
+_ADVANCE = _THIN | _NARROW | _DIGITS | _WIDE
 _SIZES = {"small": 11.0, "head": 13.0}
 """Sizes of text by its class, in pixels, as `svg.css` has them; 12 otherwise."""
 
