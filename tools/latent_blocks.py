@@ -1,6 +1,6 @@
 """Blocks of the page about a latent world model with one camera."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from blocks import effect_entry, figures_of, words_grid
@@ -31,6 +31,11 @@ MISSED = {
 IMAGINED = {
     "imagined_correct": "an imagined action misses, no error, actions",
     "imagined_error": "with the error, actions",
+}
+COMPARED = {
+    1: "significantly more often",
+    -1: "significantly less often",
+    0: "without a significant difference",
 }
 SIDES = {1: "ahead", -1: "behind", 0: "no significant difference"}
 
@@ -83,15 +88,42 @@ def effects(rooms: str) -> str:
     return words_grid("repair", ("error of the camera", *PATHS.values()), lines)
 
 
+def answer(*names: str) -> str:
+    """Return whether any audit of these studies has a reversal, and how both pictures compare with
+    the live one alone."""
+    studies = {name: _read(f"{name}-held-out") for name in names}
+    lines = [_reversals([audit for study in studies.values() for audit in study["audits"]])]
+    lines[0] += (
+        " With the error in both pictures, compared with the live one alone, `plain` succeeds\n"
+    )
+    for rooms, member in (("marked", lambda name: name != "blank"), ("blank", "blank".__eq__)):
+        rows = [row for name in names if member(name) for row in studies[name]["baseline"]]
+        clauses = [
+            f"{words} ({wording.series(faults)})"
+            for sign, words in COMPARED.items()
+            if (faults := _of_sign(rows, sign))
+        ]
+        lines.append(f"- in {rooms} rooms {', '.join(clauses)}.")
+    return "\n".join(lines)
+
+
+def _reversals(audits: Sequence[Mapping[str, Any]]) -> str:
+    turned = [audit for audit in audits if "reversal" in audit["turns"].values()]
+    lead = f"A reversal is significant in {len(turned)} of" if turned else "No reversal in"
+    return f"{lead} {counted(len(audits), 'audit')}."
+
+
+def _of_sign(rows: Sequence[Mapping[str, Any]], sign: int) -> list[str]:
+    """Return the errors whose effect on the baseline, both pictures against one, has this sign."""
+    return [FAULTS[row["fault"]] for row in rows if row["effect"][3] == sign]
+
+
 def said(rooms: str) -> str:
     """Return what the audits show, in sentences."""
     study = _read(f"{rooms}-held-out")
     audits = study["audits"]
-    turned = [audit for audit in audits if "reversal" in audit["turns"].values()]
-    lead = f"A reversal is significant in {len(turned)} of" if turned else "No reversal in"
-    less = [FAULTS[row["fault"]] for row in study["baseline"] if row["effect"][3] > 0]
-    more = [FAULTS[row["fault"]] for row in study["baseline"] if row["effect"][3] < 0]
-    sentences = [f"{lead} {counted(len(audits), 'audit')}."]
+    less, more = (_of_sign(study["baseline"], sign) for sign in (1, -1))
+    sentences = [_reversals(audits)]
     for names, word in ((less, "more"), (more, "less")):
         if names:
             sentences.append(
@@ -133,7 +165,7 @@ def stops(library: str) -> str:
     for repair, until in rows.items():
         every, first = until["all-decided"], until["decided"]
         counts = (str(row["scenes"]) if row["reached"] else MISSING for row in (first, every))
-        shares = (every["break_even"][path] or MISSING for path in (ALONE, SHARED))
+        shares = (every["break_even"][path] or "not significant" for path in (ALONE, SHARED))
         lines.append(line(repair, *counts, *shares))
     columns = (
         "scenes until it is significant with both pictures wrong",
@@ -182,5 +214,6 @@ KIND = {
     "flown": flown,
     "stops": stops,
     "moves": moves,
+    "answer": answer,
 }
-"""Functions that fill `latent` blocks; the last word names the rooms, or the library."""
+"""Functions that fill `latent` blocks; the other words name rooms or studies, or the library."""

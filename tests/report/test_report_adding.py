@@ -91,8 +91,27 @@ def test_a_few_large_values_do_not_squeeze_the_others(heard) -> None:
     calm, jumped = (adding_panels(adding(each, pairs_of(each))) for each in both)
     levels = [re.findall(r'text-anchor="end">(−?[\d.]+)<', each[0]) for each in (calm, jumped)]
     assert levels[0] == levels[1]
-    said = "Lines are cut at the edge of the axes."
+    said = "Lines leave the axes where they are larger, up to 100 m/s²."
     assert [said in report_page(each) for each in both] == [False, True]
+
+
+def test_what_lies_outside_the_axes_is_drawn_outside_and_cut_there(heard) -> None:
+    """A line along the edge would read as values that lie at it."""
+    signals = {
+        at: tuple(replace(signal, values=_jumped(signal.values)) for signal in named)
+        for at, named in heard.signals.items()
+    }
+    source = replace(heard, signals=signals)
+    for panel in adding_panels(adding(source, pairs_of(source))):
+        clips = re.findall(r'<clipPath.*?y="([\d.]+)" width="[\d.]+" height="([\d.]+)"', panel)
+        groups = panel.split('<g clip-path="url(#')[1:]
+        assert len(clips) == len(groups) == 2
+        for (top, height), group in zip(clips, groups, strict=True):
+            lines = re.findall(r'<polyline class="term[^"]*" points="([^"]*)"', group)
+            ys = [float(point.split(",")[1]) for line in lines for point in line.split()]
+            inside = [y for y in ys if float(top) < y < float(top) + float(height)]
+            assert len(ys) > len(inside) > 0
+            assert not {float(top), float(top) + float(height)} & set(ys)
 
 
 def _jumped(values):

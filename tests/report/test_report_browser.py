@@ -1,12 +1,21 @@
 """The page in a real browser, without a network: it draws, answers and stays quiet."""
 
+import re
+import shlex
 from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
+from page_reader import with_traces
 from playwright.sync_api import Browser, Page, expect
 
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
+from faultpath.trials import OutcomeTable
+from faultpath.trials.store.signals import Signal
+from faultpath.trials.store.tables import TrialAddress
 
 pytestmark = pytest.mark.browser
 
@@ -91,6 +100,12 @@ def test_a_cell_leads_to_its_trial_and_the_address_brings_it_back(page: Page) ->
     assert cell.startswith("#scene=")
     assert cell.endswith("&path=predictor")
     grid.locator("a").nth(1).click()
+    if page.viewport_size and page.viewport_size["width"] < 400:  # cells are less than 24 px there
+        around = page.locator("#cells a")
+        assert 1 < around.count() < 30
+        assert all(box and box["height"] >= 24 for box in (a.bounding_box() for a in around.all()))
+        page.locator(f'#cells a[href="{cell}"]').click()
+    expect(page.locator("#cells")).not_to_be_visible()
     expect(page.locator("#viewer-play")).to_be_focused()
     assert page.evaluate("location.hash") == cell
     scene = page.evaluate("decodeURIComponent(location.hash.slice(7).split('&')[0])")
@@ -118,5 +133,43 @@ def test_the_list_of_scenes_is_filtered_by_who_succeeds(page: Page) -> None:
     assert "repair: ✓" in column.inner_text()
     assert "baseline: ✓" not in column.inner_text()
     page.goto(page.url.partition("#")[0] + "#scene=" + "no")
-    page.locator("[data-pairs] svg a").first.click()
+    page.locator("[data-pairs] svg a").first.dispatch_event("click")
     expect(scenes.locator("option")).to_have_count(whole)
+
+
+def test_a_trial_that_was_not_recorded_shows_its_end_and_how_to_run_it_again(
+    one_seed: ReportInput, browser: Browser, tmp_path: Path
+) -> None:
+    names = {"rooms-004": "it's <here>"}
+    rows = [
+        replace(
+            row, outcome=replace(row.outcome, scene=names.get(row.outcome.scene, row.outcome.scene))
+        )
+        for row in with_traces(one_seed.outcomes, lambda track: None).rows
+    ]
+    steps = np.arange(5, dtype=np.float32)[:, None]
+    at = TrialAddress("gru", "shared", 0, "clutter-000")
+    source = replace(
+        one_seed,
+        outcomes=OutcomeTable(tuple(rows)),
+        system=one_seed.system.model_copy(update={"plans": {}}),
+        signals={at: (Signal("thrust", "thrust", "N", steps),)},
+    )
+    page = browser.new_page(offline=True)
+    page.goto(write_report(source, tmp_path / "a run")[0].as_uri())
+    show = page.locator("#viewer-show option").first
+    expect(show).to_have_text("1 of 80 scenes recorded", use_inner_text=True)
+    page.locator('[data-condition="shared"] [data-scene="it\'s <here>"]').click()
+    dialog = page.locator("#cells")
+    assert re.search(r"it's <here>, seed 0: baseline \w+, repair \w+", dialog.inner_text())
+    command = shlex.split(dialog.locator("code").inner_text())
+    assert command == [
+        "faultpath",
+        "replay",
+        str(tmp_path / "a run"),
+        "--scene=it's <here>",
+        "--path=shared",
+    ]
+    dialog.get_by_role("button", name="Close").click()
+    expect(dialog).not_to_be_visible()
+    page.close()

@@ -29,7 +29,7 @@ def _expected(record: DecisionRecord) -> dict[str, list[str]]:
         ],
         "p, alone": [_p(e.p_value) for e in effects],
         "p, Holm": [_p(e.adjusted_p_value) for e in effects],
-        "Ahead": [{1: "gru-dcc", -1: "gru", 0: "-"}[e.sign] for e in effects],
+        "Ahead": [{1: "gru-dcc", -1: "gru", 0: "not shown"}[e.sign] for e in effects],
         "80 % power, pp": [str(math.ceil(e.minimum_detectable_pp)) for e in effects],
         "Scenes": [str(e.scenes) for e in effects],
         "Void pairs": [str(e.void_pairs) for e in effects],

@@ -12,7 +12,7 @@ from faultpath.decisions.pairs import Pair, by_scene
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.wording import where
 from faultpath.report.inputs import ReportInput
-from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes
+from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes, tick_label
 from faultpath.trials import Outcome, Status
 from faultpath.trials.store.signals import TOGETHER, Signal
 from faultpath.trials.store.tables import TrialAddress
@@ -58,8 +58,8 @@ class Adding:
     """Summary of the last path, in numbers of this scene alone."""
     span: tuple[float, float]
     """The range of the values; where a few would squeeze the others, that of the others."""
-    cut: bool
-    """Whether some values lie outside that range."""
+    beyond: str
+    """The largest value outside that range, with its unit; empty where none lies outside."""
     dt_s: float
 
     @property
@@ -112,6 +112,7 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
     whole = float(every.min()), float(every.max())
     cut = whole[1] - whole[0] > _SQUEEZED * max(high - low, 1e-9)
     unit = wording.unit(terms[0].unit)
+    largest = max(whole, key=abs)
     last, _, arms = paths[-1]
     digits = 2 if min(max(arm.sizes) for arm in arms) < 1 else 1
     descriptions: list[str] = []
@@ -127,7 +128,7 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
         paths=tuple((title, arms) for _, title, arms in paths[-_MOST_PATHS:]),
         caption=f"Scene {scene}, {where(last)}, mean sizes: {'; '.join(descriptions)}.",
         span=(low, high) if cut else whole,
-        cut=cut,
+        beyond=f"{tick_label(float(f'{largest:.2g}'))} {unit}" if cut else "",
         dt_s=source.system.control_dt_s,
     )
 
@@ -143,7 +144,6 @@ def adding_panels(shown: Adding) -> list[str]:
             _WIDTH, _TOP + _PITCH * len(arms) - 16, f"{title}: {shown.words} over time", endings
         )
         svg.text(0, 14, title, "head", room=_WIDTH)
-        until = svg.clip("until", x.start, x.end - x.start, "until")
         for place, arm in enumerate(arms):
             top = _TOP + _PITCH * place
             y = upward.at(top + _PLOT, top)
@@ -152,7 +152,9 @@ def adding_panels(shown: Adding) -> list[str]:
             svg.text(_WIDTH, top - 10, arm.ended, "small soft", "end")
             draw_axes(svg, x, y, 4, x.ticks(4) if arm is arms[-1] else ())
             svg.text(_LEFT - 6, y.start + 14, shown.unit, "small soft", "end")
-            with svg.group(clip_path=until):
+            with svg.group(
+                clip_path=svg.clip(arm.role, (x.start, y.end), (x.end, y.start), "until")
+            ):
                 _terms(svg, arm, x, y, shown.dt_s)
             _end(svg, arm, x(arm.trial.time_s), y)
         svg.text(_WIDTH, svg.height - 7, "s", "small soft", "end")
@@ -164,7 +166,8 @@ def _terms(svg: Svg, arm: Lines, x: Axis, y: Axis, dt_s: float) -> None:
     """Draw both errors and their sum, and what the sum leaves."""
     steps = dt_s * np.arange(arm.values.shape[1], dtype=np.float64)
     lines: list[list[Point]] = []
-    for values in np.clip(arm.values, y.low, y.high):
+    far = 100 * (y.high - y.low)  # what lies outside the axes is drawn outside, and cut there
+    for values in np.clip(arm.values, y.low - far, y.high + far):
         known = np.isfinite(values)
         lines.append([(x(t), y(v)) for t, v in zip(steps[known], values[known], strict=True)])
     if both := lines[-1]:

@@ -31,7 +31,7 @@ _NOTES = (
     "(power, clocks, buses, shared code, the environment) is not seen. No compliance with ISO "
     "26262 or IEC 61508 follows.",
     "An audit counts for a group where its fault acts on that group alone. No evidence: no audit "
-    "shown here has this condition.",
+    "shown here has this condition. A dash: nothing is left to run.",
 )
 
 
@@ -91,9 +91,9 @@ def _line(way: Way, evidence: Evidence | None, fly: str) -> Line:
     label = "all of them (shared)" if way.path == SHARED else f"{way.path} alone"
     kind = _kind(way)
     places = ", ".join(dict.fromkeys(consumer for _, consumer in way.taps))
-    further = ", ".join(way.passed_on) or MISSING
+    further = ", ".join(way.passed_on) or "nothing"
     if evidence is None:
-        return line(label, places, further, kind, NO_EVIDENCE, MISSING, fly)
+        return line(label, places, further, kind, NO_EVIDENCE, "none", fly)
     text = f"{evidence.run}: {evidence.said}" if evidence.run else evidence.said
     missed = f"not reached: {_by_channel(evidence.missed)}" if evidence.missed else ""
     return line(
@@ -102,7 +102,7 @@ def _line(way: Way, evidence: Evidence | None, fly: str) -> Line:
         further,
         kind,
         Entry(text=text, aside="; ".join(filter(None, (evidence.fault, missed)))),
-        Entry(text=evidence.difference or MISSING, detected=evidence.detected),
+        Entry(text=evidence.difference or "none", detected=evidence.detected),
         fly if evidence.missed else MISSING,
     )
 

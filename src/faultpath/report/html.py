@@ -25,6 +25,7 @@ def report_page(source: ReportInput) -> str:
     record, question = source.record, source.record.question
     pairs = read_pairs(source.outcomes, record)
     viewer = viewer_data(source, pairs)
+    shown = viewer.shown if viewer else ()
     titles = {path.name: path.title for path in record.paths}
     decided = any(effect.sign for effect in record.effects)
     why = adding(source, pairs) if decided else None
@@ -32,7 +33,7 @@ def report_page(source: ReportInput) -> str:
     return render(
         "report.html.j2",
         (*STYLES, "viewer.css"),
-        ("viewer.js",),
+        ("cells.js", "viewer.js"),
         record=record,
         asked=question,
         provenance=source.provenance,
@@ -56,13 +57,11 @@ def report_page(source: ReportInput) -> str:
         frequency=[(Markup(picture), words) for picture, words in frequency_panels(record)],
         beta=[(Markup(picture), words) for picture, words in frequency_panels(record, beta=True)],
         grids=[
-            Markup(
-                pair_grid(
-                    title,
-                    [pair for pair in pairs if pair.path == name],
-                    question.ends,
-                    viewer.shown if viewer else (),
-                )
+            (
+                name,
+                Markup(
+                    pair_grid(title, [p for p in pairs if p.path == name], question.ends, shown)
+                ),
             )
             for name, title in titles.items()
         ],

@@ -8,7 +8,7 @@ from faultpath.decisions.map.lattice import SHARED
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.maps import cut
-from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
+from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
 from faultpath.report.frame import render, write_pages
@@ -33,7 +33,7 @@ def _paths(record: MapRecord) -> Table:
     for size in sorted({x or y for x, y in of if x == y or not x or not y}):
         entries: list[Entry] = []
         for errors in ((size, 0.0), (0.0, size), (size, size)):
-            entry = Entry(text=MISSING)
+            entry = Entry(text="not run")
             if point := of.get(errors):
                 ends = f"[{wording.plain(point.low)}, {wording.plain(point.high)}]"
                 text = f"{wording.signed(point.difference)} {ends}"
@@ -59,7 +59,7 @@ def _flips(record: MapRecord) -> Table:
     ahead = {1: question.repair, -1: question.baseline}
     lines: list[Line] = []
     for flip in record.flips:
-        kept, turned = MISSING, MISSING
+        kept = turned = "neither"
         if flip.start and flip.until is not None:
             kept = f"{ahead[flip.start]}, {question.said(cut(flip.until, out=False))}"
         if flip.turned and flip.first is not None and flip.last is not None:
@@ -68,7 +68,7 @@ def _flips(record: MapRecord) -> Table:
                 turned += f" to {question.said(cut(flip.last, out=False))}"
         path = SHARED if flip.path == SHARED else f"{flip.path} alone"
         direction = "above 0" if flip.direction > 0 else "below 0"
-        estimate = MISSING if flip.estimate is None else question.said(flip.estimate)
+        estimate = "no turn" if flip.estimate is None else question.said(flip.estimate)
         lines.append(line(path, direction, kept, estimate, turned))
     return Table(
         name="flips",
@@ -77,11 +77,10 @@ def _flips(record: MapRecord) -> Table:
         columns=("Error", "Ahead without error, up to", "Estimate turns at", "Ahead beyond, from"),
         lines=tuple(lines),
         notes=(
-            "Ahead is who significantly is, at all sizes up to that one, or from that one on. The "
-            "turn lies between the two, which are its interval. A dash: no size on the map is "
-            "significant, or the estimate does not turn; where nothing is significant with correct "
-            "inputs there is no ranking to reverse. All of it holds at once, with the intervals of "
-            "the map.",
+            "Ahead is who significantly is, at all sizes up to that one, or from that one on, and "
+            "neither where no size on the map is significant. The turn lies between the two, which "
+            "are its interval. Where nothing is significant with correct inputs there is no "
+            "ranking to reverse. All of it holds at once, with the intervals of the map.",
         ),
     )
 

@@ -6,7 +6,16 @@ from itertools import pairwise, product
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.maps import at_point
-from faultpath.report.svg import Axis, Svg, covering, draw_axes, number, tick_label
+from faultpath.report.svg import (
+    Axis,
+    Point,
+    Svg,
+    covering,
+    draw_axes,
+    number,
+    text_width,
+    tick_label,
+)
 
 _SIDE = 340.0
 """Side of the square, in pixels."""
@@ -33,7 +42,7 @@ def map_picture(record: MapRecord) -> Svg:
     first, second = question.against
     svg.line((x(0.0), y.start), (x(0.0), y.end), "zero")
     svg.line((x.start, y(0.0)), (x.end, y(0.0)), "zero")
-    svg.line((x.start, y.start), (x.end, y.end), "back")
+    svg.line((x.start, y.start), (x.end, y.end), "zero")
     for name, left, up, anchor in (
         (first, x.end + 6, y(0.0) - 3, "start"),
         (second, x(0.0), y.end - 20, "middle"),
@@ -84,18 +93,22 @@ def _areas(svg: Svg, record: MapRecord, x: Axis, y: Axis, hatch: str) -> None:
 def _zero(record: MapRecord, x: Axis, y: Axis) -> Iterator[str]:
     """Yield a stroke for each cell of the lattice that the estimate's zero crosses."""
     sizes, heights = record.surface.sizes, record.surface.difference
+    ends = (sizes[0], sizes[-1])
     for row, column in product(range(len(sizes) - 1), repeat=2):
         around = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
-        crossings: list[str] = []
+        crossings: list[Point] = []
         for (r1, c1), (r2, c2) in pairwise([*around, around[0]]):
             a, b = heights[r1][c1], heights[r2][c2]
             if (a > 0) != (b > 0):
                 share = a / (a - b)
                 across = sizes[c1] + share * (sizes[c2] - sizes[c1])
                 upward = sizes[r1] + share * (sizes[r2] - sizes[r1])
-                crossings.append(f"{number(x(across))} {number(y(upward))}")
+                crossings.append((across, upward))
         for one, two in zip(crossings[::2], crossings[1::2], strict=True):
-            yield f"M{one}L{two}"
+            # One along the frame, where the estimate is exactly 0, divides nothing.
+            if not any(one[axis] == two[axis] and one[axis] in ends for axis in (0, 1)):
+                start, end = (f"{number(x(at))} {number(y(up))}" for at, up in (one, two))
+                yield f"M{start}L{end}"
 
 
 def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
@@ -117,14 +130,21 @@ def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
     for column, value in enumerate((*(-bound for bound in bounds), *reversed(bounds[:-1])), 1):
         label = f"{value:+.0f}".replace("-", "−") if value else "0"
         svg.text(column * cell, 63, label, "small soft", "middle")
-    svg.path("M0 74h22v11h-22Z", "inner")
-    svg.text(28, 84, "not significant")
-    svg.line((112, 80), (134, 80), "range")
-    svg.text(140, 84, f"estimate {_EQUAL}")
-    svg.circle((11, 100), 2.6, "dot")
-    svg.text(28, 104, "run, significant")
-    svg.circle((134, 100), 2.6, "dot open")
-    svg.text(146, 104, "run, not significant")
+    with svg.group("legend"):
+        svg.path("M0 74h22v11h-22Z", "inner")
+        beside = _entry(svg, 0, 84, "not significant")
+        svg.line((beside, 80), (beside + 22, 80), "range")
+        _entry(svg, beside, 84, f"estimate {_EQUAL}")
+        svg.circle((11, 100), 2.6, "dot")
+        beside = _entry(svg, 0, 104, "run, significant")
+        svg.circle((beside + 11, 100), 2.6, "dot open")
+        _entry(svg, beside, 104, "run, not significant")
+
+
+def _entry(svg: Svg, left: float, y: float, words: str) -> float:
+    """Write what a mark of the key means beside it; return where the next one may begin."""
+    svg.text(left + 28, y, words)
+    return left + 28 + text_width(words, 12) + 14
 
 
 def correlation_picture(record: MapRecord) -> Svg:

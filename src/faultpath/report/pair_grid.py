@@ -8,6 +8,8 @@ from faultpath.decisions.pairs import WORDS, Pair, PairKind
 from faultpath.report.svg import Point, Svg, text_width
 
 _WIDTH, _SIDE, _GAP, _MOST_COLUMNS = 390.0, 15.0, 2.0, 25
+_LEAST, _LARGEST = 11.0, 19.0
+"""Sides of a cell: its sign fits into the least."""
 _ALWAYS = (PairKind.BOTH, PairKind.REPAIR_ONLY, PairKind.BASELINE_ONLY, PairKind.NEITHER)
 
 
@@ -34,8 +36,9 @@ def pair_grid(
     ]
     n_seeds = max((len(stack) for _, stacks in blocks for stack in stacks), default=1)
     left = min(110.0, max((text_width(name, 12) + 10 for name, _ in blocks if name), default=0.0))
-    columns = min(_MOST_COLUMNS, max((len(stacks) for _, stacks in blocks), default=1))
-    side = max(11.0, min(19.0, (_WIDTH - left) / columns - _GAP))
+    longest = max((len(stacks) for _, stacks in blocks), default=1)
+    columns = min(_MOST_COLUMNS, longest, int((_WIDTH - left) / (_LEAST + _GAP)))
+    side = min(_LARGEST, (_WIDTH - left) / columns - _GAP)
     row_height = n_seeds * (side + 1) + (7 if n_seeds > 1 else 4)
     rows = sum(-(-len(stacks) // columns) for _, stacks in blocks)
     svg = Svg(

@@ -12,19 +12,20 @@ from faultpath.decisions.tables.escapes import html as escape
 
 Point = tuple[float, float]
 
-# Advance widths of a common sans serif (thousandths of the size), a little on the wide side: labels
-# are placed by them, and a label that is narrower than foretold overlaps nothing.
-_NARROW = dict.fromkeys("iljI.,:;'|!", 290) | dict.fromkeys('ft()[]/-r "', 350)
+# Advance widths of wide sans serifs (thousandths of the size), none of them less than DejaVu's:
+# labels are placed by them, and a label that is narrower than foretold overlaps nothing.
+_THIN = dict.fromkeys("ilj'", 290) | dict.fromkeys("I.,:;|", 340)
+_NARROW = dict.fromkeys('ft()[]/-r "!', 415) | dict.fromkeys("cksz", 580)
 _DIGITS = dict.fromkeys("0123456789", 640)  # they have one width, and a wide one in some fonts
-_WIDE = dict.fromkeys("mwMW%@→−+=<>", 880) | dict.fromkeys("ABCDEFGHKNOPQRSTUVXYZ&", 720)
-_ADVANCE = _NARROW | _DIGITS | _WIDE
+_WIDE = dict.fromkeys("mwMW%@→−+=<>≤≥…", 1000) | dict.fromkeys("ABCDEFGHKNOPQRSTUVXYZ&", 790)
+_ADVANCE = _THIN | _NARROW | _DIGITS | _WIDE
 _SIZES = {"small": 11.0, "head": 13.0}
 """Sizes of text by its class, in pixels, as `svg.css` has them; 12 otherwise."""
 
 
 def text_width(text: str, size: float) -> float:
     """Return a safe estimate of how wide `text` is at `size` pixels."""
-    return sum(_ADVANCE.get(c, 580) for c in text) * size / 1000.0
+    return sum(_ADVANCE.get(c, 640) for c in text) * size / 1000.0
 
 
 def shortened(text: str, width: float, size: float) -> str:
@@ -140,12 +141,13 @@ class Svg:
         )
         return f"url(#{key})"
 
-    def clip(self, name: str, x: float, w: float, cls: str) -> str:
-        """Define an upright strip of the picture and return the `clip-path` that shows only it."""
-        key = f"{self.uid}-{name}"
+    def clip(self, name: str, low: Point, high: Point, cls: str) -> str:
+        """Define a rectangle by two corners and return the `clip-path` that shows only it."""
+        key, (left, top), (right, bottom) = f"{self.uid}-{name}", low, high
         self._parts.append(
-            f'<defs><clipPath id="{key}"><rect class="{escape(cls)}" x="{number(x)}" y="0" '
-            f'width="{number(w)}" height="{number(self.height)}"/></clipPath></defs>'
+            f'<defs><clipPath id="{key}"><rect class="{escape(cls)}" x="{number(left)}" '
+            f'y="{number(top)}" width="{number(right - left)}" height="{number(bottom - top)}"/>'
+            "</clipPath></defs>"
         )
         return f"url(#{key})"
 

@@ -82,7 +82,7 @@ def decided_for(record: DecisionRecord, effect: Effect) -> Entry:
     p-value for which the difference is not significant where the interval alone excludes 0."""
     if not effect.acted:
         return Entry(text="not tested")
-    arm = record.winner(effect.sign) if effect.sign else MISSING
+    arm = record.winner(effect.sign) if effect.sign else "not shown"
     p = adjusted(record, effect) if only_alone(effect) else ""
     return Entry(text=arm, aside=", ".join(filter(None, (effect.extreme, p))))
 
@@ -146,8 +146,8 @@ def whole_table(record: DecisionRecord) -> Table:
         f"Difference: success of {question.repair} minus success of {question.baseline}. Won:lost: "
         f"scenes in which only {question.repair} or only {question.baseline} succeeds. Void pairs "
         "count for neither side. Break-even: the fault frequencies at which neither is "
-        "shown to be ahead, with the estimate in front; any: no bound could be shown."
-        + (_BETA if record.break_even_beta else ""),
+        "shown to be ahead, with the estimate in front; any: no bound could be shown. A dash: "
+        "there is nothing to compute it from." + (_BETA if record.break_even_beta else ""),
         f"Primary contrast: {question.primary}. {tests}{corrected} Intervals and tests speak of "
         f"{record.estimand}.",
         *not_standing(record),

@@ -40,6 +40,8 @@ class Viewer:
     positions lie on one axis and are plotted over time; `none`: the system gives neither."""
     shown: frozenset[tuple[str, int]]
     """Scenes and seeds that can be looked at."""
+    whole: bool
+    """Whether these are all that ran."""
     packed: str
     """All else, for the script."""
 
@@ -50,14 +52,15 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     Left out are scenes without any track and, where no trial has one, those without signals.
     """
     plans, tracks = source.system.plans, traces_of(source.outcomes)
-    flat = _flat(source, tracks)
+    flat, every = _flat(source, tracks), by_scene(pairs)
     recorded = {(at.scene, at.seed) for at in source.signals}
     tracked = {(at.scene, at.seed) for at, track in tracks.items() if len(track)}
-    groups = {at: of for at, of in by_scene(pairs).items() if at in (tracked or recorded)}
+    chosen = [at for at in choose(source.record, pairs) if at in (tracked or recorded)]
+    playable = [at for at in dict.fromkeys((*chosen, *every)) if at in (tracked or recorded)]
+    few = [at for at in playable if at in recorded][:_MOST_WITH_SIGNALS]
+    groups = {at: of for at, of in every.items() if at in (tracked or few)}
     if not groups:
         return None
-    chosen = [at for at in choose(source.record, pairs) if at in groups]
-    few = [at for at in dict.fromkeys((*chosen, *groups)) if at in recorded][:_MOST_WITH_SIGNALS]
     signals = {at: s for at, s in source.signals.items() if (at.scene, at.seed) in few}
     if tracked and flat:
         signals = _with_positions(signals, tracks)
@@ -76,8 +79,10 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
         "plots": [plot.described() for plot in trials.plots],
         "plans": drawn,
         "scenes": scenes,
+        "ran": len(every),
     }
-    return Viewer(space, frozenset(groups), pack(content, trials.series))
+    whole = len(groups) == len(every)
+    return Viewer(space, frozenset(groups), whole, pack(content, trials.series))
 
 
 def _scenes(

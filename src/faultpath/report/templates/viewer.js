@@ -166,8 +166,11 @@ if (document.getElementById("viewer-data")) {
       const places = every.filter((place) => data.scenes[place].pairs.some((p) => p.path === name && p.kind === `${arm}-only`));
       return { label: `${title}: only the ${arm} succeeds`, places };
     })).filter(({ places }) => places.length);
-    const all = { label: several ? "all trials" : "all scenes", places: every };
-    get("show").replaceChildren(...[all, ...apart].map(({ label, places }, n) => make("option", `${label} (${places.length})`, { value: n })));
+    const noun = several ? "trials" : "scenes", part = every.length < data.ran;
+    const all = { label: `all ${noun}`, places: every };
+    const labels = [all, ...apart].map(({ label, places }) => `${label} (${places.length}${part ? " recorded" : ""})`);
+    if (part) labels[0] = `${every.length} of ${data.ran} ${noun} recorded`;
+    get("show").replaceChildren(...labels.map((label, n) => make("option", label, { value: n })));
     const offer = (n) => {
       const { places } = [all, ...apart][n];
       get("show").value = String(n);
