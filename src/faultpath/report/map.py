@@ -7,7 +7,6 @@ from markupsafe import Markup
 from faultpath.decisions.map.lattice import SHARED
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.maps import cut
 from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
@@ -61,11 +60,11 @@ def _flips(record: MapRecord) -> Table:
     for flip in record.flips:
         kept = turned = "neither"
         if flip.start and flip.until is not None:
-            kept = f"{ahead[flip.start]}, {question.said(cut(flip.until, out=False))}"
+            kept = f"{ahead[flip.start]}, {question.said(flip.until)}"
         if flip.turned and flip.first is not None and flip.last is not None:
-            turned = f"{ahead[flip.turned]}, {question.said(cut(flip.first, out=True))}"
+            turned = f"{ahead[flip.turned]}, {question.said(flip.first)}"
             if abs(flip.last) < question.up_to:
-                turned += f" to {question.said(cut(flip.last, out=False))}"
+                turned += f" to {question.said(flip.last)}"
         path = SHARED if flip.path == SHARED else f"{flip.path} alone"
         direction = "above 0" if flip.direction > 0 else "below 0"
         estimate = "no turn" if flip.estimate is None else question.said(flip.estimate)
@@ -77,9 +76,9 @@ def _flips(record: MapRecord) -> Table:
         columns=("Error", "Ahead without error, up to", "Estimate turns at", "Ahead beyond, from"),
         lines=tuple(lines),
         notes=(
-            "Ahead is who significantly is, at all sizes up to that one, or from that one on, and "
-            "neither where no size on the map is significant. The turn lies between the two, which "
-            "are its interval. Where nothing is significant with correct inputs there is no "
+            "Ahead is who significantly is, at all sizes run up to that one, or from that one on, "
+            "and neither where no size run is significant. The estimate turns between two of "
+            "them, by interpolation. Where nothing is significant with correct inputs there is no "
             "ranking to reverse. All of it holds at once, with the intervals of the map.",
         ),
     )
