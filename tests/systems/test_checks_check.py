@@ -8,25 +8,25 @@ from pathlib import Path
 import pytest
 from gym_toys import functions
 
+import faultpath
 from faultpath.cli.main import main
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Taps
 from faultpath.systems import ComposedSystem, writes
-from faultpath.systems.checks.check import check_system
 from faultpath.systems.checks.judging import remedy
 from faultpath.systems.checks.remarks import ENOUGH, diverged, other_names, successes, without_room
-from faultpath.trials import Outcome, Status, SystemSpec, load_system
-from faultpath.trials.question import CheckQuestion
+from faultpath.trials import Outcome, Status
 
 ROOT = Path(__file__).resolve().parents[2]
 BROKEN = f"{Path(__file__).with_name('broken.py')}:create"
 LOOPS = f"{Path(__file__).with_name('broken_loops.py')}:create"
 
 
-def check(name: str = BROKEN, broken: str | None = None, library: str = "any", **question):
-    spec = SystemSpec(name=name, options={} if broken is None else {"broken": broken})
-    question = CheckQuestion(**{"workers": 0, "library": library} | question)
-    return check_system(load_system(spec), spec, question, lambda done, known: None)
+def check(name: str = BROKEN, broken: str = "", library: str = "any", **question):
+    options = {"broken": broken} if broken else {}
+    return faultpath.check(
+        name, **{"workers": 0, "library": library, "options": options} | question, progress=False
+    )
 
 
 def failed(report) -> dict[str, tuple[str, ...]]:
@@ -36,6 +36,7 @@ def failed(report) -> dict[str, tuple[str, ...]]:
 INDEPENDENCE = "scene independence"
 SAID = {
     "raises": ("trials end", "Variant 'bare': ValueError: no air"),
+    "raises late": ("trials end", ") in scene 'w4'; correct the system"),
     "never repeats": ("determinism", "first at step 1 in range -> pilot.approach, scene 'w0'"),
     "by place": ("scene independence", "Variant 'bare' run in another order, without"),
     "crowded": ("scene independence", "without some of the scenes beside it, differs"),
@@ -53,6 +54,7 @@ SAID = {
     ),
     "nan": ("shape and unit", "source 'laser' at step 10, read by pilot.approach, is not finite"),
     "shape": ("shape and unit", "'laser' declares `shape: []`"),
+    "whole": ("shape and unit", "Source 'laser' gives whole numbers (int64) of unit m: what is"),
     "millimetres": ("shape and unit", "its largest reading is 2.78e+03; give it in m"),
 }
 NONE_ENDS = ("of the future", "another source", "shape")
@@ -79,6 +81,74 @@ def test_a_sound_system_passes(name, library):
     report = check(name if name == BROKEN else f"{ROOT / name}", library=library)
     assert failed(report) == {}
     assert {each.status for each in report.checks} == {"passed"}
+
+
+@pytest.mark.parametrize(
+    ("broken", "failing", "sentence"),
+    [
+        ("raises when near", ["trials end"], "ValueError: too near"),
+        ("nan when near", ["trials end", "shape and unit"], "source 'laser' at step 1, read by"),
+        ("shape when near", ["shape and unit"], "the reading of one scene has the shape [1]"),
+    ],
+)
+def test_what_only_the_fault_brings_is_found_under_the_fault(broken, failing, sentence):
+    assert failed(check(broken=broken)) == {}
+    found = failed(check(broken=broken, fault="range:scale=0.1"))
+    assert list(found) == failing
+    (said,) = found[failing[-1]]
+    assert said.startswith("Variant 'bare', under the fault (pilot): ")
+    assert sentence in said
+
+
+def test_a_fault_that_cannot_act_is_refused_and_one_that_changes_nothing_remarked():
+    with pytest.raises(UserError, match="reaches neither 'bare'"):
+        check(fault="range:scale=0.1@guard", variants=("bare",))
+    report = check(fault="mass:scale=1")
+    remarks = [remark for each in report.checks for remark in each.remarks]
+    assert any("under the fault (pilot): it changed no reading" in remark for remark in remarks)
+
+
+@pytest.mark.parametrize(
+    ("broken", "cause"),
+    [
+        ("random", "every run differs, also in new processes: take random numbers from"),
+        ("kept generator", "the second run in one differs: let run() keep nothing"),
+        ("hash of a text", "another one differs: look for hash()"),
+    ],
+)
+def test_the_cause_of_what_does_not_repeat_follows_from_runs_in_new_processes(broken, cause):
+    report = check(broken=broken, workers=1, variants=("bare",), scenes=2)
+    found = {each.name: each for each in report.checks}
+    (said,) = found["determinism"].failures
+    assert cause in said
+    assert found["pairing"].status == found["scene independence"].status == "not judged"
+    assert [name for name, each in found.items() if each.failures] == ["determinism"]
+
+
+def test_a_reader_that_has_its_value_from_elsewhere_fails_and_one_that_ignores_it_does_not():
+    (said,) = failed(check(LOOPS, broken="goes round"))["fault delivery"]
+    lead = "Injection point place -> pilot.feedback of variant 'plain', faulted in 4 trials, had no"
+    assert said.startswith(
+        f"{lead} effect, and 'pilot' wrote another order at step 1 in scene 'l0'"
+    )
+    for broken in ("goes round, still", "ignores"):
+        report = check(LOOPS, broken=broken)
+        assert failed(report) == {}
+        (remark,) = [remark for each in report.checks for remark in each.remarks]
+        why = "effect because the output of 'pilot' never changed in any trial: order stayed what"
+        assert remark.startswith(f"{lead} {why}")
+
+
+def test_scenes_are_drawn_from_the_whole_library():
+    few = check(scenes=3, variants=("bare",))
+    assert (len(few.scenes), few.of) == (3, 6)
+    parts = [("w0", "w1"), ("w2", "w3"), ("w4", "w5")]
+    assert all(scene in part for scene, part in zip(few.scenes, parts, strict=True))
+
+
+def test_scenes_that_share_an_index_are_refused():
+    with pytest.raises(SystemMistake, match="gives scenes 'w0' and 'w1' the index 0: number its"):
+        check(broken="same index")
 
 
 def test_where_no_trial_ends_that_check_fails_and_names_the_one_to_see():
@@ -118,7 +188,7 @@ def test_an_error_is_told_with_its_line_and_an_if_on_a_reading_with_what_to_take
     assert (trials.status, trials.says) == ("failed", "none did")
     (said,) = trials.failures
     assert re.search(
-        r"ValueError: no air \(\S*broken\.py, line \d+\); correct the system: every trial", said
+        r"ValueError: no air \(\S*broken\.py, line \d+\) in scene 'w2'; correct the system", said
     )
     assert "np.where" in remedy("ValueError: The truth value of an array is ambiguous")
 
@@ -216,7 +286,7 @@ def test_rounding_is_told_from_dependence_by_its_size(kind, status, remark):
 def test_a_system_that_takes_one_scene_at_a_time_flies_all_that_are_asked_for():
     report = check(broken="one at a time")
     assert failed(report) == {}
-    assert report.scenes == ("w0", "w1", "w2", "w3")
+    assert len(report.scenes) == 4
     assert report.checks[0].says.startswith("8 ")
 
 
