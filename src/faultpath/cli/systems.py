@@ -90,6 +90,8 @@ def check(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
         for text in (*result.failures, *(f"Remark: {remark}" for remark in result.remarks)):
             console.print(Padding(Text(f"- {text}"), (0, 0, 0, 2)))
     failed = sum(result.status == "failed" for result in report.checks)
-    text = f"{counted(failed, 'check')} failed." if failed else "No check failed."
+    remarks = counted(sum(len(result.remarks) for result in report.checks), "remark")
+    text = f"{counted(failed, 'check')} failed" if failed else "No check failed"
+    text += "." if remarks.startswith("0") else f"; {remarks}."
     console.print(Text(text, STYLES["bad" if failed else "good"]))
     return FOUND if report.failures else 0

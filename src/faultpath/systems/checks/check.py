@@ -150,8 +150,8 @@ def _doubts(seen: Seen) -> Iterator[BlockSpec]:
         if floats and seen.differs(variant, "part") and not seen.differs(variant, "again"):
             nudged = dict.fromkeys(floats, Scale(factor=1.0 + 4.0 * coarsest(first)))
             yield BlockSpec(_arm(seen, variant, nudged), seen.scenes, "rounded")
-    for variant, tap in unanswered(seen):
-        taps, writes = reader_at(seen.system, variant, tap)
+    silent = ((name, *reader_at(seen.system, name, tap)) for name, tap in unanswered(seen))
+    for variant, taps, writes in dict.fromkeys(silent):
         begun = _begun(seen.of(variant, "first"))
         held = {tap: Erase(default=read.low) for tap, read in begun.items() if tap in taps}
         moved = {tap: _altering(read) for tap, read in begun.items()} | held

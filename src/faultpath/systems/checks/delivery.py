@@ -103,7 +103,7 @@ def _effect(seen: Seen, variant: str, tap: tuple[str, str]) -> tuple[bool, str]:
         return False, (
             "changed nothing else, in no outcome and at no other injection point, in the steps "
             "that were looked at; its module may use it later, or not at all, or may use something "
-            "else than it was handed."
+            "else than it was handed: a check can tell where the module writes a source."
         )
     module = module_of(tap[1])
     runs = [seen.of(variant, why, min(taps)) for why in (HELD, MOVED)]

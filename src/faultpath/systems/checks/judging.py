@@ -154,8 +154,9 @@ def _pairing(name: str, seen: Seen) -> Check:
         f"{text[0].upper()}{text[1:].rstrip('.')}; {remedy}" for text in mismatch_words(mismatches)
     ]
     failures += unproven([outcome for _, run in firsts for outcome in run.outcomes])
-    alike = "other" if failures else "the same"
-    says = f"{alike} initial states, disturbances and planner noise in {len(sides)} runs of a scene"
+    says = f"in {len(sides)} runs of a scene"
+    if not failures:
+        says = f"the same initial states, disturbances and planner noise {says}"
     return Check(name=name, says=says, failures=tuple(failures))
 
 
