@@ -111,9 +111,9 @@ def test_a_fault_that_cannot_act_is_refused_and_one_that_changes_nothing_remarke
 @pytest.mark.parametrize(
     ("broken", "cause"),
     [
-        ("random", "every run differs, also in new processes: take random numbers from"),
-        ("kept generator", "the second run in one differs: let run() keep nothing"),
-        ("hash of a text", "another one differs: look for hash()"),
+        ("random", "every run differs: draw from faultpath.generator"),
+        ("kept generator", "the second run in a process differs: let run() keep nothing"),
+        ("hash of a text", "processes differ: look for hash()"),
     ],
 )
 def test_the_cause_of_what_does_not_repeat_follows_from_runs_in_new_processes(broken, cause):
@@ -137,6 +137,20 @@ def test_a_reader_that_has_its_value_from_elsewhere_fails_and_one_that_ignores_i
         (remark,) = [remark for each in report.checks for remark in each.remarks]
         why = "effect because the output of 'pilot' never changed in any trial: order stayed what"
         assert remark.startswith(f"{lead} {why}")
+
+
+def test_a_loop_of_ones_own_fails_where_an_estimator_reads_past_its_tap(tmp_path):
+    text = (ROOT / "examples/dock.py").read_text("utf-8")
+    mine = tmp_path / "mine.py"
+    mine.write_text(
+        text.replace("(before - measured)", "(before - distance)").replace(
+            "step), measured", "step), distance"
+        ),
+        "utf-8",
+    )
+    (said,) = failed(check(f"{mine}:create", library="floors"))["fault delivery"]
+    assert "range -> speedometer.difference" in said
+    assert "'speedometer' wrote another range_rate" in said
 
 
 def test_scenes_are_drawn_from_the_whole_library():

@@ -193,16 +193,5 @@ def traced(question: TraceQuestion, chosen: Chosen) -> "TraceReport":
     """Return the trace of a system that is built; raises as `trace`."""
     from faultpath.systems.checks.tracing import trace_system
 
-    system = chosen.system
-    fault = None if question.fault is None else fault_of(system, question.fault)
-    name = question.variant or next(iter(system.variants))
-    return trace_system(
-        system,
-        chosen.spec,
-        name,
-        question.library,
-        question.scene,
-        question.steps,
-        question.seed,
-        fault,
-    )
+    fault = None if question.fault is None else fault_of(chosen.system, question.fault)
+    return trace_system(chosen.system, chosen.spec, question, fault)

@@ -138,8 +138,10 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
             kind, _, text = result.error.partition(": ")
             at = place_in(result.traceback)
             error, fails = f"{result.error} ({at})" if at else result.error, TRIALS
-            alone = ((scene, attempt(system, block.arm, (scene,))) for scene in scenes)
-            error += next((f" in scene {s!r}" for s, end in alone if isinstance(end, Raised)), "")
+            for scene in scenes if block.tap == ("", "") else ():
+                if not scenes[1:] or isinstance(attempt(system, block.arm, (scene,)), Raised):
+                    error += f" in scene {scene!r}"
+                    break
             if kind == NotFinite.__name__:
                 error, fails = text, "shape and unit"
         elif isinstance(result, Wrong):

@@ -151,11 +151,11 @@ def _doubts(seen: Seen) -> Iterator[BlockSpec]:
             nudged = dict.fromkeys(floats, Scale(factor=1.0 + 4.0 * coarsest(first)))
             yield BlockSpec(_arm(seen, variant, nudged), seen.scenes, "rounded")
     silent = ((name, *reader_at(seen.system, name, tap)) for name, tap in unanswered(seen))
-    for variant, taps, writes in dict.fromkeys(silent):
+    for variant, taps, writes in dict.fromkeys(silent) if not seen.unsteady() else ():
         begun = _begun(seen.of(variant, "first"))
-        held = {tap: Erase(default=read.low) for tap, read in begun.items() if tap in taps}
-        moved = {tap: _altering(read) for tap, read in begun.items()} | held
-        for why, doing in ((HELD, held), (MOVED, moved)) if writes else ():
+        constants = {tap: Erase(default=read.low) for tap, read in begun.items() if tap in taps}
+        moved = {tap: _altering(read) for tap, read in begun.items()} | constants
+        for why, doing in ((HELD, constants), (MOVED, moved)) if writes else ():
             yield BlockSpec(_arm(seen, variant, doing), seen.scenes, why, tap=min(taps))
 
 

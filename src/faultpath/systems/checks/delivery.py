@@ -107,10 +107,10 @@ def _effect(seen: Seen, variant: str, tap: tuple[str, str]) -> tuple[bool, str]:
         )
     module = module_of(tap[1])
     runs = [seen.of(variant, why, min(taps)) for why in (HELD, MOVED)]
-    asked = {read.source for read in reads if read.asks}  # an answer depends on the request too
+    queried = {read.source for read in reads if read.asks}  # an answer depends on the request too
     handed = {scene: step for step, scene, at in _unlike(seen, runs, "got")[::-1] if at in taps}
     for step, scene, at in _unlike(seen, runs, "clean"):
-        if sources[at] in output - asked and step < handed.get(scene, math.inf):
+        if sources[at] in output - queried and step < handed.get(scene, math.inf):
             return True, (
                 f"had no effect, and '{module}' wrote another {sources[at]} at step {step} in "
                 f"scene {scene!r} where all that it was handed was the same: it takes a value from "

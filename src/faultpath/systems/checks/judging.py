@@ -16,14 +16,20 @@ _FAR = 100.0
 """A reading beyond this multiple of the typical magnitude is in another unit."""
 _CAUSES = {
     # Whether two new processes differ, and whether the second run in one of them does.
-    (True, True): "every run differs, also in new processes: take random numbers from "
-    "faultpath.generator, and look for clocks and threads.",
-    (False, True): "new processes begin alike, and the second run in one differs: let run() keep "
-    "nothing from one call to the next, such as a counter, a cache or a generator made once.",
-    (True, False): "a process repeats its own result, and another one differs: look for hash(), "
-    "id(), the order of a set and environment variables.",
-    (False, False): "new processes repeat it: look for what other runs leave behind in a process, "
-    "and for threads.",
+    (
+        True,
+        True,
+    ): "every run differs: draw from faultpath.generator, and look for clocks and threads.",
+    (
+        False,
+        True,
+    ): "the second run in a process differs: let run() keep nothing from one call to the "
+    "next, such as a counter, a cache or a generator made once.",
+    (
+        True,
+        False,
+    ): "processes differ: look for hash(), id(), the order of a set and the environment.",
+    (False, False): "new processes repeat it: look for what other runs leave behind, and threads.",
 }
 
 
@@ -194,8 +200,8 @@ def _readings(name: str, seen: Seen) -> Check:
         if low > high:
             continue
         shown.append(f"{source.name} {low:.3g} to {high:.3g} {source.unit}".removesuffix(" 1"))
-        whole = [kind for kind in sorted(kinds[source.name]) if kind.startswith(("int", "uint"))]
-        if whole and (source.unit != "1" or whole != [*kinds[source.name]]):
+        whole = sorted(kind for kind in kinds[source.name] if "int" in kind)
+        if whole and (source.unit != "1" or any("float" in kind for kind in kinds[source.name])):
             failures[f"{source.name} whole"] = (
                 f"Source '{source.name}' gives whole numbers ({whole[0]}) of unit {source.unit}: "
                 "what is put into such an array loses its fraction, and no fault can scale or "

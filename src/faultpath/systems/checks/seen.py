@@ -1,4 +1,4 @@
-"""What a check has seen of a system, run by run, and how it says what it makes of it."""
+"""The runs of a check, and the form of its results."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -73,8 +73,8 @@ class Seen:
     def differs(self, variant: str, why: str, base: str = "first") -> str:
         """Say how a run of a variant differs from its first one; empty where it does not."""
         first, again = self.of(variant, base), self.of(variant, why)
-        if again.error:
-            return f"fails where the first did not ({again.error})"
+        if error := again.error or first.error:
+            return f"fails where the first did not ({error})"
         if not again.outcomes:
             return ""
         dt_s = self.system.control_dt_s
