@@ -3,12 +3,11 @@
 import json
 import os
 import re
-from pathlib import Path
 
 import pytest
+from checked import BROKEN, LOOPS, ROOT, check, failed
 from gym_toys import functions
 
-import faultpath
 from faultpath.cli.main import main
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Taps
@@ -16,22 +15,6 @@ from faultpath.systems import ComposedSystem, writes
 from faultpath.systems.checks.judging import remedy
 from faultpath.systems.checks.remarks import ENOUGH, diverged, other_names, successes, without_room
 from faultpath.trials import Outcome, Status
-
-ROOT = Path(__file__).resolve().parents[2]
-BROKEN = f"{Path(__file__).with_name('broken.py')}:create"
-LOOPS = f"{Path(__file__).with_name('broken_loops.py')}:create"
-
-
-def check(name: str = BROKEN, broken: str = "", library: str = "any", **question):
-    options = {"broken": broken} if broken else {}
-    return faultpath.check(
-        name, **{"workers": 0, "library": library, "options": options} | question, progress=False
-    )
-
-
-def failed(report) -> dict[str, tuple[str, ...]]:
-    return {check.name: check.failures for check in report.checks if check.status == "failed"}
-
 
 INDEPENDENCE = "scene independence"
 SAID = {
@@ -81,88 +64,6 @@ def test_a_sound_system_passes(name, library):
     report = check(name if name == BROKEN else f"{ROOT / name}", library=library)
     assert failed(report) == {}
     assert {each.status for each in report.checks} == {"passed"}
-
-
-@pytest.mark.parametrize(
-    ("broken", "failing", "sentence"),
-    [
-        ("raises when near", ["trials end"], "ValueError: too near"),
-        ("nan when near", ["trials end", "shape and unit"], "source 'laser' at step 1, read by"),
-        ("shape when near", ["shape and unit"], "the reading of one scene has the shape [1]"),
-    ],
-)
-def test_what_only_the_fault_brings_is_found_under_the_fault(broken, failing, sentence):
-    assert failed(check(broken=broken)) == {}
-    found = failed(check(broken=broken, fault="range:scale=0.1"))
-    assert list(found) == failing
-    (said,) = found[failing[-1]]
-    assert said.startswith("Variant 'bare', under the fault (pilot): ")
-    assert sentence in said
-
-
-def test_a_fault_that_cannot_act_is_refused_and_one_that_changes_nothing_remarked():
-    with pytest.raises(UserError, match="reaches neither 'bare'"):
-        check(fault="range:scale=0.1@guard", variants=("bare",))
-    report = check(fault="mass:scale=1")
-    remarks = [remark for each in report.checks for remark in each.remarks]
-    assert any("under the fault (pilot): it changed no reading" in remark for remark in remarks)
-
-
-@pytest.mark.parametrize(
-    ("broken", "cause"),
-    [
-        ("random", "every run differs: draw from faultpath.generator"),
-        ("kept generator", "the second run in a process differs: let run() keep nothing"),
-        ("hash of a text", "processes differ: look for hash()"),
-    ],
-)
-def test_the_cause_of_what_does_not_repeat_follows_from_runs_in_new_processes(broken, cause):
-    report = check(broken=broken, workers=1, variants=("bare",), scenes=2)
-    found = {each.name: each for each in report.checks}
-    (said,) = found["determinism"].failures
-    assert cause in said
-    assert found["pairing"].status == found["scene independence"].status == "not judged"
-    assert [name for name, each in found.items() if each.failures] == ["determinism"]
-
-
-def test_a_reader_that_has_its_value_from_elsewhere_fails_and_one_that_ignores_it_does_not():
-    (said,) = failed(check(LOOPS, broken="goes round"))["fault delivery"]
-    lead = "Injection point place -> pilot.feedback of variant 'plain', faulted in 4 trials, had no"
-    assert said.startswith(
-        f"{lead} effect, and 'pilot' wrote another order at step 1 in scene 'l0'"
-    )
-    for broken in ("goes round, still", "ignores"):
-        report = check(LOOPS, broken=broken)
-        assert failed(report) == {}
-        (remark,) = [remark for each in report.checks for remark in each.remarks]
-        why = "effect because the output of 'pilot' never changed in any trial: order stayed what"
-        assert remark.startswith(f"{lead} {why}")
-
-
-def test_a_loop_of_ones_own_fails_where_an_estimator_reads_past_its_tap(tmp_path):
-    text = (ROOT / "examples/dock.py").read_text("utf-8")
-    mine = tmp_path / "mine.py"
-    mine.write_text(
-        text.replace("(before - measured)", "(before - distance)").replace(
-            "step), measured", "step), distance"
-        ),
-        "utf-8",
-    )
-    (said,) = failed(check(f"{mine}:create", library="floors"))["fault delivery"]
-    assert "range -> speedometer.difference" in said
-    assert "'speedometer' wrote another range_rate" in said
-
-
-def test_scenes_are_drawn_from_the_whole_library():
-    few = check(scenes=3, variants=("bare",))
-    assert (len(few.scenes), few.of) == (3, 6)
-    parts = [("w0", "w1"), ("w2", "w3"), ("w4", "w5")]
-    assert all(scene in part for scene, part in zip(few.scenes, parts, strict=True))
-
-
-def test_scenes_that_share_an_index_are_refused():
-    with pytest.raises(SystemMistake, match="gives scenes 'w0' and 'w1' the index 0: number its"):
-        check(broken="same index")
 
 
 def test_where_no_trial_ends_that_check_fails_and_names_the_one_to_see():
@@ -346,7 +247,7 @@ def test_the_command_says_it_in_lines_and_as_json(capsys, monkeypatch):
         return int(ended.value.code or 0), capsys.readouterr().out
 
     code, said = run(BROKEN)
-    assert (code, said.splitlines()[-1]) == (0, "No check failed.")
+    assert (code, said.splitlines()[-1]) == (0, "No check failed; 1 remark.")
     code, said = run(BROKEN, "--broken", "deaf", "--json", "--scenes", "2")
     assert code == 1
     counts = [len(each["failures"]) for each in json.loads(said)["checks"]]
