@@ -4,7 +4,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from hashlib import sha256
 from itertools import pairwise
-from types import MappingProxyType
 from typing import Literal
 
 from faultpath.core.errors import UserError
@@ -55,7 +54,7 @@ def check_system(
     spec: SystemSpec,
     question: CheckQuestion,
     note: Callable[[int, int | None], None],
-    conditions: Mapping[str, Mapping[str, Sequence[Fault]]] = MappingProxyType({}),
+    conditions: Mapping[str, Mapping[str, Sequence[Fault]]],
 ) -> Report:
     """Check a system: what it promises, what it reads, and that faults reach it.
 
@@ -91,7 +90,7 @@ def check_system(
         with local(workers) as executor:  # new processes: they share nothing with those before
             run_blocks(executor, built, blocks, settle)
 
-    run([BlockSpec(_arm(seen, variant.name), scenes, "first") for variant in variants])
+    run([BlockSpec(_arm(seen, variant.name, {}), scenes, "first") for variant in variants])
     again = [block for name, first in seen.firsts() for block in _again(seen, name, first)]
     for where, faults in conditions.items():
         for name in (name for name, _ in seen.firsts() if faults[name]):
@@ -102,7 +101,7 @@ def check_system(
         run(doubts)
     for name in seen.unsteady() if seen.apart else ():
         for whys in (("alone",), ("anew", "repeated")):
-            run([BlockSpec(_arm(seen, name), scenes, why) for why in whys], workers=1)
+            run([BlockSpec(_arm(seen, name, {}), scenes, why) for why in whys], workers=1)
     return Report(
         system=spec.name,
         options=spec.options,
@@ -129,9 +128,9 @@ def chosen_variants(system: System, names: Sequence[str]) -> tuple[Variant, ...]
 
 def _again(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[BlockSpec]:
     """Yield what is run of a variant beside its first run."""
-    yield BlockSpec(_arm(seen, variant), seen.scenes, "again", second=seen.apart)
+    yield BlockSpec(_arm(seen, variant, {}), seen.scenes, "again", second=seen.apart)
     if len(seen.scenes) > 1:
-        yield BlockSpec(_arm(seen, variant), seen.scenes[::-2], "part")
+        yield BlockSpec(_arm(seen, variant, {}), seen.scenes[::-2], "part")
     floats = _floats(first)
     for channel, _ in Counter(channel for channel, _ in floats).most_common(1):
         nudged = {tap: Scale(factor=1.05) for tap in floats if tap[0] == channel}
@@ -150,7 +149,7 @@ def _doubts(seen: Seen) -> Iterator[BlockSpec]:
         if floats and seen.differs(variant, "part") and not seen.differs(variant, "again"):
             nudged = dict.fromkeys(floats, Scale(factor=1.0 + 4.0 * coarsest(first)))
             yield BlockSpec(_arm(seen, variant, nudged), seen.scenes, "rounded")
-    silent = ((name, *reader_at(seen.system, name, tap)) for name, tap in unanswered(seen))
+    silent = ((name, *reader_at(seen, name, tap)) for name, tap in unanswered(seen))
     for variant, taps, writes in dict.fromkeys(silent) if not seen.unsteady() else ():
         begun = _begun(seen.of(variant, "first"))
         constants = {tap: Erase(default=read.low) for tap, read in begun.items() if tap in taps}
@@ -180,11 +179,7 @@ def _altering(read: Read) -> AnyIntervention:
     return Erase(default=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
 
 
-def _arm(
-    seen: Seen,
-    variant: str,
-    doing: Mapping[tuple[str, str], AnyIntervention] = MappingProxyType({}),
-) -> Arm:
+def _arm(seen: Seen, variant: str, doing: Mapping[tuple[str, str], AnyIntervention]) -> Arm:
     """Return the arm of a variant in which something is done at some taps."""
     faults = (
         Fault(channel=channel, intervention=what, consumers=(consumer,))

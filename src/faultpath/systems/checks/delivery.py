@@ -6,10 +6,10 @@ from dataclasses import replace
 
 from faultpath.core.text import listed
 from faultpath.interface import module_of
-from faultpath.loop import Module, Plant
+from faultpath.loop import Plant
 from faultpath.systems.checks.blocks import RecordedBlock
 from faultpath.systems.checks.seen import Check, Seen
-from faultpath.trials import LoopSystem, System
+from faultpath.trials import LoopSystem
 from faultpath.trials.attempt import Done
 from faultpath.trials.execution.recheck import difference
 
@@ -18,20 +18,17 @@ HELD, MOVED = "held", "moved"
 
 
 def reader_at(
-    system: System, variant: str, tap: tuple[str, str]
+    seen: Seen, variant: str, tap: tuple[str, str]
 ) -> tuple[frozenset[tuple[str, str]], frozenset[str]]:
-    """Return all taps of the module that reads at a tap of a variant, and what it writes of these
-    readings alone."""
-    if isinstance(system, LoopSystem):
-        for part in system.loop(variant, None).graph.parts:
-            taps = frozenset((port.channel, part.consumer(port)) for port in part.ports)
-            if tap in taps:
-                past = isinstance(part, Module) and part.truths
-                writes = part.senses if isinstance(part, Plant) else part.writes
-                return taps, frozenset(() if past else writes)
-    module, present = module_of(tap[1]), system.variants[variant].consumers
-    pairs = ((c.name, reader) for c in system.interface.channels for reader in c.consumers)
-    taps = frozenset(p for p in pairs if p[1] in present and module_of(p[1]) == module)
+    """Return all taps of the module that reads at a tap, and what it writes of these readings."""
+    system, module = seen.system, module_of(tap[1])
+    for part in system.loop(variant, None).graph.parts if isinstance(system, LoopSystem) else ():
+        taps = frozenset((port.channel, part.consumer(port)) for port in part.ports)
+        if tap in taps:
+            writes = part.senses if isinstance(part, Plant) else part.writes
+            return taps, frozenset(() if getattr(part, "truths", ()) else writes)
+    reads = seen.of(variant, "first").reads
+    taps = frozenset(read.tap for read in reads if module_of(read.consumer) == module)
     return taps, frozenset(system.interface.reconstructs.get(module, ()))
 
 
@@ -95,7 +92,7 @@ def delivery(name: str, seen: Seen) -> Check:
 def _effect(seen: Seen, variant: str, tap: tuple[str, str]) -> tuple[bool, str]:
     """Return whether the reader at a tap has its values from elsewhere, and why a fault there had
     no effect. It has where it was handed the same in two runs and wrote something else."""
-    taps, writes = reader_at(seen.system, variant, tap)
+    taps, writes = reader_at(seen, variant, tap)
     reads = seen.of(variant, "first").reads
     sources = {read.tap: read.source for read in reads}
     output = writes.intersection(sources.values())

@@ -28,7 +28,7 @@ class Check(Result):
 
     @property
     def status(self) -> Literal["passed", "failed", "not judged"]:
-        """The verdict of the check."""
+        """Result of the check in a word."""
         if self.failures:
             return "failed"
         return "passed" if self.judged else "not judged"
