@@ -47,7 +47,9 @@ def audit(folder: Path) -> DecisionRecord:
     question = Question.model_validate(before["question"])
     paths = [FaultPath.model_validate(path) for path in before["paths"]]
     outcomes = read_outcomes(folder / OUTCOMES)
-    record = decide(question, paths, outcomes, findings=tuple(before.get("findings", ())))
+    findings = tuple(before.get("findings", ()))
+    repeats = before.get("invalid") != "unrepeatable"
+    record = decide(question, paths, outcomes, findings, repeats)
     (folder / RECORD).write_text(as_text(record), "utf-8")
     _reseal(folder)
     open_run(folder).report()

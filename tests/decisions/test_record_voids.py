@@ -66,7 +66,7 @@ def test_an_arm_whose_bad_trials_fail_is_not_announced(case):
         assert found is not None
         assert found.against_pp <= found.favour_pp
         (said,) = [text for text in each.findings if "failed" in text]
-        assert f"{found.repair} trials of new failed and 0 of old" in said
+        assert f"{found.repair} trials of new failed, 0 of old" in said
 
 
 def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():

@@ -25,6 +25,7 @@ DISTANCE = Metric(unit="m", better="less", words="distance", title="Distance lef
 PILOT = frozenset({"pilot.approach", "pilot.thrust"})
 _CALLS = itertools.count()
 _SEEN = set()
+_KEPT = np.random.default_rng(0)
 
 
 class Wall(System):
@@ -42,11 +43,13 @@ class Wall(System):
             self.block_size = 1
 
     def library(self, name):
-        return Library(name, tuple(SceneRef(f"w{i}", i) for i in range(6)), f"{name}-1")
+        same = self.broken == "same index"
+        scenes = tuple(SceneRef(f"w{i}", 0 if same else i) for i in range(6))
+        return Library(name, scenes, f"{name}-1")
 
     def run(self, variant, scenes, taps, seed):
         broken, n = self.broken, len(scenes)
-        if broken == "raises" and "w2" in scenes:
+        if (broken == "raises" and "w2" in scenes) or (broken == "raises late" and "w4" in scenes):
             raise ValueError("no air")
         assert n <= self.block_size
         draws = np.array([generator("wall", scene, seed).uniform(size=2) for scene in scenes])
@@ -57,6 +60,10 @@ class Wall(System):
                 wind += 0.001 * next(_CALLS)
             case "hash of a text":
                 wind += [(hash(scene) % 1000) / 1e5 for scene in scenes]
+            case "random":
+                wind += 0.001 * np.random.default_rng().uniform()
+            case "kept generator":
+                wind += 0.001 * _KEPT.uniform()
             case "by place":
                 wind += 0.01 * np.arange(n)
             case "crowded":
@@ -67,13 +74,17 @@ class Wall(System):
                 wind += 1e-9 * n
         net = _network(broken) if "network" in broken else None
         left = left.astype(np.float32) if net else left
-        unit = 1000.0 if broken == "millimetres" else 1.0
+        unit = {"millimetres": 1000.0, "whole": 100.0}.get(broken, 1.0)
         for step in range(20):
             shown = np.where((broken == "nan") & (step > 9), np.nan, unit * left)
             shown = shown[:, None] if broken == "shape" else shown
+            shown = shown.astype(int) if broken == "whole" else shown
             late = step + (broken == "of the future")
             seen = Reading(shown, "sonar" if broken == "another source" else "laser", late)
             pull = np.nan_to_num(taps.deliver("range", "pilot.approach", seen, step))
+            near = pull.min() < 0.2  # which only a fault makes it
+            if near and broken == "raises when near":
+                raise ValueError("too near")
             known = Reading(mass, "mass_estimate", step)
             thrust = taps.deliver("mass", "pilot.thrust", known, step)
             pull = net(pull) if net else pull
@@ -83,7 +94,9 @@ class Wall(System):
                 pull = np.minimum(pull, np.nan_to_num(limit).reshape(n))
             if broken == "nosy" and variant == "bare":
                 taps.deliver("range", "guard.limit", seen, step)
+            pull = pull * np.nan if near and broken == "nan when near" else pull
             left = left - 0.1 * (pull + wind)
+            left = left[:, None] if near and broken == "shape when near" else left
         left = 0.6 * np.sin(1e16 * left) if broken == "last digit" else left
         ends = zip(scenes, left, draws, strict=True)
         return [_outcome(broken, variant, *end) for end in ends]

@@ -17,6 +17,7 @@ channels:
 - {name: move, sources: [order]}
 - {name: wish, sources: [wished]}
 """
+LAST = {}
 
 
 class Line(Plant):
@@ -28,6 +29,7 @@ class Line(Plant):
         return 0, drawn, drawn
 
     def sense(self, state):
+        LAST["place"] = state[1]
         return {"odometer": state[1], "wished": 0.0 * state[1], "truth": state[1]}
 
     def advance(self, state, inputs):
@@ -56,7 +58,15 @@ class Pilot(Module):
             inputs["place", "other"]
         if self.broken == "undeclared truth":
             inputs.truth("truth")
-        return {"order": 0.5 * (inputs["wish", "goal"] - inputs["place", "feedback"])}, memory
+        place = inputs["place", "feedback"]
+        match self.broken:
+            case "goes round":
+                place = LAST["place"]
+            case "goes round, still":
+                place = 0.0 * LAST["place"]
+            case "ignores":
+                place = np.full(len(place), 0.1 * inputs.step)
+        return {"order": 0.5 * (inputs["wish", "goal"] - place)}, memory
 
 
 class Loops(LoopSystem):

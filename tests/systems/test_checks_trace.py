@@ -13,6 +13,7 @@ from faultpath.interface import Provenance
 from faultpath.report.terminal import trace_table
 from faultpath.systems.checks.tracing import trace_system
 from faultpath.trials import SystemSpec, load_system
+from faultpath.trials.question import TraceQuestion
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).parent
@@ -24,7 +25,8 @@ def trace(name, variant, fault=None, library="selection", **options):
     spec = SystemSpec(name=name, options=options)
     system = load_system(spec)
     faulted = fault and parse_fault(fault, system.interface, {}, system.control_dt_s)
-    return system, trace_system(system, spec, variant, library, fault=faulted)
+    question = TraceQuestion(variant=variant, library=library)
+    return system, trace_system(system, spec, question, faulted)
 
 
 def test_it_says_who_read_what_and_when_and_stops_after_its_steps():
@@ -75,7 +77,8 @@ def test_a_privileged_read_without_permission_is_found():
     sources = tuple(secret if each.name == secret.name else each for each in interface.sources)
     system.interface = interface.model_copy(update={"sources": sources})
     vars(system).pop("_variants", None)
-    permitted = trace_system(system, SystemSpec(name=TOY), "calibrated", "carts")
+    question = TraceQuestion(variant="calibrated", library="carts")
+    permitted = trace_system(system, SystemSpec(name=TOY), question)
     assert permitted.findings == ()
     readers = [each.split(" reads")[0] for each in permitted.privileged]
     assert readers == ["observer.model", "controller.inverse"]
@@ -91,7 +94,7 @@ def test_a_privileged_read_without_permission_is_found():
 def test_what_cannot_be_traced_is_refused(more, said):
     system, _ = trace(TOY, "blind")
     with pytest.raises(UserError, match=re.escape(said)):
-        trace_system(system, SystemSpec(name=TOY), **more)
+        trace_system(system, SystemSpec(name=TOY), TraceQuestion(**more))
 
 
 def test_the_command_prints_and_exits_with_what_was_found(capsys, monkeypatch):

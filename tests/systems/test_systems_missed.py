@@ -52,7 +52,7 @@ def test_an_input_that_is_not_used_is_remarked(system) -> None:
     report = faultpath.check(system, workers=0, progress=False)
     remarks = [remark for check in report.checks for remark in check.remarks]
     (remark,) = [remark for remark in remarks if "agent.pole" in remark]
-    sentence = "changed nothing else, in no outcome and at no other injection point"
+    sentence = "had no effect because the output of 'agent' never changed in any trial"
     assert sentence in remark
     assert sentence in PAGE
     assert not any("other.pole" in remark for remark in remarks)

@@ -15,7 +15,8 @@ from faultpath.core.files.opening import contents
 from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.plan.plan import Plan, make_plan, sentences
 from faultpath.decisions.plan.study import StudyFile, check_arms
-from faultpath.decisions.planning import plan_audit
+from faultpath.decisions.planning import faults_by_path, plan_audit
+from faultpath.faults import Fault
 from faultpath.trials import System, library_of
 from faultpath.trials.question import CheckQuestion, PlanQuestion, RepairQuestion, TraceQuestion
 from faultpath.trials.store.atomic import check_output, write_text
@@ -149,9 +150,14 @@ def check(
     Raises:
         UserError: There is no such system, variant or library, or it cannot be built.
     """
-    from faultpath.systems.checks.check import check_system
+    from faultpath.systems.checks.check import check_system, chosen_variants
 
     question, chosen, _, display = begin("check", CheckQuestion, system, arguments, progress)
+    conditions: dict[str, dict[str, tuple[Fault, ...]]] = {}
+    if question.fault is not None:
+        fault = fault_of(chosen.system, question.fault)
+        variants = chosen_variants(chosen.system, question.variants)
+        conditions = faults_by_path(chosen.system, fault, variants)
     if chosen.own:
         question = question.model_copy(update={"workers": 0})
     with display.progress("Checking") as show:
@@ -159,7 +165,7 @@ def check(
         def note(done: int, known: int | None) -> None:
             show(Progress(done, known, f"{done} of {known} runs" if known else f"{done} runs"))
 
-        return check_system(chosen.system, chosen.spec, question, note)
+        return check_system(chosen.system, chosen.spec, question, note, conditions)
 
 
 @asks(TraceQuestion)
@@ -187,16 +193,5 @@ def traced(question: TraceQuestion, chosen: Chosen) -> "TraceReport":
     """Return the trace of a system that is built; raises as `trace`."""
     from faultpath.systems.checks.tracing import trace_system
 
-    system = chosen.system
-    fault = None if question.fault is None else fault_of(system, question.fault)
-    name = question.variant or next(iter(system.variants))
-    return trace_system(
-        system,
-        chosen.spec,
-        name,
-        question.library,
-        question.scene,
-        question.steps,
-        question.seed,
-        fault,
-    )
+    fault = None if question.fault is None else fault_of(chosen.system, question.fault)
+    return trace_system(chosen.system, chosen.spec, question, fault)

@@ -80,14 +80,18 @@ def check(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
         return FOUND if report.failures else 0
     console = SafeConsole()
     styles = {"passed": STYLES["good"], "failed": STYLES["bad"], "not judged": STYLES["faint"]}
-    scenes = f"{counted(len(report.scenes), 'scene')} of {report.library}, seed {report.seed}"
-    console.print(Text(f"{report.system}: {', '.join(report.variants)} in {scenes}", "bold"))
+    scenes = f"{len(report.scenes)} of {counted(report.of, 'scene')} of {report.library}"
+    fault = f", and with {report.fault}" if report.fault else ""
+    about = f"{', '.join(report.variants)} in {scenes}, seed {report.seed}{fault}"
+    console.print(Text(f"{report.system}: {about}", "bold"))
     for result in report.checks:
         status = Text(result.status, styles[result.status])
         console.print(Text.assemble(status, f"  {result.name}: {result.says}"))
         for text in (*result.failures, *(f"Remark: {remark}" for remark in result.remarks)):
             console.print(Padding(Text(f"- {text}"), (0, 0, 0, 2)))
     failed = sum(result.status == "failed" for result in report.checks)
-    text = f"{counted(failed, 'check')} failed." if failed else "No check failed."
+    remarks = counted(sum(len(result.remarks) for result in report.checks), "remark")
+    text = f"{counted(failed, 'check')} failed" if failed else "No check failed"
+    text += "." if remarks.startswith("0") else f"; {remarks}."
     console.print(Text(text, STYLES["bad" if failed else "good"]))
     return FOUND if report.failures else 0

@@ -87,12 +87,18 @@ class Library:
         label = f"library '{self.name}'"
         check_name(f"the content hash of {label}", self.content_hash)
         seen: set[str] = set()
+        places: dict[int, str] = {}
         for scene in _items(f"{label}: scenes", self.scenes):
             if not isinstance(scene, SceneRef):
                 raise SystemMistake(f"{label} holds {shown(scene)}: every scene is a SceneRef")
             if scene.id in seen:
                 raise SystemMistake(f"{label} holds scene '{scene.id}' twice: name each scene once")
             seen.add(scene.id)
+            if (other := places.setdefault(scene.index, scene.id)) != scene.id:
+                raise SystemMistake(
+                    f"{label} gives scenes '{other}' and '{scene.id}' the index {scene.index}: "
+                    "number its scenes 0, 1, 2, ..."
+                )
 
 
 def _items(what: str, members: Any) -> Iterable[Any]:

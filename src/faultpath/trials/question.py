@@ -114,7 +114,12 @@ class CheckQuestion(Request):
         default=(),
         description="Variants to check: old,new. Default all, or two of more than 4.",
     )
-    scenes: int = Field(default=4, description="Run the first N scenes.")
+    scenes: int = Field(
+        default=4, description="Run N scenes, one from each of N equal parts of the library."
+    )
+    fault: str | None = Field(
+        default=None, description="A fault, as in `audit`, under which whole trials run too."
+    )
     seed: int = Field(default=0, ge=0, le=LARGEST, description="Seed of the trials.")
     workers: int | None = Field(
         default=None,

@@ -51,9 +51,11 @@ class BlockSpec:
     steps: int | None = None
     """After so many it is stopped; `None`: it runs to its end."""
     tap: tuple[str, str] = ("", "")
-    """The only one that a fault reaches."""
+    """The one that is looked at, where it is one."""
     signals: bool = False
     """Whether signals are wanted, and not reads."""
+    second: bool = False
+    """Whether it is the second of two runs in a row in one process, of which the first is lost."""
 
 
 @dataclass(frozen=True)
@@ -113,6 +115,8 @@ def run_blocks(
 
 def run_block(system: System, block: BlockSpec) -> RecordedBlock:
     """Run in blocks of the system's size; an error ends it."""
+    if block.second:
+        run_block(system, replace(block, second=False))
     outcomes, counts, reads = list[Outcome](), list[TapCount](), list[Read]()
     signals_by_scene = list[tuple[Signal, ...]]()
     error = fails = ""
@@ -134,6 +138,10 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
             kind, _, text = result.error.partition(": ")
             at = place_in(result.traceback)
             error, fails = f"{result.error} ({at})" if at else result.error, TRIALS
+            for scene in scenes if block.tap == ("", "") else ():
+                if not scenes[1:] or isinstance(attempt(system, block.arm, (scene,)), Raised):
+                    error += f" in scene {scene!r}"
+                    break
             if kind == NotFinite.__name__:
                 error, fails = text, "shape and unit"
         elif isinstance(result, Wrong):

@@ -1,16 +1,21 @@
 """Run a system as a careful reviewer would, and judge what was seen."""
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from hashlib import sha256
+from itertools import pairwise
 from typing import Literal
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
 from faultpath.core.text import unknown
-from faultpath.faults import AnyIntervention, Erase, Fault, Offset, Scale
+from faultpath.faults import AnyIntervention, Erase, Fault, Offset, Scale, resolve
 from faultpath.faults import Sequence as InTurn
 from faultpath.systems.checks.blocks import BlockSpec, RecordedBlock, coarsest, run_blocks
-from faultpath.systems.checks.judging import Check, Seen, judged
+from faultpath.systems.checks.delivery import HELD, MOVED, reader_at, unanswered
+from faultpath.systems.checks.judging import judged
 from faultpath.systems.checks.recording import Read
+from faultpath.systems.checks.seen import UNDER, Check, Seen
 from faultpath.trials import Arm, System, SystemSpec, Variant, library_of
 from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.question import CheckQuestion
@@ -32,7 +37,10 @@ class Report(Result):
     variants: tuple[str, ...]
     library: str
     scenes: tuple[str, ...]
+    of: int
+    """Number of scenes of the library."""
     seed: int
+    fault: str | None = None
     checks: tuple[Check, ...]
 
     @property
@@ -46,12 +54,14 @@ def check_system(
     spec: SystemSpec,
     question: CheckQuestion,
     note: Callable[[int, int | None], None],
+    conditions: Mapping[str, Mapping[str, Sequence[Fault]]],
 ) -> Report:
     """Check a system: what it promises, what it reads, and that faults reach it.
 
-    `note` is called with the runs done, and of how many once that is known. Raises `UserError` for
-    a variant, library or number of scenes that there is not, and where the system cannot be built
-    in a worker process.
+    `note` is called with the runs done, and of how many once that is known. `conditions` are those
+    of the question's fault: by name, and then by variant, what acts. Raises `UserError` for a
+    variant, library or number of scenes that there is not, and where the system cannot be built in
+    a worker process.
     """
     library = library_of(system, question.library)
     if not 1 <= question.scenes <= len(library.scenes):
@@ -59,36 +69,48 @@ def check_system(
             f"cannot check {question.scenes} scenes of library '{library.name}': choose 1 to "
             f"{len(library.scenes)}."
         )
-    scenes = tuple(scene.id for scene in library.scenes[: question.scenes])
+    ids = [scene.id for scene in library.scenes]
+    edges = [part * len(ids) // question.scenes for part in range(question.scenes + 1)]
+    scenes = tuple(
+        min(ids[start:end], key=lambda scene: sha256(scene.encode()).digest())
+        for start, end in pairwise(edges)
+    )
     variants = chosen_variants(system, question.variants)
     workers = (2 if system.parallel else 1) if question.workers is None else question.workers
     seen = Seen(system, variants, scenes, question.seed, workers > 0)
     built = Built.of(system, spec, question.library)
 
-    def run(blocks: Sequence[BlockSpec], known: int | None) -> None:
+    def run(blocks: Sequence[BlockSpec], workers: int = workers) -> None:
+        known = len(seen.runs) + len(blocks) if seen.runs else None
+
         def settle(block: BlockSpec, result: RecordedBlock) -> None:
             seen.runs[block.arm.variant, block.why, block.tap] = result
             note(len(seen.runs), known)
 
-        with local(workers) as executor:
+        with local(workers) as executor:  # new processes: they share nothing with those before
             run_blocks(executor, built, blocks, settle)
 
-    run(
-        [BlockSpec(Arm(variant=v.name, seed=question.seed), scenes, "first") for v in variants],
-        None,
-    )
+    run([BlockSpec(_arm(seen, variant.name, {}), scenes, "first") for variant in variants])
     again = [block for name, first in seen.firsts() for block in _again(seen, name, first)]
-    run(again, len(variants) + len(again))  # in new processes: they share nothing with the first
-    rounded = [block for name, first in seen.firsts() for block in _rounded(seen, name, first)]
-    if rounded:
-        run(rounded, len(variants) + len(again) + len(rounded))
+    for where, faults in conditions.items():
+        for name in (name for name, _ in seen.firsts() if faults[name]):
+            arm = Arm(variant=name, faults=tuple(faults[name]), seed=seen.seed)
+            again.append(BlockSpec(arm, scenes, f"{UNDER} ({where})"))
+    run(again)
+    if doubts := list(_doubts(seen)):
+        run(doubts)
+    for name in seen.unsteady() if seen.apart else ():
+        for whys in (("alone",), ("anew", "repeated")):
+            run([BlockSpec(_arm(seen, name, {}), scenes, why) for why in whys], workers=1)
     return Report(
         system=spec.name,
         options=spec.options,
         variants=tuple(variant.name for variant in variants),
         library=library.name,
         scenes=scenes,
+        of=len(ids),
         seed=question.seed,
+        fault=question.fault,
         checks=judged(seen),
     )
 
@@ -106,53 +128,63 @@ def chosen_variants(system: System, names: Sequence[str]) -> tuple[Variant, ...]
 
 def _again(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[BlockSpec]:
     """Yield what is run of a variant beside its first run."""
-    arm = Arm(variant=variant, seed=seen.seed)
-    yield BlockSpec(arm, seen.scenes, "again")
+    yield BlockSpec(_arm(seen, variant, {}), seen.scenes, "again", second=seen.apart)
     if len(seen.scenes) > 1:
-        yield BlockSpec(arm, seen.scenes[::-2], "part")
-    begins, readers = _begun(first)
-    if readers:
-        most = max(readers, key=lambda channel: len(readers[channel]))
-        arm = _faulted(seen, variant, {most: readers[most]}, Scale(factor=1.05))
-        yield BlockSpec(arm, seen.scenes, "faulted")
-    for (channel, consumer), read in begins.items():
-        if "float" in read.dtype:  # alters whatever it delivers
-            doing = InTurn(parts=(Scale(factor=1.5), Offset(by=0.25)))
-        else:  # keeps whole numbers and truths what they are
-            doing = Erase(default=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
-        alone = _faulted(seen, variant, {channel: (consumer,)}, doing)
-        yield BlockSpec(alone, seen.scenes, "tap", read.step + _AFTER, read.tap)
+        yield BlockSpec(_arm(seen, variant, {}), seen.scenes[::-2], "part")
+    floats = _floats(first)
+    for channel, _ in Counter(channel for channel, _ in floats).most_common(1):
+        nudged = {tap: Scale(factor=1.05) for tap in floats if tap[0] == channel}
+        yield BlockSpec(_arm(seen, variant, nudged), seen.scenes, "faulted")
+    for tap, read in _begun(first).items():
+        alone = _arm(seen, variant, {tap: _altering(read)})
+        yield BlockSpec(alone, seen.scenes, "tap", read.step + _AFTER, tap)
 
 
-def _rounded(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[BlockSpec]:
-    """Yield what shows how far rounding goes, where scenes differ by those beside them."""
-    readers = _begun(first)[1]
-    if readers and seen.differs(variant, "part") and not seen.differs(variant, "again"):
-        arm = _faulted(seen, variant, readers, Scale(factor=1.0 + 4.0 * coarsest(first)))
-        yield BlockSpec(arm, seen.scenes, "rounded")
+def _doubts(seen: Seen) -> Iterator[BlockSpec]:
+    """Yield what settles doubts: how far rounding goes, where scenes differ by those beside them;
+    and whether a reader that answers no fault has its values from elsewhere. It is handed
+    constants, first alone, and then while all that others read is faulted."""
+    for variant, first in seen.firsts():
+        floats = _floats(first)
+        if floats and seen.differs(variant, "part") and not seen.differs(variant, "again"):
+            nudged = dict.fromkeys(floats, Scale(factor=1.0 + 4.0 * coarsest(first)))
+            yield BlockSpec(_arm(seen, variant, nudged), seen.scenes, "rounded")
+    silent = ((name, *reader_at(seen, name, tap)) for name, tap in unanswered(seen))
+    for variant, taps, writes in dict.fromkeys(silent) if not seen.unsteady() else ():
+        begun = _begun(seen.of(variant, "first"))
+        constants = {tap: Erase(default=read.low) for tap, read in begun.items() if tap in taps}
+        moved = {tap: _altering(read) for tap, read in begun.items()} | constants
+        for why, doing in ((HELD, constants), (MOVED, moved)) if writes else ():
+            yield BlockSpec(_arm(seen, variant, doing), seen.scenes, why, tap=min(taps))
 
 
-def _begun(run: RecordedBlock) -> tuple[dict[tuple[str, str], Read], dict[str, list[str]]]:
-    """Return the first read of each tap, and by channel who reads numbers with a fraction."""
-    begins: dict[tuple[str, str], Read] = {}
-    readers: dict[str, list[str]] = {}
-    for read in run.reads:
-        if read.clean and read.tap not in begins:
-            begins[read.tap] = read
-            if "float" in read.dtype:
-                readers.setdefault(read.channel, []).append(read.consumer)
-    return begins, readers
+def _begun(run: RecordedBlock) -> dict[tuple[str, str], Read]:
+    """Return the first read of each tap."""
+    begun: dict[tuple[str, str], Read] = {}
+    for read in (read for read in run.reads if read.clean):
+        begun.setdefault(read.tap, read)
+    return begun
 
 
-def _faulted(
-    seen: Seen, variant: str, readers: Mapping[str, Sequence[str]], doing: AnyIntervention
-) -> Arm:
-    interface, present = seen.system.interface, seen.system.variants[variant].consumers
-    faults = [
-        part
-        for channel, consumers in readers.items()
-        for part in Fault(channel=channel, intervention=doing, consumers=tuple(consumers)).resolved(
-            interface, present
-        )
-    ]
-    return Arm(variant=variant, seed=seen.seed, faults=tuple(faults))
+def _floats(run: RecordedBlock) -> list[tuple[str, str]]:
+    """Return the taps at which numbers with a fraction are read."""
+    return [tap for tap, read in _begun(run).items() if "float" in read.dtype]
+
+
+def _altering(read: Read) -> AnyIntervention:
+    """Return what alters a reading, whatever it holds."""
+    if "float" in read.dtype:
+        return InTurn(parts=(Scale(factor=1.5), Offset(by=0.25)))
+    # Whole numbers and truths stay what they are.
+    return Erase(default=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
+
+
+def _arm(seen: Seen, variant: str, doing: Mapping[tuple[str, str], AnyIntervention]) -> Arm:
+    """Return the arm of a variant in which something is done at some taps."""
+    faults = (
+        Fault(channel=channel, intervention=what, consumers=(consumer,))
+        for (channel, consumer), what in doing.items()
+    )
+    present = seen.system.variants[variant].consumers
+    resolved = resolve(faults, seen.system.interface, present)
+    return Arm(variant=variant, faults=resolved, seed=seen.seed)

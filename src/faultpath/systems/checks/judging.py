@@ -1,16 +1,12 @@
-"""Verdicts on a system from the runs of a check: eight checks, each with its sentences."""
+"""Judgement of a system from the runs of a check: eight checks, each with its sentences."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Literal
+from collections.abc import Callable, Sequence
 
-from faultpath.core.results import Result
-from faultpath.systems.checks.blocks import MISTAKES, TRIALS, RecordedBlock, coarsest, gap_of
+from faultpath.systems.checks.blocks import MISTAKES, TRIALS, coarsest, gap_of
+from faultpath.systems.checks.delivery import HELD, MOVED, delivery
 from faultpath.systems.checks.remarks import diverged, other_names, successes, without_room
-from faultpath.trials import System, Variant
-from faultpath.trials.attempt import Done
-from faultpath.trials.execution.recheck import difference
+from faultpath.systems.checks.seen import UNDER, Check, Seen
 from faultpath.trials.pairing import Mismatch, Side, mismatch_words, unlike
 from faultpath.trials.table import unproven, unread
 
@@ -18,72 +14,23 @@ _SEVERAL = 10.0
 """A difference up to this multiple of what a last digit of the readings does may be rounding."""
 _FAR = 100.0
 """A reading beyond this multiple of the typical magnitude is in another unit."""
-
-
-class Check(Result):
-    """One thing that was looked at."""
-
-    name: str
-    says: str
-    """One line on what was seen, or on why nothing could be."""
-    failures: tuple[str, ...] = ()
-    """A sentence each: what is wrong, where, and what to do."""
-    remarks: tuple[str, ...] = ()
-    """Sentences on what may be a mistake and may be none."""
-    judged: bool = True
-
-    @property
-    def status(self) -> Literal["passed", "failed", "not judged"]:
-        """The verdict of the check."""
-        if self.failures:
-            return "failed"
-        return "passed" if self.judged else "not judged"
-
-
-@dataclass
-class Seen:
-    """The runs of a check."""
-
-    system: System
-    variants: tuple[Variant, ...]
-    scenes: tuple[str, ...]
-    seed: int
-    apart: bool
-    """Whether runs were repeated in processes of their own."""
-    runs: dict[tuple[str, str, tuple[str, str]], RecordedBlock] = field(
-        default_factory=dict[tuple[str, str, tuple[str, str]], RecordedBlock]
-    )
-    """By variant, why it was run, and the tap that was faulted alone."""
-
-    def of(self, variant: str, why: str) -> RecordedBlock:
-        """Return what was recorded of a run; nothing where there was none."""
-        return self.runs.get((variant, why, ("", "")), RecordedBlock())
-
-    def firsts(self) -> Iterator[tuple[str, RecordedBlock]]:
-        """Yield the first run, under correct inputs, of each variant that came to its end."""
-        for variant in self.variants:
-            run = self.of(variant.name, "first")
-            if run.outcomes:
-                yield variant.name, run
-
-    def differs(self, variant: str, why: str) -> str:
-        """Say how a second run of a variant differs from the first; empty where it does not."""
-        first, again = self.of(variant, "first"), self.of(variant, why)
-        if again.error:
-            return f"fails where the first did not ({again.error})"
-        if not again.outcomes:
-            return ""
-        dt_s = self.system.control_dt_s
-        then = first.readings(dt_s)
-        odd = [key for key, digest in again.readings(dt_s).items() if then.get(key) != digest]
-        by_scene = {outcome.scene: outcome for outcome in first.outcomes}
-        before = [by_scene[outcome.scene] for outcome in again.outcomes]
-        words = difference(before, Done(again.outcomes, ()))
-        if odd:
-            scene, step, channel, consumer = min(odd, key=lambda key: key[1])
-            words = words or "differs in its readings alone"
-            words += f", first at step {step} in {channel} -> {consumer}, scene {scene!r}"
-        return words
+_CAUSES = {
+    # Whether two new processes differ, and whether the second run in one of them does.
+    (
+        True,
+        True,
+    ): "every run differs: draw from faultpath.generator, and look for clocks and threads.",
+    (
+        False,
+        True,
+    ): "the second run in a process differs: let run() keep nothing from one call to the "
+    "next, such as a counter, a cache or a generator made once.",
+    (
+        True,
+        False,
+    ): "processes differ: look for hash(), id(), the order of a set and the environment.",
+    (False, False): "new processes repeat it: look for what other runs leave behind, and threads.",
+}
 
 
 def judged(seen: Seen) -> tuple[Check, ...]:
@@ -94,23 +41,25 @@ def judged(seen: Seen) -> tuple[Check, ...]:
         "scene independence": _independence,
         "pairing": _pairing,
         "declared reads": _reads,
-        "fault delivery": _delivery,
+        "fault delivery": delivery,
         "shape and unit": _readings,
         "data files": lambda name, _: Check(name=name, says="Python opened only declared files"),
     }
     ends = {name: run.outcomes for name, run in seen.firsts()}
-    checks = [Check(name=TRIALS, says=successes(ends), remarks=without_room(ends))]
+    trials = sum(len(run.outcomes) for _, run in seen.under())
+    says = successes(ends) + (f"; {trials} trials ended under the fault" if trials else "")
+    checks = [Check(name=TRIALS, says=says, remarks=without_room(ends))]
     for name, judge in judges.items():
         none = Check(name=name, says="no variant ran to its end", judged=False)
         checks.append(judge(name, seen) if count else none)
     for at, check in enumerate(checks):
         stopped = {
-            run.error: variant
+            run.error: f"'{variant}'{f', {why}' if why.startswith(UNDER) else ''}"
             for (variant, why, _), run in reversed(seen.runs.items())
-            if run.fails == check.name and why != "tap"
+            if run.fails == check.name and why not in ("tap", HELD, MOVED)
         }
         errors = tuple(
-            f"Variant '{name}': {error}{'' if check.name in MISTAKES else remedy(error)}."
+            f"Variant {name}: {error}{'' if check.name in MISTAKES else remedy(error)}."
             for error, name in stopped.items()
         )
         checks[at] = check.model_copy(update={"failures": (*errors, *check.failures)})
@@ -137,19 +86,25 @@ def remedy(error: str) -> str:
 
 def _determinism(name: str, seen: Seen) -> Check:
     """Check that the same scenes twice give the same bits."""
-    failures = tuple(
-        f"Variant '{variant}' run twice over the same scenes {differs}; take random numbers from "
-        "faultpath.generator, and look for threads, hash(), clocks and what is kept between calls."
-        for variant, _ in seen.firsts()
-        if (differs := seen.differs(variant, "again"))
-    )
-    where = f"in {'two processes' if seen.apart else 'one process'}"
-    return Check(name=name, says=f"run twice {where}, the same bits", failures=failures)
+    failures = list[str]()
+    for variant in seen.unsteady():
+        cause = (
+            "take random numbers from faultpath.generator, and keep nothing from one call of run() "
+            "to the next; in worker processes, a check can tell the two apart."
+        )
+        if seen.apart:
+            between = bool(seen.differs(variant, "anew", "alone"))
+            cause = _CAUSES[between, bool(seen.differs(variant, "repeated", "anew"))]
+        differs = seen.differs(variant, "again")
+        failures.append(f"Variant '{variant}' run twice over the same scenes {differs}; {cause}")
+    where = "in two processes and twice in one" if seen.apart else "twice in one process"
+    says = f"run {where}, {'other' if failures else 'the same'} bits"
+    return Check(name=name, says=says, failures=tuple(failures))
 
 
 def _independence(name: str, seen: Seen) -> Check:
     """Check that a scene's result depends neither on the others nor on their order."""
-    if any(seen.differs(variant, "again") for variant, _ in seen.firsts()):
+    if seen.unsteady():
         return Check(name=name, says="results do not repeat in any order", judged=False)
     if len(seen.scenes) < 2:
         return Check(name=name, says="one scene has no others beside it", judged=False)
@@ -177,8 +132,8 @@ def _independence(name: str, seen: Seen) -> Check:
                 "does where readings change in their last digits: only with blocks of the same "
                 "scenes does an audit repeat to the bit."
             )
-    bits = "to rounding" if remarks else "bits"
-    says = f"in another order and without some others, the same {bits}"
+    bits = "other bits" if failures else "the same to rounding" if remarks else "the same bits"
+    says = f"in another order and without some others, {bits}"
     if open_ended and not failures:
         says = "a last digit decides how scenes end"
     sentences = {"failures": tuple(failures), "remarks": tuple(remarks)}
@@ -187,6 +142,8 @@ def _independence(name: str, seen: Seen) -> Check:
 
 def _pairing(name: str, seen: Seen) -> Check:
     """Check that two arms meet the same conditions in each scene."""
+    if seen.unsteady():
+        return Check(name=name, says="results do not repeat, so no two are a pair", judged=False)
     firsts = list(seen.firsts())
     sides = [(Side(variant, "correct inputs"), run) for variant, run in firsts]
     faulted = ((variant, seen.of(variant, "faulted")) for variant, _ in firsts)
@@ -203,9 +160,9 @@ def _pairing(name: str, seen: Seen) -> Check:
         f"{text[0].upper()}{text[1:].rstrip('.')}; {remedy}" for text in mismatch_words(mismatches)
     ]
     failures += unproven([outcome for _, run in firsts for outcome in run.outcomes])
-    says = (
-        f"the same initial states, disturbances and planner noise in {len(sides)} runs of a scene"
-    )
+    says = f"in {len(sides)} runs of a scene"
+    if not failures:
+        says = f"the same initial states, disturbances and planner noise {says}"
     return Check(name=name, says=says, failures=tuple(failures))
 
 
@@ -218,77 +175,38 @@ def _reads(name: str, seen: Seen) -> Check:
     return Check(name=name, says=says, failures=failures, remarks=remarks)
 
 
-def _delivery(name: str, seen: Seen) -> Check:
-    """Check that a fault at a tap alters what its consumer gets, and has an effect."""
-    failures, remarks, dt_s = list[str](), list[str](), seen.system.control_dt_s
-    altered, elsewhere = 0, 0
-    alone = {key: run for key, run in seen.runs.items() if key[1] == "tap"}
-    for (variant, _, tap), run in alone.items():
-        lead = f"Injection point {tap[0]} -> {tap[1]} of variant '{variant}', faulted in "
-        lead += f"{len(seen.scenes)} trials,"
-        here = [read for read in run.reads if read.tap == tap]
-        count = sum(read.altered for read in here)
-        altered += count
-        others = [read for read in run.reads if read.tap != tap and read.altered]
-        elsewhere += sum(read.altered for read in others)
-        for channel, consumer in dict.fromkeys(read.tap for read in others):
-            failures.append(
-                f"{lead} altered a reading at {channel} -> {consumer} too, which "
-                "the fault does not name; trust no result of this version of faultpath, and report "
-                "it."
-            )
-        first = seen.of(variant, "first")
-        clean = first.readings(dt_s)
-        faulted = {key: value for key, value in run.readings(dt_s).items() if key in clean}
-        ends = tuple(replace(outcome, faulted_steps=0, altered_steps=0) for outcome in run.outcomes)
-        if run.fails == name:
-            failures.append(f"{lead} is not reached: {run.error}.")
-        elif not here:
-            failures.append(
-                f"{lead} delivered nothing, though it did without the fault; deliver at every "
-                "step that reads, and keep nothing from one call of run() to the next."
-            )
-        elif not count:
-            failures.append(
-                f"{lead} altered none of its readings; let the source hold numbers that a fault "
-                "can change."
-            )
-        elif (
-            not run.error
-            and all(clean[key] == value for key, value in faulted.items())
-            and not (ends and difference(first.outcomes, Done(ends, ())))
-        ):
-            remarks.append(
-                f"{lead} changed nothing else, in no outcome and at no other injection point, in "
-                "the steps that were looked at; its module may use it later, or not at all, or may "
-                "use something else than it was handed."
-            )
-    says = f"{len(alone)} injection points, each faulted alone: {altered} readings altered, "
-    says += f"{elsewhere} elsewhere" if elsewhere else "none elsewhere"
-    return Check(name=name, says=says, failures=tuple(failures), remarks=tuple(remarks))
-
-
 def _readings(name: str, seen: Seen) -> Check:
     """Check that sources give finite numbers of their unit; taps refuse other shapes themselves."""
     failures: dict[str, str] = {}
     spans: dict[str, tuple[float, float]] = {}
-    for variant, run in seen.firsts():
-        for read in run.reads:
-            if read.lost:
-                failures.setdefault(
-                    read.source,
-                    f"Variant '{variant}': source '{read.source}' at step {read.step}, read by "
-                    f"{read.consumer}, is not finite in scene {read.lost!r}; give a number at "
-                    "every step.",
-                )
-            low, high = spans.get(read.source, (read.low, read.high))
-            spans[read.source] = min(low, read.low), max(high, read.high)
+    firsts = [(f"Variant '{variant}'", run) for variant, run in seen.firsts()]
+    for label, read in (
+        (label, read) for label, run in (*firsts, *seen.under()) for read in run.reads
+    ):
+        if read.lost:
+            failures.setdefault(
+                read.source,
+                f"{label}: source '{read.source}' at step {read.step}, read by {read.consumer}, "
+                f"is not finite in scene {read.lost!r}; give a number at every step.",
+            )
+    kinds: dict[str, set[str]] = {}
+    for read in (read for _, run in firsts for read in run.reads):
+        low, high = spans.get(read.source, (read.low, read.high))
+        spans[read.source] = min(low, read.low), max(high, read.high)
+        kinds.setdefault(read.source, set()).add(read.dtype)
     shown: list[str] = []
     for source in seen.system.interface.sources:
         low, high = spans.get(source.name, (math.inf, -math.inf))
         if low > high:
             continue
         shown.append(f"{source.name} {low:.3g} to {high:.3g} {source.unit}".removesuffix(" 1"))
+        whole = sorted(kind for kind in kinds[source.name] if "int" in kind)
+        if whole and (source.unit != "1" or any("float" in kind for kind in kinds[source.name])):
+            failures[f"{source.name} whole"] = (
+                f"Source '{source.name}' gives whole numbers ({whole[0]}) of unit {source.unit}: "
+                "what is put into such an array loses its fraction, and no fault can scale or "
+                "shift it; give floats, or the unit '1' where it counts something."
+            )
         most = max(abs(low), abs(high))
         if source.scale and most and not 1 / _FAR <= most / source.scale <= _FAR:
             failures[f"{source.name} far"] = (

@@ -122,6 +122,7 @@ class Recording(DeliveryListener):
             self.queries.setdefault(reading.source, {})[reading.step] = reading.value
             return
         if new and self._scenes:
+            tap.check_shape(reading.value)
             self._note(key, reading.value, got, asks=0)
         self.source(reading.source, reading.value, reading.step)
         clean, received = _numbers(reading.value), _numbers(got)

@@ -12,6 +12,7 @@ from faultpath.systems.checks.blocks import BlockSpec, run_block
 from faultpath.systems.checks.check import chosen_variants
 from faultpath.systems.checks.recording import Read
 from faultpath.trials import Arm, LoopSystem, System, SystemSpec, library_of
+from faultpath.trials.question import TraceQuestion
 
 
 class TraceReport(Result):
@@ -37,28 +38,22 @@ class TraceReport(Result):
 
 
 def trace_system(
-    system: System,
-    spec: SystemSpec,
-    variant: str,
-    library: str = "selection",
-    scene: str | None = None,
-    steps: int = 3,
-    seed: int = 0,
-    fault: AnyFault | None = None,
+    system: System, spec: SystemSpec, question: TraceQuestion, fault: AnyFault | None = None
 ) -> TraceReport:
     """Run a variant for a few steps and report what was read.
 
     Raises `UserError` for a variant, library or scene that there is not, a fault that
     reaches no consumer there, and a run that fails.
     """
+    variant, steps = question.variant or next(iter(system.variants)), question.steps
     consumers = chosen_variants(system, (variant,))[0].consumers
-    known = [ref.id for ref in library_of(system, library).scenes]
-    chosen = known[0] if scene is None else scene
-    if chosen not in known:
-        raise UserError(f"library '{library}': {unknown('scene', chosen, known)}")
+    known = [ref.id for ref in library_of(system, question.library).scenes]
+    scene = known[0] if question.scene is None else question.scene
+    if scene not in known:
+        raise UserError(f"library '{question.library}': {unknown('scene', scene, known)}")
     faults = resolve(() if fault is None else (fault,), system.interface, consumers)
-    arm = Arm(variant=variant, faults=faults, seed=seed)
-    run = run_block(system, BlockSpec(arm, (chosen,), steps=steps))
+    arm = Arm(variant=variant, faults=faults, seed=question.seed)
+    run = run_block(system, BlockSpec(arm, (scene,), steps=steps))
     if run.error and not run.reads:
         raise UserError(f"variant '{variant}' does not run: {run.error}")
     taps = {read.tap for read in run.reads}
@@ -80,9 +75,9 @@ def trace_system(
         system=spec.name,
         options=spec.options,
         variant=variant,
-        library=library,
-        scene=chosen,
-        seed=seed,
+        library=question.library,
+        scene=scene,
+        seed=question.seed,
         steps=steps,
         fault="" if fault is None else fault.describe(),
         reads=tuple(
