@@ -144,7 +144,7 @@ def test_a_place_between_points_is_claimed_nowhere() -> None:
     """A ridge between the points: the surface was 5.6 pp off, and its band covered in .38."""
 
     def ridge(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
-        place = np.random.default_rng(int(1000 * (x + 2) + 10 * (y + 2))).random((2, 100, 1))
+        place = np.random.default_rng(int(1000 * (x + 2) + 10 * (y + 2))).random((2, 100))
         return place[0] < 0.7 - 0.25 * abs(x), place[1] < 0.8 - 0.35 * abs(x - y)
 
     made = decided(question(points=25), differences(ridge, lattice(COARSE)))
