@@ -6,7 +6,7 @@ promises. Streams are named after the setting, so the same setting gives the sam
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import pairwise, product
 from math import sqrt
 from typing import NamedTuple
 
@@ -15,12 +15,14 @@ from numpy.typing import NDArray
 from scipy.stats import multinomial
 
 from faultpath.core.streams import generator
-from faultpath.decisions.family import CORRECT, SHARED, Arms, Family, alpha_shares, decide_paths
+from faultpath.decisions.compared import Outcomes as Arms
+from faultpath.decisions.contrasts import alpha_shares
+from faultpath.decisions.family import Family, decide_paths
+from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.search.propose import proposals
 from faultpath.decisions.search.study import regret
 from faultpath.statistics.estimate import ALPHA, RULE, RULES
 from faultpath.statistics.power import detectable, detected, rule_power
-from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import degrees_interval, degrees_rejects, reach
 
 Floats = NDArray[np.float64]
@@ -133,27 +135,74 @@ class Skewed(NamedTuple):
         parts = ((differ - wins) * lost[::-1], [1.0 - differ], wins * won)
         return cls(scenes, seeds, np.concatenate(parts))
 
-    def announced(self, runs: int, stream: np.random.Generator) -> float:
-        """Return how often an audit of one path announces a difference."""
+    @classmethod
+    def even(cls, scenes: int, seeds: int, lost: float, parts: int, noise: float) -> "Skewed":
+        """Return one in which a share of scenes loses all seeds and so many gain ``parts`` of them
+        that neither version is ahead; ``noise`` of them differ by one seed besides."""
+        chances = np.zeros(2 * seeds + 1)
+        chances[0] = lost
+        chances[seeds + parts] = lost * seeds / parts
+        chances[[seeds - 1, seeds + 1]] += noise / 2.0
+        chances[seeds] += 1.0 - chances.sum()
+        return cls(scenes, seeds, chances)
+
+    def announced(self, runs: int, stream: np.random.Generator) -> tuple[float, float]:
+        """Return how often an audit of one path announces a difference, and how often the version
+        that is so more often: where a fault at one module certainly favours the other, as often is
+        a reversal false."""
         counts = stream.multinomial(self.scenes, self.chances, size=runs).astype(np.float64)
         values = np.arange(-self.seeds, self.seeds + 1) / self.seeds
         counts, times = np.unique(counts, axis=0, return_counts=True)
         far = reach(values, counts, 1.0, PRIOR)
-        return float(times @ detected(values, counts, far, ALPHA, RULE)) / runs
+        found = times * detected(values, counts, far, ALPHA, RULE)
+        first = float(found[counts @ values > 0.0].sum()) / runs
+        both = float(found.sum()) / runs
+        return both, max(first, both - first)
 
 
-def skewed(populations: int, runs: int = 2000, again: int = 40_000) -> tuple[float, float]:
-    """Return the largest share of audits that announce a difference among so many populations
-    without one, and the share of populations in which it is above 5 %.
+def skewed(
+    populations: int, runs: int = 2000, again: int = 40_000
+) -> tuple[float, float, float, float]:
+    """Return the largest shares of audits that announce a difference, and one side of it, among so
+    many populations without one and a grid of even ones, and the shares of populations in which
+    these are above 5 and 2.5 %.
 
-    Those in which it seems to be are looked at ``again``, so that the largest of many is not noise.
+    Those in which one seems to be are looked at ``again``, so that the largest is not noise.
     """
-    stream, above = generator("statistics", f"skewed {populations}", 0), list[float]()
-    for _ in range(populations):
-        population = Skewed.drawn(stream)
-        if population.announced(runs, stream) > ALPHA:
+    stream = generator("statistics", f"skewed {populations}", 0)
+    above = list[tuple[float, float]]()
+    grid = [
+        Skewed.even(*size, lost, parts, noise)
+        for size in product((25, 50, 100, 300), (3, 5))
+        for lost, parts, noise in product((0.005, 0.01, 0.02, 0.05), (1, 2), (0.0, 0.3))
+        if lost * size[1] / parts + lost + noise <= 1.0
+    ]
+    drawn = [Skewed.drawn(stream) for _ in range(populations)]
+    for population in (*drawn, *grid):
+        either, one = population.announced(runs, stream)
+        if either > ALPHA or one > ALPHA / 2.0:
             above.append(population.announced(again, stream))
-    return max(above, default=0.0), sum(rate > ALPHA for rate in above) / populations
+    count = len(drawn) + len(grid)
+    largest = [max((rates[k] for rates in above), default=0.0) for k in (0, 1)]
+    often = [sum(rates[k] > ALPHA / (1 + k) for rates in above) / count for k in (0, 1)]
+    return largest[0], largest[1], often[0], often[1]
+
+
+def skewed_coverage(
+    scenes: int, seeds: int, gains: float, lost: float, runs: int = 10_000
+) -> float:
+    """Return how often the interval covers the truth where a share of scenes gains one seed and a
+    few lose all."""
+    stream = generator("statistics", f"skewed coverage {scenes} {seeds} {gains} {lost}", 0)
+    values = np.arange(-seeds, seeds + 1) / seeds
+    chances = np.zeros(len(values))
+    chances[[0, seeds + 1]] = lost, gains * (1.0 - lost)
+    chances[seeds] = 1.0 - chances.sum()
+    drawn = stream.multinomial(scenes, chances, size=runs).astype(np.float64)
+    counts, times = np.unique(drawn, axis=0, return_counts=True)
+    low, high = degrees_interval(values, counts, 1.0, 1.0 - ALPHA)
+    truth = float(chances @ values)
+    return float(times @ ((low <= truth) & (high >= truth))) / runs
 
 
 def powered(seeds: int, scenes: int = 100, runs: int = 20_000) -> float:
@@ -186,8 +235,7 @@ def interval_coverage(scenes: int, truth: Population, runs: int = 4000) -> float
         drawn = stream.multinomial(scenes, truth.chances(), size=runs).astype(np.float64)
         counts, times = np.unique(drawn, axis=0, return_counts=True)
         weight = times / runs
-    far = reach(truth.sizes, counts, 1.0, PRIOR)
-    low, high = degrees_interval(truth.sizes, counts, far, 1.0, 1.0 - ALPHA)
+    low, high = degrees_interval(truth.sizes, counts, 1.0, 1.0 - ALPHA)
     return float(weight @ ((low <= truth.mean) & (high >= truth.mean)))
 
 
@@ -228,7 +276,7 @@ def announces(family: Family) -> bool:
     return any(each.sign for part in (family.effects, family.changes) for each in part.values())
 
 
-def equal_arms(scenes: int, truth: Population, together: float, runs: int = 300) -> float:
+def equal_arms(scenes: int, truth: Population, together: float, runs: int = 2000) -> float:
     """Return the share of audits of arms that do not differ that announce anything."""
     stream = generator("statistics", f"equal arms {scenes} {truth} {together}", 0)
     paths = dict.fromkeys(PATHS, truth)
@@ -236,22 +284,59 @@ def equal_arms(scenes: int, truth: Population, together: float, runs: int = 300)
     return sum(announces(decide_paths(arms, rule=RULE)) for arms in audits) / runs
 
 
-def reversals(scenes: int, seeds: int, isolated: float, runs: int = 600) -> float:
-    """Return the share of audits that announce a reversal: isolated effects as stated, shared
-    -20 pp."""
-    stream = generator("statistics", f"reversals {scenes} {seeds} {isolated}", 0)
+def failing(
+    stream: np.random.Generator, arms: Mapping[str, Arms], rates: Mapping[str, float]
+) -> dict[str, Arms]:
+    """Return successes of which a share of the trials under each condition has no outcome."""
+    lost: dict[str, Arms] = {}
+    for path, pair in arms.items():
+        one, two = (
+            np.where(stream.random(a.shape) < rates.get(path, 0.0), np.nan, a) for a in pair
+        )
+        lost[path] = one, two
+    return lost
+
+
+def reversing(seeds: int, isolated: float) -> dict[str, Population]:
+    """Return populations with these isolated effects and a shared one of -20 pp."""
     alone = Population(0.3, isolated / 0.3, seeds, 0.5)
-    paths = {
+    return {
         CORRECT: Population(0.1, 0.0, seeds, 0.5),
         "reconstruction": alone,
         "predictor": alone,
         SHARED: Population(0.3, -2.0 / 3.0, seeds, 0.5),
     }
+
+
+def reversals(
+    scenes: int, seeds: int, isolated: float, failed: float = 0.0, runs: int = 600
+) -> float:
+    """Return the share of audits that announce a reversal: isolated effects as stated, shared
+    -20 pp, and a share of all trials failed."""
+    stream = generator("statistics", f"reversals {scenes} {seeds} {isolated}", 0)
+    paths = reversing(seeds, isolated)
     announced = 0
     for _ in range(runs):
-        family = decide_paths(audit_of(stream, scenes, paths, 0.3), rule=RULE)
+        arms = audit_of(stream, scenes, paths, 0.3)
+        if failed:
+            arms = failing(stream, arms, dict.fromkeys(paths, failed))
+        family = decide_paths(arms, rule=RULE)
         announced += "reversal" in family.turns.values()
     return announced / runs
+
+
+def beside_failures(failed: float, runs: int = 600) -> float:
+    """Return the power of an isolated effect of 20 pp, 60 scenes and three seeds, where a share of
+    the trials under the shared fault failed, which has no effect."""
+    stream = generator("statistics", "beside failures", 0)
+    none = Population(0.1, 0.0, 3, 0.5)
+    paths = {CORRECT: none, "reconstruction": Population(0.3, 0.4, 3, 0.5), SHARED: none}
+    found = 0
+    for _ in range(runs):
+        arms = audit_of(stream, 60, paths, 0.3)
+        family = decide_paths(failing(stream, arms, {SHARED: failed}), rule=RULE)
+        found += family.effects["reconstruction"].sign == 1
+    return found / runs
 
 
 def searches(
@@ -291,21 +376,24 @@ def searches(
     return announced / runs
 
 
-def trainings(scenes: int, seeds: int, models: bool, runs: int = 2000) -> float:
+def trainings(
+    scenes: int, seeds: int, models: bool, collapse: float = 0.0, runs: int = 2000
+) -> float:
     """Return how often two equal methods, 8 pp between one training and the next, are told apart.
 
-    ``models``: whether the audit speaks of newly trained models.
+    ``models``: whether the audit speaks of newly trained models. With ``collapse`` one training in
+    ten loses so many pp instead, and the others gain what makes up for it.
     """
     stream = generator("statistics", f"trainings {scenes} {seeds} {models}", 0)
-    resamples = Resamples.draw("statistics", scenes, n_resamples=1)
     announced = 0
     for _ in range(runs):
         shift = stream.normal(0.0, 0.08, size=seeds)
+        if collapse:
+            shift = np.where(stream.random(seeds) < 0.1, -collapse, collapse / 9.0)
         easy = stream.random((scenes, 1))
         noise = stream.normal(0.0, 0.15, size=(2, scenes, seeds))
         arms = (easy + noise[0] < 0.5 + shift, easy + noise[1] < 0.5)
-        family = decide_paths({CORRECT: arms}, rule=RULE, resamples=resamples, models=models)
-        announced += announces(family)
+        announced += announces(decide_paths({CORRECT: arms}, rule=RULE, models=models))
     return announced / runs
 
 

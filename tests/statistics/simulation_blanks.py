@@ -22,7 +22,7 @@ Bools = NDArray[np.bool_]
 BLANKS = (
     *product(("one-sided", "opposite"), (1, 3)),
     ("repeated", 3),
-    *product(("clustered",), (1, 3)),
+    *product(("clustered", "both"), (1, 3)),
 )
 """Kinds of missing trials, with the number of seeds."""
 CONDITIONS = ("nominal", "isolated:observer", "shared")
@@ -86,6 +86,9 @@ def drawn(
     blank = bad & (stream.random(shape) < rate)
     if kind == "repeated":
         blank[..., 1:] = False
+    if kind == "both":  # both die, most often where only the baseline would succeed
+        dies = np.where(success[0] & ~success[1], 0.6, 0.05)
+        blank[:] = stream.random(shape[1:]) < dies
     if kind == "clustered":  # half of the tasks have a scene less, in both arms
         blank[:, :, ::2, -1] = True
     return success, blank

@@ -13,7 +13,8 @@ from scipy.stats import norm
 from simulation import Population, announces, kept, skewed
 from statsmodels.stats.contingency_tables import mcnemar
 
-from faultpath.decisions.family import CORRECT, SHARED, decide_paths
+from faultpath.decisions.family import decide_paths
+from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.statistics import score, signflip, unconditional
 from faultpath.statistics.contrast import change
 from faultpath.statistics.decisions import with_test
@@ -64,8 +65,8 @@ def test_one_seed_is_tested_by_exact_mcnemar(pair):
         (np.ones((4, 2)), np.ones((4, 3)), "one shape"),
         (np.ones((0, 2)), np.ones((0, 2)), "no outcomes"),
         (np.ones((2, 2, 2)), np.ones((2, 2, 2)), "not 3-d"),
-        (np.array([1.0, np.nan]), np.ones(2), "first holds NaN"),
-        (np.ones(2), np.array([1.0, np.inf]), "second holds NaN or infinity"),
+        (np.ones(2), np.array([1.0, np.inf]), "second must hold only 0 and 1"),
+        (np.array([np.nan, 1.0]), np.array([1.0, np.nan]), "no pair has both outcomes"),
         (np.ones(2), np.array([1.0, 0.5]), "second must hold only 0 and 1"),
     ],
 )
@@ -176,8 +177,8 @@ def power(scenes, population, runs=6000):
 
 
 def test_three_seeds_of_which_half_of_the_scenes_agree_find_most_of_what_can_be_found():
-    """Sign flips alone .70, E+M without a guard .77; the larger p of flips and score had .59."""
-    assert power(100, Population(0.06, 0.8, 3, 0.5)) > 0.68
+    """E+M without a guard .77, and a guard by what was seen .70: both err with skewed seeds."""
+    assert power(100, Population(0.06, 0.8, 3, 0.5)) > 0.59
 
 
 @pytest.mark.parametrize("alike", [0.5, 0.97, 0.99])
@@ -185,12 +186,13 @@ def test_three_seeds_of_which_half_of_the_scenes_agree_find_most_of_what_can_be_
 def test_more_seeds_lose_no_power(scenes, rate, lean, alike):
     """Three nearly equal seeds found .38 where the first alone finds .47."""
     alone = rule_power(scenes, rate, rate * lean, rule=RULE)
-    assert power(scenes, Population(rate, lean, 3, alike)) > alone - 0.02
+    assert power(scenes, Population(rate, lean, 3, alike)) > alone - 0.03
 
 
 def test_in_skewed_populations_the_level_is_kept():
-    largest, _ = skewed(60)
-    assert kept(largest, 40_000, most=0.05)
+    either, one_side, *_ = skewed(60)
+    assert kept(either, 40_000, most=0.05)
+    assert kept(one_side, 40_000, most=0.025)
 
 
 @laws

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from faultpath.decisions.family import effect_name
+from faultpath.decisions.contrasts import effect_name
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
 from faultpath.decisions.question import Question
 from faultpath.decisions.sentences import wording
