@@ -144,7 +144,7 @@ def _named(rows: Cells, question: JudgeQuestion) -> Cells:
 
 
 class _Document(BaseModel):
-    """What lm-eval writes of each document, beside its metrics."""
+    """Document of lm-eval, beside its metrics."""
 
     doc_id: Any
     doc_hash: Any = None
