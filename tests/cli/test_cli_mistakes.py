@@ -105,6 +105,24 @@ def test_a_time_limit_that_limits_nothing_or_cannot_be_kept(limit, workers, name
     audit(**{"time-limit": limit, "workers": workers}).refused("time", name)
 
 
+@pytest.mark.parametrize(
+    "error",
+    [
+        ImportError("libarrow.so.2600: failed to map segment from shared object"),
+        ImportError("IMPORTANT\n\nOriginal error was: x.so: Cannot allocate memory\n"),
+    ],
+    ids=str,
+)
+def test_too_little_memory_is_no_failed_check(error, monkeypatch):
+    def load(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr("faultpath.api.audit.audits", load)
+    ended = audit()
+    assert (ended.status, ended.err.count("\n")) == (2, 1)
+    assert "there is not enough memory" in ended.err
+
+
 @pytest.mark.parametrize("arguments", [[], ["train"]])
 def test_without_a_verb_there_is_help_and_no_traceback(arguments):
     ended = faultpath(*arguments)
