@@ -79,6 +79,7 @@ def task(successes: object) -> dict[str, Any]:
     return {"per_task": [{"task_group": "g", "task_id": 0, "metrics": metrics}]}
 
 
+UNEVEN = {"successes": [1], "sum_rewards": [1, 2]}
 SUCCESSES = "per_task[0].metrics.successes: is "
 
 
@@ -93,6 +94,11 @@ SUCCESSES = "per_task[0].metrics.successes: is "
         ("eval_info.json", task(None), SUCCESSES),
         ("eval_info.json", {"per_task": {}}, "per_task: is {}, and must be a list"),
         ("eval_info.json", {"per_episode": [{"seed": 1}]}, "per_episode[0].episode_ix: is missing"),
+        (
+            "eval_info.json",
+            {"per_task": [{**task([1])["per_task"][0], "metrics": UNEVEN}]},
+            "per_task[0].metrics: holds lists of different lengths",
+        ),
         (LM_EVAL, {"doc_id": 0}, "names no metric"),
         (LM_EVAL, {"doc_id": 0, "metrics": {"a": 1}}, "line 1: metrics: is {'a': 1}, and must"),
         ("log.json", scored([{"value": 1}]), "samples[0].scores: is [{'value': 1}], and must"),

@@ -107,7 +107,6 @@ def test_workers_that_ray_stops_for_want_of_memory_are_waited_for(head, monkeypa
     """Others that do not start, such as those of another Python, are given up after some."""
     fetch, stopped = ray_cluster._ray.get, [getattr(ray_cluster._ray.exceptions, error)("")]
     monkeypatch.setattr(ray_cluster, "_FALSE_STARTS", 0)
-    monkeypatch.setattr(ray_cluster, "_PATIENCE_S", 0.0)
 
     def get(reference):
         if stopped:
@@ -117,6 +116,7 @@ def test_workers_that_ray_stops_for_want_of_memory_are_waited_for(head, monkeypa
     with RayWorkers(head.address, 1) as hands:
         monkeypatch.setattr(ray_cluster._ray, "get", get)
         if error == "OutOfMemoryError":
+            monkeypatch.setattr(ray_cluster, "_PATIENCE_S", 0.0)
             with pytest.warns(Notice, match="no worker runs on the Ray cluster yet; waiting for"):
                 assert list(hands.free()) == [0]
             assert not stopped

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, Self
 
-from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from faultpath.core.files.plain import Misread
 
@@ -16,22 +16,13 @@ class _Episode(BaseModel):
 
 
 class _Metrics(BaseModel):
-    successes: list[Any]
-    sum_rewards: list[Any] | None = None
-    max_rewards: list[Any] | None = None
-
-    def columns(self) -> dict[str, list[Any]]:
-        """Return what there is of each episode, by the name of its column."""
-        columns = {
-            "success": self.successes,
-            "sum_reward": self.sum_rewards,
-            "max_reward": self.max_rewards,
-        }
-        return {name: values for name, values in columns.items() if values is not None}
+    success: list[Any] = Field(alias="successes")
+    sum_reward: list[Any] | None = Field(default=None, alias="sum_rewards")
+    max_reward: list[Any] | None = Field(default=None, alias="max_rewards")
 
     @model_validator(mode="after")
     def _of_one_length(self) -> Self:
-        if len({len(values) for values in self.columns().values()}) > 1:
+        if len({len(values) for _, values in self if values is not None}) > 1:
             raise ValueError("holds lists of different lengths, and must have one entry an episode")
         return self
 
@@ -58,7 +49,7 @@ def cells(info: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
     elif read.per_task is not None:
         for evaluation in read.per_task:
             task = f"{evaluation.task_group}/{evaluation.task_id}"
-            columns = evaluation.metrics.columns()
+            columns = evaluation.metrics.model_dump(exclude_none=True)
             for at, row in enumerate(zip(*columns.values(), strict=True)):
                 entries = dict(zip(columns, row, strict=True))
                 yield f", {task}, episode {at}", {**entries, "task": task, "scene": f"episode {at}"}
