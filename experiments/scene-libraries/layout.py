@@ -7,7 +7,7 @@ from math import pi
 
 import numpy as np
 from faultpath_quadrotor.scenes.prisms import Plan, Prism, prism
-from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Point
+from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Point
 
 WALL_M = 0.16  # thicker than the lattice spacing of the distance field
 MIN_GAP_M = 0.7  # between loose obstacles and to anything else [BARN, aerial_gym scale]
@@ -87,10 +87,10 @@ class Layout:
         return Cylinder(centre_m=at, radius_m=radius, low_m=0.0, high_m=self.size_m[2])
 
     @property
-    def bounds(self) -> Bounds:
+    def bounds(self) -> ArenaBounds:
         """Inner faces of the arena."""
         x, y, z = self.size_m
-        return Bounds(low_m=(-x / 2, -y / 2, 0.0), high_m=(x / 2, y / 2, z))
+        return ArenaBounds(low_m=(-x / 2, -y / 2, 0.0), high_m=(x / 2, y / 2, z))
 
     def block(self, x: Plan, y: Plan, z: Plan | None = None) -> None:
         """Add a box between coordinates, cut at the arena; it reaches the ceiling by default."""

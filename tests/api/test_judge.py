@@ -161,6 +161,18 @@ REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
     "nominal": (HEADER + ROW, {"nominal": "fog"}, "no such condition: unknown condition 'fog'"),
     "one arm": (HEADER + ROW + "new,s0,0,shared,1,h\n", {}, "'old' has no trial under the shared"),
     "score": (HEADER + ROW.replace(",,1,", ",,0.5,"), {}, "line 2: success is 0.5: give 0 or 1"),
+    "lost": (HEADER + ROW.replace(",,1,", ",,1e-400,"), {}, "line 2: success is '1e-400'"),
+    "script": (HEADER + ROW.replace(",,1,", ",,١,"), {}, "line 2: success is '١': give true or"),
+    "too large": (
+        "arm,scene,success,seconds\nold,s0,1,1e308\n",
+        {"columns": {"time_s": "seconds"}},
+        r"line 2: seconds is '1e308': give a number from -1e\+300 to 1e\+300",
+    ),
+    "too large a metric": (
+        "arm,scene,success,reward\nold,s0,1,2\nnew,s0,1,-1e308\n",
+        {"metrics": "reward"},
+        "line 3: reward is '-1e308': give a number from",
+    ),
     "word": (HEADER + ROW.replace(",,1,", ",,won,"), {}, "success is 'won': give true or false"),
     "hashes": (HEADER + ROW.replace("h\nnew", "\nnew"), {}, "line 2 has no hash of its initial"),
     "cells": (HEADER + "old,s0\n", {}, "all.csv, line 2: has 2 cells where the first line names 6"),
@@ -182,9 +194,25 @@ def test_what_cannot_be_judged_is_refused(
     assert not (tmp_path / "run").exists()
 
 
+def test_the_largest_numbers_that_are_read_can_be_added_up(tmp_path: Path) -> None:
+    trials = [(arm, n, won) for arm, each in WON.items() for n, won in enumerate(each)]
+    rows = [f"{arm},{n},{won},1e300,{'-' * (arm == 'old')}1e300\n" for arm, n, won in trials]
+    (file := tmp_path / "all.csv").write_text("arm,scene,success,time_s,reward\n" + "".join(rows))
+    judged(file, tmp_path / "run", metrics="reward")
+    assert "Infinity" not in (tmp_path / "run" / "record.json").read_text()
+
+
+def test_a_table_of_a_spreadsheet_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
+    plain, marked = (tmp_path / name for name in ("plain.csv", "marked.csv"))
+    plain.write_text(HEADER + ROW)
+    marked.write_text(HEADER + ROW, encoding="utf-8-sig")
+    one, two = (judged(file, tmp_path / file.stem).record for file in (plain, marked))
+    assert one.effects == two.effects
+
+
 DAMAGED: dict[str, tuple[str, bytes, str]] = {
     "kind": ("a.txt", b"", "is of no kind that is read"),
-    "json": ("a.json", b'{"per_task": [{"task_id": 1}]}', "lacks 'task_group'"),
+    "json": ("a.json", b'{"per_task": [{"task_id": 1}]}', r"per_task\[0\].task_group: is missing"),
     "neither": ("a.json", b"{}", "is neither LeRobot's eval_info.json"),
     "line": ("a.jsonl", b'{"arm": 1}\n{', "a.jsonl, line 2: is not JSON"),
     "parquet": ("a.parquet", b"PAR1", "a.parquet: cannot be read"),

@@ -69,9 +69,6 @@ def test_a_list_or_group_is_no_success(name: str, cell: object, tmp_path: Path) 
     assert "success is" in refused(f"{label}{path}", tmp_path)
 
 
-LAYOUT = "is not laid out as files of its kind are"
-
-
 def scored(scores: object) -> dict[str, Any]:
     about = {"task": "t", "model": "old"}
     return {"eval": about, "samples": [{"id": 0, "scores": scores}]}
@@ -82,20 +79,33 @@ def task(successes: object) -> dict[str, Any]:
     return {"per_task": [{"task_group": "g", "task_id": 0, "metrics": metrics}]}
 
 
+UNEVEN = {"successes": [1], "sum_rewards": [1, 2]}
+SUCCESSES = "per_task[0].metrics.successes: is "
+
+
 @pytest.mark.parametrize(
     ("name", "content", "says"),
     [
         ("a.jsonl", {"arm": "old", "scene": ["x"], "success": 1}, "line 1: the scene is"),
         ("a.jsonl", {"arm": "old", "scene": "x", "success": 1, "initial": []}, "the initial is"),
         # Keys of a group and letters of a text could be gone through as a list's items are.
-        ("eval_info.json", task({"0": True, "1": False}), LAYOUT),
-        ("eval_info.json", task("0101"), LAYOUT),
-        ("eval_info.json", task(None), LAYOUT),
+        ("eval_info.json", task({"0": True, "1": False}), SUCCESSES),
+        ("eval_info.json", task("0101"), SUCCESSES),
+        ("eval_info.json", task(None), SUCCESSES),
+        ("eval_info.json", {"per_task": {}}, "per_task: is {}, and must be a list"),
+        ("eval_info.json", {"per_episode": [{"seed": 1}]}, "per_episode[0].episode_ix: is missing"),
+        (
+            "eval_info.json",
+            {"per_task": [{**task([1])["per_task"][0], "metrics": UNEVEN}]},
+            "per_task[0].metrics: holds lists of different lengths",
+        ),
         (LM_EVAL, {"doc_id": 0}, "names no metric"),
-        (LM_EVAL, {"doc_id": 0, "metrics": {"a": 1}}, LAYOUT),
-        ("log.json", scored([{"value": 1}]), LAYOUT),
-        ("log.json", scored("C"), LAYOUT),
-        ("log.json", scored({"match": 1}), LAYOUT),
+        (LM_EVAL, {"doc_id": 0, "metrics": {"a": 1}}, "line 1: metrics: is {'a': 1}, and must"),
+        ("log.json", scored([{"value": 1}]), "samples[0].scores: is [{'value': 1}], and must"),
+        ("log.json", scored("C"), "samples[0].scores: is 'C', and must"),
+        ("log.json", scored({"match": 1}), "samples[0].scores.match: is 1, and must"),
+        ("log.json", scored({"match": {}}), "samples[0].scores.match.value: is missing"),
+        ("log.json", {"eval": {"task": "t"}, "samples": []}, "eval.model: is missing"),
     ],
 )
 def test_lists_groups_and_names_are_what_they_should_be(

@@ -66,6 +66,19 @@ def test_judged_trials_end_a_build_likewise(folder: Path) -> None:
     judged(folder, "--out", folder / "run").refused("holds an audit's trials")
 
 
+@pytest.mark.parametrize("name", ["build.md", "new", "step-1"])
+def test_a_summary_is_added_to_markdown_and_to_the_file_of_ci(
+    name: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (place := Path(name)).write_text("" if name == "new" else "Before.\n")
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(Path("step-1").resolve()))
+    assert judged(folder, "--summary", place).status == 0
+    assert "\n### " in f"\n{place.read_text()}"
+    monkeypatch.delenv("GITHUB_STEP_SUMMARY")
+    if name != "build.md":
+        judged(folder, "--summary", place).refused(f"{name} is there already")
+
+
 def test_a_run_answers_with_what_was_decided(folder: Path) -> None:
     run = open_run(folder / "run")
     answer = run.repair_holds_when_shared

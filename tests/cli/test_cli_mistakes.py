@@ -13,6 +13,11 @@ TOY_MISTAKES = {
     "fault": ({"fault": "gian:scale=2"}, ["'gian'", "did you mean 'gain'", "velocity"]),
     "preset of none": ({"fault": "calibration=0.1"}, ["'calibration'", "none"]),
     "words for scenes": ({"scenes": "few"}, ["--scenes", "audit --help"]),
+    "scenes in other digits": ({"scenes": "٣"}, ["--scenes", "'٣'", "a whole number"]),
+    "scenes as Python writes it": ({"scenes": "2_0"}, ["--scenes", "'2_0'", "a whole number"]),
+    "margin as Python writes it": ({"margin": "1_0"}, ["--margin", "'1_0'", "a number"]),
+    "lost time limit": ({"time-limit": "1e-400"}, ["--time-limit", "'1e-400'", "round"]),
+    "lost threshold": ({"thresholds": "0.1,1e-400"}, ["--thresholds", "1e-400", "round"]),
     "half a seed": ({"seeds": "0,1.5"}, ["'0,1.5'", "0,1,2"]),
     "seed above all": ({"seeds": str(2**63)}, ["--seeds"]),
     "long seed": ({"seeds": "9" * 4000}, ["--seeds"]),
@@ -98,6 +103,24 @@ def test_a_mistake_about_the_command_itself(line, names, tmp_path):
 )
 def test_a_time_limit_that_limits_nothing_or_cannot_be_kept(limit, workers, name):
     audit(**{"time-limit": limit, "workers": workers}).refused("time", name)
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        ImportError("libarrow.so.2600: failed to map segment from shared object"),
+        ImportError("IMPORTANT\n\nOriginal error was: x.so: Cannot allocate memory\n"),
+    ],
+    ids=str,
+)
+def test_too_little_memory_is_no_failed_check(error, monkeypatch):
+    def load(*_: object, **__: object) -> None:
+        raise error
+
+    monkeypatch.setattr("faultpath.api.audit.audits", load)
+    ended = audit()
+    assert (ended.status, ended.err.count("\n")) == (2, 1)
+    assert "there is not enough memory" in ended.err
 
 
 @pytest.mark.parametrize("arguments", [[], ["train"]])

@@ -127,7 +127,7 @@ def test_no_file_of_a_run_is_replaced_by_what_is_no_part_of_it(option: str, run:
     assert (run / "report.html").read_bytes() == before
 
 
-@pytest.mark.parametrize("option", sorted({*OUTPUTS} - {"audit --summary"}))
+@pytest.mark.parametrize("option", sorted(OUTPUTS))
 def test_a_file_of_somebody_else_is_not_replaced(option: str, tmp_path: Path) -> None:
     (mine := tmp_path / "mine").write_text("<html><!-- about faultpath -->")
     faultpath(*OUTPUTS[option], mine).refused("mine is there already")

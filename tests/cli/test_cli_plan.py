@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+import yaml
 from cli_runs import TOY, Ended, faultpath, flags
 
 from faultpath.decisions.plan.plan import Plan
@@ -47,6 +48,30 @@ def test_a_plan_is_told_written_flown_and_resumed(monkeypatch: pytest.MonkeyPatc
         assert each["folder"] == f"runs/{name}"
         assert each["record"] == json.loads(Path("runs", name, "record.json").read_text())
     assert {path: path.stat().st_mtime_ns for path in Path("runs").rglob("shards/*")} == before
+
+
+@pytest.mark.parametrize(
+    ("condition", "role", "actual"),
+    [
+        ("correct", "repaired", "correct"),
+        ("shared", "attribution", "shared"),
+        ("controller", "shared", "attribution"),
+        ("observer", "attribution", "repaired"),
+    ],
+)
+def test_a_role_that_a_condition_does_not_have_is_refused(
+    condition: str, role: str, actual: str
+) -> None:
+    assert plan("--out", "s.yaml").status == 0
+    study = yaml.safe_load(Path("s.yaml").read_text())
+    (arm,) = [arm for arm in study["audits"][0]["arms"] if arm["path"] == condition]
+    assert arm["role"] == actual
+    arm["role"] = role
+    Path("s.yaml").write_text(yaml.safe_dump(study))
+    ended = faultpath("audit", "--study", "s.yaml", "--trust", "--workers", 0)
+    assert (ended.status, ended.err.count("\n")) == (2, 1)
+    assert f"calls '{condition}' {role}, and it is {actual}" in ended.err
+    assert not Path("runs").exists()
 
 
 def test_json_is_the_plan_and_nothing_else_on_the_standard_output() -> None:

@@ -77,6 +77,7 @@ def test_a_function_that_builds_nothing_is_called_for_no_file(system, options, t
         assert ended.status == 2
         assert system.partition(":")[0] in ended.err
         assert ("nothing else is called" if trust else "give --trust") in ended.err
+        assert "it is the code of the run" not in ended.err
     assert not Path("ran").exists()
     assert not Path("runs").exists()
 

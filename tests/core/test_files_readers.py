@@ -140,7 +140,7 @@ BOTH: dict[bytes, str] = {
     b'{"a": 1, "a": 2}': "appears twice",
     b"[" * 100_000: "nested too deeply",
     b"\xff\xfe{}": "not UTF-8",
-    b"\xef\xbb\xbf{}": "byte order mark",
+    b'{"a": 1e-400}': "does not round to it",
     b'{"a":\n"\0"}': "null character",
     b"{": "is not",
 }
@@ -179,6 +179,11 @@ def test_what_is_not_plainly_a_number_is_text() -> None:
     numbers = {"1e-3": 1e-3, "-0": 0, "+7": 7, ".5": 0.5, "1.": 1.0, "-1.5E+3": -1500.0}
     for text, number in numbers.items():
         assert read_yaml(f"a: {text}".encode()).data == {"a": number}
+
+
+def test_a_byte_order_mark_is_no_part_of_a_text() -> None:
+    for read in (read_json, lambda data: read_yaml(data).data):
+        assert read(b"\xef\xbb\xbf{}") == {}
 
 
 def test_what_is_written_reads_back() -> None:

@@ -18,9 +18,10 @@ from toy_study import SYSTEM, UNITS, study, study_of
 
 import faultpath
 from faultpath.cli.main import INTERRUPTED
-from faultpath.core.errors import UserError
+from faultpath.core.errors import Notice, UserError
 from faultpath.trials import SystemSpec
 from faultpath.trials.execution.runner import run_study
+from faultpath.trials.work import ray_cluster
 from faultpath.trials.work.executor import Failed, Lost, Returned, elsewhere, tell
 from faultpath.trials.work.ray_cluster import RayWorkers
 
@@ -78,6 +79,50 @@ def test_a_study_that_loses_a_node_ends_with_the_same_bytes(head, here, tmp_path
     flown = [line.split() for line in log.read_text().splitlines()]
     assert len(flown) == UNITS + 1, "one unit was lost with its node and flown again"
     assert max(Counter(pid for *_, pid in flown).values()) >= UNITS - 1
+
+
+def test_a_study_that_loses_a_worker_ends_with_the_same_bytes(head, here, tmp_path):
+    gate, log = tmp_path / "gate", tmp_path / "log"
+    gate.touch()
+    log.touch()
+
+    def kill(progress):
+        if gate.exists() and (begun := log.read_text().splitlines()):
+            os.kill(worker := int(begun[0].split()[3]), signal.SIGKILL)
+            until(lambda: not alive(worker), "a worker's end")
+            gate.unlink()
+
+    asked = study(hang_while=str(gate), log=str(log))
+    with RayWorkers(head.address, 1) as hands:
+        there = run_study(asked, tmp_path / "there", executor=hands, progress=kill, recheck=False)
+    assert there.failures == ()
+    assert there.outcomes_sha256 == here.outcomes_sha256
+    pids = [line.split()[3] for line in log.read_text().splitlines()]
+    assert len(pids) == UNITS + 1, "one unit was lost with its worker and run again"
+    assert pids[0] not in pids[1:]
+
+
+@pytest.mark.parametrize("error", ["OutOfMemoryError", "WorkerCrashedError"])
+def test_workers_that_ray_stops_for_want_of_memory_are_waited_for(head, monkeypatch, error):
+    """Others that do not start, such as those of another Python, are given up after some."""
+    fetch, stopped = ray_cluster._ray.get, [getattr(ray_cluster._ray.exceptions, error)("")]
+    monkeypatch.setattr(ray_cluster, "_FALSE_STARTS", 0)
+
+    def get(reference):
+        if stopped:
+            raise stopped.pop()
+        return fetch(reference)
+
+    with RayWorkers(head.address, 1) as hands:
+        monkeypatch.setattr(ray_cluster._ray, "get", get)
+        if error == "OutOfMemoryError":
+            monkeypatch.setattr(ray_cluster, "_PATIENCE_S", 0.0)
+            with pytest.warns(Notice, match="no worker runs on the Ray cluster yet; waiting for"):
+                assert list(hands.free()) == [0]
+            assert not stopped
+        else:
+            with pytest.raises(UserError, match="workers do not start on the Ray cluster"):
+                hands.free()
 
 
 def test_an_actor_is_a_worker_like_any_other(head):

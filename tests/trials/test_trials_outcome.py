@@ -22,6 +22,7 @@ GOOD = Outcome("a", Status.SUCCESS, 2.0, "i", "d", "none", {"rms_m": 0.5})
         ({"time_s": 10**400}, "time_s is"),
         ({"time_s": 0.0}, "time_s is 0.0: a trial takes at least one control step"),
         ({"metrics": {"rms_m": math.inf}}, "rms_m is inf"),
+        ({"metrics": {"rms_m": -1e308}}, "rms_m is -1e+308: give a finite number of at most 1e"),
         ({"metrics": {"rms_m": np.zeros(1)}}, "rms_m is"),
         ({"metrics": {"rms": 1.0}}, "metric 'rms' is not declared: name it in"),
         ({"initial_hash": ""}, "initial_hash is empty"),

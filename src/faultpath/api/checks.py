@@ -13,9 +13,11 @@ from faultpath.api.systems import Chosen, choose
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.decisions.fault_groups import fault_of
+from faultpath.decisions.model import CORRECT, SHARED
+from faultpath.decisions.plan.order import repaired_modules
 from faultpath.decisions.plan.plan import Plan, make_plan, sentences
-from faultpath.decisions.plan.study import StudyFile, check_arms
-from faultpath.decisions.planning import faults_by_path, plan_audit
+from faultpath.decisions.plan.study import StudyFile, arms_of, check_arms
+from faultpath.decisions.planning import faults_by_path, plan_audit, two_variants
 from faultpath.faults import Fault
 from faultpath.trials import System, library_of
 from faultpath.trials.question import CheckQuestion, PlanQuestion, RepairQuestion, TraceQuestion
@@ -114,10 +116,20 @@ def audit_study(
     say = display(progress, "audit_study", {}).say
     received, arms = ReceivedCode("the study file", trust, say), (study.baseline, study.repair)
     chosen = choose(study.system, study.options, None, arms, received=received)
-    library = library_of(chosen.system, study.library)
+    system, library = chosen.system, library_of(chosen.system, study.library)
+    named = {arm.path for planned in study.audits for arm in planned.arms if arm.role == "repaired"}
+    modules = sorted(named - {CORRECT, SHARED})
+    repaired = repaired_modules(system, *two_variants(system, study), modules)
     for planned in study.audits:
-        laid = plan_audit(chosen.system, chosen.spec, study.audit_of(planned.fault), library)
+        laid = plan_audit(system, chosen.spec, study.audit_of(planned.fault), library)
         check_arms(study, planned, laid)
+        roles = {arm.path: arm.role for arm in arms_of(laid, repaired)}
+        for arm in planned.arms:
+            if arm.role != (role := roles[arm.path]):
+                raise UserError(
+                    f"audit '{planned.name}' of the study file calls '{arm.path}' {arm.role}, and "
+                    f"it is {role}: correct it, or let `faultpath plan` write the file anew."
+                )
     same = {name: getattr(study, name) for name in RepairQuestion.model_fields}
     return tuple(
         audit(

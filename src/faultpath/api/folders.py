@@ -108,6 +108,8 @@ def _doubts(
         yield "result and provenance name different libraries"
     if tuple(variant.name for variant in shown.variants) != (question.baseline, question.repair):
         yield "the system's variants are not those of the question"
+    if question.metric and question.metric not in question.metrics:
+        yield f"the result shows a metric '{question.metric}' that its question does not declare"
     yield from _other_trials(record, outcomes)
     yield from _other_effects(record)
     yield from _other_taps(record, shown.interface, deliveries)

@@ -1,5 +1,6 @@
 """Results of a command for a build: its exit status, JUnit's XML and a summary."""
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,7 +40,7 @@ Summary = Annotated[
     typer.Option(
         "--summary",
         parser=as_path,
-        help="Add a summary in Markdown to this file.",
+        help="Add a summary in Markdown to this .md file, a new file, or CI's step summary.",
         rich_help_panel=ADVANCED,
     ),
 ]
@@ -65,7 +66,11 @@ class Gate:
         if junit is not None:
             check_output(junit, b'<testsuites name="faultpath"')
         if summary is not None:
-            check_output(summary, b"")  # added to, whatever it holds
+            of_ci = os.environ.get("GITHUB_STEP_SUMMARY")
+            added_to = summary.suffix == ".md" or (
+                of_ci and os.path.realpath(of_ci) == os.path.realpath(summary)
+            )
+            check_output(summary, b"" if added_to else None)
         return cls(conditions, junit, summary)
 
     def end(self, runs: "Sequence[Run]", say: Callable[..., Any]) -> int:

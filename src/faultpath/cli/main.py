@@ -24,6 +24,8 @@ UNREAD = 141
 """Exit status that shells report for a program that nobody reads any more."""
 
 _TRACEBACK = "--traceback"
+_NO_ROOM = re.compile(r"failed to map segment|[Cc]annot allocate")
+"""Words of the loader of shared libraries."""
 _AGAIN = "interrupted; the same command goes on from what is stored."
 
 
@@ -132,12 +134,13 @@ def _sentence(error: BaseException) -> str | None:
         text = re.sub(r" \(Possible options: (.*)\)$", r", did you mean \1?", text)
         command = getattr(getattr(error, "ctx", None), "command_path", "faultpath")
         return f"{text[0].lower()}{text[1:]}; `{command} --help` shows what there is."
-    mistake = explained(error)
+    loading = isinstance(error, ImportError) and _NO_ROOM.search(str(error))
+    mistake = None if loading else explained(error)
     if mistake is not None:
         return str(mistake)
     if isinstance(error, SystemExit):
         return f"what the command ran ends the program ({described(error)}): correct it there"
-    if isinstance(error, MemoryError):
+    if loading or isinstance(error, MemoryError):
         return "there is not enough memory: ask for less, or for fewer --workers."
     if isinstance(error, OSError) and error.strerror:
         about = f"{error.filename}: " if error.filename is not None else ""

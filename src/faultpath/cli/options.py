@@ -2,7 +2,7 @@
 
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperCommand, TyperOption
 
 from faultpath.core.errors import UserError
+from faultpath.core.numbers import number_in, whole_in
 from faultpath.core.text import one_line, steers
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ _LONGEST = 4096
 FOUND = 1
 """Exit status of a verb that finished, and found what must not be: failed trials, a failed check,
 trials that do not repeat."""
+
+_READ: Mapping[Any, Callable[[str], object]] = {int: whole_in, float: number_in}
 
 SystemName = Annotated[
     str,
@@ -107,16 +110,25 @@ def as_written(command: Any) -> None:
 
 
 class Verb(TyperCommand):
-    """A verb that takes every option once, but for those that take several values."""
+    """A verb that takes every option once, but for those that take several values, and numbers as
+    any file gives them."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse as any command does; `UserError` for an option given twice."""
+        """Parse as any command does; `UserError` for an option given twice, or for no number."""
         if args:
-            _, _, options = self.make_parser(ctx).parse_args(list(args))
+            values, _, options = self.make_parser(ctx).parse_args(list(args))
             for option in options:
-                single = isinstance(option, TyperOption) and not option.multiple
-                if single and sum(other is option for other in options) > 1:
+                if not isinstance(option, TyperOption) or option.multiple:
+                    continue
+                if sum(other is option for other in options) > 1:
                     raise UserError(f"{option.opts[0]} is given twice: give it once.")
+                value = values[option.name]
+                kind: Any = option.type_descriptor.annotation
+                try:
+                    _READ.get(kind, str)(value)
+                except ValueError as error:
+                    wrong = f"'{one_line(value)}', give {error}"
+                    raise typer.BadParameter(wrong, ctx=ctx, param=option) from None
         return super().parse_args(ctx, args)
 
 

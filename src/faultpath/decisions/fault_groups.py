@@ -6,6 +6,7 @@ Parts joined by `&` have one cause: drawn errors are the same draws, as far as e
 from dataclasses import replace
 
 from faultpath.core.errors import UserError
+from faultpath.core.numbers import number_in
 from faultpath.faults import AnyFault, Coupled, Fault, FaultText
 from faultpath.trials import System
 
@@ -32,7 +33,7 @@ def _part(system: System, text: str) -> AnyFault:
     rest = {key: value for key, value in parsed.options.items() if key != "loading"}
     fault, number = system.fault(str(replace(parsed, options=rest))), parsed.options["loading"]
     try:
-        loading = float(number)
+        loading = number_in(number)
     except ValueError:
         loading = 2.0
     if not (-1.0 <= loading <= 1.0 and all(e.intervention.is_random() for e in _each(fault))):

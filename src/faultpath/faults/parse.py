@@ -19,6 +19,7 @@ from typing import Any, Self, TypeAlias
 from pydantic import ValidationError
 
 from faultpath.core.errors import UserError
+from faultpath.core.numbers import number_in
 from faultpath.core.text import listed, unknown
 from faultpath.core.validation_messages import misfit_of
 from faultpath.faults.fault import INTERVENTIONS, Coupled, Fault
@@ -39,9 +40,9 @@ _WINDOW = {
 _ANY_FAULT = tuple(f"{name}{unit}" for name in _WINDOW for unit in ("", "_s"))
 """Options that every fault takes."""
 
-_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _SIZE = re.compile(rf"{_NUMBER}(?:/{_NUMBER})*")
-_RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})/(\d+)")
+_RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})/([0-9]+)")
 _MOST = 99
 """Sizes of one range; each is an audit."""
 
@@ -144,7 +145,7 @@ def _spread(item: str) -> tuple[str, ...]:
     low, high, count = match.groups()
     if len(count) > len(str(_MOST)) or not 2 <= int(count) <= _MOST:
         raise UserError(f"it asks for {count} sizes: a range takes 2 to {_MOST}")
-    first, last, steps = float(low), float(high), int(count) - 1
+    first, last, steps = _number("from", low), _number("to", high), int(count) - 1
     return tuple(f"{(first * (steps - i) + last * i) / steps + 0.0:.10g}" for i in range(steps + 1))
 
 
@@ -267,14 +268,12 @@ def _value(key: str, text: str) -> Any:
     if "/" in text:
         return tuple(_number(key, part) for part in text.split("/"))
     # What is echoed in a refusal is what was written, -1 and not -1.0.
-    return int(text) if re.fullmatch(r"[+-]?\d{1,15}", text) else _number(key, text)
+    return int(text) if re.fullmatch(r"[+-]?[0-9]{1,15}", text) else _number(key, text)
 
 
 def _number(key: str, text: str, what: str = "a number") -> float:
     try:
-        value = float(text.replace("_", "?"))  # Python reads 1_0 as ten
-    except ValueError:
-        raise UserError(f"'{key}' needs {what}, not '{text}'") from None
-    if value - value != 0.0:  # infinite or NaN
-        raise UserError(f"'{key}' needs a finite number, not '{text}'")
-    return value
+        return number_in(text)
+    except ValueError as error:
+        needs = what if str(error) == "a number" else error
+        raise UserError(f"'{key}' needs {needs}, not '{text}'") from None

@@ -2,6 +2,17 @@
 
 from faultpath.cli.options import FOUND, Json, Verbs, path, refuse_with
 from faultpath.core.errors import Stopped, UserError
+from faultpath.core.numbers import number_in
 from faultpath.trials.texts import LARGEST
 
-__all__ = ["FOUND", "LARGEST", "Json", "Stopped", "UserError", "Verbs", "path", "refuse_with"]
+__all__ = [
+    "FOUND",
+    "LARGEST",
+    "Json",
+    "Stopped",
+    "UserError",
+    "Verbs",
+    "number_in",
+    "path",
+    "refuse_with",
+]

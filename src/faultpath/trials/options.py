@@ -21,6 +21,7 @@ from pydantic import BaseModel, PydanticSchemaGenerationError, TypeAdapter, Vali
 from pydantic.fields import FieldInfo
 
 from faultpath.core.errors import UserError
+from faultpath.core.numbers import number_in
 from faultpath.core.validation_messages import misfit_of
 
 Factory = Callable[..., object]
@@ -60,13 +61,16 @@ class Option:
             own = ", or name your own as 'path/to/file.py:factory'" if self.factories else ""
             raise UserError(f"unknown {self.name} '{text}'; choose one of {known}{own}.")
         try:
+            if self.kind != "str":
+                number_in(text)
             return TypeAdapter[Any](self.annotation).validate_python(text)
         except PydanticSchemaGenerationError:
             return text  # a type of the system's own: it may make of the text what it likes
         except ValidationError as error:
-            raise UserError(
-                f"{system} cannot have the {self.name} '{text}': it {misfit_of(error).says}."
-            ) from None
+            says = misfit_of(error).says
+        except ValueError as error:
+            says = f"must be {error}"
+        raise UserError(f"{system} cannot have the {self.name} '{text}': it {says}.")
 
 
 class Offered:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import StringConstraints
 
+from faultpath.core.numbers import LARGEST
 from faultpath.core.results import Frozen
 from faultpath.interface.declaration import Words
 from faultpath.trials.declared import shown
@@ -160,8 +161,8 @@ def _number(name: str, value: Any) -> float:
         number = float(value)
     except OverflowError:
         number = math.inf
-    if not math.isfinite(number):
-        raise _Malformed(f"{name} is {number}: only a finite number says how the trial ended")
+    if not abs(number) <= LARGEST:
+        raise _Malformed(f"{name} is {number}: give a finite number of at most {LARGEST:g}")
     return number
 
 

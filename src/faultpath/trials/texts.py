@@ -7,6 +7,8 @@ from typing import Annotated, cast
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 
+from faultpath.core.numbers import number_in
+
 LARGEST = 2**63 - 1
 """The largest seed that the tables hold."""
 
@@ -39,9 +41,11 @@ def read_sizes(value: object) -> object:
     if not isinstance(value, str):
         return several(value)
     try:
-        return tuple(float(part) for part in value.split(","))
-    except ValueError:
-        raise ValueError(f"{value!r:.80} is not a list of numbers, for example 0.1,0.2") from None
+        return tuple(number_in(part) for part in value.split(","))
+    except ValueError as error:
+        raise ValueError(
+            f"{value!r:.80} is not a list of numbers, for example 0.1,0.2: each must be {error}"
+        ) from None
 
 
 def read_names(value: object) -> object:

@@ -48,10 +48,9 @@ class ReceivedCode:
         changed.sort(key=lambda name: name.startswith("faultpath"))  # the user's own first
         differs = f"this is not the code of the run ({named(changed)} changed since)"
         if shown and not self.trusted:
-            same = "; it is the code of the run" if self.sources else ""
             raise UserError(
                 f"{self.name} names {shown}, and importing that runs it"
-                f"{f'; {differs}' if changed else same}: look at it first, then give --trust"
+                f"{f'; {differs}' if changed else ''}: look at it first, then give --trust"
             )
         self.say(f"Importing {shown or spec.name}, which {self.name} names.")
         if changed:

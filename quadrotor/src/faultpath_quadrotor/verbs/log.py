@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.plugin.commands import Json, UserError, path
+from faultpath.plugin.commands import Json, UserError, number_in, path
 
 EXAMPLE = "flight.ulg --columns px4 --mass 1.5"
 
@@ -52,7 +52,7 @@ def command(
 
 def _sizes(text: str) -> tuple[float, ...]:
     try:
-        sizes = tuple(float(part) for part in text.split(","))
+        sizes = tuple(number_in(part) for part in text.split(","))
     except ValueError:
         raise UserError(
             f"--errors {text!r} is not a list of numbers, for example 0.1,-0.1."

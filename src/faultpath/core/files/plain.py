@@ -5,9 +5,8 @@ let a short file grow without end, are not read.
 """
 
 import json
-import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NoReturn, TypeVar, cast
 
@@ -16,16 +15,17 @@ from pydantic import BaseModel, ValidationError
 from yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, NodeEvent
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
+from faultpath.core.numbers import number_in, whole_in
 from faultpath.core.validation_messages import misfit_of
 
 LONGEST = 1_000_000
 """Bytes of a YAML file."""
 _DEEPEST = 12
 _TOO_DEEP = "is nested too deeply; a file of this kind has few levels"
-_DIGITS = 19
 _TYPE = "tag:yaml.org,2002:"
 _Safe: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C it is four times as fast
 _Model = TypeVar("_Model", bound=BaseModel)
+_Number = TypeVar("_Number", int, float)
 
 
 class Misread(ValueError):
@@ -42,10 +42,8 @@ class Misread(ValueError):
 
 def text_of(data: bytes) -> str:
     """Return UTF-8 text; `Misread` for anything else."""
-    if data.startswith(b"\xef\xbb\xbf"):
-        raise Misread("begins with a byte order mark; save it as UTF-8 without one")
     try:
-        text = data.decode("utf-8")
+        text = data.decode("utf-8-sig")  # with the byte order mark that spreadsheets write, or not
     except UnicodeDecodeError:
         raise Misread("is not UTF-8 text; save it as UTF-8") from None
     if "\0" in text:
@@ -221,20 +219,19 @@ def _value(node: Node) -> Any:
 
 
 def _whole(text: str) -> int:
-    if len(text.lstrip("+-")) > _DIGITS:
-        raise Misread(f"the number {_short(text)} is out of range; write at most {_DIGITS} digits")
-    return int(text)
+    return _read(whole_in, text, text)
 
 
 def _fraction(text: str) -> float:
-    plain = text.lower().replace(".inf", "inf").replace(".nan", "nan")
-    if not math.isfinite(number := float(plain)):
-        raise Misread(f"the number {_short(text)} is out of range; write a finite one")
-    return number
+    return _read(number_in, text.lower().replace(".inf", "inf").replace(".nan", "nan"), text)
 
 
-def _short(text: str) -> str:
-    return text if len(text) <= 40 else f"{text[:20]}… of {len(text)} characters"
+def _read(read: Callable[[str], _Number], plain: str, text: str) -> _Number:
+    try:
+        return read(plain)
+    except ValueError as error:
+        short = text if len(text) <= 40 else f"{text[:20]}… of {len(text)} characters"
+        raise Misread(f"the number {short} is out of range; write {error}") from None
 
 
 def _items(node: Node | None) -> Iterator[tuple[Any, Node, Node]]:

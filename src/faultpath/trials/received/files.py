@@ -13,12 +13,15 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, cast
 
+from pydantic import BaseModel, ValidationError
+
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.parquet import Unreadable, read_rows
 from faultpath.core.files.plain import Misread, read_json, text_of
 from faultpath.core.text import listed, unknown
-from faultpath.trials.received import inspect_logs
+from faultpath.core.validation_messages import misfit_of
+from faultpath.trials.received import inspect_logs, lerobot
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import Given, Received, received
 
@@ -47,7 +50,7 @@ def read_results(
         try:
             data = contents(path, LARGEST_TEXT if path.suffix != ".eval" else inspect_logs.LARGEST)
             before = len(trials)
-            for where, cells in _as_expected(_cells(path, data, question, file.arm)):
+            for where, cells in _cells(path, data, question, file.arm):
                 trials.append(received(f"{path}{where}", cells, file, question))
             if len(trials) == before:
                 raise Misread("holds no trial; give a file with one in each row")
@@ -55,6 +58,8 @@ def read_results(
             raise UserError(f"{path}: cannot be read ({error.strerror}): give a file.") from None
         except Misread as error:
             raise UserError(f"{error.at(path)}.") from None
+        except ValidationError as error:  # of a part that another tool lays out
+            raise UserError(f"{path}: {misfit_of(error)}.") from None
         except Unreadable as error:
             raise UserError(f"{path}: cannot be read ({error}): write it anew.") from None
         digests[str(path)] = hashlib.sha256(data).hexdigest()
@@ -73,18 +78,6 @@ def _files(result: str) -> list[Given]:
     if not inside:
         raise UserError(f"{place} holds none of {', '.join(_READ)}: name the files themselves.")
     return [Given(str(file), arm, condition) for file in inside]
-
-
-def _as_expected(cells: Cells) -> Cells:
-    """Yield what a reader finds; `Misread` where a part of the file is not what it takes it for."""
-    try:
-        yield from cells
-    except (Misread, Unreadable):
-        raise
-    except KeyError as error:
-        raise Misread(f"lacks {error}, which files of its kind have") from None
-    except (TypeError, AttributeError, ValueError, IndexError, OverflowError):
-        raise Misread("is not laid out as files of its kind are") from None
 
 
 def _cells(path: Path, data: bytes, question: JudgeQuestion, label: str) -> Cells:
@@ -108,10 +101,10 @@ def _cells(path: Path, data: bytes, question: JudgeQuestion, label: str) -> Cell
                 yield from _named(iter(rows), question)
         case ".json":
             log = _object(data)
-            if isinstance(log.get("eval"), dict):
+            if "eval" in log:
                 yield from inspect_logs.cells(log, question, label)
             else:
-                yield from _episodes(log)
+                yield from lerobot.cells(log)
         case _:
             raise Misread("is of no kind that is read; give .csv, .parquet, .json, .jsonl or .eval")
 
@@ -150,35 +143,13 @@ def _named(rows: Cells, question: JudgeQuestion) -> Cells:
         yield where, {**row, **{name: row[column] for name, column in question.columns.items()}}
 
 
-def _episodes(info: Mapping[str, Any]) -> Cells:
-    """Yield the episodes of LeRobot's `eval_info.json`: by task and place, or by seed where it says
-    one."""
-    if "per_episode" in info:
-        for number, episode in enumerate(_listed(info["per_episode"])):
-            seed = episode["seed"]
-            scene = f"episode {episode['episode_ix']}" if seed is None else f"seed {seed}"
-            yield f", episode {number}", {**episode, "scene": scene, "seed": None}
-        return
-    if "per_task" not in info:
-        raise Misread(
-            "is neither LeRobot's eval_info.json (per_task or per_episode) nor a log of Inspect "
-            "(eval and samples); give one of these, or columns as CSV"
-        )
-    for evaluation in _listed(info["per_task"]):
-        task = f"{evaluation['task_group']}/{evaluation['task_id']}"
-        metrics: dict[str, list[Any]] = evaluation["metrics"]
-        lists = {"success": "successes", "sum_reward": "sum_rewards", "max_reward": "max_rewards"}
-        columns = {name: _listed(metrics[key]) for name, key in lists.items() if key in metrics}
-        for at, row in enumerate(zip(*columns.values(), strict=True)):
-            cells = dict(zip(columns, row, strict=True))
-            yield f", {task}, episode {at}", {**cells, "task": task, "scene": f"episode {at}"}
+class _Document(BaseModel):
+    """Document of lm-eval, beside its metrics."""
 
-
-def _listed(value: Any) -> list[Any]:
-    """Return a list; `TypeError` for what could be gone through as one, such as a dict's keys."""
-    if not isinstance(value, list):
-        raise TypeError
-    return cast("list[Any]", value)
+    doc_id: Any
+    doc_hash: Any = None
+    filter: str = "none"
+    metrics: list[str] | None = None
 
 
 def _samples(
@@ -188,22 +159,30 @@ def _samples(
     named = _SAMPLES.fullmatch(path.name)
     task = named[1] if named else path.stem
     metric, _, filter_name = question.columns.get("success", "").partition(",")
-    filters = list(dict.fromkeys(str(row.get("filter", "none")) for _, row in rows))
-    metrics = _listed(rows[0][1].get("metrics") or []) or [
+    documents = [_document(where, row) for where, row in rows]
+    filters = list(dict.fromkeys(document.filter for document in documents))
+    metrics = documents[0].metrics or [
         name
         for name, value in rows[0][1].items()
         if isinstance(value, int | float) and name not in _OF_SAMPLES
     ]
     if not metrics:
         raise Misread("names no metric, and has no number that could be one; give --column success")
-    metric = metric or (str(metrics[0]) if len(metrics) == 1 else "")
+    metric = metric or (metrics[0] if len(metrics) == 1 else "")
     filter_name = filter_name or (filters[0] if len(filters) == 1 else "")
     if metric not in metrics or filter_name not in filters:
         raise Misread(
-            f"has the metrics {listed(map(str, metrics))} and the filters {listed(filters)}; say "
+            f"has the metrics {listed(metrics)} and the filters {listed(filters)}; say "
             f"which of them is success, as in --column success={metrics[0]},{filters[0]}"
         )
-    for where, row in rows:
-        if str(row.get("filter", "none")) == filter_name:
-            same = {"task": task, "scene": row["doc_id"], "initial": row.get("doc_hash")}
+    for (where, row), document in zip(rows, documents, strict=True):
+        if document.filter == filter_name:
+            same = {"task": task, "scene": document.doc_id, "initial": document.doc_hash}
             yield where, {**row, **same, "success": row.get(metric)}
+
+
+def _document(where: str, row: Mapping[str, Any]) -> _Document:
+    try:
+        return _Document.model_validate(row)
+    except ValidationError as error:
+        raise Misread(f"{where.removeprefix(', ')}: {misfit_of(error)}") from None

@@ -3,10 +3,12 @@
 import hashlib
 import json
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
+
+from pydantic import BaseModel
 
 from faultpath.core.files.opening import most_unpacked
 from faultpath.core.files.plain import Misread
@@ -17,8 +19,34 @@ LARGEST = 2**30
 """Bytes of a log."""
 _GRADES = {"C": 1.0, "P": 0.5, "I": 0.0, "N": 0.0}
 """Correct, partly, incorrect, no answer: as Inspect itself counts them."""
-_READ = {"id", "epoch", "input", "target", "scores", "error", "total_time"}
-"""Fields of a sample that are read."""
+
+
+class _Score(BaseModel):
+    value: Any
+
+
+class _Error(BaseModel):
+    message: str = ""
+
+
+class _Sample(BaseModel):
+    id: Any
+    epoch: Any = 1
+    input: str | list[dict[str, Any]] | None = None
+    target: Any = None
+    scores: dict[str, _Score] | None = None
+    error: _Error | None = None
+    total_time: Any = None
+
+
+class _About(BaseModel):
+    model: str
+    task: str
+
+
+class _Log(BaseModel):
+    eval: _About
+    samples: list[_Sample] | None = None
 
 
 def unpacked(path: Path) -> dict[str, Any]:
@@ -46,7 +74,7 @@ def unpacked(path: Path) -> dict[str, Any]:
         raise Misread(f"is no sound log of Inspect ({reason})") from None
     samples = log.samples
     if samples is not None:
-        samples = [sample.model_dump(include=_READ) for sample in samples]
+        samples = [sample.model_dump(include=set(_Sample.model_fields)) for sample in samples]
     return {"eval": {"model": log.eval.model, "task": log.eval.task}, "samples": samples}
 
 
@@ -55,43 +83,40 @@ def cells(
 ) -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the samples of a log: scenes by their id, seeds by the epoch, the arm by the model, or
     by `label` where the model is not called as an arm."""
-    about, samples = log["eval"], cast("Iterable[dict[str, Any]] | None", log.get("samples"))
-    if samples is None:
+    read = _Log.model_validate(log)
+    if read.samples is None:
         raise Misread("holds no samples; write the log with them")
-    model = about["model"]
+    model = read.eval.model
     model = label if label and model not in (question.baseline, question.repair) else model
     scorer = question.columns.get("success", "")
-    for sample in samples:
-        scores: dict[str, Any] = sample.get("scores") or {}
-        wrong: dict[str, Any] = sample.get("error") or {}
-        where = f", sample {sample['id']}"
+    for sample in read.samples:
+        scores = sample.scores or {}
         name = scorer or (next(iter(scores)) if len(scores) == 1 else "")
         if scores and name not in scores:
             raise Misread(
-                f"sample {sample['id']} is scored by {listed(scores)}; say which of them is "
+                f"sample {sample.id} is scored by {listed(scores)}; say which of them is "
                 f"success, as in --column success={next(iter(scores))}"
             )
-        value = None if wrong or not scores else scores[name]["value"]
+        value = None if sample.error or not scores else scores[name].value
         yield (
-            where,
+            f", sample {sample.id}",
             {
                 "arm": model,
-                "task": about["task"],
-                "scene": sample["id"],
-                "seed": sample.get("epoch", 1),
+                "task": read.eval.task,
+                "scene": sample.id,
+                "seed": sample.epoch,
                 "success": _GRADES.get(value, value) if isinstance(value, str) else value,
                 "initial": _asked(sample),
-                "time_s": sample.get("total_time") or None,
-                "error": wrong.get("message") or "it has no score",
+                "time_s": sample.total_time or None,
+                "error": (sample.error and sample.error.message) or "it has no score",
             },
         )
 
 
-def _asked(sample: Mapping[str, Any]) -> str:
+def _asked(sample: _Sample) -> str:
     """Return a hash of what the model was asked; of messages their ids, which vary, left out."""
-    prompt = sample.get("input")
+    prompt: Any = sample.input
     if not isinstance(prompt, str):
-        messages = cast("list[dict[str, Any]]", prompt or [])
-        prompt = [(message.get("role"), str(message.get("content"))) for message in messages]
-    text = json.dumps([prompt, sample.get("target")], sort_keys=True)
+        prompt = [(message.get("role"), str(message.get("content"))) for message in prompt or ()]
+    text = json.dumps([prompt, sample.target], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from faultpath.core.errors import UserError
+from faultpath.core.numbers import number_of
 from faultpath.core.text import unknown
 from faultpath.trials.declared import check_name, shown
 from faultpath.trials.outcome import Status
@@ -80,9 +81,10 @@ def received(
         if text:
             check_name(f"{where}: the {name}", text)
     status = _status(cells["success"], where, question.success_from)
-    time_s = _number(cells.get("time_s"), f"{where}: time_s")
+    seconds = f"{where}: {question.columns.get('time_s', 'time_s')}"
+    time_s = _number(cells.get("time_s"), seconds)
     if time_s is not None and time_s <= 0.0:
-        raise UserError(f"{where}: time_s is {time_s:g}: give seconds above 0, or leave it empty.")
+        raise UserError(f"{seconds} is {time_s:g}: give seconds above 0, or leave it empty.")
     metrics: dict[str, float] = {}
     for name in (metric.partition(":")[0] for metric in question.metrics):
         if name not in cells:
@@ -117,12 +119,9 @@ def _number(cell: object, what: str) -> float | None:
     if cell is None or cell == "" or cell != cell:
         return None
     try:
-        number = float(cell) if isinstance(cell, str | int | float) else math.nan
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise UserError(f"{what} is {shown(cell)}: give a finite number, or leave it empty.")
-    return number
+        return number_of(cell)
+    except ValueError as error:
+        raise UserError(f"{what} is {shown(cell)}: give {error}, or leave it empty.") from None
 
 
 def _status(cell: object, where: str, least: float | None) -> Status:
@@ -135,14 +134,12 @@ def _status(cell: object, where: str, least: float | None) -> Status:
             return Status(word)
         word = _TRUTH.get(word, word)
     try:
-        score = float(word) if isinstance(word, str | int | float) else math.nan
-    except ValueError:
-        score = math.nan
-    if math.isnan(score):
+        score = number_of(word)
+    except ValueError as error:
         raise UserError(
-            f"{where}: success is {shown(cell)}: give true or false, 1 or 0, a number with "
+            f"{where}: success is {shown(cell)}: give true or false, 1 or 0, {error} with "
             "--success-from, or success, crash, timeout, or failed for a trial that says nothing."
-        )
+        ) from None
     if least is None and score not in (0.0, 1.0):
         raise UserError(
             f"{where}: success is {score:g}: give 0 or 1, or say with --success-from from which "

@@ -3,12 +3,16 @@
 # Of Ray's types nothing is known.
 # pyright: reportUnknownMemberType=false, reportUnknownVariableType=false
 # pyright: reportUnknownArgumentType=false, reportMissingTypeStubs=false
+import math
 import os
 import pickle
 import signal
 import socket
 import sys
 import threading
+import time
+import warnings
+from collections import Counter
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from dataclasses import dataclass
@@ -17,7 +21,7 @@ from typing import Any
 
 import ray
 
-from faultpath.core.errors import UserError
+from faultpath.core.errors import Notice, UserError
 from faultpath.core.version import __version__
 from faultpath.trials.work.executor import (
     ONE_THREAD,
@@ -33,7 +37,9 @@ from faultpath.trials.work.ray_node import OnNode
 
 _ray: Any = ray
 _FALSE_STARTS = 4
-"""So many workers in a row may end before they have begun."""
+"""So often in a row a worker may end before it has begun; a node that is lost takes several."""
+_PATIENCE_S = 30.0
+"""Without a worker for so long, it is said what is waited for."""
 _REPORTS = "RAY_USAGE_STATS_ENABLED"
 _ENVIRONMENT = {
     **KEEP_MEMORY,
@@ -87,13 +93,18 @@ class RayWorkers(Executor):
         sys.stdout = self._told = _WithoutNews(sys.stdout)
         self.count = count or max(1, int(_ray.cluster_resources().get("CPU", 0)))
         self._nodes: set[str] = set()
-        self._false_starts = 0
+        self._false_starts: Counter[int] = Counter()
+        self._waits_for = "a free CPU, or for its processes to start"
         options = {"num_cpus": 1, "runtime_env": {"env_vars": _ENVIRONMENT}}
         self._kind = _ray.remote(OnNode).options(**options)
         self._workers = {number: self._started() for number in range(self.count)}
 
     def free(self) -> Sequence[int]:
-        """Return the workers that run and have no call; wait for one where none has a call."""
+        """Return the workers that run and have no call; wait for one where none has a call.
+
+        As long as Ray does, which is for ever; a notice says what for.
+        """
+        notice_at = time.monotonic() + _PATIENCE_S
         while True:
             workers = self._workers.items()
             free = [n for n, worker in workers if worker.starting is None and worker.stream is None]
@@ -101,6 +112,10 @@ class RayWorkers(Executor):
                 return free
             for _ in self.completions(0.5):  # none has a call that could end
                 pass
+            if time.monotonic() > notice_at:
+                text = f"no worker runs on the Ray cluster yet; waiting for {self._waits_for}."
+                warnings.warn(Notice(text), stacklevel=1)
+                notice_at = math.inf
 
     def submit(self, worker: int, call: Call, on_message: OnMessage = ignore) -> None:
         """Send the call to an actor that runs; its stream holds one item until it is taken."""
@@ -172,9 +187,13 @@ class RayWorkers(Executor):
         worker = self._workers[number]
         try:
             worker.place, node, version = _ray.get(worker.starting)
+        except _ray.exceptions.OutOfMemoryError:  # of the node: Ray tries for ever as well
+            self._waits_for = "memory: Ray stops workers while its node is almost full"
+            self.cancel(number)
+            return
         except _ray.exceptions.RayError as error:
-            self._false_starts += 1
-            if self._false_starts > _FALSE_STARTS:
+            self._false_starts[number] += 1
+            if self._false_starts[number] > _FALSE_STARTS:
                 raise UserError(
                     f"workers do not start on the Ray cluster ({_last_line(error)}): every node "
                     "needs the same Python, and faultpath with its extra ray"
@@ -186,7 +205,8 @@ class RayWorkers(Executor):
                 f"{worker.place} has faultpath {version} and this process {__version__}: install "
                 "the same version on every node"
             )
-        worker.starting, self._false_starts = None, 0
+        worker.starting = None
+        self._false_starts.clear()
         self._nodes.add(node)
         nodes = len(self._nodes)
         self.name = f"Ray {_ray.__version__}, {nodes} {'node' if nodes == 1 else 'nodes'}"
