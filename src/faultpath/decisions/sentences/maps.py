@@ -62,9 +62,9 @@ def _expected(record: MapRecord) -> str:
     correlated = {0.0: "with independent errors", 1.0: "with fully correlated ones"}
     texts: list[str] = []
     for expectation in record.joint.asked:
-        given = f"with a correlation of {expectation.correlation:g}".replace("-", MINUS)
+        other = f"with a correlation of {expectation.correlation:g}".replace("-", MINUS)
         ends = f"[{plain(expectation.low)}, {plain(expectation.high)}]"
-        where = correlated.get(expectation.correlation, given)
+        where = correlated.get(expectation.correlation, other)
         texts.append(f"{signed(expectation.value)} pp {ends} {where}")
     return (
         f"The map, interpolated between the pairs that were run, averages to {series(texts)}; "
