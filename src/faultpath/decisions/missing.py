@@ -1,4 +1,4 @@
-"""Bounds that trials without an outcome leave: each could have gone either way, in either version."""
+"""Bounds that trials without an outcome leave: each could have ended either way."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
