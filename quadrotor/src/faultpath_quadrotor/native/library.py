@@ -15,6 +15,7 @@ from torch import Tensor
 
 from faultpath.plugin.system import UserError
 from faultpath_quadrotor.device import host_readable
+from faultpath_quadrotor.instructions import NATIVE, level
 from faultpath_quadrotor.native.kernel_args import Block, Lent
 
 VARIABLE = "FAULTPATH_KERNELS"
@@ -145,10 +146,7 @@ def describe() -> str:
 
 def available() -> tuple[str, ...]:
     """Return the instruction sets that were built and that this processor has, fastest first."""
-    if not _path("baseline").exists():
-        return ()
-    level = ctypes.CDLL(str(_path("baseline"))).faultpath_level()
-    return tuple(isa for isa in SETS[-1 - level :] if _path(isa).exists())
+    return tuple(isa for isa in SETS[-1 - level() :] if _path(isa).exists())
 
 
 def load(isa: str) -> Kernels:
@@ -170,9 +168,9 @@ def load(isa: str) -> Kernels:
 
 @cache
 def _sources() -> str:
-    files = sorted((Path(__file__).parent / "source").iterdir())
+    files = sorted((NATIVE / "source").iterdir())
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
 
 def _path(isa: str) -> Path:
-    return Path(__file__).parent / f"kernels-{isa}.so"
+    return NATIVE / f"kernels-{isa}.so"
