@@ -53,6 +53,21 @@ INLINE Vector load(const float* from) {
 
 INLINE void store(float* to, Vector value) { std::memcpy(to, &value, sizeof value); }
 
+// The first `count` lanes from memory; the others are zero.
+INLINE Vector take(const float* from, int64_t count) {
+  if (count >= LANES) return load(from);
+  Vector value = {};
+  std::memcpy(&value, from, count * sizeof(float));
+  return value;
+}
+
+INLINE void give(Vector value, int64_t count, float* to) {
+  if (count >= LANES)
+    store(to, value);
+  else
+    std::memcpy(to, &value, count * sizeof(float));
+}
+
 INLINE Vector fma(Vector a, Vector b, Vector c) {
 #if defined(__AVX512F__) || (defined(__AVX2__) && defined(__FMA__))
   return SINGLE(fmadd)(a, b, c);
