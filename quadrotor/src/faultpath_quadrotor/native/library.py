@@ -15,7 +15,7 @@ from torch import Tensor
 
 from faultpath.plugin.system import UserError
 from faultpath_quadrotor.device import host_readable
-from faultpath_quadrotor.instructions import NATIVE, level
+from faultpath_quadrotor.instructions import NATIVE, SETTINGS, level
 from faultpath_quadrotor.native.kernel_args import Block, Lent
 
 VARIABLE = "FAULTPATH_KERNELS"
@@ -126,16 +126,22 @@ def whole_vectors(count: int) -> bool:
 
 
 def numerics() -> str:
-    """Return the name of the rounding here; results of two are never mixed in a folder."""
+    """Return the name of the arithmetic here: with the same one trials have the same bits.
+
+    It holds for every processor, and results of two are never mixed in a folder.
+    """
     built = kernels()
-    return PORTABLE if built is None else built.numerics
+    if built is None:
+        return PORTABLE
+    version = hashlib.sha256(f"{_sources()} {SETTINGS}".encode()).hexdigest()[:8]
+    return f"{built.numerics} {version}"
 
 
 def describe() -> str:
     """Return in words what runs here, and why it is not the fast path."""
     built = kernels()
     if built is not None:
-        return f"compiled kernels ({built.isa})"
+        return f"compiled kernels (arithmetic {numerics()})"
     if available():
         return f"the portable path, as {VARIABLE} asks"
     return (
