@@ -23,6 +23,7 @@ from faultpath_quadrotor.estimators.sensors import SAMPLES, SENSORS, SensorError
 from faultpath_quadrotor.models import clearance_model, predictor, reconstruction
 from faultpath_quadrotor.perception import DepthClearance, DepthRenderer, mounted
 from faultpath_quadrotor.planners import CEM, MPPI, NavigationCost, Scored
+from faultpath_quadrotor.planners.mppi import softmax
 from faultpath_quadrotor.planners.sampler import AutoregressiveSampler, BundledSampler
 from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.platform import PLATFORM
@@ -203,6 +204,8 @@ def planning() -> Stages:
         yield f"candidates {name}", commands
         yield f"cost {name}", cost(scored)
         yield f"plan {name}", search
+    even = 0.1 * numbers("even costs", SCENES, CANDIDATES).float()
+    yield "weights", softmax(even, 1.0)
 
 
 def scored_of(commands: Tensor, hover: Tensor) -> Scored:

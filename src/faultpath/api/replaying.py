@@ -41,7 +41,7 @@ class Replay:
 
     trials: Sequence["Replayed"]
     changed: Sequence[str]
-    """What has changed since the run, in words; the processor last."""
+    """Changes since the run, in words; the processor last."""
 
     @property
     def elsewhere(self) -> str:
@@ -139,16 +139,18 @@ def changes(run: RunProvenance, system: System, state: CodeState) -> tuple[str, 
     names = sorted(
         name for name in {*files[0], *files[1]} if files[0].get(name) != files[1].get(name)
     )
-    here = packages() | {name.replace("_", "-"): text for name, text in state.packages.items()}
+    installed = packages() | {name.replace("_", "-"): text for name, text in state.packages.items()}
     versions = {"Python": (run.python, python_version())}
-    versions |= {name: (run.packages[name], here[name]) for name in run.packages if name in here}
+    versions |= {
+        name: (text, installed[name]) for name, text in run.packages.items() if name in installed
+    }
     changed = [f"files ({named(names)})"] * bool(names)
     changed += [f"{name} ({a}, here {b})" for name, (a, b) in versions.items() if a != b]
-    for what, before, now in (
+    for what, before, here in (
         ("what computes", run.backend, system.backend),
         (_PROCESSOR, run.processor, processor()),
     ):
-        changed += [f"{what} ({before or 'not said'}, here {now})"] * (before != now)
+        changed += [f"{what} ({before or 'not said'}, here {here})"] * (before != here)
     return tuple(changed)
 
 

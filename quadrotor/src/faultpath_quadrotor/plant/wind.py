@@ -107,7 +107,8 @@ class Winds(BaseModel):
         turbulence = dryden(stream, steps, rate_hz, airspeed, self.length_m)
         along = self.turbulence * level.mean_mps * turbulence
         along[:, 0] += level.mean_mps + gust
-        return sum((along[:, [axis]] * axes[axis] for axis in range(1, 3)), along[:, [0]] * axes[0])
+        # Added up here, as a library's product depends on the processor.
+        return along[:, [0]] * axes[0] + along[:, [1]] * axes[1] + along[:, [2]] * axes[2]
 
 
 def one_minus_cosine(time_s: Array, onset_s: float, duration_s: float, peak: float) -> Array:
@@ -140,8 +141,7 @@ def dryden(
     time_constant = length_m / airspeed_mps
     ratio = 1.0 / (rate_hz * time_constant)
     decay = math.exp(-ratio)
-    # Covariances of both states, at any moment and of what a step adds, as its three numbers:
-    # written out, as a library's product depends on the processor.
+    # Covariances of both states as three numbers each, at any moment and of what a step adds.
     one, both, two = (part / (4.0 * time_constant) for part in (2.0, 1.0, 1.0))
     kept_both = ratio * one + both
     kept_two = ratio * (ratio * one + both) + ratio * both + two
