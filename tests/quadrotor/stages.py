@@ -194,15 +194,14 @@ def planning() -> Stages:
     }
     for name, planner in planners.items():
         search = planner.init(planner.initial_plan(hover), hover)
+        noise = planner.noise(["a", "b", "c"], 0, 3)
+        yield f"noise {name}", noise
         for iteration in range(2):
             noise = planner.noise(["a", "b", "c"], 0, 3, iteration)
-            if not iteration:
-                yield f"noise {name}", noise
             commands = planner.propose(search, noise)
             scored = scored_of(commands, hover)
             search = planner.update(search, scored)
-        yield f"candidates {name}", commands
-        yield f"cost {name}", cost(scored)
+            yield f"cost {name} {iteration}", (commands, cost(scored))
         yield f"plan {name}", search
     even = 0.1 * numbers("even costs", SCENES, CANDIDATES).float()
     yield "weights", softmax(even, 1.0)

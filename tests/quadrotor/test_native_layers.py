@@ -5,6 +5,9 @@ import torch
 from faultpath_quadrotor import native
 from faultpath_quadrotor.angles import sine_cosine
 from faultpath_quadrotor.predictors.affine import affine
+from faultpath_quadrotor.predictors.network import GatedCell, draw_weights
+from faultpath_quadrotor.predictors.recurrent import recur
+from kernel_sets import FUSED
 
 
 @torch.inference_mode()
@@ -15,12 +18,12 @@ def test_a_layer_is_the_portable_one_and_its_columns_are_their_own(
 ) -> None:
     stream = torch.Generator().manual_seed(0)
     shapes = ((outputs, inputs), (outputs, 1), (inputs, columns))
-    layer = [torch.randn(*shape, generator=stream) for shape in shapes]
+    weight, bias, x = (torch.randn(*shape, generator=stream) for shape in shapes)
     with native.using(isa):
-        compiled = affine(*layer, gelu)
-        last = affine(*layer[:2], layer[2][:, -1:], gelu)
+        compiled = affine(weight, bias, x, gelu)
+        last = affine(weight, bias, x[:, -1:], gelu)
     with native.using(native.PORTABLE):
-        portable = affine(*layer, gelu)
+        portable = affine(weight, bias, x, gelu)
     torch.testing.assert_close(compiled, portable, rtol=1e-5, atol=1e-5)
     assert torch.equal(compiled[:, -1:], last)
 
@@ -43,3 +46,12 @@ def test_the_linear_unit_keeps_what_is_no_number_and_stays_finite_elsewhere(isa:
         y = affine(one, zero, x, gelu=True)
     expected = torch.tensor([[torch.nan, 0.0, 0.0, 0.0, 50.0, 1e30]])
     torch.testing.assert_close(y, expected, equal_nan=True)
+
+
+def test_sets_that_fuse_agree_beyond_the_range_of_their_exponentials() -> None:
+    big = torch.tensor([[-torch.inf, -1e30, -90.0, 90.0, 1e30, torch.inf, torch.nan]])
+    cell, sequence = GatedCell(1, 32), big.expand(3, 1, 7)
+    draw_weights(cell, torch.Generator().manual_seed(0))
+    given, kept = ((layer.weight, layer.bias) for layer in (cell.from_input, cell.from_latent))
+    first, *others = (recur(native.load(isa), given, kept, sequence).numpy() for isa in FUSED)
+    assert all(first.tobytes() == other.tobytes() for other in others)

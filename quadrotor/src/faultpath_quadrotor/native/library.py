@@ -143,10 +143,10 @@ def describe() -> str:
     if built is not None:
         return f"compiled kernels (arithmetic {numerics()})"
     if available():
-        return f"the portable path, as {VARIABLE} asks"
+        return f"the portable path, as {VARIABLE} asks, which has last digits of its own"
     return (
-        "the portable path, several times slower than compiled kernels: "
-        "there was no C++ compiler at installation"
+        "the portable path, several times slower than compiled kernels and with last digits of its "
+        "own: there was no C++ compiler at installation"
     )
 
 

@@ -56,7 +56,7 @@ void weigh(const float* costs, float temperature, int64_t candidates, float* wei
     for (int p = 0; p < PARTS; ++p) {
       const int64_t at = k + p * LANES;
       const Vector behind = (best - load(costs + at)) / temperature;
-      const Vector weight = power_of_two(at_least(behind * LOG2_E, splat(-126.0f)));
+      const Vector weight = power_of_two(behind * LOG2_E);
       store(weights + at, weight);
       sums[p] = sums[p] + weight;
     }
