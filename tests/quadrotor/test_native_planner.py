@@ -19,6 +19,7 @@ from faultpath_quadrotor.planners import (
 from faultpath_quadrotor.planners.mppi import mean, softmax
 from faultpath_quadrotor.predictors.rollout import Rollout
 from faultpath_quadrotor.state import State
+from kernel_sets import FUSED
 
 SCENES = ("a", "b", "c")
 
@@ -116,3 +117,14 @@ def test_weights_and_means_are_the_portable_ones(isa: str, candidates: int, stre
     even, lost = both(isa, softmax, cost, 0.1)[0][1:]
     assert torch.equal(even, torch.full_like(even, 1 / candidates))
     assert lost.isnan().all()
+
+
+def test_sets_that_fuse_agree_on_weights_of_candidates_that_are_hopeless(stream) -> None:
+    cost = 1e4 * torch.rand(2, 64, generator=stream)
+    cost[0, :32] = torch.linspace(0, 1, 32)
+    weights = []
+    for isa in FUSED:
+        with native.using(isa):
+            weights.append(softmax(cost, 0.1))
+    assert (weights[0] > 0).all()
+    assert all(torch.equal(weights[0], other) for other in weights[1:])
