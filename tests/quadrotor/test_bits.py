@@ -72,3 +72,22 @@ def test_settings_of_a_user_change_no_bit(name: str, kept: dict[str, str]) -> No
 
 def test_torch_computes_by_the_set_that_every_processor_has() -> None:
     assert torch.backends.cpu.get_cpu_capability() == "AVX2"
+
+
+TORCH_FIRST = """
+import torch, warnings
+torch.ones(64).sum()
+from faultpath_quadrotor.device import arithmetic
+with warnings.catch_warnings(record=True) as shown:
+    with arithmetic(), arithmetic():
+        pass
+print([str(notice.message) for notice in shown])
+"""
+
+
+def test_a_process_that_used_torch_before_is_told_once() -> None:
+    variables = os.environ | {"ATEN_CPU_CAPABILITY": "default"}
+    line = [sys.executable, "-c", TORCH_FIRST]
+    ended = subprocess.run(line, env=variables, check=True, capture_output=True, text=True)
+    assert ended.stdout.count("torch computes with ") == 1
+    assert "import faultpath_quadrotor first" in ended.stdout
