@@ -88,25 +88,10 @@ def fly(run: Run, commit: str) -> None:
     variables = os.environ | {
         "PYTHONPATH": os.pathsep.join(map(str, sources)),
         "OMP_NUM_THREADS": "1",
-        **instructions(run),
     }
     python = ROOT / environment(run) / "bin" / "python"
     subprocess.run((python, "-m", "faultpath", *command), cwd=TREE, env=variables, check=True)
     documents.take(f"{run.name}={TREE / folder}")
-
-
-def instructions(run: Run) -> dict[str, str]:
-    """Return the variables that keep a run to the instruction set by which it was flown.
-
-    Rounding differs from one set to another, and with it the outcome of single trials.
-    """
-    if "(avx2)" not in run.provenance.backend:
-        return {}
-    return {
-        "FAULTPATH_KERNELS": "avx2",
-        "ATEN_CPU_CAPABILITY": "avx2",
-        "ONEDNN_MAX_CPU_ISA": "AVX2",
-    }
 
 
 def elsewhere(run: Run) -> str:

@@ -60,7 +60,7 @@ def test_importing_loads_nothing_heavy():
 
 LEFT_ALONE = """
 import os, random, signal, sys
-import faultpath, torch
+import faultpath, faultpath_quadrotor, torch  # the second says what torch computes with
 torch.set_num_threads(3)
 before = (torch.get_num_threads(), dict(os.environ), random.getstate(), os.getcwd())
 handler = signal.getsignal(signal.SIGINT)

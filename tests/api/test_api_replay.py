@@ -29,7 +29,7 @@ def folder(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def found(folder):
-    return replay(read_run(folder), (SCENE,), trust=True)
+    return replay(read_run(folder), (SCENE,), trust=True).trials
 
 
 def _signals(found, variant: str, path: str) -> dict[str, Signal]:
@@ -78,7 +78,7 @@ def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
         for row in source.outcomes.rows
     )
     changed = replace(source, outcomes=replace(source.outcomes, rows=rows))
-    found = replay(changed, (SCENE,), ("shared", "observer"), trust=True)
+    found = replay(changed, (SCENE,), ("shared", "observer"), trust=True).trials
     differs = {each.address.path: bool(each.differs) for each in found}
     assert differs == {"shared": True, "observer": False}
     for each in found:
@@ -103,3 +103,21 @@ def test_only_scenes_and_paths_of_a_run_that_can_be_built_are_run_again(folder) 
 def test_the_verb_says_whether_a_run_repeats(folder, capsys) -> None:
     assert command(folder, trust=True, scene=[SCENE], path=["observer"]) == 0
     assert "2 trials in 1 scene came out as in the run, to the bit." in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("update", "words"),
+    [
+        ({}, ()),
+        ({"processor": "Abacus"}, ("the processor (Abacus, here ",)),
+        ({"backend": "stones"}, ("what computes (stones, here )",)),
+        ({"python": "2.7.18"}, ("Python (2.7.18, here ",)),
+        ({"sources": {}}, ("files (",)),
+    ],
+)
+def test_a_replay_says_what_has_changed_since_the_run(folder, update, words) -> None:
+    source = read_run(folder)
+    run = source.provenance.model_copy(update=update)
+    changed = replay(replace(source, provenance=run), (SCENE,), ("observer",), trust=True).changed
+    assert len(changed) == len(words)
+    assert all(map(str.startswith, changed, words))

@@ -15,9 +15,7 @@ from faultpath.decisions.decide import decide
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.trials import OutcomeTable, SystemSpec, load_system
-from faultpath.trials.execution.provenance import processor
 from faultpath.trials.execution.runner import run_study
-from faultpath.trials.imports import packages
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import AuditQuestion
 from faultpath.trials.store.folder import read_outcomes
@@ -66,9 +64,8 @@ def test_the_code_that_is_here_gives_the_outcomes_of_the_reference(
     name: str, scenes: int | None, tmp_path: Path
 ) -> None:
     """The README's runs are those of this code: flown again, they end the same to the last bit."""
-    made = RunProvenance.model_validate_json((REFERENCE / name / "provenance.json").read_bytes())
-    if scenes and not same_arithmetic(made):
-        pytest.skip("this machine's last bits are not the reference's")
+    if scenes and not compiled():
+        pytest.skip("without compiled kernels a machine keeps its own last bits")
     audit = plan(record_of(name), scenes)
     done = run_study(audit.study, tmp_path, workers=0)
     kept = set(audit.study.scenes)
@@ -81,15 +78,10 @@ def test_the_code_that_is_here_gives_the_outcomes_of_the_reference(
         assert numbers(again) == numbers(record_of(name))
 
 
-def same_arithmetic(made: RunProvenance) -> bool:
-    from faultpath_quadrotor import native
+def compiled() -> bool:
+    from faultpath_quadrotor import instructions
 
-    kernels = native.kernels()  # torch takes the same instructions, and adds in their order
-    return (
-        (native.PORTABLE if kernels is None else kernels.isa) in made.backend
-        and made.processor.partition(" ")[0] == processor().partition(" ")[0]
-        and made.packages["torch"].partition("+")[0] == packages()["torch"].partition("+")[0]
-    )
+    return instructions.level() > 0
 
 
 def plan(record: DecisionRecord, scenes: int | None = None) -> Audit:

@@ -27,15 +27,6 @@ def test_an_example_of_another_package_runs_where_that_is_installed() -> None:
     assert sys.version_info[:2] != (3, 11) or references.environment(runs["motulator"]) != here
 
 
-def test_a_run_keeps_to_the_instruction_set_by_which_it_was_flown() -> None:
-    runs = references.by_time()
-    assert references.instructions(runs["toy"]) == {}
-    for run in runs.values():
-        by_avx2 = run.provenance.backend == "compiled kernels (avx2)"
-        kernels = references.instructions(run).get("FAULTPATH_KERNELS", "auto")
-        assert kernels == ("avx2" if by_avx2 else "auto")
-
-
 def test_a_run_of_another_kind_of_processor_says_that_trials_may_end_differently() -> None:
     toy = references.load("toy")
     here = toy.provenance.model_copy(update={"processor": references.processor()})

@@ -3,6 +3,7 @@
 import pytest
 from faultpath_quadrotor import native
 from faultpath_quadrotor.native import library
+from kernel_sets import FUSED
 
 from faultpath.core.errors import UserError
 
@@ -12,7 +13,11 @@ def test_the_fastest_set_runs_unless_another_is_asked_for(monkeypatch: pytest.Mo
     built = native.kernels()
     assert built is not None
     assert built.isa == native.available()[0]
-    assert built.isa in native.describe()
+    here = native.describe()
+    assert native.numerics() in here
+    for isa in FUSED:
+        monkeypatch.setenv(library.VARIABLE, isa)
+        assert native.describe() == here
     monkeypatch.setenv(library.VARIABLE, "portable")
     assert native.kernels() is None
     assert native.numerics() == "portable"

@@ -16,8 +16,10 @@ from faultpath_quadrotor.planners import (
     SamplerSettings,
     Scored,
 )
+from faultpath_quadrotor.planners.mppi import mean, softmax
 from faultpath_quadrotor.predictors.rollout import Rollout
 from faultpath_quadrotor.state import State
+from kernel_sets import FUSED
 
 SCENES = ("a", "b", "c")
 
@@ -100,3 +102,29 @@ def test_codes_are_the_portable_ones(isa: str, stream: torch.Generator) -> None:
     lost = encode(depth).isnan()
     assert torch.equal(lost, model.encode(depth).isnan())
     assert lost[:, 2].all()
+
+
+@pytest.mark.parametrize("candidates", [16, 512])
+def test_weights_and_means_are_the_portable_ones(isa: str, candidates: int, stream) -> None:
+    cost = 3 * torch.randn(3, candidates, generator=stream)
+    cost[0, 3:9] = cost[0].median()  # as many cost the same as the half may need
+    commands = torch.randn(20, 4, 3, candidates, generator=stream)
+    weights, reference = both(isa, softmax, cost, 0.1)
+    close(weights, reference)
+    close(*both(isa, mean, commands, reference))
+    cost[1] = 2.0
+    cost[2, 5] = torch.nan
+    even, lost = both(isa, softmax, cost, 0.1)[0][1:]
+    assert torch.equal(even, torch.full_like(even, 1 / candidates))
+    assert lost.isnan().all()
+
+
+def test_sets_that_fuse_agree_on_weights_of_candidates_that_are_hopeless(stream) -> None:
+    cost = 1e4 * torch.rand(2, 64, generator=stream)
+    cost[0, :32] = torch.linspace(0, 1, 32)
+    weights = []
+    for isa in FUSED:
+        with native.using(isa):
+            weights.append(softmax(cost, 0.1))
+    assert (weights[0] > 0).all()
+    assert all(torch.equal(weights[0], other) for other in weights[1:])

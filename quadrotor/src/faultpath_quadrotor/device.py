@@ -1,14 +1,17 @@
 """Where the tensors of a flight live, and when the host may look at them."""
 
+import warnings
 from collections.abc import Generator
 from contextlib import contextmanager
+from functools import cache
 from typing import Any
 
 import torch
 from torch import Tensor
 
-from faultpath.plugin.system import UserError, one_thread
+from faultpath.plugin.system import Notice, UserError, one_thread
 from faultpath_quadrotor.choices import DeviceName
+from faultpath_quadrotor.instructions import level
 
 CPU = torch.device("cpu")
 
@@ -46,6 +49,7 @@ def arithmetic() -> Generator[None]:
     On one thread, as any worker does; on a GPU in full single precision, as everywhere, and
     repeatable.
     """
+    _tell_of_other_instructions()
     cudnn: Any = torch.backends.cudnn
     flags = (cudnn.allow_tf32, cudnn.deterministic) if cudnn.is_available() else None
     if flags is not None:
@@ -56,6 +60,20 @@ def arithmetic() -> Generator[None]:
     finally:
         if flags is not None:
             cudnn.allow_tf32, cudnn.deterministic = flags
+
+
+@cache
+def _tell_of_other_instructions() -> None:
+    """Say, once a process, that torch had its instructions before this package could set them."""
+    here = torch.backends.cpu.get_cpu_capability()
+    if level() and here != "AVX2":
+        warnings.warn(
+            f"torch computes with {here} in this process, because it was used before the quadrotor "
+            "was imported, so trials may differ in their last bits from those of other processes: "
+            "import faultpath_quadrotor first, or let worker processes run the trials.",
+            Notice,
+            stacklevel=2,
+        )
 
 
 def require(name: DeviceName) -> None:

@@ -8,7 +8,7 @@ is differentiable, also at the identity.
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.device import host_readable
+from faultpath_quadrotor.angles import sine_cosine
 
 # Added to a squared angle before its root: far below what either dtype can resolve next to an
 # angle that matters, it keeps 0/0 and the root's infinite slope out of the identity.
@@ -41,8 +41,7 @@ def exp(phi: Tensor) -> Tensor:
     q = phi sin(t/2)/t and c = cos(t/2): no quotient of cancelled numbers at small angles.
     """
     angle = (phi * phi).sum(0).add_(_TINY).sqrt_()
-    half = angle * 0.5
-    s, c = half.sin(), half.cos()
+    s, c = sine_cosine(angle * 0.5)
     return _from_quaternion(c, phi * (s / angle), (c * c).addcmul_(s, s, value=-1.0))
 
 
@@ -89,7 +88,7 @@ def _safest_row(outer: Tensor) -> Tensor:
 
 def from_yaw(yaw: Tensor) -> Tensor:
     """Return level attitudes of heading `yaw` [*b] rad about the world's z; [3, 3, *b]."""
-    c, s = yaw.cos(), yaw.sin()
+    s, c = sine_cosine(yaw)
     zero, one = torch.zeros_like(yaw), torch.ones_like(yaw)
     return torch.stack((c, -s, zero, s, c, zero, zero, zero, one)).view(3, 3, *yaw.shape)
 
@@ -109,22 +108,10 @@ def skew(vector: Tensor) -> Tensor:
 def project(matrix: Tensor) -> Tensor:
     """Return the rotation nearest to `matrix` [3, 3, *b] in the Frobenius norm.
 
-    Off the CPU by another way: the singular value decomposition makes the host wait for the device
-    to know whether it converged.
-    """
-    if not host_readable(matrix.device):
-        return _project_by_squaring(matrix)
-    u, _, vh = torch.linalg.svd(matrix.movedim((0, 1), (-2, -1)))
-    sign = torch.linalg.det(u @ vh)
-    u = torch.cat((u[..., :2], u[..., 2:] * sign[..., None, None]), dim=-1)
-    return (u @ vh).movedim((-2, -1), (0, 1)).contiguous()
-
-
-def _project_by_squaring(matrix: Tensor) -> Tensor:
-    """Return `project(matrix)` through the quaternion, in steps that are the same for any matrix.
-
-    The norm added to Horn's matrix makes its eigenvalues positive with the leading one the largest;
-    each squaring then squares the ratio of the others to it, until its projector alone is left.
+    Through the quaternion, in steps that are the same for any matrix: no device is waited for, and
+    no library chooses its way. The norm added to Horn's matrix makes its eigenvalues positive with
+    the leading one the largest; each squaring then squares the ratio of the others to it, until its
+    projector alone is left.
     """
     one = torch.eye(4, dtype=matrix.dtype, device=matrix.device)
     one = one.view(4, 4, *(1,) * (matrix.ndim - 2))

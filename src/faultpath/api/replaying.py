@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from platform import python_version
 
 from faultpath.api.folders import RECORD
 from faultpath.api.systems import choose
@@ -17,9 +18,12 @@ from faultpath.report.inputs import ReportInput
 from faultpath.systems.checks.blocks import BlockSpec, RecordedBlock, run_blocks
 from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
 from faultpath.trials.attempt import Done
+from faultpath.trials.code import CodeState, named, system_code
 from faultpath.trials.execution.dispatch import Built
-from faultpath.trials.execution.provenance import amend
+from faultpath.trials.execution.provenance import amend, processor
 from faultpath.trials.execution.recheck import difference
+from faultpath.trials.imports import packages
+from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import AuditQuestion, ask
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
@@ -27,6 +31,22 @@ from faultpath.trials.store.tables import TrialAddress, address_of
 from faultpath.trials.trust import ReceivedCode
 from faultpath.trials.work.executor import Executor
 from faultpath.trials.work.processes import local
+
+_PROCESSOR = "the processor"
+
+
+@dataclass(frozen=True)
+class Replay:
+    """Trials of a run, run again."""
+
+    trials: Sequence["Replayed"]
+    changed: Sequence[str]
+    """Changes since the run, in words; the processor last."""
+
+    @property
+    def elsewhere(self) -> str:
+        """The other processor, in words; empty on that of the run."""
+        return next((change for change in self.changed if change.startswith(_PROCESSOR)), "")
 
 
 @dataclass(frozen=True)
@@ -69,7 +89,7 @@ def replay(
     paths: Sequence[str] = (),
     say: Callable[[str], None] = lambda text: None,
     trust: bool = False,
-) -> list[Replayed]:
+) -> Replay:
     """Run the trials of some scenes again, under all conditions or some, with both versions.
 
     Without `trust` the system has to be an installed one, since the folder may be anybody's.
@@ -107,7 +127,31 @@ def replay(
         say(f"Ran {arm.variant}, seed {arm.seed}, again: {faults} ({done} of {total}).")
 
     with local(0) as executor:
-        return run_again(before, study, system, executor, addresses, note)
+        trials = run_again(before, study, system, executor, addresses, note)
+    return Replay(
+        trials, changes(source.provenance, system, system_code(system, chosen.spec).state)
+    )
+
+
+def changes(run: RunProvenance, system: System, state: CodeState) -> tuple[str, ...]:
+    """Say what has changed since a run, of all that may decide a trial."""
+    files = {**run.sources, **run.data}, {**state.files, **state.data}
+    names = sorted(
+        name for name in {*files[0], *files[1]} if files[0].get(name) != files[1].get(name)
+    )
+    installed = packages() | {name.replace("_", "-"): text for name, text in state.packages.items()}
+    versions = {"Python": (run.python, python_version())}
+    versions |= {
+        name: (text, installed[name]) for name, text in run.packages.items() if name in installed
+    }
+    changed = [f"files ({named(names)})"] * bool(names)
+    changed += [f"{name} ({a}, here {b})" for name, (a, b) in versions.items() if a != b]
+    for what, before, here in (
+        ("what computes", run.backend, system.backend),
+        (_PROCESSOR, run.processor, processor()),
+    ):
+        changed += [f"{what} ({before or 'not said'}, here {here})"] * (before != here)
+    return tuple(changed)
 
 
 def outcomes_at(outcomes: OutcomeTable) -> dict[TrialAddress, Outcome]:

@@ -42,7 +42,8 @@ def replay(
     scenes = chosen_scenes(source, scene or (), path or ())
     console = SafeConsole()
     say = partial(console.print, markup=False)
-    replays = replay(source, scenes, path or (), say, trust)
+    again = replay(source, scenes, path or (), say, trust)
+    replays = again.trials
     unlike = [trial for trial in replays if trial.differs]
     for trial in unlike:
         at = trial.address
@@ -52,10 +53,14 @@ def replay(
         f"{counted(len(replays), 'trial')} in {counted(len(scenes), 'scene')} came out as in the "
         "run, to the bit."
     )
+    if again.elsewhere:
+        message = f"{message[:-1]}, on another processor: {again.elsewhere}."
     if unlike:
+        why = f"since then these have changed: {'; '.join(again.changed)}"
+        if not again.changed:
+            why = "nothing that provenance.json names has changed, so the system does not repeat"
         message = (
-            f"{len(unlike)} of {len(replays)} trials came out otherwise than in the run: the code, "
-            "the packages or the processor are not those that provenance.json names."
+            f"{len(unlike)} of {len(replays)} trials came out otherwise than in the run: {why}."
         )
     console.print(message, markup=False, style="" if unlike else STYLES["good"])
     if signals and len(unlike) < len(replays):

@@ -15,6 +15,7 @@ from torch import Tensor
 
 from faultpath.plugin.system import UserError
 from faultpath_quadrotor.device import host_readable
+from faultpath_quadrotor.instructions import NATIVE, SETTINGS, level
 from faultpath_quadrotor.native.kernel_args import Block, Lent
 
 VARIABLE = "FAULTPATH_KERNELS"
@@ -125,30 +126,33 @@ def whole_vectors(count: int) -> bool:
 
 
 def numerics() -> str:
-    """Return the name of the rounding here; results of two are never mixed in a folder."""
+    """Return the name of the arithmetic here: with the same one trials have the same bits.
+
+    It holds for every processor, and results of two are never mixed in a folder.
+    """
     built = kernels()
-    return PORTABLE if built is None else built.numerics
+    if built is None:
+        return PORTABLE
+    version = hashlib.sha256(f"{_sources()} {SETTINGS}".encode()).hexdigest()[:8]
+    return f"{built.numerics} {version}"
 
 
 def describe() -> str:
     """Return in words what runs here, and why it is not the fast path."""
     built = kernels()
     if built is not None:
-        return f"compiled kernels ({built.isa})"
+        return f"compiled kernels (arithmetic {numerics()})"
     if available():
-        return f"the portable path, as {VARIABLE} asks"
+        return f"the portable path, as {VARIABLE} asks, which has last digits of its own"
     return (
-        "the portable path, several times slower than compiled kernels: "
-        "there was no C++ compiler at installation"
+        "the portable path, several times slower than compiled kernels and with last digits of its "
+        "own: there was no C++ compiler at installation"
     )
 
 
 def available() -> tuple[str, ...]:
     """Return the instruction sets that were built and that this processor has, fastest first."""
-    if not _path("baseline").exists():
-        return ()
-    level = ctypes.CDLL(str(_path("baseline"))).faultpath_level()
-    return tuple(isa for isa in SETS[-1 - level :] if _path(isa).exists())
+    return tuple(isa for isa in SETS[-1 - level() :] if _path(isa).exists())
 
 
 def load(isa: str) -> Kernels:
@@ -170,9 +174,9 @@ def load(isa: str) -> Kernels:
 
 @cache
 def _sources() -> str:
-    files = sorted((Path(__file__).parent / "source").iterdir())
+    files = sorted((NATIVE / "source").iterdir())
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
 
 def _path(isa: str) -> Path:
-    return Path(__file__).parent / f"kernels-{isa}.so"
+    return NATIVE / f"kernels-{isa}.so"

@@ -7,7 +7,7 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath_quadrotor.planners.costs import NavigationCost, Scored
-from faultpath_quadrotor.planners.mppi import Planner, Search
+from faultpath_quadrotor.planners.mppi import Planner, Search, mean
 from faultpath_quadrotor.planners.sampler import AutoregressiveSampler, bound, scales
 
 
@@ -56,10 +56,10 @@ class CEM(Planner):
         best = cost.sort(dim=1, stable=True).indices[:, :count]
         # As weights over all candidates, whose sums are the same for any number of scenes.
         weights = torch.zeros_like(cost).scatter_(1, best, 1.0 / count)
-        mean = (scored.commands * weights).sum(-1)
-        variance = ((scored.commands - mean[..., None]).square_() * weights).sum(-1)
+        plan = mean(scored.commands, weights)
+        variance = mean((scored.commands - plan[..., None]).square_(), weights)
         return replace(
             search,
-            plan=mean.lerp(search.plan, self.momentum),
+            plan=plan.lerp(search.plan, self.momentum),
             spread=variance.sqrt_().lerp(search.spread, self.momentum),
         )

@@ -103,3 +103,39 @@ def noise(
         lend("noise", drawn, *drawn.shape),
     )
     return drawn
+
+
+def weights(kernels: Kernels, costs: Tensor, fraction: float, least: float) -> Tensor:
+    """Return the weights `[S, K]` of candidates with costs `[S, K]`; see `mppi.softmax`.
+
+    Args:
+        kernels: Compiled kernels.
+        costs: K in whole vectors.
+        fraction: Temperature over the spread of the better half.
+        least: Lowest temperature.
+    """
+    scenes, candidates = costs.shape
+    ranks, weighed = torch.empty(candidates, dtype=torch.int32), torch.empty_like(costs)
+    kernels.call(
+        "faultpath_weigh",
+        lend("costs", costs.contiguous(), scenes, candidates),
+        (ctypes.c_float * 2)(fraction, least),
+        *(scenes, candidates),
+        lend("ranks", ranks, candidates, dtype=torch.int32),
+        lend("weights", weighed, scenes, candidates),
+    )
+    return weighed
+
+
+def mean(kernels: Kernels, commands: Tensor, weights: Tensor) -> Tensor:
+    """Return the mean `[H, 4, S]` of commands `[H, 4, S, K]` under weights `[S, K]`."""
+    steps, axes, scenes, candidates = commands.shape
+    means = commands.new_empty(steps, axes, scenes)
+    kernels.call(
+        "faultpath_mean",
+        lend("commands", commands.contiguous(), steps, axes, scenes, candidates),
+        lend("weights", weights.contiguous(), scenes, candidates),
+        *(steps * axes, scenes, candidates),
+        lend("means", means, steps, axes, scenes),
+    )
+    return means

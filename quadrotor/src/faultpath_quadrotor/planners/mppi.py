@@ -9,6 +9,8 @@ import torch
 from torch import Tensor
 from typing_extensions import override
 
+from faultpath_quadrotor import native
+from faultpath_quadrotor.planners import compiled
 from faultpath_quadrotor.planners.costs import NavigationCost, Scored
 from faultpath_quadrotor.planners.sampler import BUNDLES, AutoregressiveSampler, BundledSampler
 
@@ -94,11 +96,22 @@ class MPPI(Planner):
         weights = softmax(self._cost(scored), self._temperature)
         if isinstance(self.sampler, BundledSampler):
             weights = best_bundle(weights)
-        return replace(search, plan=(scored.commands * weights).sum(-1))
+        return replace(search, plan=mean(scored.commands, weights))
+
+
+def mean(commands: Tensor, weights: Tensor) -> Tensor:
+    """Return the mean `[H, 4, S]` of commands `[H, 4, S, K]` under weights `[S, K]`."""
+    built = native.kernels_for(commands, weights)
+    if built is None or not native.whole_vectors(commands.shape[-1]):
+        return (commands * weights).sum(-1)
+    return compiled.mean(built, commands, weights)
 
 
 def softmax(cost: Tensor, fraction: float) -> Tensor:
     """Return the weights `[S, K]` of candidates with costs `[S, K]`; see `MPPI`."""
+    built = native.kernels_for(cost)
+    if built is not None and native.whole_vectors(cost.shape[1]):
+        return compiled.weights(built, cost, fraction, LEAST_TEMPERATURE)
     half = cost.sort(dim=1).values[:, : cost.shape[1] // 2]
     temperature = (half.std(dim=1, keepdim=True) * fraction).clamp_(min=LEAST_TEMPERATURE)
     return torch.softmax(-cost / temperature, dim=1)

@@ -107,13 +107,18 @@ class Winds(BaseModel):
         turbulence = dryden(stream, steps, rate_hz, airspeed, self.length_m)
         along = self.turbulence * level.mean_mps * turbulence
         along[:, 0] += level.mean_mps + gust
-        return along @ axes
+        # Added up here, as a library's product depends on the processor.
+        return along[:, [0]] * axes[0] + along[:, [1]] * axes[1] + along[:, [2]] * axes[2]
 
 
 def one_minus_cosine(time_s: Array, onset_s: float, duration_s: float, peak: float) -> Array:
     """Return the gust peak / 2 (1 - cos(2 pi s)) for s in 0..1 over its duration, else 0, [T]."""
-    phase = np.clip((time_s - onset_s) / duration_s, 0.0, 1.0)
-    return 0.5 * peak * (1.0 - np.cos(2 * np.pi * phase))
+    phase = (time_s - onset_s) / duration_s
+    gust = np.zeros_like(time_s)
+    blows = (phase > 0.0) & (phase < 1.0)
+    # Not numpy's own cosine, whose last bits depend on the processor.
+    gust[blows] = [0.5 * peak * (1.0 - math.cos(2 * math.pi * p)) for p in phase[blows].tolist()]
+    return gust
 
 
 def dryden(
@@ -136,19 +141,22 @@ def dryden(
     time_constant = length_m / airspeed_mps
     ratio = 1.0 / (rate_hz * time_constant)
     decay = math.exp(-ratio)
-    transition = decay * np.array([[1.0, 0.0], [ratio, 1.0]])
-    stationary = np.array([[2.0, 1.0], [1.0, 1.0]]) / (4.0 * time_constant)
-    noise = np.linalg.cholesky(stationary - transition @ stationary @ transition.T)
-    start = np.linalg.cholesky(stationary)
+    # Covariances of both states as three numbers each, at any moment and of what a step adds.
+    one, both, two = (part / (4.0 * time_constant) for part in (2.0, 1.0, 1.0))
+    kept_both = ratio * one + both
+    kept_two = ratio * (ratio * one + both) + ratio * both + two
+    start = _root(one, both, two)
+    kept = decay * decay
+    noise = _root(one - kept * one, both - kept * kept_both, two - kept * kept_two)
 
     draws = stream.standard_normal((steps, 5))
     first_in, second_in = np.empty((steps, 3)), np.empty((steps, 2))
     lateral = draws[:, 1:].reshape(steps, 2, 2)
-    first_in[:, 0] = noise[0, 0] * draws[:, 0]
-    first_in[:, 1:] = noise[0, 0] * lateral[..., 0]
-    second_in[:] = lateral @ noise[1]
-    first_in[0] = start[0, 0] * np.concatenate((draws[0, :1], lateral[0, :, 0]))
-    second_in[0] = lateral[0] @ start[1]
+    first_in[:, 0] = noise[0] * draws[:, 0]
+    first_in[:, 1:] = noise[0] * lateral[..., 0]
+    second_in[:] = noise[1] * lateral[..., 0] + noise[2] * lateral[..., 1]
+    first_in[0] = start[0] * np.concatenate((draws[0, :1], lateral[0, :, 0]))
+    second_in[0] = start[1] * lateral[0, :, 0] + start[2] * lateral[0, :, 1]
 
     first = lfilter([1.0], [1.0, -decay], first_in, axis=0)
     second_in[1:] += decay * ratio * first[:-1, 1:]
@@ -158,6 +166,12 @@ def dryden(
     root = math.sqrt(3.0)
     across = math.sqrt(time_constant) * (root * first[:, 1:] + (1.0 - root) * second)
     return np.concatenate((along, across), axis=1)
+
+
+def _root(one: float, both: float, two: float) -> tuple[float, float, float]:
+    """Return the lower triangle that times its transpose is `[[one, both], [both, two]]`."""
+    first = math.sqrt(one)
+    return first, both / first, math.sqrt(two - (both / first) ** 2)
 
 
 def _flow_axes(stream: np.random.Generator, elevation_deg: float) -> Array:

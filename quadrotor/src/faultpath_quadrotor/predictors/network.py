@@ -14,6 +14,7 @@ from torch import Tensor, nn
 from faultpath_quadrotor.batching import Delivered
 from faultpath_quadrotor.native.kernel_args import covered, tell_portable
 from faultpath_quadrotor.native.library import kernels_on
+from faultpath_quadrotor.predictors.affine import affine
 from faultpath_quadrotor.predictors.recurrent import fits, recur
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
@@ -33,9 +34,9 @@ class Affine(nn.Module):
         self.weight = nn.Parameter(torch.empty(outputs, inputs))
         self.bias = nn.Parameter(torch.empty(outputs, 1))
 
-    def forward(self, x: Tensor) -> Tensor:
-        """Return `[outputs, N]`."""
-        return torch.addmm(self.bias, self.weight, x)
+    def forward(self, x: Tensor, gelu: bool = False) -> Tensor:
+        """Return `[outputs, N]`, through a Gaussian error linear unit if asked."""
+        return affine(self.weight, self.bias, x, gelu)
 
 
 def draw_weights(module: nn.Module, generator: torch.Generator) -> None:
@@ -209,7 +210,7 @@ class FoldedNetwork:
 
 def _folded(weight: Tensor, bias: Tensor, mean: Tensor, inverse_std: Tensor) -> Tensor:
     scaled = weight * inverse_std.T
-    return torch.cat((scaled, bias - scaled @ mean), 1)
+    return torch.cat((scaled, affine(-scaled, bias, mean)), 1)
 
 
 def _with_one(weights: Tensor) -> Tensor:

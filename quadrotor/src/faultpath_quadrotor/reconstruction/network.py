@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import torch
 from torch import Tensor, nn
-from torch.nn import functional
 from typing_extensions import override
 
 from faultpath_quadrotor.batching import Delivered, Read
@@ -79,7 +78,7 @@ class WindNetwork(nn.Module):
         parts = [self.encoder.last(intervals.movedim(1, 0)), latest]
         if calibration is not None:
             parts.append(calibration)
-        return self.head(functional.gelu(self.hidden(torch.cat(parts))))
+        return self.head(self.hidden(torch.cat(parts), gelu=True))
 
     def estimate(self, states: Tensor, commands: Tensor, calibration: Tensor | None) -> Tensor:
         """Return the wind `[3, N]`, m/s, world frame; it is never clipped.

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import groupby
-from math import ceil
+from math import ceil, cos, sin
 
 import torch
 from torch import Tensor
@@ -96,13 +96,16 @@ def exact_on_lattice(scene: Scene, lattice: Lattice, free_space: bool = False) -
 
 def _plan_distance(prisms: list[RoundedPrism], x: Tensor, y: Tensor) -> Tensor:
     table = torch.tensor(
-        [[*p.centre_m[:2], *p.half_m[:2], p.yaw_rad, p.rounding_m] for p in prisms],
+        [
+            [*p.centre_m[:2], *p.half_m[:2], cos(p.yaw_rad), sin(p.yaw_rad), p.rounding_m]
+            for p in prisms
+        ],
         dtype=torch.float64,
     ).T[:, :, None, None]
-    centre_x, centre_y, half_x, half_y, yaw, rounding = table
+    centre_x, centre_y, half_x, half_y, cosine, sine, rounding = table
     dx, dy = x[:, None] - centre_x, y - centre_y
-    turned_x = yaw.cos() * dx + yaw.sin() * dy
-    turned_y = yaw.cos() * dy - yaw.sin() * dx
+    turned_x = cosine * dx + sine * dy
+    turned_y = cosine * dy - sine * dx
     plan = rectangle_distance(turned_x.abs() - half_x, turned_y.abs() - half_y) - rounding
     return plan.amin(0)
 

@@ -18,20 +18,6 @@ struct Field {
 
 namespace {
 
-INLINE Vector take(const float* from, int64_t count) {
-  if (count >= LANES) return load(from);
-  Vector value = {};
-  std::memcpy(&value, from, count * sizeof(float));
-  return value;
-}
-
-INLINE void give(Vector value, int64_t count, float* to) {
-  if (count >= LANES)
-    store(to, value);
-  else
-    std::memcpy(to, &value, count * sizeof(float));
-}
-
 // The values at places and at the places after them: one read of two, as z lies fastest.
 struct Pair {
   Vector low, high;

@@ -53,6 +53,21 @@ INLINE Vector load(const float* from) {
 
 INLINE void store(float* to, Vector value) { std::memcpy(to, &value, sizeof value); }
 
+// The first `count` lanes from memory; the others are zero.
+INLINE Vector take(const float* from, int64_t count) {
+  if (count >= LANES) return load(from);
+  Vector value = {};
+  std::memcpy(&value, from, count * sizeof(float));
+  return value;
+}
+
+INLINE void give(Vector value, int64_t count, float* to) {
+  if (count >= LANES)
+    store(to, value);
+  else
+    std::memcpy(to, &value, count * sizeof(float));
+}
+
 INLINE Vector fma(Vector a, Vector b, Vector c) {
 #if defined(__AVX512F__) || (defined(__AVX2__) && defined(__FMA__))
   return SINGLE(fmadd)(a, b, c);
@@ -132,12 +147,10 @@ INLINE Vector scaled(Vector x, Vector whole) {
 #endif
 }
 
-// 2^x, for x up to 126 in size; relative error about 2e-7 (minimax). Beyond, it stays or goes on to
-// zero and infinity, which no caller can tell apart.
+// 2^x, for x up to 126 in size; relative error about 2e-7 (minimax). Beyond, it stays, for all widths
+// alike: AVX-512 could go on to zero and infinity.
 INLINE Vector power_of_two(Vector x) {
-#if !defined(__AVX512F__)
   x = bounded(x, splat(-126.0f), splat(126.0f));
-#endif
   Vector whole, f;
   divide(x, whole, f);
   Vector p = splat(1.327647129073739e-3f);

@@ -1,0 +1,93 @@
+"""A trial has the same bits on every processor with AVX2 and FMA, whatever its user has set.
+
+`stages.json` holds the hash of every stage. Where they are to change, `python
+tests/quadrotor/stages.py --keep` writes them anew, and every stored run has other bits then.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import torch
+from faultpath_quadrotor import instructions, native
+from kernel_sets import FUSED
+from stages import KEPT, measured
+
+pytestmark = pytest.mark.skipif(not FUSED, reason="without kernels a machine keeps its own bits")
+
+SETTINGS = {
+    "plain code, two threads": {
+        "ATEN_CPU_CAPABILITY": "default",
+        "MKL_CBWR": "AUTO",
+        "OMP_NUM_THREADS": "2",
+        "MKL_NUM_THREADS": "2",
+        "OPENBLAS_NUM_THREADS": "2",
+    },
+    "AVX-512 hidden": {
+        "FAULTPATH_KERNELS": "avx2",
+        "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX512F,-AVX512VL,-AVX512DQ,-AVX512BW,-AVX512CD",
+        "NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR",
+        "OPENBLAS_CORETYPE": "Haswell",
+        "MKL_ENABLE_INSTRUCTIONS": "AVX2",
+    },
+    "old code in the libraries": {
+        "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR",
+        "OPENBLAS_CORETYPE": "Nehalem",
+        "MKL_ENABLE_INSTRUCTIONS": "SSE4_2",
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def kept() -> dict[str, str]:
+    return json.loads(KEPT.read_text())
+
+
+def changed(kept: dict[str, str], now: dict[str, str]) -> list[str]:
+    assert kept.keys() == now.keys()
+    return [name for name in kept if kept[name] != now[name]]
+
+
+@pytest.mark.parametrize("isa", FUSED)
+def test_every_stage_has_the_bits_that_are_kept(isa: str, kept: dict[str, str]) -> None:
+    with native.using(isa):
+        assert changed(kept, measured()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SETTINGS)
+def test_settings_of_a_user_change_no_bit(name: str, kept: dict[str, str]) -> None:
+    unset = {*instructions.SETTINGS, "FAULTPATH_KERNELS", "OMP_NUM_THREADS"}
+    variables = {key: value for key, value in os.environ.items() if key not in unset}
+    variables |= SETTINGS[name]
+    script = Path(__file__).with_name("stages.py")
+    ended = subprocess.run(
+        [sys.executable, script], env=variables, check=True, capture_output=True, text=True
+    )
+    assert changed(kept, json.loads(ended.stdout)) == []
+
+
+def test_torch_computes_by_the_set_that_every_processor_has() -> None:
+    assert torch.backends.cpu.get_cpu_capability() == "AVX2"
+
+
+TORCH_FIRST = """
+import torch, warnings
+torch.ones(64).sum()
+from faultpath_quadrotor.device import arithmetic
+with warnings.catch_warnings(record=True) as shown:
+    with arithmetic(), arithmetic():
+        pass
+print([str(notice.message) for notice in shown])
+"""
+
+
+def test_a_process_that_used_torch_before_is_told_once() -> None:
+    variables = os.environ | {"ATEN_CPU_CAPABILITY": "default"}
+    line = [sys.executable, "-c", TORCH_FIRST]
+    ended = subprocess.run(line, env=variables, check=True, capture_output=True, text=True)
+    assert ended.stdout.count("torch computes with ") == 1
+    assert "import faultpath_quadrotor first" in ended.stdout
