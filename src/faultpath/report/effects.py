@@ -149,7 +149,7 @@ def _sides(svg: Svg, plot: Axis, y: float) -> None:
 
 
 def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
-    """Draw dot, whiskers, a tick for each seed, and the undetectable band where one is given, in
+    """Draw dot, whiskers, a ring for each seed, and the undetectable band where one is given, in
     the colour of the arm that is decided for."""
     e, band = effect.success, _band(effect)
     side = {1: " repair", -1: " baseline", 0: ""}[effect.sign]
@@ -164,7 +164,7 @@ def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
             svg.line((plot(end), y - 4), (plot(end), y + 4), "range" + side)
     if e.per_seed is not None and len(e.per_seed) > 1:
         for value in e.per_seed:
-            svg.line((plot(value), y + 6), (plot(value), y + 11), "seed")
+            svg.circle((plot(value), y + 10), 2.2, "seed")
     svg.circle((plot(e.value), y), 4.5, "dot" + side if side else "dot open")
 
 
