@@ -136,7 +136,6 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("reconstruction", "noise of # %", lambda: 100 * DCC_HALF_RANGE),
     ("scenes", "a lattice of # m", "faultpath_quadrotor.scenes.soundness:CELL_M"),
     ("scenes", "(radius # m", "faultpath_quadrotor.vehicle:COLLISION_RADIUS_M"),
-    ("statistics", "mixed with # scenes", lambda: RULES[RULE].prior),
     ("statistics", "mean over # shares", bets),
     ("statistics", "p at most #,", "faultpath.statistics.estimate:ALPHA"),
     ("studies", "A window is # steps", "faultpath_quadrotor.predictors.history:STEPS"),

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,7 @@ from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.stopping import after_looks
 from faultpath.faults import each_size
 from faultpath.report.inputs import ReportInput
-from faultpath.trials import System, system_shown
+from faultpath.trials import Deliveries, System, system_shown
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.question import AuditQuestion
 from faultpath.trials.store.atomic import write_file, write_text
@@ -110,13 +111,16 @@ def carry_out(audit: Audit, job: Job) -> Run:
     shown = system_shown(system, (question.baseline, question.repair), audit.study.scenes)
     _, result = job.trials(audit)
 
-    def conclude(question: Question) -> DecisionRecord:
-        return replace(audit, question=question).conclude(result.outcomes, result.deliveries)
+    def conclude(question: Question, deliveries: Deliveries = result.deliveries) -> DecisionRecord:
+        return replace(audit, question=question).conclude(result.outcomes, deliveries)
 
     record = concluded(folder, question, conclude)
     signals = _kept_signals(folder, result)
     if audit.request.signals:
-        signals, finding = _recorded(audit, job, record, result, signals)
+        signals, finding, repeats = _recorded(audit, job, record, result, signals)
+        if not repeats:
+            broken = result.deliveries.model_copy(update={"repeats": False})
+            record = concluded(folder, question, partial(conclude, deliveries=broken))
         if finding:
             job.display.say(finding)
             record = record.model_copy(update={"findings": (*record.findings, finding)})
@@ -162,8 +166,9 @@ def _recorded(
     record: DecisionRecord,
     result: RunResult,
     recorded: Signals,
-) -> tuple[Signals, str]:
-    """Run the scenes that the report begins with once more; return signals and a finding.
+) -> tuple[Signals, str, bool]:
+    """Run the scenes that the report begins with once more; return signals, a finding, and whether
+    all trials came out as before.
 
     What goes wrong here is a finding, never an error of the audit.
     """
@@ -176,7 +181,7 @@ def _recorded(
         if (at.scene, at.seed) in few and at.path in named and at not in recorded
     ]
     if not missing:
-        return recorded, ""
+        return recorded, "", True
     try:
         with job.display.progress("Recording signals") as show:
 
@@ -186,20 +191,21 @@ def _recorded(
 
             replays = run_again(before, audit.study, audit.system, job.executor, missing, note)
     except UserError as error:
-        return recorded, f"No signals were recorded: {error}"
+        return recorded, f"No signals were recorded: {error}", True
     except KeyboardInterrupt:
         called = job.display.called
         job.display.say(f"No signals were recorded; run the same {called} again to have them.")
-        return recorded, ""
+        return recorded, "", True
     recorded = {
         **recorded,
         **{replay.address: replay.signals for replay in replays if replay.signals},
     }
     unlike = [replay for replay in replays if replay.differs]
     if not unlike:
-        return recorded, ""
+        return recorded, "", True
     at, differs = unlike[0].address, unlike[0].differs
-    return recorded, (
+    finding = (
         f"Signals of {len(unlike)} of {counted(len(replays), 'trial')} were not recorded: run "
         f"again, it came out otherwise: {at.variant}, {at.path}, {at.scene}: {differs}."
     )
+    return recorded, finding, False

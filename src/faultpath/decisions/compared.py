@@ -8,7 +8,7 @@ import numpy as np
 
 from faultpath.core.errors import UserError
 from faultpath.statistics.inputs import Floats
-from faultpath.trials.pairing import Bools, Mismatch, Pairs, Side, Trials, mismatch_words, pair
+from faultpath.trials.pairing import Bools, Mismatch, Pairs, Side, Trials, pair
 from faultpath.trials.table import OutcomeTable
 
 Outcomes: TypeAlias = tuple[Floats, Floats]
@@ -45,13 +45,14 @@ def compared(
     """
     pairs = {path: pair(table, Side(repair, path), Side(baseline, path)) for path in paths}
     mismatches = tuple(mismatch for paired in pairs.values() for mismatch in paired.mismatches)
-    success = {path: _outcomes(paired) for path, paired in pairs.items()}
+    success = {
+        path: (_known(paired.ended[0]), _known(paired.ended[1])) for path, paired in pairs.items()
+    }
     left = [path for path, pair in success.items() if paired_scenes(*pair).any()]
     if not left:
         raise UserError(
-            "no scene is left to compare, because in each of them a trial failed or the two "
-            "versions met different conditions: fix what made it fail, or choose other scenes."
-            + "".join(f" {words}" for words in mismatch_words(mismatches))
+            "no scene is left to compare, because in each of them a trial failed: fix what made it "
+            "fail, or choose other scenes."
         )
     columns = np.concatenate([part for path in left for part in success[path]])
     alike = np.array_equal(columns, np.repeat(columns[:, :1], columns.shape[1], 1), equal_nan=True)
@@ -69,15 +70,6 @@ def paired_scenes(repair: Floats, baseline: Floats) -> Bools:
     return np.asarray(~np.isnan(repair - baseline).all(axis=1), dtype=np.bool_)
 
 
-def _outcomes(paired: Pairs) -> Outcomes:
-    """Return what is known of success; a pair that met different conditions is none."""
-    repair, baseline = (_known(trials) for trials in paired.ended)
-    places = {scene: place for place, scene in enumerate(paired.all_scenes)}
-    for mismatch in paired.mismatches:
-        place = places[mismatch.scene], paired.seeds.index(mismatch.seed)
-        repair[place] = baseline[place] = np.nan
-    return repair, baseline
-
-
 def _known(trials: Trials) -> Floats:
+    """Return success; a trial that failed has no outcome."""
     return np.where(trials.failed, np.nan, trials.success)

@@ -76,7 +76,7 @@ class Mismatch:
     """The name of each hash that differs, and both of its values."""
 
     def __str__(self) -> str:
-        hashes = "; ".join(f"{name} {a!r} and {b!r}" for name, a, b in self.differences)
+        hashes = "; ".join(f"{name} {a[:8]!r} and {b[:8]!r}" for name, a, b in self.differences)
         what = " and ".join(_HASHES[name] for name, _, _ in self.differences)
         return (
             f"{self.first} and {self.second} are no pair in scene {self.scene!r} (seed "
@@ -84,17 +84,13 @@ class Mismatch:
         )
 
 
-def mismatch_words(mismatches: Iterable[Mismatch]) -> tuple[str, ...]:
-    """Return one sentence for each two sides, which counts their mismatches and shows the first."""
-    sides: dict[tuple[Side, Side], list[Mismatch]] = {}
-    for mismatch in mismatches:
-        sides.setdefault((mismatch.first, mismatch.second), []).append(mismatch)
-    return tuple(
-        f"{first}; {len(more)} more of their pairs are void for such a reason."
-        if more
-        else f"{first}; the pair is void."
-        for first, *more in sides.values()
-    )
+def mismatch_words(mismatches: Sequence[Mismatch]) -> tuple[str, ...]:
+    """Return one sentence that counts the mismatches and shows the first; nothing without any."""
+    if not mismatches:
+        return ()
+    first, *more = mismatches
+    others = f"; so do those of {len(more)} other pairs" if more else ""
+    return (f"{first}{others}.",)
 
 
 @dataclass(frozen=True)
