@@ -38,15 +38,35 @@ def test_a_build_fails_for_what_was_found_and_leaves_its_files(folder: Path) -> 
     (suite,) = ElementTree.parse(folder / "junit.xml").getroot()
     cases = {case.get("name"): case.find("failure") for case in suite.iter("testcase")}
     failed = {name for name, failure in cases.items() if failure is not None}
-    assert set(cases) == {"trials-ran", "no-reversal", "no-repair-behind", "no-void"}
+    assert set(cases) == {"trials-ran", "result", "no-reversal", "no-repair-behind", "no-void"}
     assert failed == {"no-reversal", "no-repair-behind"}
-    assert (suite.get("tests"), suite.get("failures")) == ("4", "2")
+    assert (suite.get("tests"), suite.get("failures")) == ("5", "2")
 
     text = (folder / "summary.md").read_text()
     assert text.startswith("Before.\n### Do not choose by the fault at the observer alone")
     assert "- **passes** `void`" in text
     assert "- **fails** `repair-behind`: Under the shared fault" in text
     assert "| Difference, pp |" in text
+
+
+def test_trials_that_do_not_repeat_give_no_result_and_fail_a_build(tmp_path: Path) -> None:
+    """The length of a pole from np.random once named a winner, with exit status 0."""
+    text = Path(TOY.removesuffix(":create")).read_text()
+    here, there = 'generator("toy/cart", scene, 0)', "np.random.default_rng()"
+    assert text.count(here) == 1
+    (tmp_path / "toy.py").write_text(text.replace(here, there))
+    system = f"{tmp_path / 'toy.py'}:create"
+    line = ["--baseline", "calibrated", "--repair", "blind", "--fault", "gain:scale=0.6"]
+    line += ["--library", "carts", "--scenes", "30", "--workers", "0", "--out", tmp_path / "run"]
+    done = faultpath("audit", system, *line, "--junit", tmp_path / "junit.xml")
+    assert done.status == 1
+    assert "No result: trials do not repeat." in done.out
+    assert "is ahead" not in done.out
+    run = open_run(tmp_path / "run")
+    assert run.record.invalid == "unrepeatable"
+    assert "No result" in (tmp_path / "run" / "report.html").read_text()
+    (failure,) = ElementTree.parse(tmp_path / "junit.xml").getroot().iter("failure")
+    assert failure.text == run.headline
 
 
 def judged(folder: Path, *arguments: object) -> Ended:

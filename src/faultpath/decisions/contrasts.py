@@ -58,8 +58,8 @@ class Measure:
 
 def led(primary: str, paths: Collection[str]) -> str:
     """Return the primary path: as named, else the shared one, else the isolated."""
-    isolated = [name for name in paths if name not in (CORRECT, SHARED)]
-    return primary or (SHARED if SHARED in paths else (isolated or list(paths))[0])
+    alone = [name for name in paths if name not in (CORRECT, SHARED)]
+    return primary or (SHARED if SHARED in paths else (alone or list(paths))[0])
 
 
 def alpha_shares(paths: Collection[str], primary: str) -> dict[str, float]:

@@ -18,7 +18,10 @@ def junit(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str:
         name = f"{question.repair} against {question.baseline}"
         name += f" under {question.fault}" if question.fault else ""
         failed = sum(cell.failed for cell in record.cells)
-        cases = {"trials-ran": f"{failed} trials failed or are missing." if failed else ""}
+        cases = {
+            "trials-ran": f"{failed} trials failed or are missing." if failed else "",
+            "result": record.headline if record.invalid else "",
+        }
         for condition in conditions:
             answer = found(record, condition)
             cases[f"no-{condition}"] = answer.said if answer else ""
