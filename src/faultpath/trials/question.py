@@ -1,4 +1,4 @@
-"""Questions of a user: every option of an audit, map, search, plan, check and trace, declared once.
+"""Questions of a user: every option of an audit, map, plan, check and trace, declared once.
 
 The flags of the command line, Python's keywords, their help, the study file and the checks follow
 from these models. Texts are taken where the command line gives them, as in `seeds="0,1,2"`.
@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, ValidationError
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.validation_messages import misfit_of
-from faultpath.trials.texts import LARGEST, File, Names, Place, PowerOfTwo, Seeds, Several, Sizes
+from faultpath.trials.texts import LARGEST, Names, Place, Seeds, Several, Sizes
 
 Generalise = Literal["scenes", "models"]
 FEWEST_TRAININGS = 5
@@ -241,49 +241,6 @@ class MapQuestion(Running):
     correlation: float | None = Field(
         default=None,
         description="Correlation of the errors for which to report the expected difference.",
-    )
-
-
-class SearchQuestion(Running):
-    """Question that a search answers."""
-
-    panel: ClassVar[str] = "What is searched"
-
-    within: File = Field(
-        description="File of bounds: the faults with their sizes, and the module that the isolated "
-        "fault reaches."
-    )
-    candidates: int = Field(
-        default=48, ge=8, le=10_000, description="Faults to try in the scenes that find."
-    )
-    search_seed: int = Field(
-        default=0, ge=0, le=LARGEST, description="Seed of the proposals; not that of the trials."
-    )
-
-
-class SensitivityQuestion(Placed, Request):
-    """Question that a sensitivity analysis answers."""
-
-    panel: ClassVar[str] = "What is varied"
-
-    variant: str = Field(description="Variant whose inputs err.")
-    fault: Annotated[Several, Flag(several=True)] = Field(
-        default=(),
-        description="Largest error of a source that declares none, or another one, of either sign: "
-        "`gain:scale=1.1`; repeat the option for more.",
-    )
-    metric: str = Field(default="", description="Metric to explain; default success.")
-    scenes: int | None = Field(default=8, description="Run the first N scenes.")
-    seeds: Seeds = (0,)
-    points: PowerOfTwo = Field(
-        default=64,
-        ge=64,
-        le=65_536,
-        description="Points of the design, a power of two; each takes as many runs of every scene "
-        "as there are groups of sources, and two.",
-    )
-    design_seed: int = Field(
-        default=0, ge=0, le=LARGEST, description="Seed of the design; not that of the trials."
     )
 
 
