@@ -1,4 +1,4 @@
-"""What trials without an outcome leave open: each could have gone either way, in either version."""
+"""Bounds for trials without an outcome: each could have gone either way, in either version."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace

@@ -44,8 +44,8 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
             "bound could be shown."
         )
         parts += [Text(explained, style="dim")]
-    said = answers(record)
-    if not details and (follows := said.get("Left open" if record.invalid else "What follows")):
+    sections = answers(record)
+    if not details and (follows := sections.get("Left open" if record.invalid else "What follows")):
         parts += [Text(""), Text(follows)]
     for sentence in (*not_standing(record), *in_trials_that_ran(record)):
         parts += [Text(""), Text(sentence)]

@@ -128,8 +128,27 @@ class CheckQuestion(Request):
     )
 
 
-class Placed(Asked):
-    """Where and how trials run."""
+class RepairQuestion(Request):
+    """Two variants of a system, compared in scenes."""
+
+    panel: ClassVar[str] = "What is compared"
+
+    baseline: str = Field(
+        description="Variant to compare with, or your file.py:factory where the system takes one."
+    )
+    repair: str = Field(description="Variant that is meant to help, named likewise.")
+    library: Scenes = "held-out"
+    scenes: int | None = Field(default=None, description="Run only the first N scenes.")
+    seeds: Seeds = (0,)
+
+    def audit_of(self, fault: str) -> "AuditQuestion":
+        """Return the audit of the same variants and scenes under a fault."""
+        same = {name: getattr(self, name) for name in RepairQuestion.model_fields}
+        return AuditQuestion(fault=fault, **same)
+
+
+class Running(RepairQuestion):
+    """The same, with where and how it runs."""
 
     panel: ClassVar[str] = "How it runs"
 
@@ -152,29 +171,6 @@ class Placed(Asked):
         description="Seconds that a block of scenes may take; default what the system says, else "
         "3600.",
     )
-
-
-class RepairQuestion(Request):
-    """Two variants of a system, compared in scenes."""
-
-    panel: ClassVar[str] = "What is compared"
-
-    baseline: str = Field(
-        description="Variant to compare with, or your file.py:factory where the system takes one."
-    )
-    repair: str = Field(description="Variant that is meant to help, named likewise.")
-    library: Scenes = "held-out"
-    scenes: int | None = Field(default=None, description="Run only the first N scenes.")
-    seeds: Seeds = (0,)
-
-    def audit_of(self, fault: str) -> "AuditQuestion":
-        """Return the audit of the same variants and scenes under a fault."""
-        same = {name: getattr(self, name) for name in RepairQuestion.model_fields}
-        return AuditQuestion(fault=fault, **same)
-
-
-class Running(Placed, RepairQuestion):
-    """The same, with where and how it runs."""
 
 
 class AuditQuestion(Running):
