@@ -46,11 +46,6 @@ ROWS: list[dict[str, Any]] = [
     for at in ("nominal", "shared")
     for n, won in enumerate(each)
 ]
-BOUNDS = {
-    "isolated": "observer",
-    "faults": [{"fault": "gain:scale", "size": [0.6, 1.4]}],
-    "onset": [0, 40],
-}
 STUDY = {
     "faultpath_study": 1,
     "system": TOY,
@@ -67,23 +62,16 @@ COMMANDS = {
         *("map", *RUN, "--scenes", 1, "--fault", "gain"),
         *("--against", "controller,observer", "--up-to", 0.4),
     ],
-    "search": ["search", *RUN, "--scenes", 2, "--candidates", 8, "--within", "bounds.yaml"],
-    "sensitivity": [
-        *("sensitivity", TOY, "--variant", "calibrated", "--fault", "gain:scale=1.4", "--fault"),
-        *("velocity:offset=0.2", "--library", "carts", "--scenes", 1, "--workers", 0),
-    ],
     "judge": ["judge", "all.csv", *JUDGE[:-2]],
 }
 
 
 def bases(folder: Path, kinds: tuple[str, ...]) -> None:
     """Make a run of each kind, and the logs of a flight."""
-    (folder / "bounds.yaml").write_text(yaml.safe_dump(BOUNDS))
     (folder / "all.csv").write_bytes(_csv().encode())
     shutil.copytree(ROOT / "docs" / "reference" / "map-toy", folder / "map")
     for kind in kinds:
-        files = {"bounds.yaml": folder / "bounds.yaml", "all.csv": folder / "all.csv"}
-        line = [files.get(str(part), part) for part in COMMANDS[kind]]
+        line = [folder / part if part == "all.csv" else part for part in COMMANDS[kind]]
         ended = faultpath(*line, "--out", folder / kind)
         assert ended.status in (0, 1), ended.err
     columns = {name: values[:2000:8] for name, values in flown(10.0).items()}
@@ -175,28 +163,19 @@ def log(base: Path, here: Path, rng: Random) -> list[object]:
     return ["log", kind, "--columns", *where, "--errors", errors, "--json"]
 
 
-def asked(
-    name: str, question: object, line: list[object], base: Path, here: Path, rng: Random
-) -> list[object]:
-    """Give a command an altered file of what is asked: a study, or bounds."""
-    text = yaml.safe_dump(altered(json.loads(json.dumps(question)), rng), allow_unicode=True)
+def study(base: Path, here: Path, rng: Random) -> list[object]:
+    """Carry out an altered study file."""
+    text = yaml.safe_dump(altered(json.loads(json.dumps(STUDY)), rng), allow_unicode=True)
     text = misspelt(text, rng) if rng.random() < 0.3 else text
-    (here / name).write_text(text, "utf-8", "surrogatepass")
-    return line
+    (here / "study.yaml").write_text(text, "utf-8", "surrogatepass")
+    return ["audit", "--study", "study.yaml", "--out", "runs", "--workers", 0]
 
 
-STUDY_LINE: list[object] = ["audit", "--study", "study.yaml", "--out", "runs", "--workers", 0]
-SEARCH_LINE: list[object] = [*COMMANDS["search"], "--out", "searched"]
 CASES: dict[str, Case] = {
     **{f"judge {suffix}": partial(judge_table, suffix) for suffix in ("csv", "jsonl", "parquet")},
     **{f"judge {k}": partial(judge_tool, k) for k in ("episodes", "tasks", "inspect", "lm-eval")},
     **{f"report {kind}": partial(report, kind) for kind in ("audit", "judge", "map")},
     "replay": replay,
     "log": log,
-    "study": partial(asked, "study.yaml", STUDY, STUDY_LINE),
-}
-"""Cases that the quick part tries too."""
-LONG: dict[str, Case] = {
-    **{f"report {kind}": partial(report, kind) for kind in ("search", "sensitivity")},
-    "search": partial(asked, "bounds.yaml", BOUNDS, SEARCH_LINE),
+    "study": study,
 }

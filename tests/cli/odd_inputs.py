@@ -17,7 +17,7 @@ VALUES: tuple[Any, ...] = (
     *("\ud800", "x" * 3000, "success", "failed", "shared", "old", "controller", "gain:scale=1e308"),
     *([], {}, [1], [[]], [None] * 3, [1e308] * 3, {"0": True}, {"value": 1}, {"": ""}, ["a", "a"]),
 )
-RECORDS = ("record.json", "map.json", "search.json", "sensitivity.json")
+RECORDS = ("record.json", "map.json")
 TEXTS = ("", " ", "nan", '"', "'", "{", "}", "[", "\t", "\r", "\0", "\ufeff", "\u2028", "\x85", ",")
 
 

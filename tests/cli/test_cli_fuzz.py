@@ -36,8 +36,6 @@ RIGHT = {
     "replay": ["folder"],
     "report": ["folder"],
     "reproduce": ["table-99"],
-    "search": [TOY, *ARMS, "--within", "text.txt", "--workers", "0"],
-    "sensitivity": [TOY, "--variant", "none", "--library", "carts", "--workers", "0"],
     "trace": [TOY, "--library", "carts"],
     "train quadrotor": ["nobody"],
 }

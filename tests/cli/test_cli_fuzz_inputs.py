@@ -16,7 +16,7 @@ from traceback import format_exception
 
 import pytest
 from cli_runs import Ended, faultpath
-from odd_commands import CASES, LONG, bases
+from odd_commands import CASES, bases
 from test_cli_fuzz import OPTIONS, misended
 
 pytestmark = pytest.mark.fuzz
@@ -32,16 +32,13 @@ PAGES = (".html", ".md", ".svg", ".csv")
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "name" in metafunc.fixturenames:
-        whole = metafunc.config.getoption("--fuzz-whole")
-        every = {**CASES, **LONG} if whole else CASES
-        metafunc.parametrize("name", [n for n in every if n != "log" or "log" in OPTIONS])
+        metafunc.parametrize("name", [n for n in CASES if n != "log" or "log" in OPTIONS])
 
 
 @pytest.fixture(scope="module")
-def base(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
+def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("bases")
-    more = ("search", "sensitivity") if request.config.getoption("--fuzz-whole") else ()
-    bases(folder, ("audit", "judge", *more))
+    bases(folder, ("audit", "judge"))
     return folder
 
 
@@ -91,7 +88,7 @@ def test_odd_inputs_end_in_a_sentence(
     monkeypatch: pytest.MonkeyPatch,
     request: pytest.FixtureRequest,
 ) -> None:
-    case, faults = {**CASES, **LONG}[name], list[str]()
+    case, faults = CASES[name], list[str]()
     for number in range(MANY if request.config.getoption("--fuzz-whole") else FEW):
         rng, here = Random(f"{fuzz_seed} {name} {number}"), tmp_path / str(number)
         here.mkdir()

@@ -13,7 +13,6 @@ from faultpath.decisions.sentences.phrases import in_short
 from faultpath.trials import OutcomeTable, Status
 
 YES, NO, FAILED = Status.SUCCESS, Status.CRASH, Status.FAILED
-EVEN = [YES, NO] * (SCENES // 2)
 Ends = list[Status]
 
 

@@ -49,7 +49,7 @@ def _files(folder: Path) -> list[Path]:
 
 
 def test_the_engine_imports_what_is_declared_and_nothing_else(root: Path) -> None:
-    extras = ("gymnasium", "torch", "ray", "search", "sensitivity", "pytest")
+    extras = ("gymnasium", "torch", "ray", "pytest")
     assert _third_party(_files(root)) == _declared(root, *extras)
 
 

@@ -25,8 +25,6 @@ from test_files import MAX_LINES
 import faultpath
 from faultpath.decisions.map.lattice import COARSE, UNITS
 from faultpath.learning.model_card import Schedule
-from faultpath.statistics.estimate import RULE, RULES
-from faultpath.trials.question import SensitivityQuestion
 
 DESIGN = ROOT / "docs" / "design"
 PAGES = {path.stem: path for path in (ROOT / "CONTRIBUTING.md", *sorted(DESIGN.glob("*.md")))}
@@ -65,11 +63,6 @@ def gru() -> tuple[float, ...]:
     return schedule.batch_size, schedule.epochs
 
 
-def least_points() -> int:
-    limits = SensitivityQuestion.model_fields["points"].metadata
-    return next(limit.ge for limit in limits if hasattr(limit, "ge"))
-
-
 def bets() -> int:
     return len(resolve_name("faultpath.statistics.betting:_SHARES"))
 
@@ -83,7 +76,6 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("analyses", "multiples of 1/#", "faultpath.decisions.map.lattice:UNITS"),
     ("analyses", "starts with # by #", lambda: (2 * UNITS // COARSE + 1,) * 2),
     ("analyses", "# joint resamples", "faultpath.decisions.map.surface:RESAMPLES"),
-    ("analyses", "At least # points", least_points),
     ("api", "# stand at the top", lambda: len(faultpath.__all__)),
     ("claims", "estimate of at least # scenes;", "faultpath_paper.claims.rules:POINT_SCENES"),
     ("claims", "estimate of at least # scenes meets", "faultpath_paper.claims.rules:POINT_SCENES"),

@@ -19,8 +19,6 @@ from faultpath.decisions.compared import Outcomes as Arms
 from faultpath.decisions.contrasts import alpha_shares
 from faultpath.decisions.family import Family, decide_paths
 from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.decisions.search.propose import proposals
-from faultpath.decisions.search.study import regret
 from faultpath.statistics.estimate import ALPHA, RULE, RULES
 from faultpath.statistics.power import detectable, detected, rule_power
 from faultpath.statistics.score import degrees_interval, degrees_rejects, reach
@@ -337,43 +335,6 @@ def beside_failures(failed: float, runs: int = 600) -> float:
         family = decide_paths(failing(stream, arms, {SHARED: failed}), rule=RULE)
         found += family.effects["reconstruction"].sign == 1
     return found / runs
-
-
-def searches(
-    scenes: int, isolated: float, fresh: bool = True, candidates: int = 48, runs: int = 400
-) -> float:
-    """Return the share of searches that announce a reversal where no fault has one: isolated
-    effects as stated, and none where the fault is shared.
-
-    `fresh`: whether other scenes confirm than those that find, as they do; else what would come of
-    judging a fault by the scenes that chose it.
-    """
-    stream = generator("statistics", f"searches {scenes} {isolated} {fresh} {candidates}", 0)
-    none = Population(0.3, 0.0)
-    paths = dict.fromkeys(PATHS, none) | {"predictor": Population(0.3, isolated / 0.3)}
-    announced = 0
-    for _ in range(runs):
-        source = proposals(2, int(stream.integers(2**31)), candidates)
-        seen: list[tuple[float, dict[str, Arms]]] = []
-        points = next(source)
-        while points:
-            tried = [audit_of(stream, scenes, paths, 0.3) for _ in points]
-            ahead = [
-                [(one.astype(float) - two).mean(axis=1) for one, two in (a["predictor"], a[SHARED])]
-                for a in tried
-            ]
-            values = [regret(alone, shared) for alone, shared in ahead]
-            seen += zip(values, tried, strict=True)
-            try:
-                points = source.send(values)
-            except StopIteration:
-                break
-        value, found = max(seen, key=lambda each: each[0])
-        if value > 0.0:
-            judged = audit_of(stream, scenes, paths, 0.3) if fresh else found
-            family = decide_paths(judged, rule=RULE)
-            announced += family.turns["predictor"] == "reversal"
-    return announced / runs
 
 
 def trainings(

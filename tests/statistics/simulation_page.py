@@ -22,7 +22,6 @@ from simulation import (
     interval_coverage,
     powered,
     reversals,
-    searches,
     skewed,
     skewed_coverage,
     trainings,
@@ -226,7 +225,6 @@ def sections() -> Iterator[Section]:
             ),
         ),
     )
-    yield searched()
     yield (
         "Equal methods, other trainings",
         "Two equal methods, of which every training is off by 8 pp (standard deviation). Share of "
@@ -272,28 +270,6 @@ def missing(runs: int = 2000) -> Iterator[tuple[float, float]]:
     """Yield both shares of `blanks`, by its settings: most of the page's time, so in parallel."""
     with ProcessPoolExecutor() as pool:
         yield from pool.map(blanks, *zip(*BLANKS, strict=True), repeat(runs))
-
-
-def searched() -> Section:
-    """Return what is measured of searches for a fault."""
-    return (
-        "Searches for a fault",
-        "Share of searches that report a reversal where none of 48 faults tried has one: the "
-        "shared effect is 0. Promised: at most .05. The last column is what splitting the scenes "
-        "prevents: the chosen fault tested in the scenes that chose it; its standard error is at "
-        "most .025.",
-        lambda: markdown(
-            ("scenes of each half", "isolated effects 0", "isolated effects 20 pp", "not split"),
-            (
-                (
-                    str(n),
-                    *(share([searches(n, pp)]) for pp in (0.0, 0.2)),
-                    share([searches(n, 0.2, fresh=False)]),
-                )
-                for n in (25, 100)
-            ),
-        ),
-    )
 
 
 def kept(title: str, measured: Callable[[], str]) -> str:

@@ -130,13 +130,6 @@ def test_a_p_divided_by_four_breaks_a_promise(monkeypatch):
     assert not kept(found, 400, most=ALPHA)
 
 
-def test_few_searches_announce_a_reversal_where_no_fault_has_one():
-    """And many would, if the scenes that chose the fault were to judge it too."""
-    asked = {"scenes": 60, "isolated": 0.2, "candidates": 24, "runs": 100}
-    assert kept(simulated.searches(**asked), 100, most=0.05)
-    assert simulated.searches(**asked, fresh=False) > 0.1
-
-
 @pytest.mark.parametrize(("kind", "seeds"), [("one-sided", 1), ("repeated", 3), ("both", 1)])
 def test_missing_trials_announce_nothing_and_move_no_break_even(kind, seeds):
     announced, wrong = blanks(kind, seeds, 25)

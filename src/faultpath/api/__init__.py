@@ -12,17 +12,14 @@ from faultpath.core.lazy import load
 if TYPE_CHECKING:
     from faultpath.api.audit import audits
     from faultpath.api.checks import plan, trace
-    from faultpath.api.designs import search, sensitivity
     from faultpath.core.errors import Stopped
 
-__all__ = ["Stopped", "audits", "plan", "search", "sensitivity", "trace"]
+__all__ = ["Stopped", "audits", "plan", "trace"]
 
 _HOMES = {
     "Stopped": "faultpath.core.errors",
     "audits": "faultpath.api.audit",
     "plan": "faultpath.api.checks",
-    "search": "faultpath.api.designs",
-    "sensitivity": "faultpath.api.designs",
     "trace": "faultpath.api.checks",
 }
 

@@ -24,16 +24,11 @@ from faultpath.trials.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, r
 from faultpath.trials.store.signals import SIGNALS, decode_signals
 from faultpath.trials.store.tables import decode_outcomes, decode_traces
 
-RECORD, SYSTEM, MAP, SEARCH = "record.json", "system.json", "map.json", "search.json"
-SENSITIVITY = "sensitivity.json"
+RECORD, SYSTEM, MAP = "record.json", "system.json", "map.json"
 MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES)
 """The files of an audit's folder that its pages are made from, and checked against."""
 MAP_MADE_FROM = (MAP, OUTCOMES)
 """Those of a map's."""
-SEARCH_MADE_FROM = (SEARCH, OUTCOMES)
-"""Those of a search's; its confirming audit has a folder of its own."""
-SENSITIVITY_MADE_FROM = (SENSITIVITY, OUTCOMES)
-"""Those of a sensitivity analysis."""
 
 _Model = TypeVar("_Model", bound=BaseModel)
 _Table = TypeVar("_Table")

@@ -3,16 +3,14 @@
 from importlib.metadata import entry_points
 from os import PathLike
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import pyarrow as pa
 
 from faultpath.api.folders import (
-    MADE_FROM,
+    MAP,
     MAP_MADE_FROM,
     RECORD,
-    SEARCH_MADE_FROM,
-    SENSITIVITY_MADE_FROM,
     parsed,
     read_provenance,
     read_run,
@@ -22,13 +20,9 @@ from faultpath.core.files.parquet import read_table
 from faultpath.decisions.gate import Answer, Ask, found, holds_when_shared
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.model import DecisionRecord
-from faultpath.decisions.search.model import SearchRecord
-from faultpath.decisions.sensitivity.model import SensitivityRecord
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.map import write_map
-from faultpath.report.search import write_search
-from faultpath.report.sensitivity import write_sensitivity
 from faultpath.report.tables import markdown_table
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import AGAIN, OUTCOMES, unseal
@@ -37,9 +31,6 @@ from faultpath.trials.store.tables import encode_outcomes
 
 class FinishedRun:
     """A finished run: its result, how it was made, and where its files are."""
-
-    files: ClassVar[tuple[str, ...]]
-    """Those that its pages are made from, its record first."""
 
     def __init__(self, folder: Path, record: Any, provenance: RunProvenance) -> None:
         self.folder = folder
@@ -63,7 +54,6 @@ class Run(FinishedRun):
     A notebook shows it as the table of its effects, with the result in words below.
     """
 
-    files = MADE_FROM
     record: DecisionRecord
     """Result of the audit: `headline` in a sentence, `effects` in numbers."""
 
@@ -121,8 +111,6 @@ class Run(FinishedRun):
 class MapRun(FinishedRun):
     """A finished reversal map: its result, and where its files are."""
 
-    files = MAP_MADE_FROM
-    model = MapRecord
     record: MapRecord
     """`headline` and `sentences` in words; `points`, `surface`, `flips`, `joint` in numbers."""
 
@@ -132,37 +120,8 @@ class MapRun(FinishedRun):
         return write_map(self.record, self.provenance, place)
 
 
-class SearchRun(FinishedRun):
-    """A finished search: what was confirmed, and where its files are."""
-
-    files = SEARCH_MADE_FROM
-    model = SearchRecord
-    record: SearchRecord
-    """`headline` and `sentences` in words; `tried`, and `confirmed`, the result of the audit."""
-
-    def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
-        """Write report.html, tried.svg and table.md, and return their paths."""
-        place = self.folder if folder is None else Path(folder)
-        return write_search(self.record, self.provenance, place)
-
-
-class SensitivityRun(FinishedRun):
-    """A finished sensitivity analysis: its result, and where its files are."""
-
-    files = SENSITIVITY_MADE_FROM
-    model = SensitivityRecord
-    record: SensitivityRecord
-    """`headline` and `sentences` in words; `indices` in numbers, a group each."""
-
-    def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
-        """Write report.html, sensitivity.svg, sensitivity.csv and table.md; return their paths."""
-        place = self.folder if folder is None else Path(folder)
-        return write_sensitivity(self.record, self.provenance, place)
-
-
-def open_run(folder: str | PathLike[str]) -> "Run | MapRun | SearchRun | SensitivityRun | Any":
-    """Open the folder of a finished audit, map, search or sensitivity analysis, one's own or
-    anybody's.
+def open_run(folder: str | PathLike[str]) -> "Run | MapRun | Any":
+    """Open the folder of a finished audit or map, one's own or anybody's.
 
     It is taken for data: no code that it names is run, and every file is compared with its digest.
     What an installed distribution leaves behind is opened by it: an entry point in the group
@@ -171,18 +130,15 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | SearchRun | Sensiti
     """
     place = Path(folder)
     provenance = read_provenance(place)
-    for kind in (MapRun, SearchRun, SensitivityRun):
-        name = kind.files[0]
-        if name not in provenance.files:
-            continue
-        contents = unseal(place, provenance.files, kind.files)
-        record = parsed(contents[name], place / name, kind.model)
+    if MAP in provenance.files:
+        contents = unseal(place, provenance.files, MAP_MADE_FROM)
+        record = parsed(contents[MAP], place / MAP, MapRecord)
         if (provenance.files[OUTCOMES], provenance.library_hash) != (
             provenance.outcomes_sha256,
             record.question.library_hash,
         ):
             raise UserError(f"the files of {place} do not belong together: {AGAIN}.")
-        return kind(place, record, provenance)
+        return MapRun(place, record, provenance)
     if RECORD not in provenance.files:
         for point in entry_points(group="faultpath.runs"):
             if point.name in provenance.files:

@@ -85,22 +85,6 @@ _PANELS = {
             of_a_system=True,
         ),
         Command(
-            "search",
-            designs.search,
-            f"{_TOY} --baseline calibrated --repair blind --within examples/toy_bounds.yaml "
-            "--library carts",
-            "Look for the fault that an isolated test misjudges most.",
-            of_a_system=True,
-        ),
-        Command(
-            "sensitivity",
-            designs.sensitivity,
-            f"{_TOY} --variant calibrated --fault gain:scale=1.4 --fault velocity:offset=0.2 "
-            "--library carts",
-            "Say which source is worth improving.",
-            of_a_system=True,
-        ),
-        Command(
             "replay",
             replay.replay,
             "runs/mine --scene cart/003 --signals",

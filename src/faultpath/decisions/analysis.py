@@ -1,4 +1,4 @@
-"""Parts that audit, map, search and sensitivity analysis share: rounds of trials, and a record."""
+"""Parts that audit and map share: rounds of trials, and a record."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Generator
@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
 from faultpath.decisions.question import Resolved
 from faultpath.trials import Deliveries, OutcomeTable, Study, System
 from faultpath.trials.execution.state import Stop
-from faultpath.trials.question import Running, SensitivityQuestion
+from faultpath.trials.question import Running
 
 Items = TypeVar("Items")
 
@@ -39,7 +39,7 @@ class Analysis(ABC, Generic[Items]):
     noun: ClassVar[str] = ""
     """Plural of that which rounds add; empty for an analysis of one round."""
 
-    request: Running | SensitivityQuestion
+    request: Running
     question: Resolved
     system: System
     named: tuple[str, ...]

@@ -8,8 +8,6 @@ from rich.text import Text
 
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.model import DecisionRecord
-from faultpath.decisions.search.model import SearchRecord
-from faultpath.decisions.sensitivity.model import SensitivityRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.sentences.phrases import in_trials_that_ran, not_standing
@@ -20,7 +18,6 @@ from faultpath.report.tables import DIFFERENCE, by_path, by_quantity, by_thresho
 from faultpath.systems.checks.recording import Read
 from faultpath.systems.checks.tracing import TraceReport
 
-Concluded = MapRecord | SearchRecord | SensitivityRecord
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 
 
@@ -64,8 +61,8 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     return Group(*parts)
 
 
-def conclusion(record: Concluded, tables: Iterable[Table]) -> RenderableType:
-    """Return headline, sentences, findings and tables of a map, a search or an analysis."""
+def conclusion(record: MapRecord, tables: Iterable[Table]) -> RenderableType:
+    """Return headline, sentences, findings and tables of a map."""
     parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
     parts += map(Text, record.sentences)
     parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in record.findings]

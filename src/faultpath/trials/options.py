@@ -21,11 +21,15 @@ from pydantic import BaseModel, PydanticSchemaGenerationError, TypeAdapter, Vali
 from pydantic.fields import FieldInfo
 
 from faultpath.core.errors import UserError
-from faultpath.core.numbers import number_in
+from faultpath.core.numbers import number_in, whole_in
 from faultpath.core.validation_messages import misfit_of
 
 Factory = Callable[..., object]
 _Built = TypeVar("_Built")
+
+
+_CHECKED: Mapping[str, Callable[[str], object]] = {"int": whole_in, "float": number_in}
+"""What reads a text by the type of the option; `ValueError` where it is no such number."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +65,7 @@ class Option:
             own = ", or name your own as 'path/to/file.py:factory'" if self.factories else ""
             raise UserError(f"unknown {self.name} '{text}'; choose one of {known}{own}.")
         try:
-            if self.kind != "str":
-                number_in(text)
+            _CHECKED.get(self.kind, str)(text)
             return TypeAdapter[Any](self.annotation).validate_python(text)
         except PydanticSchemaGenerationError:
             return text  # a type of the system's own: it may make of the text what it likes

@@ -1,4 +1,4 @@
-"""Questions of a user: every option of an audit, map, search, plan, check and trace, declared once.
+"""Questions of a user: every option of an audit, map, plan, check and trace, declared once.
 
 The flags of the command line, Python's keywords, their help, the study file and the checks follow
 from these models. Texts are taken where the command line gives them, as in `seeds="0,1,2"`.
@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, ValidationError
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.validation_messages import misfit_of
-from faultpath.trials.texts import LARGEST, File, Names, Place, PowerOfTwo, Seeds, Several, Sizes
+from faultpath.trials.texts import LARGEST, Names, Place, Seeds, Several, Sizes
 
 Generalise = Literal["scenes", "models"]
 FEWEST_TRAININGS = 5
@@ -128,8 +128,27 @@ class CheckQuestion(Request):
     )
 
 
-class Placed(Asked):
-    """Where and how trials run."""
+class RepairQuestion(Request):
+    """Two variants of a system, compared in scenes."""
+
+    panel: ClassVar[str] = "What is compared"
+
+    baseline: str = Field(
+        description="Variant to compare with, or your file.py:factory where the system takes one."
+    )
+    repair: str = Field(description="Variant that is meant to help, named likewise.")
+    library: Scenes = "held-out"
+    scenes: int | None = Field(default=None, description="Run only the first N scenes.")
+    seeds: Seeds = (0,)
+
+    def audit_of(self, fault: str) -> "AuditQuestion":
+        """Return the audit of the same variants and scenes under a fault."""
+        same = {name: getattr(self, name) for name in RepairQuestion.model_fields}
+        return AuditQuestion(fault=fault, **same)
+
+
+class Running(RepairQuestion):
+    """The same, with where and how it runs."""
 
     panel: ClassVar[str] = "How it runs"
 
@@ -152,29 +171,6 @@ class Placed(Asked):
         description="Seconds that a block of scenes may take; default what the system says, else "
         "3600.",
     )
-
-
-class RepairQuestion(Request):
-    """Two variants of a system, compared in scenes."""
-
-    panel: ClassVar[str] = "What is compared"
-
-    baseline: str = Field(
-        description="Variant to compare with, or your file.py:factory where the system takes one."
-    )
-    repair: str = Field(description="Variant that is meant to help, named likewise.")
-    library: Scenes = "held-out"
-    scenes: int | None = Field(default=None, description="Run only the first N scenes.")
-    seeds: Seeds = (0,)
-
-    def audit_of(self, fault: str) -> "AuditQuestion":
-        """Return the audit of the same variants and scenes under a fault."""
-        same = {name: getattr(self, name) for name in RepairQuestion.model_fields}
-        return AuditQuestion(fault=fault, **same)
-
-
-class Running(Placed, RepairQuestion):
-    """The same, with where and how it runs."""
 
 
 class AuditQuestion(Running):
@@ -241,49 +237,6 @@ class MapQuestion(Running):
     correlation: float | None = Field(
         default=None,
         description="Correlation of the errors for which to report the expected difference.",
-    )
-
-
-class SearchQuestion(Running):
-    """Question that a search answers."""
-
-    panel: ClassVar[str] = "What is searched"
-
-    within: File = Field(
-        description="File of bounds: the faults with their sizes, and the module that the isolated "
-        "fault reaches."
-    )
-    candidates: int = Field(
-        default=48, ge=8, le=10_000, description="Faults to try in the scenes that find."
-    )
-    search_seed: int = Field(
-        default=0, ge=0, le=LARGEST, description="Seed of the proposals; not that of the trials."
-    )
-
-
-class SensitivityQuestion(Placed, Request):
-    """Question that a sensitivity analysis answers."""
-
-    panel: ClassVar[str] = "What is varied"
-
-    variant: str = Field(description="Variant whose inputs err.")
-    fault: Annotated[Several, Flag(several=True)] = Field(
-        default=(),
-        description="Largest error of a source that declares none, or another one, of either sign: "
-        "`gain:scale=1.1`; repeat the option for more.",
-    )
-    metric: str = Field(default="", description="Metric to explain; default success.")
-    scenes: int | None = Field(default=8, description="Run the first N scenes.")
-    seeds: Seeds = (0,)
-    points: PowerOfTwo = Field(
-        default=64,
-        ge=64,
-        le=65_536,
-        description="Points of the design, a power of two; each takes as many runs of every scene "
-        "as there are groups of sources, and two.",
-    )
-    design_seed: int = Field(
-        default=0, ge=0, le=LARGEST, description="Seed of the design; not that of the trials."
     )
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, cast
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
+from pydantic import BeforeValidator, Field, PlainSerializer
 
 from faultpath.core.numbers import number_in
 
@@ -60,21 +60,11 @@ def read_names(value: object) -> object:
     return names
 
 
-def power_of_two(points: int) -> int:
-    """Return a number of points; `ValueError` unless it is a power of two."""
-    if points & (points - 1):
-        below = 1 << (points.bit_length() - 1)
-        raise ValueError(f"is {points}: a design takes a power of two, as {below} or {2 * below}")
-    return points
-
-
 _path = BeforeValidator(lambda place: Path(place) if isinstance(place, str) else place)
 _DRAWN = "Seeds of the noise, and of trained models where there are any."
 
-File = Annotated[Path, _path, PlainSerializer(str)]
 Names = Annotated[tuple[str, ...], BeforeValidator(read_names)]
 Place = Annotated[Path | None, _path, PlainSerializer(lambda path: path and str(path))]
-PowerOfTwo = Annotated[int, AfterValidator(power_of_two)]
 Seeds = Annotated[tuple[int, ...], BeforeValidator(read_seeds), Field(description=_DRAWN)]
 Several = Annotated[tuple[str, ...], BeforeValidator(several)]
 Sizes = Annotated[tuple[float, ...], BeforeValidator(read_sizes)]

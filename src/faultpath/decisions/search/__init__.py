@@ -1,1 +1,0 @@
-"""Which fault hurts those most who choose by an isolated audit: bounds, proposals, record."""

@@ -1,1 +1,0 @@
-"""Which declared uncertainty moves what a variant achieves: design, indices, record."""
