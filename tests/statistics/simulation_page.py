@@ -22,11 +22,10 @@ from simulation import (
     interval_coverage,
     powered,
     reversals,
-    skewed,
-    skewed_coverage,
     trainings,
 )
 from simulation_blanks import BLANKS, blanks
+from simulation_skewed import skewed, skewed_coverage
 
 import faultpath
 from faultpath.decisions.family import ALPHA

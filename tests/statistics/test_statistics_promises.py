@@ -5,6 +5,7 @@ import pytest
 import simulation as simulated
 from simulation import Population, kept
 from simulation_blanks import blanks
+from simulation_skewed import skewed_coverage
 
 from faultpath.statistics import unconditional
 from faultpath.statistics.breakeven import break_even
@@ -101,7 +102,7 @@ def test_equal_methods_are_not_told_apart_by_their_trainings():
 @pytest.mark.parametrize(("scenes", "seeds", "lost"), [(100, 3, 0.02), (300, 5, 0.005)])
 def test_intervals_of_skewed_seeds_cover(scenes, seeds, lost):
     """With the reach of what was seen they covered in .888 to .924."""
-    found = simulated.skewed_coverage(scenes, seeds, 0.9, lost, 4000)
+    found = skewed_coverage(scenes, seeds, 0.9, lost, 4000)
     assert kept(found, 4000, least=0.93)
 
 

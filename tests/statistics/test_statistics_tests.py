@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.stats import norm
-from simulation import Population, announces, kept, skewed
+from simulation import Population, announces, kept
+from simulation_skewed import skewed
 from statsmodels.stats.contingency_tables import mcnemar
 
 from faultpath.decisions.family import decide_paths
