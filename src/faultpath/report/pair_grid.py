@@ -23,7 +23,7 @@ def pair_grid(
 
     With several seeds a scene is a stack of cells, one a seed. Triangles that point up are scenes
     that only the repair solved, pointing down only the baseline; a large disc is both, a small ring
-    neither, a cross in a red box a void pair, a slash a scene left out because of one. `names` says
+    neither, a cross in a red box a void pair. `names` says
     what the system calls its ends. A cell whose scene and seed are among `shown` is a link to them
     in the viewer.
     """

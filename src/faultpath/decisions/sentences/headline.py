@@ -145,8 +145,10 @@ def _state(record: DecisionRecord, effect: Effect) -> str:
         return f"{record.winner(effect.sign)} is ahead"
     if effect.extreme:
         return f"both nearly always {'fail' if effect.extreme == 'floor' else 'succeed'}"
-    if effect.uneven or effect.unsettled:
+    if effect.unsettled:
         return "failed trials leave it open"
+    if effect.sign and effect.uneven:
+        return "one version's trials failed more often"
     if record.is_small(effect):
         return f"the difference is below {margin(record)}"
     return _OPEN

@@ -100,7 +100,9 @@ def reservation(effect: Effect) -> str:
     """Return why an effect makes no headline: the fault never acted, floor, ceiling, failures."""
     if not effect.acted:
         return "fault never acted"
-    return effect.extreme or ("failed trials" if effect.uneven or effect.unsettled else "")
+    return effect.extreme or (
+        "failed trials" if effect.unsettled or (effect.sign and effect.uneven) else ""
+    )
 
 
 def ended(question: Question, status: str) -> str:
