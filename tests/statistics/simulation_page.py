@@ -211,7 +211,7 @@ def sections() -> Iterator[Section]:
         "Share of audits of 60 scenes and three seeds that report a reversal, with isolated "
         "effects of 14 pp and a shared one of -20 pp, where a share of all trials fails by chance: "
         "what is significant has to be so whatever these would have been. And power for an effect "
-        "of 12 pp where trials fail under another condition alone, which costs it nothing.",
+        "of 12 pp where trials fail under another condition alone, which costs it next to nothing.",
         lambda: markdown(
             ("trials that fail", "reversal", "effect under another condition"),
             (
@@ -291,8 +291,9 @@ def main() -> None:
         "# What the statistics keep",
         "",
         "Made by `make statistics`: the shipped code analyses populations with a known truth. "
-        "Simulated rates have a standard error of .003 (interval), .005 (break-even), at most .013 "
-        "(audits) and .018 (sequential audits). What is promised, and by which tests: "
+        "Simulated rates have a standard error of .003 (interval), .005 (break-even, audits of "
+        "equal versions), .018 (sequential audits) and at most .020 (reversals, failed trials). "
+        "What is promised, and by which tests: "
         "[design/statistics.md](design/statistics.md).",
         "",
     ]
