@@ -1,4 +1,4 @@
-"""What a camera sees of two rooms, and how its errors are estimated and undone.
+"""Camera views of two rooms, and how errors of the camera are estimated and undone.
 
 The pictures of `latent_camera.py`, which see the rooms from above.
 """
