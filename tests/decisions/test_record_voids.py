@@ -86,7 +86,10 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     left_open = answers(open_)["Left open"]
     assert "the trials that ran favour new (+5.1 [1.1, 11.3] pp, p = 0.023" in left_open
     assert "holds if failing has nothing to do with how a trial would have ended" in left_open
-    assert "at least 1 of new that failed have to run (the same command" in left_open
+    assert (
+        "at least 1 of new that failed have to run, and come out as the others did (the same"
+        in left_open
+    )
     safe = audit((lost, [*[NO] * 20, *rest[15:], YES]))
     assert safe.effects[0].sign == 1
     assert "new is ahead" in safe.headline
@@ -185,12 +188,12 @@ def test_how_many_failures_would_have_to_run_is_what_settles_it():
     assert effect.unsettled
     needed, of_baseline = effect.failed.repairs
     assert of_baseline == 0
-    signs = [
-        audit((ends(new[left]), ends(old[left]))).effects[0].sign  # all others against it
+    leads = [
+        audit((ends(new[left], failed[left]), ends(old[left]))).effects[0].leads
         for ran in (needed - 1, needed)
         for left in [(scene < 70) | (scene >= 70 + ran)]
     ]
-    assert signs == [0, 1]
+    assert leads == [False, True]
 
 
 @pytest.mark.parametrize("invalid", ["unrepeatable", "unpaired"])

@@ -10,7 +10,7 @@ from faultpath.decisions.decide import decide
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
 from faultpath.decisions.sentences import phrases
 from faultpath.decisions.sentences.phrases import in_short
-from faultpath.trials import OutcomeTable
+from faultpath.trials import OutcomeTable, Status
 
 LEVEL = (50, 5, 5)
 GAIN = (40, 30, 2)
@@ -137,7 +137,30 @@ def test_of_few_trainings_or_of_copies_nothing_is_said_of_new_ones(kept):
     trainings = [(40 - seed, 30 + seed, 2) for seed in range(kept)]
     by_seed = [*trainings, *[trainings[0]] * (6 - kept)]
     if kept < 5:
-        with pytest.raises(UserError, match="only 4 of the 6 trainings gave different outcomes"):
+        with pytest.raises(UserError, match="only 4 of the 6 trainings ran under"):
             seeded({CORRECT: by_seed}, trained=True, generalise="models")
     else:
         assert seeded({CORRECT: by_seed}, trained=True, generalise="models").effects
+
+
+@pytest.mark.parametrize("lost", [5, 1])
+def test_a_training_that_failed_throughout_under_one_condition_is_left_out_there(lost):
+    """It ended in a traceback: effects under two conditions had other numbers of trainings."""
+    by_seed = [(40 - seed, 30 + seed, 2) for seed in range(6)]
+    cells = {CORRECT: by_seed, "observer": by_seed, SHARED: by_seed}
+    trials = [
+        row
+        for path, counts in cells.items()
+        for seed, count in enumerate(counts)
+        for variant, statuses in arms(count).items()
+        for row in rows(
+            variant,
+            path,
+            [Status.FAILED] * 100 if (path, seed) == (SHARED, lost) else statuses,
+            seed=seed,
+        )
+    ]
+    about = question(100, range(6)).model_copy(update={"trained": True, "generalise": "models"})
+    made = decide(about, paths(*cells), OutcomeTable(tuple(trials)))
+    assert [effect.success.n_seeds for effect in made.effects] == [6, 6, 5]
+    assert made.changes[0].change.n_seeds == 5

@@ -28,12 +28,6 @@ class ComparedTrials:
     """Conditions of which no pair has."""
     mismatches: tuple[Mismatch, ...]
 
-    def in_common(self, *paths: str) -> bool:
-        """Return whether conditions have a scene in common of which each has a pair."""
-        if not set(paths) <= set(self.success):
-            return False
-        return bool(np.logical_and.reduce([paired_scenes(*self.success[p]) for p in paths]).any())
-
 
 def compared(
     repair: str, baseline: str, paths: Iterable[str], table: OutcomeTable

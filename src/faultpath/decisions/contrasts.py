@@ -3,6 +3,8 @@
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from faultpath.decisions.compared import Outcomes, paired_scenes
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.statistics.contrast import Contrast, change
@@ -35,10 +37,17 @@ class Measure:
             rule=self.rule,
         )
 
-    def together(self, one: Outcomes, two: Outcomes) -> tuple[Contrast, Contrast]:
-        """Return the effects under two conditions over the scenes that both have."""
+    def together(self, one: Outcomes, two: Outcomes) -> tuple[Contrast, Contrast] | None:
+        """Return the effects under two conditions over the scenes, and for newly trained models the
+        trainings, that both have; nothing where these are too few."""
         kept = paired_scenes(*one) & paired_scenes(*two)
-        return self.effect(one[0][kept], one[1][kept]), self.effect(two[0][kept], two[1][kept])
+        ends = [(repair[kept], baseline[kept]) for repair, baseline in (one, two)]
+        if self.models:
+            ran = [~np.isnan(repair - baseline).all(axis=0) for repair, baseline in ends]
+            ends = [(a[:, ran[0] & ran[1]], b[:, ran[0] & ran[1]]) for a, b in ends]
+        if not kept.any() or ends[0][0].shape[1] < 1 + self.models:
+            return None
+        return self.effect(*ends[0]), self.effect(*ends[1])
 
     def contrasts(
         self, success: Mapping[str, Outcomes], alone: Mapping[str, Outcomes], tested: Sequence[str]
@@ -48,8 +57,8 @@ class Measure:
         for path in tested:
             yield effect_name(path), self.effect(*success[path])
         for path in isolated(tested):
-            if (paired_scenes(*alone[path]) & paired_scenes(*success[SHARED])).any():
-                yield change_name(path), change(*self.together(alone[path], success[SHARED]))
+            if ends := self.together(alone[path], success[SHARED]):
+                yield change_name(path), change(*ends)
 
     def tested(self, contrasts: Iterator[tuple[str, Contrast]]) -> dict[str, Contrast]:
         """Return contrasts by name, each with its test."""

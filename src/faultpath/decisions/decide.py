@@ -67,15 +67,16 @@ def decide(
         for path in trials.success
     }
 
-    def between(none: str, every: str, shares: phrases.Shares) -> PathBreakEven:
-        ends = effects[none], effects[every]
-        return _break_even(question, trials, family, ends, shares)
+    def between(pairs: Sequence[tuple[str, str]], words: phrases.Shares) -> list[PathBreakEven]:
+        shares = (
+            _break_even(question, trials, family, (effects[none], effects[every]), words)
+            for none, every in pairs
+        )
+        return [share for share in shares if share]
 
-    faulted = [
-        path
-        for path in effects
-        if path not in (CORRECT, AS_RUN, *untested) and trials.in_common(CORRECT, path)
-    ]
+    faulted = [path for path in effects if path not in (CORRECT, AS_RUN, *untested)]
+    from_none = [(CORRECT, path) for path in faulted] if CORRECT in effects else []
+    from_one = [(path, SHARED) for path in family.changes]
     state = stopped(question, family, table)
     record = DecisionRecord(
         question=question,
@@ -83,8 +84,8 @@ def decide(
         cells=cells,
         effects=tuple(effects.values()),
         changes=tuple(_change(question, path, family) for path in family.changes),
-        break_even=tuple(between(CORRECT, path, FREQUENCY) for path in faulted),
-        break_even_beta=tuple(between(path, SHARED, BETA) for path in family.changes),
+        break_even=tuple(between(from_none, FREQUENCY)),
+        break_even_beta=tuple(between(from_one, BETA)),
         scenes=max(effect.scenes for effect in effects.values()),
         invalid=invalid,
         scenes_needed=family.scenes_needed,
@@ -195,13 +196,15 @@ def _break_even(
     family: Family,
     ends: tuple[Effect, Effect],
     shares: phrases.Shares,
-) -> PathBreakEven:
+) -> PathBreakEven | None:
     """Return where baseline and repair are even between the effects at two ends of a share, over
     the scenes that both have, as a result of the condition with the fault, or of the one module."""
     at_none, at_all = ends
     decided = [family.effects[end.path].decision for end in ends]
     level = 1.0 - min(decision.critical_p for decision in decided if decision)
     tested = family.measure.together(trials.success[at_none.path], trials.success[at_all.path])
+    if tested is None:
+        return None
     filled = [family.fills[end.path] for end in ends if end.path in family.fills]
     # Both ends with what failed trials leave open against the repair, and for it.
     fills = tuple(zip(*filled, strict=True)) if any(a.value != b.value for a, b in filled) else ()

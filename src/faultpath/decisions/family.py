@@ -86,12 +86,13 @@ def family_of(
     trials = compared(question.repair, question.baseline, names, table)
     if question.generalise == "models":
         columns = np.concatenate([part for pair in trials.success.values() for part in pair])
-        trainings = len({column.tobytes() for column in columns.T})
+        ran = np.all([~np.isnan(a - b).all(axis=0) for a, b in trials.success.values()], axis=0)
+        trainings = len({column.tobytes() for column in columns.T[ran]})
         if trainings < FEWEST_TRAININGS:
             raise UserError(
-                f"only {trainings} of the {len(question.seeds)} trainings gave different outcomes, "
-                f"and what holds for newly trained models needs {FEWEST_TRAININGS}: leave "
-                "--generalise models out."
+                f"only {trainings} of the {len(question.seeds)} trainings ran under each condition "
+                f"and gave different outcomes, and what holds for newly trained models needs "
+                f"{FEWEST_TRAININGS}: leave --generalise models out."
             )
     family = decide_paths(
         trials.success,

@@ -8,7 +8,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
 from faultpath.decisions.model import SHARED, DecisionRecord
 from faultpath.decisions.sentences import phrases
-from faultpath.decisions.sentences.phrases import in_short, places
+from faultpath.decisions.sentences.phrases import NO_RESULT, in_short, places
 from faultpath.decisions.sentences.wording import capital, counted, sentence, where
 
 Ask = Literal["reversal", "repair-behind", "undecided", "void"]
@@ -37,6 +37,8 @@ def found(record: DecisionRecord, what: str) -> Answer:
     baseline is significantly ahead. `undecided`: the primary contrast is neither significant nor
     shown to be small. `void`: pairs of trials count for nothing.
     """
+    if record.invalid and what in ASKS:
+        return Answer(True, NO_RESULT[record.invalid])
     match what:
         case "reversal":
             turned = [change for change in record.changes if change.turn == "reversal"]

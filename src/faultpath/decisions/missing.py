@@ -12,6 +12,7 @@ from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.decisions import with_test
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import ALPHA, PairedTest
+from faultpath.trials.pairing import Bools
 
 Decide: TypeAlias = Callable[[Mapping[str, Contrast]], dict[str, Contrast]]
 """The joint decision of tested contrasts, by name."""
@@ -67,34 +68,32 @@ def repairs_needed(
 ) -> tuple[int, int]:
     """Return how many failed trials of the repair and of the baseline have to run before those that
     are still missing cannot undo an effect, if they come out as the others did: first those of the
-    version that failed more often."""
+    version that alone failed more often, then the others, pair by pair."""
     sign = decided[name].sign
     adverse = filled(success, favour=sign < 0)
-    failed = sorted(
-        [
-            (version, tuple(place))
-            for version in (0, 1)
-            for place in np.argwhere(np.isnan(success[version]))
-        ],
-        key=lambda trial: -int(np.isnan(success[trial[0]]).sum()),
-    )
+    lost = np.stack([np.isnan(part) for part in success])
+    alone = lost & ~lost[::-1]
+    rank = np.where(alone[alone.sum(axis=(1, 2)).argmax()], 0, np.where(lost.all(axis=0), 1, 2))
+    places = sorted(map(tuple, np.argwhere(lost.any(axis=0))), key=lambda place: rank[place])
 
-    def counts(some: int) -> tuple[int, int]:
-        repair = sum(version == 0 for version, _ in failed[:some])
-        return repair, some - repair
+    def ran(some: int) -> Bools:
+        chosen = np.zeros(lost.shape[1:], dtype=np.bool_)
+        for place in places[:some]:
+            chosen[place] = True
+        return chosen
 
     def settled(some: int) -> bool:
-        """Return whether the effect holds where as many of the failed trials ran."""
-        rest = adverse[0].copy(), adverse[1].copy()
-        for version, place in failed[:some]:
-            rest[version][place] = np.nan
-        if not paired_scenes(*rest).any():
+        """Return whether the effect holds, evenly, where the first of the failed pairs ran."""
+        left = [np.where(ran(some), np.nan, part) for part in adverse]
+        still = [np.where(part & ~ran(some), np.nan, 0.0) for part in lost]
+        if not paired_scenes(*left).any() or uneven((still[0], still[1])):
             return False
-        contrast = with_test(measure.effect(*rest), measure.rule)
+        contrast = with_test(measure.effect(*left), measure.rule)
         return decide({**decided, name: contrast})[name].sign == sign
 
-    low, high = 0, len(failed)
+    low, high = 0, len(places)
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if settled(middle) else (middle, high)
-    return counts(high)
+    repair, baseline = (int((part & ran(high)).sum()) for part in lost)
+    return repair, baseline

@@ -144,10 +144,10 @@ def whole_table(record: DecisionRecord) -> Table:
     tests = f"Tests: {question.tests}. " if question.tests else ""
     notes = (
         f"Difference: success of {question.repair} minus success of {question.baseline}. Won:lost: "
-        f"scenes in which only {question.repair} or only {question.baseline} succeeds. Void pairs "
-        "count for neither side. Break-even: the fault frequencies at which neither is "
-        "shown to be ahead, with the estimate in front; any: no bound could be shown. A dash: "
-        "there is nothing to compute it from." + (_BETA if record.break_even_beta else ""),
+        f"scenes in which only {question.repair} or only {question.baseline} succeeds. Break-even: "
+        "the fault frequencies at which neither is shown to be ahead, with the estimate in front; "
+        "any: no bound could be shown. A dash: there is nothing to compute it from."
+        + (_BETA if record.break_even_beta else ""),
         f"Primary contrast: {question.primary}. {tests}{corrected} Intervals and tests speak of "
         f"{record.estimand}.",
         *not_standing(record),

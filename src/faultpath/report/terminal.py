@@ -10,7 +10,11 @@ from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.answers import answers
-from faultpath.decisions.sentences.phrases import in_trials_that_ran, not_standing
+from faultpath.decisions.sentences.phrases import (
+    for_trainings,
+    in_trials_that_ran,
+    not_standing,
+)
 from faultpath.decisions.tables import Line, Table, line
 from faultpath.decisions.tables.terminal import Parted, drawn
 from faultpath.interface import Gap, Interface, rank, transitive_consumers
@@ -47,7 +51,8 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     plain = answers(record)
     if not details and (follows := plain.get("Left open" if record.invalid else "What follows")):
         parts += [Text(""), Text(follows)]
-    for sentence in (*not_standing(record), *in_trials_that_ran(record)):
+    trainings = () if details else for_trainings(record)
+    for sentence in (*not_standing(record), *in_trials_that_ran(record), *trainings):
         parts += [Text(""), Text(sentence)]
     table = by_threshold(record)
     if table is not None:

@@ -89,7 +89,7 @@ def mismatch_words(mismatches: Sequence[Mismatch]) -> tuple[str, ...]:
     if not mismatches:
         return ()
     first, *more = mismatches
-    others = f"; so do those of {len(more)} other pairs" if more else ""
+    others = f"; so do those of {len(more)} other pair{'s' * (len(more) > 1)}" if more else ""
     return (f"{first}{others}.",)
 
 

@@ -3,15 +3,21 @@
 Whoever reads nothing else reads these, so what qualifies a decision is said here too.
 """
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect, Invalid
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Invalid
 from faultpath.decisions.sentences import phrases
 from faultpath.decisions.sentences.headline import headline, reversed_at
 from faultpath.decisions.sentences.phrases import margin, places
-from faultpath.decisions.sentences.wording import capital, counted, detectable, series, where
+from faultpath.decisions.sentences.wording import (
+    capital,
+    counted,
+    detectable,
+    series,
+    signed,
+    where,
+)
 from faultpath.decisions.tables import MISSING
 
 _WHY_NO_RESULT: dict[Invalid, str] = {
@@ -76,15 +82,16 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
     disagree = {effect.sign for effect in leading} == {1, -1}
     if not leading:
         if any(effect.sign and effect.uneven for effect in tested):
+            (first, *_) = (effect for effect in tested if effect.sign and effect.uneven)
             yield (
-                "No choice can rest on what is significant: one version's trials failed more often."
+                f"No choice can rest on what is significant: {phrases.failed_more(record, first)}."
             )
         elif any(effect.sign for effect in tested):
             yield "What is significant lies at the floor or ceiling: no choice can rest on it."
         elif tested and all(record.is_small(effect) for effect in tested):
             yield f"Neither is to be preferred: each difference is below {margin(record)}."
         else:
-            yield _unknown(tested)
+            yield _unknown(record)
     turned = reversed_at(record)
     if turned:
         one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
@@ -113,16 +120,16 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
             yield f"Depending on how often the fault occurs, {where(result.path)}: {result.words}."
 
 
-def _unknown(tested: Sequence[Effect]) -> str:
-    """Say that no choice follows, and how large a difference could have been missed."""
-    missed = [effect.minimum_detectable_pp for effect in tested if not effect.extreme]
-    largest = max((size for size in missed if size is not None), default=None)
-    if largest is None or None in missed:
-        return "Not enough is known to prefer either."
-    return (
-        f"Not enough is known to prefer either: a difference of {math.ceil(largest)} pp could have "
-        "been missed."
-    )
+def _unknown(record: DecisionRecord) -> str:
+    """Say that no choice follows, and which differences the primary contrast leaves possible."""
+    main = next((e for e in record.effects if e.path == record.question.primary), None)
+    text = "Not enough is known to prefer either"
+    if main is None or not main.acted or main.success.low is None or main.success.high is None:
+        return f"{text}."
+    if main.unsettled:
+        return f"{text}: {where(main.path)} it depends on trials that failed."
+    low, high = signed(main.success.low), signed(main.success.high)
+    return f"{text}: {where(main.path)}, any difference from {low} to {high} pp is possible."
 
 
 def reach(record: DecisionRecord) -> Iterator[str]:
@@ -140,13 +147,7 @@ def reach(record: DecisionRecord) -> Iterator[str]:
             "tools do not say whether it was."
         )
     run = len(question.seeds)
-    if question.generalise == "models":
-        yield (
-            f"{run} trainings stand for new ones as far as trainings spread evenly around their "
-            "mean, as a Gaussian does: a rare collapse that none of them had is not seen."
-        )
-        for effect in record.effects:
-            yield f"{phrases.trainings(record, effect)} (sign test, whatever their distribution)."
+    yield from phrases.for_trainings(record)
     tasks = question.judged is not None and question.judged.unit == "task"
     if run > 1 and not tasks and record.effects and len(record.effects[0].wins) == 1:
         yield f"All {run} seeds gave the same outcome in every trial: together they count as one."
@@ -222,6 +223,9 @@ def _insignificant(record: DecisionRecord) -> Iterator[str]:
 
 def _would_change(record: DecisionRecord) -> Iterator[str]:
     """Say what would change the result."""
+    if record.invalid:
+        yield "Trials that repeat and are pairs: see the remarks on what differed."
+        return
     stopped, tested = record.stopped, [effect for effect in record.effects if effect.acted]
     judged = record.question.judged is not None
     if stopped and not all(effect.sign for effect in record.effects):

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
 from faultpath.decisions.sentences.phrases import (
     NO_RESULT,
+    failed_more,
     in_few_scenes,
     margin,
     no_pair,
@@ -148,7 +149,7 @@ def _state(record: DecisionRecord, effect: Effect) -> str:
     if effect.unsettled:
         return "failed trials leave it open"
     if effect.sign and effect.uneven:
-        return "one version's trials failed more often"
+        return failed_more(record, effect)
     if record.is_small(effect):
         return f"the difference is below {margin(record)}"
     return _OPEN

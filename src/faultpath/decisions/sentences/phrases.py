@@ -70,10 +70,32 @@ def trainings(record: DecisionRecord, effect: Effect) -> str:
     repair, baseline = sum(value > 0 for value in values), sum(value < 0 for value in values)
     ahead = record.winner(1 if repair >= baseline else -1)
     p = p_value(sign_p_value(repair, baseline))
+    even = len(values) - repair - baseline
     return (
         f"{capital(where(effect.path))}, {ahead} is ahead in {max(repair, baseline)} of "
-        f"{len(values)} trainings, p {p if p.startswith('<') else f'= {p}'}"
+        f"{len(values)} trainings{f', neither in {even}' if even else ''}, "
+        f"p {p if p.startswith('<') else f'= {p}'}"
     )
+
+
+def for_trainings(record: DecisionRecord) -> Iterator[str]:
+    """Say on what a result for newly trained models rests."""
+    if record.question.generalise != "models" or record.invalid:
+        return
+    run = min((effect.success.n_seeds for effect in record.effects), default=0)
+    yield (
+        f"{run} trainings stand for new ones as far as trainings spread evenly around their "
+        "mean, as a Gaussian does: a rare collapse that none of them had is not seen."
+    )
+    for effect in record.effects:
+        yield f"{trainings(record, effect)} (sign test, whatever their distribution)."
+
+
+def failed_more(record: DecisionRecord, effect: Effect) -> str:
+    """Say which version's trials failed more often than chance explains."""
+    failed, question = effect.failed, record.question
+    more = failed is not None and failed.repair > failed.baseline
+    return f"trials of {question.repair if more else question.baseline} failed more often"
 
 
 def in_trials_that_ran(record: DecisionRecord) -> Iterator[str]:
@@ -94,8 +116,15 @@ def _ran(record: DecisionRecord, effect: Effect) -> str:
         return f"{text}."
     of = zip(failed.repairs, (question.repair, question.baseline), strict=True)
     needed = series([f"{count} of {name}" for count, name in of if count])
-    how = "give their outcomes" if question.judged else "the same command tries them again"
-    return f"{text}; otherwise at least {needed} that failed have to run ({how})."
+    how = (
+        "add their outcomes to the results"
+        if question.judged
+        else "the same command tries them again"
+    )
+    return (
+        f"{text}; otherwise at least {needed} that failed have to run, and come out as the others "
+        f"did ({how})."
+    )
 
 
 def places(effects: Sequence[Effect]) -> str:
@@ -131,6 +160,11 @@ def in_short(record: DecisionRecord, effect: Effect | None) -> str:
 def change(record: DecisionRecord, of: Change) -> str:
     """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
     effects = {effect.path: effect for effect in record.effects}
+    if record.invalid:
+        return (
+            f"Nothing follows of the change from the effect {where(of.isolated)} to that "
+            f"{where(of.shared)}."
+        )
     ends = effects[of.isolated], effects[of.shared]
     values = " to ".join(f"{signed(end.success.value)} pp" for end in ends)
     numbers = f"{values}; change {signed(of.estimate.value)} pp {interval(of.estimate)}".rstrip()
