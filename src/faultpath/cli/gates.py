@@ -66,15 +66,8 @@ class Gate:
         if junit is not None:
             check_output(junit, b'<testsuites name="faultpath"')
         if summary is not None:
-            of_ci = os.environ.get("GITHUB_STEP_SUMMARY")
-            place = os.path.realpath(summary)
-            of_ci = of_ci is not None and os.path.realpath(of_ci) == place
-            added_to = place.endswith(".md") or of_ci
-            if summary.exists() and summary.stat().st_size and not added_to:
-                raise UserError(
-                    f"--summary {summary}: it is there already, and a summary is added to .md "
-                    "files, or to the file of GITHUB_STEP_SUMMARY: name one of these, or a new one."
-                )
+            place, of_ci = os.path.realpath(summary), os.environ.get("GITHUB_STEP_SUMMARY")
+            added_to = place.endswith(".md") or (of_ci and os.path.realpath(of_ci) == place)
             check_output(summary, b"" if added_to else None)
         return cls(conditions, junit, summary)
 
