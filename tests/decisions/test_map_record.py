@@ -147,17 +147,20 @@ def test_a_place_between_points_is_claimed_nowhere() -> None:
         place = np.random.default_rng(int(1000 * (x + 2) + 10 * (y + 2))).random((2, 100))
         return place[0] < 0.7 - 0.25 * abs(x), place[1] < 0.8 - 0.35 * abs(x - y)
 
-    made = decided(question(points=25), differences(ridge, lattice(COARSE)))
-    said = " ".join((made.headline, *made.sentences))
-    assert not re.search(r"correlat\w* .*(does better|is ahead|succeed)", said)
-    run = {x or y for x, y in (point.errors for point in made.points)}
-    assert {flip.until for flip in made.flips} | {flip.first for flip in made.flips} <= {*run, None}
+    result = decided(question(points=25), differences(ridge, lattice(COARSE)))
+    text = " ".join((result.headline, *result.sentences))
+    assert not re.search(r"correlat\w* .*(does better|is ahead|succeed)", text)
+    run = {x or y for x, y in (point.errors for point in result.points)}
+    assert {flip.until for flip in result.flips} | {flip.first for flip in result.flips} <= {
+        *run,
+        None,
+    }
 
 
 @pytest.mark.parametrize("invalid", ["unrepeatable", "unpaired"])
 def test_a_map_of_trials_on_which_nothing_rests_claims_nothing(invalid) -> None:
-    made = decided(question(), grown(reversal(100)), invalid=invalid)
-    assert made.headline.startswith("No result: ")
-    assert made.sentences == ()
-    assert not any(point.sign for point in made.points)
-    assert not any(flip.start or flip.turned for flip in made.flips)
+    result = decided(question(), grown(reversal(100)), invalid=invalid)
+    assert result.headline.startswith("No result: ")
+    assert result.sentences == ()
+    assert not any(point.sign for point in result.points)
+    assert not any(flip.start or flip.turned for flip in result.flips)

@@ -28,7 +28,7 @@ OUTSIDE = """() => [...document.querySelectorAll("svg.fig")].flatMap((svg) => {
       || b.top < frame.top - 1 || b.bottom > frame.bottom + 1))
     .map(([part]) => `${svg.querySelector("title").textContent}: ${part.outerHTML}`);
 })"""
-"""What lies outside its picture by more than a pixel, of every picture that is shown."""
+"""Parts that lie outside their picture by more than a pixel, of every picture that is shown."""
 
 PLACES = """() => [...document.querySelectorAll(".pair")]
   .map((cell) => cell.getBoundingClientRect())

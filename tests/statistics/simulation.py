@@ -236,12 +236,12 @@ def beside_failures(failed: float, runs: int = 600) -> float:
     stream = generator("statistics", "beside failures", 0)
     none = Population(0.1, 0.0, 3, 0.5)
     paths = {CORRECT: none, "reconstruction": Population(0.3, 0.4, 3, 0.5), SHARED: none}
-    found = 0
+    significant = 0
     for _ in range(runs):
         arms = audit_of(stream, 60, paths, 0.3)
         family = decide_paths(failing(stream, arms, {SHARED: failed}), rule=RULE)
-        found += family.effects["reconstruction"].sign == 1
-    return found / runs
+        significant += family.effects["reconstruction"].sign == 1
+    return significant / runs
 
 
 def trainings(

@@ -102,8 +102,8 @@ def test_equal_methods_are_not_told_apart_by_their_trainings():
 @pytest.mark.parametrize(("scenes", "seeds", "lost"), [(100, 3, 0.02), (300, 5, 0.005)])
 def test_intervals_of_skewed_seeds_cover(scenes, seeds, lost):
     """With the reach of what was seen they covered in .888 to .924."""
-    found = skewed_coverage(scenes, seeds, 0.9, lost, 4000)
-    assert kept(found, 4000, least=0.93)
+    covered = skewed_coverage(scenes, seeds, 0.9, lost, 4000)
+    assert kept(covered, 4000, least=0.93)
 
 
 def test_failures_cost_other_conditions_nothing_and_reversals_little():

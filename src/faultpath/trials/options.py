@@ -29,7 +29,7 @@ _Built = TypeVar("_Built")
 
 
 _CHECKED: Mapping[str, Callable[[str], object]] = {"int": whole_in, "float": number_in}
-"""What reads a text by the type of the option; `ValueError` where it is no such number."""
+"""Reader of a text by the type of the option; `ValueError` where it is no such number."""
 
 
 @dataclass(frozen=True)
