@@ -51,6 +51,7 @@ def test_a_broken_system_fails_its_check_and_no_other(broken):
     found = failed(check(broken=broken))
     name, sentence = SAID[broken]
     found.pop("trials end", None) if broken in NONE_ENDS else None
+    found.pop("determinism", None) if broken == "keeps" else None  # what it reads differs too
     assert set(found) == {name}, found
     assert any(sentence in said for said in found[name]), found[name]
     assert all(said.endswith(".") for said in found[name])

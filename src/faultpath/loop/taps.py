@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.arrays import Array, differs, namespace, place, read_only, to_numpy
+from faultpath.core.arrays import Array, copy, differs, namespace, place, read_only, to_numpy
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.faults import Draws, Fault
@@ -25,6 +25,7 @@ from faultpath.loop.reading import (
 )
 from faultpath.loop.receipts import Guard, Receipts, Tally, check_delivered
 from faultpath.loop.tap import Corruption, DeliveryListener, Tap, wire
+from faultpath.loop.trajectory import Trajectories
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +77,8 @@ class Taps:
         self._scenes = tuple(scenes)
         self._active: Array = None
         self._placed: Array = None
+        self._kept_mask: Array = None
+        self._trajectories = Trajectories(len(self._scenes))
         self._faulted, self._altered = Tally(), Tally()
         self._open: Array = None
         self._closed: Array = None
@@ -161,6 +164,7 @@ class Taps:
                     got = self._closed
                 elif tap.guard is not None:
                     got = tap.guard.hand_out(got)
+                self._trajectories.note(got, self._ran())
             tap.cached = got
         elif value is not tap.value:
             tap.check_same(value, step)
@@ -214,6 +218,17 @@ class Taps:
     def set_active(self, mask: Array | None) -> None:
         """Say which scenes still run, a boolean array `[B]`; `None`: all. Receipts count these."""
         self._active = self._placed = mask
+        self._kept_mask = None
+
+    def _ran(self) -> Array:
+        """Return a copy of the mask of scenes that run: a plant may write to its own later."""
+        if self._kept_mask is None and self._active is not None:
+            self._kept_mask = copy(self._active)
+        return self._kept_mask
+
+    def trajectory_hashes(self) -> tuple[str, ...]:
+        """Return a hash a scene of all that its readers got while it ran; waits for the device."""
+        return self._trajectories.hashes()
 
     def _running(self, mask: Any, reading: Array) -> Any:
         """Return `mask`, a bool or boolean array `[B]`, where the scene runs."""

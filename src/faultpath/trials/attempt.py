@@ -93,10 +93,15 @@ def attempt(
         steps = [outcome.steps(dt_s) for outcome in outcomes]
         taps.verify(np.array(steps, dtype=np.int64) - 1)
         receipts = taps.receipts()
-        counts = zip(receipts.steps_faulted, receipts.steps_altered, strict=True)
+        counts = receipts.steps_faulted, receipts.steps_altered, taps.trajectory_hashes()
         noted = tuple(
-            replace(outcome, faulted_steps=int(faulted), altered_steps=int(altered))
-            for outcome, (faulted, altered) in zip(outcomes, counts, strict=True)
+            replace(
+                outcome,
+                faulted_steps=int(faulted),
+                altered_steps=int(altered),
+                trajectory_hash=trajectory,
+            )
+            for outcome, faulted, altered, trajectory in zip(outcomes, *counts, strict=True)
         )
         return Done(noted, receipts.counts())
     except UserError as error:

@@ -81,6 +81,8 @@ class Outcome:
     error: str | None = None
     trace: NDArray[np.float32] | None = None
     """Position at each control step, `[T, 3]`, metres, world frame."""
+    trajectory_hash: str = ""
+    """Of all that its readers got while it ran, to the bit; empty where other tools ran it."""
 
     @property
     def failed(self) -> bool:
@@ -147,6 +149,7 @@ def checked(outcome: Outcome, metrics: Collection[str] = ()) -> Outcome:
             metrics={k: _number(k, v) for k, v in outcome.metrics.items() if v is not None},
             faulted_steps=0,
             altered_steps=0,
+            trajectory_hash="",
             error=None if outcome.error is None else _text(outcome.error),
             trace=None if outcome.trace is None else _path(outcome.trace),
         )

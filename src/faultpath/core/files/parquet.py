@@ -101,7 +101,7 @@ def decode(
     """Return the rows of a Parquet file and its notes.
 
     Beside the columns of `schema` the rows have all others of the type `more`, which may have gaps.
-    `Unreadable` when a column of `schema` is not there, or has gaps and is not in `may_lack`.
+    `Unreadable` when a column of `schema` that is not in `may_lack` is not there or has gaps.
     """
     table = read_table(data)
     others = [f.name for f in table.schema if f.type == more and f.name not in schema]
@@ -109,6 +109,9 @@ def decode(
     columns: list[list[Any]] = []
     for name, kind in kinds.items():
         if name not in table.column_names:
+            if name in may_lack:
+                columns.append([None] * table.num_rows)
+                continue
             raise Unreadable(f"there is no column {name!r}")
         column = table.column(name)
         if column.type != kind:

@@ -40,7 +40,10 @@ def unanswered(seen: Seen) -> Iterator[tuple[str, tuple[str, str]]]:
             continue
         first = seen.of(variant, "first")
         clean = first.readings(dt_s)
-        ends = tuple(replace(outcome, faulted_steps=0, altered_steps=0) for outcome in run.outcomes)
+        ends = tuple(
+            replace(outcome, faulted_steps=0, altered_steps=0, trajectory_hash="")
+            for outcome in run.outcomes
+        )
         alike = all(clean.get(key, value) == value for key, value in run.readings(dt_s).items())
         if alike and not (ends and difference(first.outcomes, Done(ends, ()))):
             yield variant, tap

@@ -8,6 +8,7 @@ import hashlib
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -24,10 +25,14 @@ from faultpath.trials.store.folder import RunFolder
 
 SAMPLE = 4
 """Scenes of a unit that run again."""
+_TRAJECTORY = "trajectory_hash"
 
 
 def difference(first: Sequence[Outcome], reply: Reply) -> str:
-    """Say how a second run of the same scenes differs; empty where it is the same to the bit."""
+    """Say how a second run of the same scenes differs; empty where it is the same to the bit.
+
+    Trajectories count where both runs have a hash of them.
+    """
     if isinstance(reply, Died):
         return f"could not be run again ({reply.how}), which differs"
     if not isinstance(reply, Done):
@@ -41,7 +46,8 @@ def difference(first: Sequence[Outcome], reply: Reply) -> str:
         name for gaps in differences.values() for name in gaps if name != "status"
     ):
         most = max(gaps.get(name, 0.0) for gaps in differences.values())
-        parts.append(f"{name} by up to {most:.3g}" if math.isfinite(most) else f"{name} too")
+        label = "what readers got" if name == _TRAJECTORY else name
+        parts.append(f"{label} by up to {most:.3g}" if math.isfinite(most) else f"{label} too")
     summary = ", ".join(parts)
     scene = next(iter(differences))
     return f"differs in {len(differences)} of {len(first)}, {scene!r} for one ({summary})"
@@ -57,6 +63,8 @@ def _gaps(first: Sequence[Outcome], again: Done) -> dict[str, dict[str, float]]:
             a: Any = mine.get(name)
             b: Any = theirs.get(name)
             if name in ("metrics", "error") or np.array_equal(a, b):
+                continue
+            if name == _TRAJECTORY and not (a and b):
                 continue
             gap = math.inf
             if isinstance(a, int | float) and isinstance(b, int | float):
@@ -125,7 +133,11 @@ class Rechecks:
         """Compare what came of a second run with the first; keep what that showed."""
         assert task.recheck is not None
         arm = task.unit.arm
-        first = [self._outcomes[arm.key(), scene] for scene in task.scenes]
+        # Results have to repeat here: that readings differ in a last bit with the number of scenes
+        # in a call, as products of matrices do, is no reason to conclude nothing.
+        first = [
+            replace(self._outcomes[arm.key(), scene], trajectory_hash="") for scene in task.scenes
+        ]
         wrote, other = "", task.scenes
         if isinstance(reply, Wrong) and isinstance(reply.error, WrittenTo):
             wrote, other = str(reply.error), ()

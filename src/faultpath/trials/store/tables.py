@@ -32,9 +32,10 @@ _PLACE = {"scene_index": INTEGER, "topology": TEXT}
 _END = {"status": TEXT, "time_s": NUMBER}
 _COUNTS = {"faulted_steps": INTEGER, "altered_steps": INTEGER}
 _HASHES = dict.fromkeys(("initial_hash", "disturbance_hash", "planner_noise_hash"), TEXT)
-_RESULT = {**_COUNTS, **_HASHES, "error": TEXT}
+_TRAJECTORY = {"trajectory_hash": TEXT}
+_RESULT = {**_COUNTS, **_HASHES, **_TRAJECTORY, "error": TEXT}
 _TRACE = dict.fromkeys(("x_m", "y_m", "z_m"), NUMBERS)
-_MAY_LACK = ("time_s", "error", *_TRACE)
+_MAY_LACK = ("time_s", "error", *_TRAJECTORY, *_TRACE)
 _TRACES = {**_ADDRESS, **_TRACE}
 FIXED = frozenset({*_ADDRESS, *_PLACE, *_END, *_RESULT, *_TRACE})
 """Columns that no metric can be called."""
@@ -158,6 +159,7 @@ def _outcome(row: Mapping[str, Any], trace: Trace | None, untimed: bool = False)
     fixed = {"scene", *_END, *_RESULT}
     others = fixed.union(_ADDRESS, _PLACE, _TRACE)
     fields = {name: row[name] for name in fixed}
+    fields["trajectory_hash"] = fields["trajectory_hash"] or ""  # files of other tools lack it
     metrics = {k: v for k, v in row.items() if k not in others and v is not None}
     try:
         fields["status"] = Status(fields["status"])

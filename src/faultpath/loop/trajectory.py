@@ -1,0 +1,66 @@
+"""A hash of each trial's trajectory: all that its readers got while it ran."""
+
+from hashlib import blake2b
+from math import prod
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.core.arrays import Array, copy, is_array, to_numpy
+
+_MOST_WAITING = 1 << 22
+"""Bytes that wait to be hashed together: one call a scene is far cheaper than one a delivery."""
+
+
+class Trajectories:
+    """The trajectories of the scenes of a block.
+
+    Values count by their bits in the order in which they were delivered, and names do not: what
+    is only called otherwise has the same trajectory. A scene that has ended adds nothing, so that
+    its hash does not depend on the others of its block.
+    """
+
+    def __init__(self, n_scenes: int) -> None:
+        self._hashes = [blake2b(digest_size=8) for _ in range(n_scenes)]
+        self._waiting: list[tuple[Array, Array]] = []
+        """Values, and which scenes ran then: `[B, ...]` and bool `[B]`."""
+        self._size = 0
+
+    def note(self, value: Any, running: Array) -> None:
+        """Take in what a reader got; `running` is `None` where all scenes run.
+
+        What is no array with a row a scene, such as the answers of a query, is left out: it shows
+        in what is done with it.
+        """
+        scenes = len(self._hashes)
+        if not is_array(value) or value.shape[:1] != (scenes,) or 0 in value.shape:
+            return
+        self._waiting.append((copy(value), running))
+        self._size += prod(value.shape) * 8
+        if self._size > _MOST_WAITING:
+            self._take_in()
+
+    def hashes(self) -> tuple[str, ...]:
+        """Return a hash a scene, of all that was noted so far; this waits for the device."""
+        self._take_in()
+        return tuple(state.hexdigest() for state in self._hashes)
+
+    def _take_in(self) -> None:
+        if not self._waiting:
+            return
+        scenes = len(self._hashes)
+        masks, parts = list[NDArray[np.bool_]](), list[NDArray[np.uint8]]()
+        for value, running in self._waiting:
+            rows = np.ascontiguousarray(to_numpy(value).reshape(scenes, -1)).view(np.uint8)
+            mask = np.ones(scenes, np.bool_) if running is None else to_numpy(running)
+            parts.append(rows)
+            masks.append(np.broadcast_to(mask, (scenes,)))
+        numbers = np.concatenate(parts, axis=1)
+        widths = [part.shape[1] for part in parts]
+        for state, row, ran in zip(self._hashes, numbers, np.stack(masks, axis=1), strict=True):
+            if ran.all():
+                state.update(row)
+            elif ran.any():
+                state.update(row[np.repeat(ran, widths)])
+        self._waiting, self._size = [], 0
