@@ -10,7 +10,6 @@ from io import StringIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from flown_code import ROOT, changed, flown_by
 from pydantic import BaseModel, ValidationError
 from rich.console import Console, RenderableType
 
@@ -22,13 +21,19 @@ from faultpath.decisions.tables import Entry, Line, Table
 from faultpath.decisions.tables.markdown import grid
 from faultpath.trials.provenance import RunProvenance
 
-sys.path += [str(ROOT / "experiments" / study) for study in ("carry-over", "state-errors")]
+sys.path += [
+    str(Path(__file__).resolve().parents[1] / "experiments" / study)
+    for study in ("carry-over", "state-errors")
+]
 from carry_design import Flown
 from state_design import SensorAudits
 
+ROOT = Path(__file__).resolve().parents[1]
 REFERENCE = ROOT / "docs" / "reference"
 IMAGES = ROOT / "docs" / "images"
 PROVENANCE, CELLS, AUDITS = "provenance.json", "cells.json", "audits.json"
+REPEATS = "repeats.json"
+"""Result of repeating a sample of a run's trials, which `tools/references.py` writes."""
 RUNS: dict[str, tuple[type[BaseModel], tuple[str, ...]]] = {
     RECORD: (DecisionRecord, (*MADE_FROM, PROVENANCE, "report.html", "table.md")),
     MAP: (MapRecord, (*MAP_MADE_FROM, PROVENANCE, "table.md")),
@@ -50,6 +55,35 @@ class Picture(NamedTuple):
     svg: str
 
 
+class Repeats(BaseModel):
+    """How many of a run's trials came out as they did, run by the code that is here."""
+
+    trials: int
+    """All trials of the run."""
+    sampled: int
+    repeated: int
+    """To the bit."""
+    near: int
+    """With the same end, and numbers within a thousandth; those repeated to the bit included."""
+    first: str = ""
+    """The first trial that was not repeated to the bit, and in what it differs."""
+
+    @property
+    def current(self) -> bool:
+        """Whether all were repeated, to the bit or nearly."""
+        return self.near == self.sampled > 0
+
+    def __str__(self) -> str:
+        exact = f"{self.repeated} of its {self.trials} trials repeated to the bit by this version"
+        if self.repeated == self.sampled:
+            return exact
+        more = self.near - self.repeated
+        if self.current:
+            return f"{exact}, {more} more within a thousandth"
+        lost = self.sampled - self.near
+        return f"this version gives other results in {lost} of {self.sampled} of its trials"
+
+
 @dataclass(frozen=True)
 class Run:
     """A stored run."""
@@ -59,9 +93,18 @@ class Run:
     provenance: RunProvenance
 
     @property
+    def repeats(self) -> Repeats | None:
+        """What repeating some of its trials gave; `None` where that was not tried yet."""
+        path = REFERENCE / self.name / REPEATS
+        return parsed(path, Repeats) if path.is_file() else None
+
+    @property
     def flown(self) -> str:
-        """By which code it was flown, in a sentence, and whether that is the code that is here."""
-        return flown_by(self.provenance, *self._system)
+        """By which version it was run, and how many of its trials the code that is here repeats."""
+        run, repeats = self.provenance, self.repeats
+        commit = f" (`{run.commit[:12]}`)" if run.commit else ""
+        text = f"Run by faultpath {run.faultpath_version}{commit}"
+        return f"{text}; {repeats}." if repeats else f"{text}."
 
     @property
     def processor(self) -> str:
@@ -70,16 +113,8 @@ class Run:
 
     @property
     def stale(self) -> bool:
-        """Whether the code or the data that it was flown with are not those that are here."""
-        return changed(self.provenance, *self._system)
-
-    @property
-    def _system(self) -> tuple[str, dict[str, str]]:
-        """Name and options of the system that was flown."""
-        question = getattr(self.record, "question", None)
-        if question is not None:
-            return question.system, question.options
-        return "quadrotor", getattr(self.record, "options", {})
+        """Whether the code that is here does not repeat it, or nobody has asked it to."""
+        return self.repeats is None or not self.repeats.current
 
 
 def kind_of(folder: Path) -> str:

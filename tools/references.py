@@ -1,7 +1,7 @@
-"""Fly reference runs again whose code has changed since, the quickest first.
+"""Repeat some trials of every reference run, and run those again that do not repeat.
 
-    python tools/references.py            fly all that are stale
-    python tools/references.py NAME ...   fly these, stale or not
+    python tools/references.py            run all again that are stale, the quickest first
+    python tools/references.py NAME ...   run these, stale or not
     python tools/references.py --list     say which are stale, and how long each took
 
 Runs fly from a checkout of the last commit, in `build/references`. Each becomes the reference as
@@ -18,7 +18,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import documents
-from blocks import PROVENANCE, REFERENCE, ROOT, Run, load
+import repeats
+from blocks import PROVENANCE, REFERENCE, ROOT, Repeats, Run, load
 
 from faultpath.trials.execution.provenance import processor
 
@@ -42,11 +43,10 @@ def main() -> None:
     runs = by_time()
     if unknown := sorted({*options.names} - {*runs}):
         parser.error(f"no reference run is called {unknown[0]}: there are {', '.join(runs)}")
-    chosen = options.names or [name for name, run in runs.items() if run.stale]
+    chosen = options.names or [
+        name for name, run in runs.items() if (result := show(run)) and not result.current
+    ]
     if options.list:
-        for name, run in runs.items():
-            state = "stale" if run.stale else "as it was flown"
-            print(f"{name:36s}{run.provenance.wall_s:6.0f} s  {state}")
         return
     commit = checkout()
     for name in chosen:
@@ -55,6 +55,31 @@ def main() -> None:
         fly(runs[name], commit)
     if chosen:
         sys.exit(documents.main(["--images"]))
+
+
+def show(run: Run) -> Repeats | None:
+    """Repeat a sample of a run, print what came of it, and keep that beside the run.
+
+    Returns `None` where the packages that its system needs are not installed.
+    """
+    python = ROOT / environment(run) / "bin" / "python"
+    result: Repeats | None = None
+    if environment(run) == ".venv":
+        result = repeats.write(run)
+    elif python.is_file():
+        code = "import sys, blocks, repeats; repeats.write(blocks.load(sys.argv[1]))"
+        variables = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, sources(ROOT)))}
+        subprocess.run((python, "-c", code, run.name), cwd=ROOT, env=variables, check=True)
+        result = run.repeats
+    text = str(result) if result else f"not asked: it needs {environment(run)}"
+    text += f" ({result.first})" if result and result.first else ""
+    print(f"{run.name:36s}{run.provenance.wall_s:6.0f} s  {text}", flush=True)
+    return result
+
+
+def sources(tree: Path) -> list[Path]:
+    """Return the folders of a checkout from which its packages are imported."""
+    return [tree / part / "src" for part in (".", "quadrotor", "paper")] + [tree / "tools"]
 
 
 def by_time() -> dict[str, Run]:
@@ -84,14 +109,15 @@ def fly(run: Run, commit: str) -> None:
     folder = Path("runs", f"{run.name}-{commit[:12]}")
     command = list(run.provenance.command[1:])
     command[command.index("--out") + 1] = str(folder)
-    sources = (TREE / part / "src" for part in (".", "quadrotor", "paper"))
     variables = os.environ | {
-        "PYTHONPATH": os.pathsep.join(map(str, sources)),
+        "PYTHONPATH": os.pathsep.join(map(str, sources(TREE))),
         "OMP_NUM_THREADS": "1",
     }
     python = ROOT / environment(run) / "bin" / "python"
     subprocess.run((python, "-m", "faultpath", *command), cwd=TREE, env=variables, check=True)
     documents.take(f"{run.name}={TREE / folder}")
+    load.cache_clear()
+    show(load(run.name))
 
 
 def elsewhere(run: Run) -> str:

@@ -3,9 +3,9 @@
 import sys
 from dataclasses import replace
 
-import flown_code
 import pytest
 import references
+from blocks import Repeats
 
 
 def test_every_stored_audit_and_map_is_flown_again_and_the_quickest_first() -> None:
@@ -35,28 +35,33 @@ def test_a_run_of_another_kind_of_processor_says_that_trials_may_end_differently
     assert "flown on Abacus" in references.elsewhere(replace(toy, provenance=there))
 
 
-def test_only_a_run_of_other_code_is_stale_and_flown_again(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Both sentences about a run end with "changed since": only the digests tell them apart."""
-    toy, here = references.load("toy"), flown_code._state("examples/toy.py:create", ())
-    ours = toy.provenance.model_copy(update={"sources": here.files, "data": here.data})
-    theirs = ours.model_copy(update={"sources": dict.fromkeys(here.files, "0" * 64)})
-    runs = {
-        name: replace(toy, name=name, provenance=of)
-        for name, of in (("same", ours), ("other", theirs))
-    }
-    flown: list[str] = []
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Two runs, of which the code repeats one; the names of those that are run again."""
+    toy, again = references.load("toy"), list[str]()
+    whole = Repeats(trials=800, sampled=2, repeated=2, near=2)
+    lost = whole.model_copy(update={"repeated": 1, "near": 1, "first": "a, b: other status"})
+    results = {"same": whole, "other": lost}
+    runs = {name: replace(toy, name=name) for name in results}
     monkeypatch.setattr(references, "by_time", lambda: runs)
+    monkeypatch.setattr(references.repeats, "write", lambda run: results[run.name])
     monkeypatch.setattr(references, "checkout", lambda: "0" * 40)
-    monkeypatch.setattr(references, "fly", lambda run, _: flown.append(run.name))
+    monkeypatch.setattr(references, "fly", lambda run, _: again.append(run.name))
     monkeypatch.setattr(references.documents, "main", lambda _: 0)
+    return again
+
+
+def test_the_list_says_which_runs_repeat_and_runs_nothing(asked, monkeypatch, capsys) -> None:
     monkeypatch.setattr(sys, "argv", ["references.py", "--list"])
     references.main()
     same, other = capsys.readouterr().out.splitlines()
-    assert same.endswith("  as it was flown")
-    assert other.endswith("  stale")
+    assert same.endswith("2 of its 800 trials repeated to the bit by this version")
+    assert other.endswith("other results in 1 of 2 of its trials (a, b: other status)")
+    assert asked == []
+
+
+def test_only_a_run_that_does_not_repeat_is_run_again(asked, monkeypatch) -> None:
     monkeypatch.setattr(sys, "argv", ["references.py"])
     with pytest.raises(SystemExit):
         references.main()
-    assert flown == ["other"]
+    assert asked == ["other"]

@@ -1,0 +1,56 @@
+"""What pages say of a stored run is so: the code that is here repeats a sample of its trials."""
+
+from pathlib import Path
+
+import pytest
+import references
+import repeats
+from blocks import REFERENCE, Repeats, load
+
+HERE = [
+    name for name, run in references.by_time().items() if references.environment(run) == ".venv"
+]
+"""Runs whose packages are those of the tests; `make test-foreign` asks the others."""
+QUADROTOR = "quadrotor-L3"
+
+
+@pytest.mark.parametrize("name", HERE)
+def test_a_sample_of_a_run_comes_out_as_its_page_says(name: str) -> None:
+    run = load(name)
+    assert repeats.repeat(run) == run.repeats
+
+
+def test_a_changed_constant_of_the_plant_is_named_by_the_trial_that_differs(monkeypatch) -> None:
+    compiled = pytest.importorskip("faultpath_quadrotor.plant.compiled")
+    monkeypatch.setattr(compiled, "GRAVITY_MPS2", compiled.GRAVITY_MPS2 * 1.0001)
+    result = repeats.repeat(load(QUADROTOR))
+    assert result.repeated == 0
+    assert not result.current
+    assert "seed 0: other" in result.first
+    assert "trajectory" in result.first
+
+
+@pytest.mark.parametrize(
+    ("repeated", "near", "current", "text"),
+    [
+        (8, 8, True, "8 of its 800 trials repeated to the bit by this version"),
+        (5, 8, True, "to the bit by this version, 3 more within a thousandth"),
+        (5, 7, False, "this version gives other results in 1 of 8 of its trials"),
+        (0, 0, False, "this version gives other results in 8 of 8 of its trials"),
+    ],
+)
+def test_a_page_says_how_many_trials_repeat(repeated, near, current, text) -> None:
+    result = Repeats(trials=800, sampled=8, repeated=repeated, near=near)
+    assert str(result).endswith(text)
+    assert result.current is current
+
+
+def test_the_sample_is_the_same_each_time_and_has_every_version_and_condition() -> None:
+    run = load("toy")
+    table = repeats.read_outcomes(Path(REFERENCE / "toy" / "outcomes.parquet"))
+    before = {repeats.address_of(row): row.outcome for row in table.rows}
+    with repeats.chdir(repeats.ROOT):
+        _, study = repeats.planned(run)
+    drawn = [at for at, _ in repeats.sample(run, study, before)]
+    assert drawn == [at for at, _ in repeats.sample(run, study, dict(reversed(before.items())))]
+    assert {(at.variant, at.path) for at in drawn} == {(at.variant, at.path) for at in before}

@@ -1,0 +1,123 @@
+"""Whether the code that is here repeats the trials of a stored run: a fixed sample of them.
+
+The sample is drawn by a hash over scenes and seeds, with every version and condition; of a map,
+which has hundreds of conditions, over these as well. A trial repeats where status, time and the
+hash of its trajectory are equal.
+"""
+
+import hashlib
+from collections.abc import Sequence
+from contextlib import chdir
+from typing import Any
+
+from blocks import OUTCOMES, REFERENCE, REPEATS, ROOT, Repeats, Run
+
+from faultpath.decisions.map.lattice import UNITS
+from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.study import plan_map
+from faultpath.decisions.planning import plan_audit
+from faultpath.trials import Arm, Outcome, Study, System, SystemSpec, library_of, load_system
+from faultpath.trials.attempt import Done, attempt
+from faultpath.trials.question import AuditQuestion, MapQuestion
+from faultpath.trials.store.folder import read_outcomes
+from faultpath.trials.store.tables import TrialAddress, address_of
+
+SECONDS = 3.0
+"""About how long a sample may take; a scene with all versions and conditions is the least."""
+_CONDITIONS = 8
+"""Conditions of a map that are sampled."""
+_NEAR = 1e-3
+"""Share by which a number of a trial may differ where other people's packages compute it."""
+
+
+def repeat(run: Run) -> Repeats:
+    """Run a sample of a stored run's trials with the code that is here and compare them."""
+    table = read_outcomes(REFERENCE / run.name / OUTCOMES)
+    before = {address_of(row): row.outcome for row in table.rows if not row.outcome.failed}
+    with chdir(ROOT):
+        system, study = planned(run)
+        arms: dict[str, Arm] = {}
+        at: dict[str, list[TrialAddress]] = {}
+        for address, arm in sample(run, study, before):
+            arms[arm.key()] = arm
+            at.setdefault(arm.key(), []).append(address)
+        repeated, near, first = 0, 0, ""
+        for key, addresses in at.items():
+            scenes = tuple(dict.fromkeys(address.scene for address in addresses))
+            reply = attempt(system, arms[key], scenes)
+            again = {o.scene: o for o in reply.outcomes} if isinstance(reply, Done) else {}
+            for address in addresses:
+                differs = _differences(before[address], again.get(address.scene))
+                repeated += not differs
+                near += not differs or _alike(before[address], again.get(address.scene))
+                place = ", ".join((address.variant, address.path, address.scene))
+                first = first or (differs and f"{place}, seed {address.seed}: {differs}")
+    count = sum(map(len, at.values()))
+    return Repeats(trials=len(table.rows), sampled=count, repeated=repeated, near=near, first=first)
+
+
+def planned(run: Run) -> tuple[System, Study]:
+    """Return the system and the trials of a stored audit or map, as the code here plans them."""
+    question: Any = run.record.question
+    spec = SystemSpec(name=question.system, options=question.options)
+    system = load_system(spec)
+    library = library_of(system, question.library)
+    kind = MapQuestion if isinstance(run.record, MapRecord) else AuditQuestion
+    fields = {n: v for n in kind.model_fields if (v := getattr(question, n, None)) is not None}
+    request: Any = kind(**{**fields, "scenes": question.n_scenes})
+    if not isinstance(run.record, MapRecord):
+        return system, plan_audit(system, spec, request, library).study
+    errors = (point.errors for point in run.record.points)
+    points = [tuple(round(error / question.up_to * UNITS) for error in pair) for pair in errors]
+    return system, plan_map(system, spec, request, library).study(points)  # pyright: ignore
+
+
+def sample(
+    run: Run, study: Study, before: dict[TrialAddress, Outcome]
+) -> Sequence[tuple[TrialAddress, Arm]]:
+    """Return the trials to repeat, always the same of the same run."""
+    arms = {(row.variant, row.path, row.seed): row.arm for row in study.rows}
+    conditions = sorted({path for _, path, _ in arms}, key=_lot)
+    conditions = conditions[:_CONDITIONS] if isinstance(run.record, MapRecord) else conditions
+    seeds = {seed for _, _, seed in arms}
+    places = sorted(
+        {(at.scene, at.seed) for at in before if at.seed in seeds},
+        key=lambda place: _lot(*map(str, place)),
+    )
+    made = run.provenance
+    cost = made.wall_s * max(made.workers, 1) / len(before)
+    each = len(conditions) * len({variant for variant, _, _ in arms})
+    places = places[: min(8, max(1, int(SECONDS / (cost * each))))]
+    return [
+        (at, arms[at[:3]])
+        for at in sorted(before)
+        if at[:3] in arms and at.path in conditions and (at.scene, at.seed) in places
+    ]
+
+
+def _lot(*parts: str) -> str:
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def _differences(first: Outcome, again: Outcome | None) -> str:
+    if again is None or again.failed:
+        return "failed now"
+    names = ["status", "time_s", *(["trajectory_hash"] if first.trajectory_hash else [])]
+    gaps = [n.partition("_")[0] for n in names if getattr(first, n) != getattr(again, n)]
+    gaps += [n for n, value in first.metrics.items() if again.metrics.get(n) != value]
+    return ", ".join(gaps) and f"other {', '.join(gaps)}"
+
+
+def _alike(first: Outcome, again: Outcome | None) -> bool:
+    if again is None or again.status is not first.status:
+        return False
+    pairs = [(first.time_s, again.time_s)]
+    pairs += [(v or 0.0, again.metrics.get(n) or 0.0) for n, v in first.metrics.items()]
+    return all(abs(one - two) <= _NEAR * max(1.0, abs(one)) for one, two in pairs)
+
+
+def write(run: Run) -> Repeats:
+    """Repeat a sample, and keep what came of it beside the run."""
+    result = repeat(run)
+    (REFERENCE / run.name / REPEATS).write_text(result.model_dump_json(indent=1) + "\n", "utf-8")
+    return result
