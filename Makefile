@@ -25,7 +25,7 @@ unless_given = $(if $(filter $(1) $(1)=%,$(ARGS)),,$(1) $(2))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup setup-runtime prerequisites audit confirm reproduce train test test-pythons test-foreign fuzz statistics bench references docs lint format clean distclean
+.PHONY: help setup setup-runtime prerequisites audit confirm decision reproduce train test test-pythons test-foreign fuzz statistics bench references docs lint format clean distclean
 
 help: ## Show this list
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -43,6 +43,10 @@ audit: $(STAMPS)/runtime ## Audit a repair of the quadrotor's wind reconstructio
 confirm: $(STAMPS)/runtime ## Ask the same of 300 new scenes and three trainings: it decides what that leaves open
 	$(BIN)/faultpath audit quadrotor --baseline gru --repair gru+dcc --fault calibration=+0.1 \
 	  --library confirmation --wind L3 --seeds 0,1,2 $(ARGS)
+
+decision: $(STAMPS)/runtime ## Ask how large the loss is where the fault is shared: 400 scenes, six trainings; resumes
+	$(BIN)/faultpath audit quadrotor --baseline gru --repair gru+dcc --fault calibration=+0.1 \
+	  --library decision --wind L3 --seeds 0,1,2,3,4,5 $(ARGS)
 
 reproduce: $(STAMPS)/runtime ## Reproduce the paper, quickly; all of it with ARGS="--profile paper"
 	$(BIN)/faultpath reproduce $(ARGS)

@@ -12,6 +12,7 @@ FROZEN_SEEDS = {
     "selection": (202, 100),
     "held-out": (303, 100),
     "confirmation": (20261126, 300),
+    "decision": (20261129, 400),
 }
 """Seed and number of scenes of the libraries of the package."""
 

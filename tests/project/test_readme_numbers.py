@@ -10,6 +10,7 @@ from subprocess import CompletedProcess
 
 import documents
 import pytest
+from faultpath_quadrotor.scenes.library import load_library
 
 from faultpath.decisions.decide import decide
 from faultpath.decisions.model import DecisionRecord
@@ -109,6 +110,15 @@ def test_the_page_of_the_quadrotor_shows_the_command_of_make(target: str, name: 
     assert shown is not None
     words = shown[1].replace("\\\n", "").split()
     assert words == ["faultpath", "audit", "quadrotor", *recipe(target)]
+
+
+def test_make_decision_asks_what_make_confirm_asks_of_its_own_scenes_and_trainings() -> None:
+    first, second = (
+        dict(zip(words[::2], words[1::2], strict=True))
+        for words in map(recipe, ("confirm", "decision"))
+    )
+    assert second == first | {"--library": "decision", "--seeds": "0,1,2,3,4,5"}
+    assert len(load_library("decision")) == 400
 
 
 @pytest.mark.parametrize("given", ["--wind L0 --seeds 0,1", "--wind=L0"])

@@ -19,8 +19,9 @@ from faultpath_quadrotor.scenes.soundness import misnamed, unsound
 
 FORMAT = "faultpath-scenes/1"
 
-FROZEN = ("training", "selection", "held-out", "confirmation")
-"""The libraries of the package, 100 scenes each [paper, setup]; `confirmation` has 300."""
+FROZEN = ("training", "selection", "held-out", "confirmation", "decision")
+"""The libraries of the package, 100 scenes each [paper, setup]; `confirmation` has 300 and
+`decision` 400."""
 
 
 @dataclass(frozen=True)
