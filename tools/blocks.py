@@ -94,7 +94,7 @@ class Run:
 
     @property
     def repeats(self) -> Repeats | None:
-        """What repeating some of its trials gave; `None` where that was not tried yet."""
+        """Result of repeating some of its trials; `None` where that was not tried yet."""
         path = REFERENCE / self.name / REPEATS
         return parsed(path, Repeats) if path.is_file() else None
 

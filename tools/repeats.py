@@ -84,10 +84,10 @@ def sample(
         {(at.scene, at.seed) for at in before if at.seed in seeds},
         key=lambda place: _lot(*map(str, place)),
     )
-    made = run.provenance
-    cost = made.wall_s * max(made.workers, 1) / len(before)
-    each = len(conditions) * len({variant for variant, _, _ in arms})
-    places = places[: min(8, max(1, int(SECONDS / (cost * each))))]
+    origin = run.provenance
+    cost = origin.wall_s * max(origin.workers, 1) / len(before)
+    trials = len(conditions) * len({variant for variant, _, _ in arms})
+    places = places[: min(8, max(1, int(SECONDS / (cost * trials))))]
     return [
         (at, arms[at[:3]])
         for at in sorted(before)
