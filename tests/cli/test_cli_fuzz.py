@@ -30,7 +30,6 @@ RIGHT = {
     "check": [TOY, "--library", "carts", "--scenes", "1", "--workers", "0"],
     "init": ["my_rover"],
     "judge": ["results.csv", "--baseline", "old", "--repair", "new"],
-    "log": ["text.txt", "--columns", "px4"],
     "map": [TOY, *ARMS, "--fault", "gain", "--against", "controller", "--workers", "0"],
     "plan": [TOY, *ARMS, "--fault", "gain:scale=0.6"],
     "replay": ["folder"],
