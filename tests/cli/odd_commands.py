@@ -14,7 +14,6 @@ from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
-import yaml
 from cli_runs import ROOT, TOY, faultpath
 from odd_inputs import (
     VALUES,
@@ -24,7 +23,6 @@ from odd_inputs import (
     cells_of,
     json_text,
     lines_of,
-    misspelt,
     sign,
     torn,
 )
@@ -45,16 +43,6 @@ ROWS: list[dict[str, Any]] = [
     for at in ("nominal", "shared")
     for n, won in enumerate(each)
 ]
-STUDY = {
-    "faultpath_study": 1,
-    "system": TOY,
-    "baseline": "calibrated",
-    "repair": "blind",
-    "library": "carts",
-    "scenes": 1,
-    "seeds": [0],
-    "audits": [{"name": "gain", "fault": "gain:scale=0.6"}],
-}
 COMMANDS = {
     "audit": ["audit", *RUN, "--scenes", 2, "--fault", "gain:scale=0.6"],
     "map": [
@@ -136,18 +124,9 @@ def replay(base: Path, here: Path, rng: Random) -> list[object]:
     return ["replay", "run", *rng.choice(([], ["--signals"], ["--scene", rng.choice(VALUES)]))]
 
 
-def study(base: Path, here: Path, rng: Random) -> list[object]:
-    """Carry out an altered study file."""
-    text = yaml.safe_dump(altered(json.loads(json.dumps(STUDY)), rng), allow_unicode=True)
-    text = misspelt(text, rng) if rng.random() < 0.3 else text
-    (here / "study.yaml").write_text(text, "utf-8", "surrogatepass")
-    return ["audit", "--study", "study.yaml", "--out", "runs", "--workers", 0]
-
-
 CASES: dict[str, Case] = {
     **{f"judge {suffix}": partial(judge_table, suffix) for suffix in ("csv", "jsonl", "parquet")},
     **{f"judge {k}": partial(judge_tool, k) for k in ("episodes", "tasks", "inspect", "lm-eval")},
     **{f"report {kind}": partial(report, kind) for kind in ("audit", "judge", "map")},
     "replay": replay,
-    "study": study,
 }

@@ -31,7 +31,6 @@ RIGHT = {
     "init": ["my_rover"],
     "judge": ["results.csv", "--baseline", "old", "--repair", "new"],
     "map": [TOY, *ARMS, "--fault", "gain", "--against", "controller", "--workers", "0"],
-    "plan": [TOY, *ARMS, "--fault", "gain:scale=0.6"],
     "replay": ["folder"],
     "report": ["folder"],
     "reproduce": ["table-99"],

@@ -14,7 +14,6 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, read_json, read_yaml, yaml_text
-from faultpath.decisions.plan.study import read_study
 from faultpath.interface import read_interface
 from faultpath.learning.model_card import FitRecord, read_card
 from faultpath.trials.store.atomic import locked
@@ -43,7 +42,6 @@ EVIDENCE = "faultpath_paper.evidence.table:read_evidence"
 RESULTS = "faultpath_paper.run:read_results"
 READERS: dict[str, tuple[str, Read]] = {
     "interface": ("toy.yaml", read_interface),
-    "study": ("study.yaml", read_study),
     "library of scenes": ("mine.json", lambda path: _named(SCENES)(path)),
     "card of a model": ("model.json", _card),
     "record of a fit": ("fit.json", lambda path: read_card(path, FitRecord)),

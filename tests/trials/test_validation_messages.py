@@ -11,7 +11,6 @@ from faultpath.core.error_source import described
 from faultpath.core.results import Frozen
 from faultpath.core.validation_messages import Misfit, misfit_of
 from faultpath.decisions.map.model import MapRecord
-from faultpath.decisions.plan.plan import Plan
 from faultpath.faults import Fault, Scale
 from faultpath.trials import Deliveries
 
@@ -47,7 +46,7 @@ PYDANTIC = re.compile(
 )
 
 
-@pytest.mark.parametrize("model", [Deliveries, MapRecord, Plan])
+@pytest.mark.parametrize("model", [Deliveries, MapRecord])
 @pytest.mark.parametrize("number", [0, 2])
 def test_a_format_that_no_version_wrote_is_refused(model: type, number: int) -> None:
     with pytest.raises(ValidationError) as caught:
