@@ -158,7 +158,7 @@ endef
 # A stamp is written only after everything before it has worked. $(VENV)/incomplete lies there while
 # pip writes, so an environment in which an install was cut short is built again from nothing.
 $(STAMPS)/runtime: PARTS := -e . -e ./quadrotor -e ./paper
-$(STAMPS)/dev: PARTS := -e '.[dev]' -e './quadrotor[mujoco,ulog,bags]' -e ./paper
+$(STAMPS)/dev: PARTS := -e '.[dev]' -e './quadrotor[mujoco]' -e ./paper
 $(STAMPS)/runtime $(STAMPS)/dev: $(INPUTS)
 	@if [ -e $(VENV)/incomplete ] || ! $(BIN)/python -m pip --version >/dev/null 2>&1; then \
 	  $(CHECK_PYTHON); \
@@ -187,7 +187,7 @@ $(BENCH)/ready: $(INPUTS) benchmarks/requirements.txt
 	@touch $(BENCH)/incomplete
 	@echo "Installing faultpath and what it is compared with into $(BENCH); the first time takes minutes"
 	@$(BENCH)/bin/python -m pip install --no-compile --disable-pip-version-check --quiet \
-	  -c constraints.txt -r benchmarks/requirements.txt -e . -e './quadrotor[mujoco,ulog]' -e ./paper
+	  -c constraints.txt -r benchmarks/requirements.txt -e . -e './quadrotor[mujoco]' -e ./paper
 	@rm $(BENCH)/incomplete
 	@touch $@
 

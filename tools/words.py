@@ -46,7 +46,7 @@ HOUSE = {
 """Words that users do not meet, by their pattern, and what to write instead."""
 FIELD = {
     "arm": r"lerobot\.md",
-    "flight": r"(?:quadrotor|paper)/|docs/(?:quadrotor|recorded-flights|state-errors|rotorpy"
+    "flight": r"(?:quadrotor|paper)/|docs/(?:quadrotor|state-errors|rotorpy"
     r"|basilisk|reproduction|carry-over|reversal-map|learning-quality|bring-your-own-model)",
 }
 """Files on robots, aircraft and spacecraft, by the word that has its plain meaning there."""

@@ -14,7 +14,6 @@ from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as pq
-import yaml
 from cli_runs import ROOT, TOY, faultpath
 from odd_inputs import (
     VALUES,
@@ -24,13 +23,11 @@ from odd_inputs import (
     cells_of,
     json_text,
     lines_of,
-    misspelt,
     sign,
     torn,
 )
 
 sys.path += [str(ROOT / "tests" / "api"), str(ROOT / "tests" / "quadrotor")]
-from flight_logs import MAP, flown, write, write_ulog
 from judged_files import inspect_log, lerobot, lm_eval
 
 Case = Callable[[Path, Path, Random], list[object]]
@@ -46,16 +43,6 @@ ROWS: list[dict[str, Any]] = [
     for at in ("nominal", "shared")
     for n, won in enumerate(each)
 ]
-STUDY = {
-    "faultpath_study": 1,
-    "system": TOY,
-    "baseline": "calibrated",
-    "repair": "blind",
-    "library": "carts",
-    "scenes": 1,
-    "seeds": [0],
-    "audits": [{"name": "gain", "fault": "gain:scale=0.6"}],
-}
 COMMANDS = {
     "audit": ["audit", *RUN, "--scenes", 2, "--fault", "gain:scale=0.6"],
     "map": [
@@ -67,17 +54,13 @@ COMMANDS = {
 
 
 def bases(folder: Path, kinds: tuple[str, ...]) -> None:
-    """Make a run of each kind, and the logs of a flight."""
+    """Make a run of each kind."""
     (folder / "all.csv").write_bytes(_csv().encode())
     shutil.copytree(ROOT / "docs" / "reference" / "map-toy", folder / "map")
     for kind in kinds:
         line = [folder / part if part == "all.csv" else part for part in COMMANDS[kind]]
         ended = faultpath(*line, "--out", folder / kind)
         assert ended.status in (0, 1), ended.err
-    columns = {name: values[:2000:8] for name, values in flown(10.0).items()}
-    for name in ("flight.csv", "flight.parquet"):
-        write(folder / name, columns)
-    write_ulog(folder / "flight.ulg", columns)
 
 
 def _csv() -> str:
@@ -141,41 +124,9 @@ def replay(base: Path, here: Path, rng: Random) -> list[object]:
     return ["replay", "run", *rng.choice(([], ["--signals"], ["--scene", rng.choice(VALUES)]))]
 
 
-def log(base: Path, here: Path, rng: Random) -> list[object]:
-    """Read an altered log, or one by an altered map."""
-    kind = rng.choice(("flight.csv", "flight.parquet", "flight.ulg"))
-    path, said = here / kind, MAP
-    shutil.copy(base / kind, path)
-    which = rng.random()
-    if which < 0.4:
-        said = yaml.safe_dump(altered(yaml.safe_load(MAP), rng))
-    elif which < 0.5:
-        said = misspelt(MAP, rng)
-    elif kind == "flight.csv":
-        path.write_bytes(cells_of(path.read_text(), rng))
-    elif kind == "flight.parquet" and rng.random() < 0.7:
-        alter_table(path, rng)
-    else:
-        path.write_bytes(torn(path.read_bytes(), rng))
-    (here / "map.yaml").write_text(said, "utf-8", "surrogatepass")
-    where = ["px4", "--mass", 1.5] if kind.endswith("ulg") else ["map.yaml"]
-    errors = rng.choice(("0.1", "0.1,-0.1", "1e-13", "0.999999", "1e308", "nan", ","))
-    return ["log", kind, "--columns", *where, "--errors", errors, "--json"]
-
-
-def study(base: Path, here: Path, rng: Random) -> list[object]:
-    """Carry out an altered study file."""
-    text = yaml.safe_dump(altered(json.loads(json.dumps(STUDY)), rng), allow_unicode=True)
-    text = misspelt(text, rng) if rng.random() < 0.3 else text
-    (here / "study.yaml").write_text(text, "utf-8", "surrogatepass")
-    return ["audit", "--study", "study.yaml", "--out", "runs", "--workers", 0]
-
-
 CASES: dict[str, Case] = {
     **{f"judge {suffix}": partial(judge_table, suffix) for suffix in ("csv", "jsonl", "parquet")},
     **{f"judge {k}": partial(judge_tool, k) for k in ("episodes", "tasks", "inspect", "lm-eval")},
     **{f"report {kind}": partial(report, kind) for kind in ("audit", "judge", "map")},
     "replay": replay,
-    "log": log,
-    "study": study,
 }

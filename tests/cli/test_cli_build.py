@@ -133,14 +133,3 @@ def test_a_test_of_ones_own_asserts_what_was_decided(tmp_path: Path) -> None:
     assert done.returncode == 1, done.stdout + done.stderr
     assert "assert no: Under the shared fault, calibrated succeeds more often." in done.stdout
     assert not (tmp_path / "runs").exists()
-
-
-def test_a_question_in_a_file_needs_no_plan() -> None:
-    Path("question.yaml").write_text(
-        f"system: {TOY}\nbaseline: calibrated\nrepair: blind\nlibrary: carts\nscenes: 8\n"
-        "audits:\n- {name: low-gain, fault: 'gain:scale=0.6'}\n"
-    )
-    line = ["--study", "question.yaml", "--trust", "--out", "runs", "--workers", 0]
-    done = faultpath("audit", *line, "--fail-if", "void")
-    assert done.status == 0, done.err
-    assert len(open_run("runs/low-gain").record.effects) == 4

@@ -17,7 +17,7 @@ from traceback import format_exception
 import pytest
 from cli_runs import Ended, faultpath
 from odd_commands import CASES, bases
-from test_cli_fuzz import OPTIONS, misended
+from test_cli_fuzz import misended
 
 pytestmark = pytest.mark.fuzz
 
@@ -32,7 +32,7 @@ PAGES = (".html", ".md", ".svg", ".csv")
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     if "name" in metafunc.fixturenames:
-        metafunc.parametrize("name", [n for n in CASES if n != "log" or "log" in OPTIONS])
+        metafunc.parametrize("name", list(CASES))
 
 
 @pytest.fixture(scope="module")

@@ -27,9 +27,7 @@ def test_what_few_ask_for_stands_below_what_everybody_does() -> None:
     ordinary, advanced = faultpath("audit", "--help").out.split("Advanced")
     assert len(re.findall(r"^│ [* ] *--", ordinary, flags=re.MULTILINE)) <= 14
     assert "--baseline" in ordinary
-    assert "│ --study " in ordinary
     assert "--fail-if" in advanced
-    assert "--study" in faultpath("audit", "--study", "x", "--help").out
 
 
 @pytest.mark.parametrize("verb", VERBS)

@@ -53,17 +53,13 @@ COMMANDS = {
 COMMANDS["map"] += [*ARMS, "--workers", 0]
 OUTPUTS = {
     "report --out": ["report", REFERENCE / "toy", REFERENCE / "dock", "--out"],
-    "report --dependent-failures": ["report", L3, f"{L3}-20", "--dependent-failures"],
-    "report --dependent-failures of one": ["report", L3, "--dependent-failures"],
-    "plan --out": ["plan", TOY, *ARMS, *FAULT, "--out"],
-    "plan --dependent-failures": ["plan", TOY, *ARMS, "--dependent-failures"],
     "audit --junit": [*COMMANDS["audit"], "--junit"],
     "audit --summary": [*COMMANDS["audit"], "--summary"],
 }
 """Every option that takes the name of a file to write, and a command that ends with it."""
 
 
-@pytest.mark.parametrize("option", ["report --out", "report --dependent-failures", "audit --junit"])
+@pytest.mark.parametrize("option", ["report --out", "audit --junit"])
 def test_what_the_same_verb_wrote_is_replaced(option: str, tmp_path: Path) -> None:
     (place := tmp_path / "mine.html").touch()
     for _ in range(2):

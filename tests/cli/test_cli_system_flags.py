@@ -34,7 +34,6 @@ def _mine(tmp_path):
         (("audit", TOY, "--sceens", "3"), "--scenes"),
         (("check", "quadrotor", "--seeed", "1"), "--seed"),
         (("audit", "mine.py:create", "--geer", "low"), "--gear"),
-        (("audit", "--study", "x.yaml", "--worker", "1"), "--workers"),
         (("train", "quadrotor", "--wrkers", "1"), "--workers"),
     ],
 )

@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 import pytest
-import yaml
 from cli_runs import ROOT, audit, edit, faultpath
 from odd_inputs import sign
 
@@ -14,13 +13,6 @@ from faultpath.core.errors import UserError
 from faultpath.trials import SystemSpec
 from faultpath.trials.trust import ReceivedCode
 
-STUDY = {
-    "baseline": "calibrated",
-    "repair": "blind",
-    "library": "carts",
-    "scenes": 2,
-    "audits": [{"name": "gain", "fault": "gain:scale=0.6"}],
-}
 MINE = f"""
 import sys
 sys.path.append({str(ROOT / "examples")!r})
@@ -57,10 +49,6 @@ def renamed(**names: object) -> None:
     sign(Path("run"))
 
 
-def study(**names: object) -> None:
-    Path("s.yaml").write_text(yaml.safe_dump(STUDY | names))
-
-
 @pytest.mark.parametrize("trust", [(), ("--trust",)])
 @pytest.mark.parametrize(
     ("system", "options"),
@@ -71,29 +59,23 @@ def study(**names: object) -> None:
 )
 def test_a_function_that_builds_nothing_is_called_for_no_file(system, options, trust) -> None:
     renamed(system=system, options=options)
-    study(system=system, options=options)
-    for line in (("replay", "run"), ("audit", "--study", "s.yaml")):
-        ended = faultpath(*line, *trust)
-        assert ended.status == 2
-        assert system.partition(":")[0] in ended.err
-        assert ("nothing else is called" if trust else "give --trust") in ended.err
-        assert "it is the code of the run" not in ended.err
+    ended = faultpath("replay", "run", *trust)
+    assert ended.status == 2
+    assert system.partition(":")[0] in ended.err
+    assert ("nothing else is called" if trust else "give --trust") in ended.err
+    assert "it is the code of the run" not in ended.err
     assert not Path("ran").exists()
     assert not Path("runs").exists()
 
 
-@pytest.mark.parametrize(
-    "line", [("replay", "run"), ("audit", "--study", "s.yaml", "--workers", 0)]
-)
-def test_a_file_is_shown_and_imported_where_it_is_trusted(line) -> None:
-    study(system="mine.py:create")
+def test_a_file_is_shown_and_imported_where_it_is_trusted() -> None:
     before = list(sys.path)
     digest = hashlib.sha256(Path("mine.py").read_bytes()).hexdigest()[:16]
-    said = faultpath(*line).refused(str(Path("mine.py").resolve()), digest)
+    said = faultpath("replay", "run").refused(str(Path("mine.py").resolve()), digest)
     assert "changed since" not in said
     assert sys.path == before
     assert not Path("imported").exists()
-    trusted = faultpath(*line, "--trust")
+    trusted = faultpath("replay", "run", "--trust")
     assert trusted.status == 0, trusted.err
     assert "Importing mine.py:create" in " ".join(trusted.out.split())
     assert Path("imported").exists()
@@ -112,7 +94,6 @@ def test_that_the_code_is_another_is_said_before_it_is_imported() -> None:
     "names",
     [
         {"options": {"plant": "mine.py:create"}},
-        {"baseline": "mine.py:create/gru"},
         {"options": {"bring": "mine.py:create "}},
         {"options": {"bring": "gru, mine.py:écrire"}},
         {"options": {"predictor": "mine.py:create.x"}},
@@ -123,9 +104,9 @@ def test_that_the_code_is_another_is_said_before_it_is_imported() -> None:
 )
 def test_a_part_that_a_file_brings_to_an_installed_system_is_asked_for_too(names) -> None:
     pytest.importorskip("faultpath_quadrotor")
-    study(**{"system": "quadrotor"} | names)
+    renamed(**{"system": "quadrotor"} | names)
     digest = hashlib.sha256(Path("mine.py").read_bytes()).hexdigest()[:16]
-    faultpath("audit", "--study", "s.yaml").refused("give --trust", digest)
+    faultpath("replay", "run").refused("give --trust", digest)
     assert not Path("imported").exists()
 
 
@@ -135,9 +116,9 @@ def test_the_file_that_is_shown_is_the_one_that_would_be_imported() -> None:
     Path("decoy.py:create").mkdir()
     shutil.copy("mine.py", "decoy.py:create/real.py")
     options = {"planner": "decoy.py:create/real.py:run-it"}
-    study(system="quadrotor", options=options)
+    renamed(system="quadrotor", options=options)
     real = Path("decoy.py:create/real.py").resolve()
-    faultpath("audit", "--study", "s.yaml").refused(str(real))
+    faultpath("replay", "run").refused(str(real))
 
 
 @pytest.mark.parametrize(
@@ -146,8 +127,8 @@ def test_the_file_that_is_shown_is_the_one_that_would_be_imported() -> None:
 @pytest.mark.parametrize("trust", [(), ("--trust",)])
 def test_a_name_with_a_zero_byte_is_refused_in_a_sentence(names, trust) -> None:
     pytest.importorskip("faultpath_quadrotor")
-    study(**{"system": "quadrotor"} | names)
-    assert faultpath("audit", "--study", "s.yaml", *trust).status == 2
+    renamed(**{"system": "quadrotor"} | names)
+    assert faultpath("replay", "run", *trust).status == 2
 
 
 def test_an_installed_system_needs_no_word_and_a_changed_part_is_told() -> None:
@@ -161,5 +142,7 @@ def test_an_installed_system_needs_no_word_and_a_changed_part_is_told() -> None:
     file = ReceivedCode("record.json", False, said.append)
     file.check(SystemSpec(name="quadrotor", options={"wind": "L3"}), ("gru", "gru+dcc"))
     assert said == ["Importing quadrotor, which record.json names."]
+    with pytest.raises(UserError, match="give --trust"):
+        file.check(SystemSpec(name="quadrotor"), ("mine.py:create/gru", "gru"))
     with pytest.raises(UserError, match="no file found"):
         file.check(SystemSpec(name="sys:exit"), ())

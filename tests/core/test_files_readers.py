@@ -14,7 +14,6 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, read_json, read_yaml, yaml_text
-from faultpath.decisions.plan.study import read_study
 from faultpath.interface import read_interface
 from faultpath.learning.model_card import FitRecord, read_card
 from faultpath.trials.store.atomic import locked
@@ -29,11 +28,6 @@ def _named(place: str) -> Any:
     return getattr(import_module(module), name)
 
 
-def _log(path: Path) -> object:
-    columns = _named(COLUMNS)("px4").model_copy(update={"mass_kg": 1.0})
-    return _named("faultpath_quadrotor.flightlog.flight:read_flight")(path, columns)
-
-
 def _card(path: Path) -> object:
     return read_card(path, _named("faultpath_quadrotor.checkpoint:ModelCard"))
 
@@ -43,18 +37,11 @@ def _shard(path: Path) -> object:
     return folder.load_shard(path.name.partition("-")[0], (), lambda said: None)
 
 
-COLUMNS = "faultpath_quadrotor.flightlog.reading:read_columns"
 SCENES = "faultpath_quadrotor.scenes.library:load_library"
 EVIDENCE = "faultpath_paper.evidence.table:read_evidence"
 RESULTS = "faultpath_paper.run:read_results"
 READERS: dict[str, tuple[str, Read]] = {
-    "columns of a log": ("map.yaml", lambda path: _named(COLUMNS)(str(path))),
-    "log as text": ("flight.csv", _log),
-    "log as a table": ("flight.parquet", _log),
-    "log as ULog": ("flight.ulg", _log),
-    "log as a bag": ("flight.mcap", _log),
     "interface": ("toy.yaml", read_interface),
-    "study": ("study.yaml", read_study),
     "library of scenes": ("mine.json", lambda path: _named(SCENES)(path)),
     "card of a model": ("model.json", _card),
     "record of a fit": ("fit.json", lambda path: read_card(path, FitRecord)),
@@ -66,7 +53,6 @@ READERS: dict[str, tuple[str, Read]] = {
     "shard": ("shards/key-digest.parquet", _shard),
 }
 """By what it reads: the name of the file, and the reader."""
-NEEDS = {".ulg": "pyulog", ".mcap": "rosbags"}
 
 
 def _socket(path: Path) -> None:
@@ -103,8 +89,6 @@ def test_what_is_no_file_is_refused_in_one_sentence(
     reader: str, thing: str, tmp_path: Path
 ) -> None:
     name, read = READERS[reader]
-    if needed := NEEDS.get(Path(name).suffix):
-        pytest.importorskip(needed)
     path = tmp_path / name
     path.parent.mkdir(exist_ok=True)
     THINGS[thing](path)

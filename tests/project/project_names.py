@@ -121,7 +121,7 @@ def verbs() -> set[str]:
 @cache
 def flags() -> set[str]:
     """Return the flags of all verbs, of the quadrotor, the tools and the tests."""
-    lines = ((), ("audit", "--study"), ("audit", "quadrotor", "--help"))
+    lines = ((), ("audit", "quadrotor", "--help"))
     known = {flag for line in lines for flag in _flags(typer.main.get_command(build(line)))}
     own = [*(ROOT / "tools").glob("*.py"), ROOT / "tests" / "conftest.py"]
     parsed = (node for path in own for node in ast.walk(ast.parse(path.read_text("utf-8"))))

@@ -11,15 +11,14 @@ from faultpath.core.lazy import load
 
 if TYPE_CHECKING:
     from faultpath.api.audit import audits
-    from faultpath.api.checks import plan, trace
+    from faultpath.api.checks import trace
     from faultpath.core.errors import Stopped
 
-__all__ = ["Stopped", "audits", "plan", "trace"]
+__all__ = ["Stopped", "audits", "trace"]
 
 _HOMES = {
     "Stopped": "faultpath.core.errors",
     "audits": "faultpath.api.audit",
-    "plan": "faultpath.api.checks",
     "trace": "faultpath.api.checks",
 }
 

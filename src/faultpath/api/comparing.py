@@ -9,10 +9,8 @@ from pathlib import Path
 from faultpath.api.folders import RECORD
 from faultpath.api.runs import Run, open_run
 from faultpath.core.errors import UserError
-from faultpath.decisions.tables.csv import csv_text
 from faultpath.report.compared import Compared, differing, together
-from faultpath.report.comparison import dependent_failures, headline, page, sentences
-from faultpath.report.dependent import DEPENDENT_MARK
+from faultpath.report.comparison import headline, page, sentences
 from faultpath.report.frame import PAGE
 from faultpath.trials.store.atomic import check_output, write_text
 from faultpath.trials.store.folder import read_regular
@@ -37,22 +35,6 @@ class RunComparison:
         """
         check_output(Path(path), PAGE)
         write_text(Path(path), page(self.runs))
-        return Path(path)
-
-    def dependent_failures(self, path: str | PathLike[str]) -> Path:
-        """Write what the audits show together of failures that have one cause, as CSV.
-
-        `UserError` where it cannot be written or another file stands, where audits are of other
-        systems or variants, and where no two places depend on each other.
-        """
-        check_output(Path(path), DEPENDENT_MARK)
-        table = dependent_failures(self.runs)
-        if table is None:
-            raise UserError(
-                "there is no table of dependent failures: give audits of one system and the same "
-                "variants, of which several places have a source in common."
-            )
-        write_text(Path(path), csv_text(table))
         return Path(path)
 
     def as_json(self) -> dict[str, object]:
@@ -98,11 +80,6 @@ def compare(runs: Sequence[str | PathLike[str] | Run]) -> RunComparison:
     """
     if isinstance(runs, str | PathLike) or len(runs) < 2:
         raise UserError("comparing takes two or more runs: give the folders of finished audits.")
-    return beside(runs)
-
-
-def beside(runs: Sequence[str | PathLike[str] | Run]) -> RunComparison:
-    """Return finished audits, one or more, each once; `UserError` as `compare`."""
     compared: list[Compared] = []
     places: set[Path] = set()
     for number, source in enumerate(runs, 1):

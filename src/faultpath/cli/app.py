@@ -15,10 +15,8 @@ from typing import Annotated, Any
 import typer
 
 from faultpath.cli import audits, demo, designs, replay, systems
-from faultpath.cli.flags import flags_of, with_system_flags
+from faultpath.cli.flags import with_system_flags
 from faultpath.cli.options import Verbs
-from faultpath.core.errors import UserError
-from faultpath.core.text import one_line
 from faultpath.core.version import __version__
 
 _TOY = "examples/toy.py:create"
@@ -71,13 +69,6 @@ _PANELS = {
             "trace", systems.trace, _TOY, "Show which module reads which source.", of_a_system=True
         ),
         Command(
-            "plan",
-            audits.plan,
-            f"{_ASKED}=0.6 --library carts",
-            "Say which sources to audit first, as a study file.",
-            of_a_system=True,
-        ),
-        Command(
             "map",
             designs.reversal_map,
             f"{_ASKED} --against controller,observer --up-to 0.4 --library carts",
@@ -127,28 +118,13 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
             if isinstance(command, typer.Typer):
                 app.add_typer(command, name=entry.name, **shown)
                 continue
-            if entry.name == verb == "audit" and "--study" in (p.partition("=")[0] for p in rest):
-                command = _audit_of_a_study(rest)
-            elif entry.name == verb and entry.of_a_system:
+            if entry.name == verb and entry.of_a_system:
                 command = with_system_flags(verb, command, rest)
             # Typer would keep the line breaks of a docstring.
             text = " ".join((getdoc(command) or "").split())
             line = entry.line or text
             app.command(entry.name, help=text, short_help=line, **shown)(command)
     return app
-
-
-def _audit_of_a_study(arguments: Sequence[str]) -> Callable[..., Any]:
-    """Return what carries out a study file; `UserError` for what only `audit SYSTEM` takes."""
-    idle = flags_of(audits.audit) - flags_of(audits.study)
-    parts = [part for part in arguments if part.partition("=")[0] in idle]
-    parts += [part for part in arguments[:1] if not part.startswith("-")]
-    if parts:
-        raise UserError(
-            f"{' and '.join(map(one_line, parts))} would do nothing beside --study, whose file "
-            "names the system and the question: leave it out, or leave --study out."
-        )
-    return audits.study
 
 
 def _print_version(requested: bool) -> None:

@@ -1,4 +1,4 @@
-"""`faultpath plan`, `audit`, `judge` and `report`: audits, and what follows."""
+"""`faultpath audit`, `judge` and `report`: audits, and what follows."""
 
 import hashlib
 import json
@@ -10,11 +10,11 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.gates import FailIf, Gate, Junit, Summary
-from faultpath.cli.options import Json, SystemName, Trust, display
+from faultpath.cli.options import Json, SystemName, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
-from faultpath.trials.question import AuditQuestion, PlanQuestion, RepairQuestion, Running
+from faultpath.trials.question import AuditQuestion
 from faultpath.trials.received.question import JudgeQuestion
 
 if TYPE_CHECKING:
@@ -27,71 +27,10 @@ Details = Annotated[
     ),
 ]
 
-StudyFile = typer.Option(
-    "--study",
-    parser=as_path,
-    help="Study file that `faultpath plan` wrote, to carry out without system and question.",
-)
-
-DependentFailures = Annotated[
-    Path | None,
-    typer.Option(
-        "--dependent-failures",
-        parser=as_path,
-        help="Write the table of dependent failures to this .csv file.",
-    ),
-]
-
-
-@takes(PlanQuestion)
-def plan(
-    system: SystemName,
-    out: Annotated[Path, typer.Option(parser=as_path, help="Study file to write.")] = Path(
-        "study.yaml"
-    ),
-    dependent_failures: DependentFailures = None,
-    as_json: Json = False,
-    **arguments: Any,
-) -> None:
-    """Rank the uncertain sources, propose the audits of a repair with their trials, and
-    write them as a study file for `faultpath audit --study`."""
-    from faultpath.api.checks import plan
-    from faultpath.api.display import SafeConsole
-    from faultpath.report.dependent import DEPENDENT_MARK
-    from faultpath.trials.store.atomic import check_output, write_text
-
-    check_output(out)
-    if dependent_failures is not None:
-        check_output(dependent_failures, DEPENDENT_MARK)
-    planned = plan(system, **arguments, progress=display())
-    written = planned.write(out)
-
-    from faultpath.decisions.tables.csv import csv_text
-    from faultpath.decisions.tables.terminal import drawn
-    from faultpath.report.dependent import dependent_table, in_short
-    from faultpath.report.plan import tables
-
-    if dependent_failures is not None:
-        dependent = dependent_table(planned.plan.dependent, planned.plan.study)
-        write_text(dependent_failures, csv_text(dependent) if dependent else "")
-    if as_json:
-        typer.echo(planned.plan.model_dump_json(indent=2))
-        return
-    console = SafeConsole()
-    for table in filter(None, (*tables(planned.plan), in_short(planned.plan))):
-        console.print(drawn(table))
-        for note in table.notes:
-            console.print(note, markup=False)
-        console.print()
-    for sentence in planned.sentences:
-        console.print(sentence, markup=False)
-    console.print(f"Written: {written}", markup=False, soft_wrap=True)
-
 
 @takes(AuditQuestion)
 def audit(
     system: SystemName,
-    study: Annotated[Path | None, StudyFile] = None,
     details: Details = False,
     as_json: Json = False,
     fail_if: FailIf = None,
@@ -101,7 +40,6 @@ def audit(
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault."""
-    del study  # `build` hands a line with it to the function below
     gate = Gate.of(fail_if, junit, summary)
     # What builds a system may load for seconds; until then this is all that there is to see.
     arms = f"{one_line(arguments['repair'])} with {one_line(arguments['baseline'])}"
@@ -124,26 +62,6 @@ def audit(
         console.print(shown(compared.runs))
         console.print(f"Page: {page}", markup=False, soft_wrap=True)
     return status
-
-
-@takes(Running, *RepairQuestion.model_fields)
-def study(
-    study: Annotated[Path, StudyFile],
-    trust: Trust = False,
-    as_json: Json = False,
-    fail_if: FailIf = None,
-    junit: Junit = None,
-    summary: Summary = None,
-    **running: Any,
-) -> int:
-    """Carry out the audits of a study file. The file says system, variants, faults, scenes and
-    seeds; the same command resumes."""
-    from faultpath.api.checks import audit_study
-    from faultpath.decisions.plan.study import read_study
-
-    gate = Gate.of(fail_if, junit, summary)
-    runs = audit_study(read_study(study), progress=display(as_json), trust=trust, **running)
-    return _print(runs, as_json, gate)
 
 
 @takes(JudgeQuestion)
@@ -187,7 +105,6 @@ def report(
         Path | None,
         typer.Option(parser=as_path, help="Write the comparison to this .html file too."),
     ] = None,
-    dependent_failures: DependentFailures = None,
     as_json: Json = False,
 ) -> None:
     """Write the pages of a finished run again, or compare several audits; runs no code from any
@@ -199,12 +116,8 @@ def report(
             )
         if as_json:
             raise UserError("--json prints a comparison: the result of one run is its record.json.")
-        from faultpath.api.comparing import beside
         from faultpath.api.runs import open_run
 
-        if dependent_failures is not None:
-            typer.echo(beside(folders).dependent_failures(dependent_failures))
-            return
         for written in open_run(folders[0]).report():
             typer.echo(written)
         return
@@ -215,8 +128,6 @@ def report(
 
     compared = compare(folders)
     page = None if out is None else compared.report(out)
-    if dependent_failures is not None:
-        compared.dependent_failures(dependent_failures)
     if as_json:
         typer.echo(json.dumps(compared.as_json(), indent=1))
         return

@@ -1,7 +1,6 @@
 """Uncertain sources, who reads them in the variants compared, and how large their errors are."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import Protocol
+from collections.abc import Collection, Iterable, Sequence
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
@@ -9,22 +8,7 @@ from faultpath.faults import FaultText
 from faultpath.interface import Interface, Provenance, Source
 from faultpath.trials import System, Variant
 
-NOT_DEPLOYED = (Provenance.PRIVILEGED, Provenance.INTERNAL)
 _UNCERTAIN = (Provenance.MEASURED, Provenance.ESTIMATED, Provenance.RECONSTRUCTED)
-
-
-class Wired(Protocol):
-    """A variant as far as its wiring goes: of a system, or kept with a run."""
-
-    @property
-    def consumers(self) -> Collection[str]:
-        """The taps that it reads."""
-        ...
-
-    @property
-    def bindings(self) -> Mapping[str, str]:
-        """Channel to source, where it is not the channel's first source."""
-        ...
 
 
 class Candidate(Frozen, allow_inf_nan=False):
@@ -89,7 +73,7 @@ def groups_of(sources: Iterable[Source]) -> dict[str, list[Source]]:
     return groups
 
 
-def bound(variant: Wired, interface: Interface, channel: str) -> str:
+def bound(variant: Variant, interface: Interface, channel: str) -> str:
     """Return the source that feeds a channel in a variant."""
     return variant.bindings.get(channel, interface.channel(channel).sources[0])
 
@@ -110,7 +94,7 @@ def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
     parsed = FaultText.read(text)
     if len(parsed.sizes) > 1 or parsed.consumers:
         raise UserError(
-            f"fault '{text}': a plan takes one size, and faults every module by itself: leave "
+            f"fault '{text}': a ranking takes one size, and faults every module by itself: leave "
             "further sizes and '@' out."
         )
     fault = system.fault(text)

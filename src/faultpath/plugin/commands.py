@@ -2,7 +2,6 @@
 
 from faultpath.cli.options import FOUND, Json, Verbs, path, refuse_with
 from faultpath.core.errors import Stopped, UserError
-from faultpath.core.numbers import number_in
 from faultpath.trials.texts import LARGEST
 
 __all__ = [
@@ -12,7 +11,6 @@ __all__ = [
     "Stopped",
     "UserError",
     "Verbs",
-    "number_in",
     "path",
     "refuse_with",
 ]

@@ -5,13 +5,11 @@ from faultpath.decisions.sentences.wording import counted, interval, plain
 from faultpath.decisions.tables import MISSING, Line, Table, line
 from faultpath.decisions.tables.terminal import drawn
 from faultpath.statistics.contrast import Contrast
-from faultpath.statistics.distributions import t_quantile
-from faultpath.statistics.effects import N_RESAMPLES, WindowQuantiles
+from faultpath.statistics.effects import WindowQuantiles
 from faultpath.statistics.estimate import Estimate
 
 __all__ = [
     "MISSING",
-    "N_RESAMPLES",
     "Contrast",
     "Estimate",
     "Line",
@@ -23,5 +21,4 @@ __all__ = [
     "interval",
     "line",
     "plain",
-    "t_quantile",
 ]

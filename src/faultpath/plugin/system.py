@@ -2,8 +2,8 @@
 
 from faultpath.core.error_source import explained, located
 from faultpath.core.errors import Notice, Stopped, SystemMistake, UserError
-from faultpath.core.files.opening import LARGEST_TEXT, contents, opened
-from faultpath.core.files.plain import Misread, model_of, read_json, read_yaml
+from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.plain import Misread, model_of, read_json
 from faultpath.core.results import Frozen
 from faultpath.core.streams import generator, key, words
 from faultpath.core.text import listed, one_line, unknown
@@ -33,9 +33,7 @@ __all__ = [
     "model_of",
     "one_line",
     "one_thread",
-    "opened",
     "read_json",
-    "read_yaml",
     "unknown",
     "words",
 ]

@@ -1,7 +1,6 @@
 """Audits side by side, as a table, on the terminal, and as one page that needs no network."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 from markupsafe import Markup
 from rich.console import Group, RenderableType
@@ -25,10 +24,8 @@ from faultpath.report.compared import (
     swept,
     titles,
 )
-from faultpath.report.dependent import of_runs
 from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
-from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import tick_label
 from faultpath.report.tables import decided_for
 
@@ -189,19 +186,6 @@ def _short(table: Table) -> Table:
     """Return a table whose labels leave room for its numbers; above it stand the whole names."""
     lines = [row.model_copy(update={"label": shortened(row.label, _LABEL)}) for row in table.lines]
     return table.model_copy(update={"lines": tuple(lines), "words": ()})
-
-
-def dependent_failures(runs: Sequence[Compared]) -> Table | None:
-    """Return what audits of the same variants show together of failures that have one cause.
-
-    Every effect is as its own audit decided it, or all sizes of a sweep together.
-    """
-    sources: list[ReportInput] = []
-    for run in runs:
-        effects = tuple(filter(None, (run.effect(path.name) for path in run.record.paths)))
-        record = run.record.model_copy(update={"effects": effects})
-        sources.append(replace(run.source, record=record))
-    return of_runs(sources, [str(run.number) for run in runs] if len(runs) > 1 else [])
 
 
 def page(runs: Sequence[Compared]) -> str:

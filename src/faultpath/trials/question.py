@@ -1,6 +1,6 @@
-"""Questions of a user: every option of an audit, map, plan, check and trace, declared once.
+"""Questions of a user: every option of an audit, map, check and trace, declared once.
 
-The flags of the command line, Python's keywords, their help, the study file and the checks follow
+The flags of the command line, Python's keywords, their help and the checks follow
 from these models. Texts are taken where the command line gives them, as in `seeds="0,1,2"`.
 """
 
@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, ValidationError
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.validation_messages import misfit_of
-from faultpath.trials.texts import LARGEST, Names, Place, Seeds, Several, Sizes
+from faultpath.trials.texts import LARGEST, Names, Place, Seeds, Sizes
 
 Generalise = Literal["scenes", "models"]
 FEWEST_TRAININGS = 5
@@ -141,11 +141,6 @@ class RepairQuestion(Request):
     scenes: int | None = Field(default=None, description="Run only the first N scenes.")
     seeds: Seeds = (0,)
 
-    def audit_of(self, fault: str) -> "AuditQuestion":
-        """Return the audit of the same variants and scenes under a fault."""
-        same = {name: getattr(self, name) for name in RepairQuestion.model_fields}
-        return AuditQuestion(fault=fault, **same)
-
 
 class Running(RepairQuestion):
     """The same, with where and how it runs."""
@@ -237,19 +232,4 @@ class MapQuestion(Running):
     correlation: float | None = Field(
         default=None,
         description="Correlation of the errors for which to report the expected difference.",
-    )
-
-
-class PlanQuestion(RepairQuestion):
-    """Question that a plan answers."""
-
-    panel: ClassVar[str] = "What is planned"
-
-    fault: Annotated[Several, Flag(several=True, panel=RepairQuestion.panel)] = Field(
-        default=(),
-        description="Expected error of a source that declares none, or another one: "
-        "`gain:scale=1.1`; repeat the option for more.",
-    )
-    module: Annotated[Several, Flag(several=True)] = Field(
-        default=(), description="Module that the repair changes, where its reads do not show it."
     )

@@ -66,5 +66,4 @@ _DRAWN = "Seeds of the noise, and of trained models where there are any."
 Names = Annotated[tuple[str, ...], BeforeValidator(read_names)]
 Place = Annotated[Path | None, _path, PlainSerializer(lambda path: path and str(path))]
 Seeds = Annotated[tuple[int, ...], BeforeValidator(read_seeds), Field(description=_DRAWN)]
-Several = Annotated[tuple[str, ...], BeforeValidator(several)]
 Sizes = Annotated[tuple[float, ...], BeforeValidator(read_sizes)]

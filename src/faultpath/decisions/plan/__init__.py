@@ -1,1 +1,1 @@
-"""Plans of what to audit first: uncertain sources ranked, and arms proposed."""
+"""The order in which uncertain sources are audited: ranks, and probes that break ties."""

@@ -1,4 +1,4 @@
-"""What a plan ranks, lays out and says."""
+"""Which sources come first, and which others the same repair has to be audited against."""
 
 from pathlib import Path
 
@@ -6,28 +6,15 @@ import pytest
 from declared_toy import Declared
 
 import faultpath
-from faultpath.api.checks import Planned
 from faultpath.core.errors import UserError
 from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_modules
-from faultpath.decisions.plan.plan import sentences
 from faultpath.decisions.sources import Candidate, candidates
 from faultpath.faults import Coupled, Fault, Scale
 from faultpath.interface import read_interface
 from faultpath.trials import Library, SceneRef, System, Variant
 
 HERE = Path(__file__).resolve().parent
-DECLARED = f"{HERE / 'declared_toy.py'}:create"
 DOCK = HERE.parents[1] / "examples" / "dock.py"
-ASKED = {"baseline": "calibrated", "repair": "blind", "library": "carts", "scenes": 4}
-
-
-def plan(system=DECLARED, **changes) -> Planned:
-    return faultpath.api.plan(system, **(ASKED | {"progress": False} | changes))
-
-
-@pytest.fixture(scope="module")
-def planned() -> Planned:
-    return plan()
 
 
 FACTS = """
@@ -159,21 +146,6 @@ def test_consumers_come_first_then_the_probe():
     assert [(each.name, each.rank) for each in order] == [("sized", 1), ("late", 1)]
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ([candidate("a", 3)], "a (3 readers) is the only uncertain source"),
-        ([candidate("a", 3, 0.1), candidate("b", 2, 9.0)], "more than any other source"),
-        ([candidate("a", 3), candidate("b", 3, **UNSIZED)], "a and b tie: 3 readers each"),
-        ([candidate("a", 3, **UNSIZED), candidate("b", 2)], "b is the first in the ranking that"),
-        ([candidate("a", 2, 0.5), candidate("b", 2)], "moves the commands most (0.5 of"),
-    ],
-)
-def test_the_words_say_what_put_a_source_first(planned, given, said):
-    changed = planned.plan.model_copy(update={"candidates": ranked(given)})
-    assert said in " ".join(list(sentences(changed))[:2])
-
-
 def test_the_repaired_module_is_told_from_what_differs():
     toy, dock = Declared(), faultpath.load_system(DOCK)
     pair = (toy.variants["calibrated"], toy.variants["blind"])
@@ -207,43 +179,3 @@ def test_the_recursion_takes_outputs_and_inputs_and_what_makes_them():
         "imu": "input of filter, which makes drift",
     }
     assert recursion(every, made_by, ("planner",)) == {}
-
-
-def test_the_plan_of_the_toy(planned):
-    audits = planned.plan.study.audits
-    assert [(each.fault, each.why) for each in audits] == [
-        ("gain:scale=1.25", "first by rank"),
-        ("velocity:offset=0.1", "input of observer, which makes observed_slope"),
-        ("slope:offset=0.2", "output of observer"),
-    ]
-    roles = {arm.path: arm.role for arm in audits[0].arms if arm.path != arm.role}
-    assert roles == {"controller": "attribution", "observer": "repaired"}
-    assert planned.plan.trials == (24, 32, 16)
-    said = " ".join(planned.sentences)
-    assert "72 trials in all" in said
-    assert "without an audit: odometer (declares no uncertainty)" in said
-    assert "Taken as changed by the repair: observer." in said
-
-
-def test_the_trials_told_are_those_flown(planned, tmp_path):
-    runs = planned.audit(tmp_path, workers=0, progress=False)
-    assert [run.folder.name for run in runs] == ["gain_estimate", "speedometer", "observed_slope"]
-    flown = [{path.name for path in (run.folder / "shards").iterdir()} for run in runs]
-    assert tuple(4 * len(each) for each in flown) == planned.plan.trials  # a block an arm
-    alone = {"workers": 0, "progress": False, "signals": False, **ASKED}
-    first = faultpath.audit(DECLARED, fault="gain:scale=1.25", folder=tmp_path / "alone", **alone)
-    assert runs[0].record == first.record
-
-
-def test_a_repair_that_changes_nothing_to_be_seen_says_so():
-    arms = {"baseline": "ranges", "repair": "wheels", "library": "floors"}
-    words = " ".join(plan(DOCK, **arms, fault="range:scale=0.7").sentences)
-    assert "range_rate (output of speedometer)" in words
-    assert "wheel_odometry" in words
-
-
-def test_nothing_to_plan_and_an_object_are_refused_with_what_to_do():
-    with pytest.raises(UserError, match=r"declare it .* for example --fault range:scale=1\.1"):
-        plan(DOCK, baseline="wheels", repair="ranges", library="floors")
-    with pytest.raises(UserError, match="a study file cannot hold an object"):
-        plan(Declared())

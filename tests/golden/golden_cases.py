@@ -1,0 +1,309 @@
+"""Cases whose numbers may not change by a bit, asked through what a user calls.
+
+`python tests/golden/golden_cases.py` writes them to `numbers.json`: only where a change of numbers
+is meant, and then the commit says why. How a result is laid out may change: only `of_record`,
+`of_map` and `of_paper` know of that.
+"""
+
+import hashlib
+import json
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import faultpath
+
+HERE = Path(__file__).resolve().parent
+NUMBERS = HERE / "numbers.json"
+SYSTEM = f"{HERE / 'golden_system.py'}:create"
+HEADER = "arm,scene,seed,task,condition,success,initial\n"
+
+FAILED = "once/s003/0,twice/s004/1,twice/s003/1,once/s010/0,once/s010/1"
+MASS = {"baseline": "once", "repair": "twice", "fault": "mass:scale=0.9"}
+SEEDS = (0, 1, 2, 3, 4)
+AUDITS: dict[str, dict[str, Any]] = {
+    "one seed": {**MASS},
+    "many seeds with ties": {**MASS, "scenes": 60, "seeds": SEEDS},
+    "newly trained models": {**MASS, "scenes": 60, "seeds": SEEDS, "generalise": "models"},
+    "failed trials": {**MASS, "scenes": 40, "seeds": (0, 1), "options": {"fails": FAILED}},
+    "failed trials of one seed": {**MASS, "scenes": 40, "options": {"fails": FAILED}},
+    "a failed training": {
+        **MASS,
+        "scenes": 20,
+        "seeds": SEEDS,
+        "generalise": "models",
+        "options": {"fails": FAILED},
+    },
+    "three modules and thresholds": {
+        "baseline": "once",
+        "repair": "thrice",
+        "fault": "mass:scale=1.1",
+        "metric": "distance",
+        "thresholds": (0.05, 0.1),
+        "primary": "limit",
+    },
+    "a fault that one version does not read": {
+        "baseline": "once",
+        "repair": "twice",
+        "fault": "mass:scale=0.9@observer",
+    },
+    "stopped": {**MASS, "stop_when": "decided"},
+    "all decided or small": {
+        "baseline": "twice",
+        "repair": "thrice",
+        "fault": "mass:scale=1.05",
+        "stop_when": "all-decided",
+        "margin_pp": 20.0,
+    },
+    "never stopped": {**MASS, "fault": "mass:scale=0.99", "stop_when": "decided", "scenes": 20},
+    "few scenes": {**MASS, "scenes": 4},
+}
+MAPS: dict[str, dict[str, Any]] = {
+    "map over several rounds": {"scenes": 20, "spread": (0.15,), "correlation": 0.3},
+    "map with seeds and a failed trial": {
+        "scenes": 6,
+        "seeds": (0, 1),
+        "points": 27,
+        "spread": (0.1, 0.2),
+        "mean": (0.05,),
+        "options": {"fails": "twice/s003/1"},
+    },
+}
+
+JUDGED: dict[str, dict[str, Any]] = {
+    "keys": {"drop": ["initial"]},
+    "hashes": {},
+    "tasks": {"cluster": "task", "scenes": 60},
+    "tasks and seeds": {"cluster": "task", "seeds": 3},
+    "seeds": {"seeds": 4},
+    "models": {"seeds": 5, "generalise": "models"},
+    "one condition": {"conditions": ("nominal",), "scenes": 150},
+    "no condition": {"drop": ["condition"], "conditions": ("nominal",)},
+    "primary": {"primary": "planner"},
+    "failed in both versions": {"seeds": 2, "failed": {"new": 0.05, "old": 0.08}},
+    "failed in the new version": {"failed": {"new": 0.15}},
+    "missing in both versions": {"seeds": 2, "missing": {"new": 0.06, "old": 0.03}},
+    "missing in the old version": {"missing": {"old": 0.2}},
+    "one training failed in part": {
+        "seeds": 5,
+        "generalise": "models",
+        "failed": {"new": 0.02},
+    },
+    "mismatched": {"unlike": True},
+    "few": {"scenes": 3},
+    "failed trials that could undo it": {"scenes": 40, "failed": {"new": 0.1, "old": 0.1}},
+}
+RATES = {
+    ("old", "nominal"): 0.6,
+    ("new", "nominal"): 0.55,
+    ("old", "observer"): 0.35,
+    ("new", "observer"): 0.65,
+    ("old", "planner"): 0.5,
+    ("new", "planner"): 0.55,
+    ("old", "shared"): 0.6,
+    ("new", "shared"): 0.3,
+}
+
+
+def results_of(
+    file: Path,
+    number: int,
+    scenes: int = 80,
+    seeds: int = 1,
+    conditions: tuple[str, ...] = ("nominal", "observer", "planner", "shared"),
+    failed: dict[str, float] | None = None,
+    missing: dict[str, float] | None = None,
+    unlike: bool = False,
+    drop: tuple[str, ...] = (),
+) -> None:
+    """Write trials of two versions as another tool would."""
+    draw = np.random.Generator(np.random.PCG64(1000 + number))
+    columns = [name for name in HEADER.strip().split(",") if name not in drop]
+    lines = [",".join(columns)]
+    hardness = draw.uniform(size=scenes)
+    for condition in conditions:
+        for arm in ("old", "new"):
+            for seed in range(seeds):
+                for scene in range(scenes):
+                    chance, fails, misses = draw.uniform(size=3)
+                    won = 0.5 * hardness[scene] + 0.5 * chance < RATES[arm, condition]
+                    cells = {
+                        "arm": arm,
+                        "scene": f"s{scene}",
+                        "seed": seed,
+                        "task": f"t{scene % 12}",
+                        "condition": condition,
+                        "success": int(won),
+                        "initial": f"h{scene}",
+                    }
+                    if fails < (failed or {}).get(arm, 0.0):
+                        cells["success"] = "failed"
+                    if unlike and scene == 7 and arm == "new":
+                        cells["initial"] = "other"
+                    if misses >= (missing or {}).get(arm, 0.0):
+                        lines.append(",".join(str(cells[name]) for name in columns))
+    file.write_text("\n".join(lines) + "\n")
+
+
+FILE_ONLY = ("scenes", "seeds", "conditions", "failed", "missing", "unlike", "drop")
+
+
+def cases(folder: Path) -> Iterator[tuple[str, Callable[[], dict[str, Any]]]]:
+    """Yield the name of each case, and what computes its numbers in a folder of its own."""
+    quiet: dict[str, Any] = {"library": "any", "progress": False, "workers": 0}
+
+    def audit(place: Path, question: dict[str, Any]) -> dict[str, Any]:
+        run = faultpath.audit(SYSTEM, folder=place, signals=False, **quiet, **question)
+        return of_record(run.record)
+
+    def reversal_map(place: Path, question: dict[str, Any]) -> dict[str, Any]:
+        about = {"baseline": "once", "repair": "twice", "fault": "mass", "up_to": 0.4}
+        about |= {"against": "planner,observer", "points": 40, **quiet, **question}
+        return of_map(faultpath.map(SYSTEM, folder=place, **about).record)
+
+    def judge(place: Path, number: int, case: dict[str, Any]) -> dict[str, Any]:
+        file = place.with_suffix(".csv")
+        results_of(file, number, **{name: case[name] for name in FILE_ONLY if name in case})
+        question = {name: value for name, value in case.items() if name not in FILE_ONLY}
+        run = faultpath.judge(
+            file, baseline="old", repair="new", folder=place, progress=False, **question
+        )
+        return of_record(run.record)
+
+    for number, (name, question) in enumerate(AUDITS.items()):
+        yield f"audit: {name}", lambda n=number, q=question: audit(folder / f"audit-{n}", q)
+    for number, (name, question) in enumerate(MAPS.items()):
+        yield name, lambda n=number, q=question: reversal_map(folder / f"map-{n}", q)
+    for number, (name, case) in enumerate(JUDGED.items()):
+        yield f"judge: {name}", lambda n=number, c=case: judge(folder / f"judged-{n}", n, c)
+    yield "paper", of_paper
+
+
+def of_record(record: Any) -> dict[str, Any]:
+    """Return the numbers and decisions of an audit, without its words."""
+    result = record.model_dump(mode="json")
+    effects = {
+        effect["path"]: {
+            "success": estimate(effect["success"]),
+            **{name: effect[name] for name in _OF_AN_EFFECT},
+            "metrics": {name: estimate(value) for name, value in effect["metrics"].items()},
+            "time_s": estimate(effect["time_s"]),
+            "thresholds": [
+                [*(at[name] for name in _OF_A_THRESHOLD), *estimate(at["difference"])]
+                for at in effect["thresholds"]
+            ],
+        }
+        for effect in result["effects"]
+    }
+    changes = {
+        f"{change['isolated']} to {change['shared']}": {
+            "change": estimate(change["change"]),
+            **{name: change[name] for name in _OF_A_CHANGE},
+        }
+        for change in result["changes"]
+    }
+    even = {
+        name: {
+            entry["path"]: {
+                **{key: entry["result"][key] for key in ("p_star", "pieces", "kind", "regions")},
+                "curve": digest(entry["curve"]),
+            }
+            for entry in result[name]
+        }
+        for name in ("break_even", "break_even_beta")
+    }
+    cells = {
+        f"{cell['variant']}, {cell['path']}": [cell[name] for name in _OF_A_CELL]
+        for cell in result["cells"]
+    }
+    whole = {name: result[name] for name in ("scenes", "invalid", "scenes_needed", "stopped")}
+    return {**whole, "effects": effects, "changes": changes, **even, "cells": cells}
+
+
+_OF_AN_EFFECT = (
+    "sign",
+    "test",
+    "p_value",
+    "adjusted_p_value",
+    "mcnemar_p_value",
+    "scenes",
+    "ahead",
+    "void_pairs",
+    "failed",
+    "wins",
+    "losses",
+    "baseline_percent",
+    "repair_percent",
+    "extreme",
+    "minimum_detectable_pp",
+    "joint_successes",
+    "metric_means",
+)
+_OF_A_THRESHOLD = ("threshold", "baseline_percent", "repair_percent")
+_OF_A_CHANGE = ("sign", "test", "p_value", "adjusted_p_value", "unsettled", "turn")
+_OF_A_CELL = ("trials", "success", "crash", "timeout", "failed", "median_time_s")
+
+
+def of_map(record: Any) -> dict[str, Any]:
+    """Return the numbers and decisions of a map, without its words."""
+    result = record.model_dump(mode="json")
+    joint = result["joint"]
+    return {
+        **{name: result[name] for name in ("scenes", "invalid", "critical", "failed")},
+        "points": [list(point.values()) for point in result["points"]],
+        "surface": digest([result["surface"]["difference"], result["surface"]["sign"]]),
+        "flips": [list(flip.values()) for flip in result["flips"]],
+        "curve": digest(joint["curve"]),
+        **{name: joint[name] for name in ("asked", "estimates", "undecided", "regions")},
+        **{f"joint {name}": joint[name] for name in ("outside", "critical")},
+    }
+
+
+def of_paper() -> dict[str, Any]:
+    """Return what the claims of the paper come to in a run that is made up."""
+    sys.path += [str(HERE.parent / "paper")]
+    from faultpath_paper.claims import evaluate
+    from study_toys import whole
+
+    return {
+        claim.id: [
+            claim.verdict,
+            *(
+                [part.answer, part.estimate, part.interval, part.score, part.p_value, part.mde]
+                for part in claim.parts
+            ),
+        ]
+        for claim in evaluate(whole())
+    }
+
+
+def estimate(value: dict[str, Any] | None) -> list[Any]:
+    """Return an estimate with its interval."""
+    names = ("value", "low", "high", "n_scenes", "n_seeds", "per_seed")
+    return [] if value is None else [value[name] for name in names]
+
+
+def digest(numbers: object) -> str:
+    """Return a hash of numbers that are too many to store."""
+    return hashlib.sha256(json.dumps(numbers).encode()).hexdigest()[:16]
+
+
+def plain(numbers: object) -> Any:
+    """Return numbers as JSON holds them: a float keeps every bit, a tuple becomes a list."""
+    return json.loads(json.dumps(numbers))
+
+
+def main() -> None:
+    """Write the numbers of all cases."""
+    with tempfile.TemporaryDirectory() as folder:
+        numbers = {name: plain(compute()) for name, compute in cases(Path(folder))}
+    lines = (f"{json.dumps(name)}: {json.dumps(of)}" for name, of in numbers.items())
+    NUMBERS.write_text("{\n" + ",\n".join(lines) + "\n}\n")
+
+
+if __name__ == "__main__":
+    main()
