@@ -236,3 +236,15 @@ def test_the_same_results_keep_their_tests_and_others_take_todays(tmp_path: Path
         (folder / "record.json").write_text(json.dumps(record), "utf-8")
         results = table(tmp_path / "all.csv", {"nominal": arms})
         assert judged(results, folder).record.question.rule == rule
+
+
+@pytest.mark.parametrize("stored", ["", "{}", '{"format": 2}'])
+def test_an_earlier_result_that_cannot_be_read_is_not_taken_for_none(
+    stored: str, tmp_path: Path
+) -> None:
+    results = table(tmp_path / "all.csv", {"nominal": {"old": [True, False], "new": [True, True]}})
+    judged(results, tmp_path / "run")
+    (tmp_path / "run" / "record.json").write_text(stored)
+    with pytest.raises(UserError, match="is damaged or from another version"):
+        judged(results, tmp_path / "run")
+    assert (tmp_path / "run" / "record.json").read_text() == stored

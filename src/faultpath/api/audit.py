@@ -1,5 +1,6 @@
 """`faultpath.audit`: run the arms of one question, decide, and write the run folder."""
 
+import os
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
@@ -139,11 +140,13 @@ def concluded(
     folder: Path, question: Question, conclude: Callable[[Question], DecisionRecord]
 ) -> DecisionRecord:
     """Return what is concluded of a question, by the rule of the record that the folder holds of
-    these trials, if any, which stands in the new one: see `after_looks`."""
-    try:
-        before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
-    except UserError:
+    these trials, if any, which stands in the new one: see `after_looks`.
+
+    `UserError` for a record that cannot be read: taken for none, earlier analyses would be lost.
+    """
+    if not os.path.lexists(folder / RECORD):
         return conclude(question)
+    before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
     if before.question.library_hash != question.library_hash:  # other results
         return conclude(question)
     return after_looks(conclude(question.by_the_rule_of(before.question)), (before,))
