@@ -69,8 +69,8 @@ def judge(
     def conclude(question: Question) -> DecisionRecord:
         return decide(question, laid.paths, laid.table, laid.findings)
 
-    record = concluded(folder, laid.question, conclude)
     begin(folder)
+    record = concluded(folder, laid.question, conclude)
     with locked(folder, shown.say):
         system = _system(laid.question)
         result = _stored(folder, laid, system)
