@@ -74,14 +74,18 @@ class Repeats(BaseModel):
         return self.near == self.sampled > 0
 
     def __str__(self) -> str:
-        exact = f"{self.repeated} of its {self.trials} trials repeated to the bit by this version"
-        if self.repeated == self.sampled:
-            return exact
-        more = self.near - self.repeated
+        count = "all" if self.repeated == self.sampled else f"{self.repeated} of"
         if self.current:
-            return f"{exact}, {more} more within a thousandth"
+            rest = "" if count == "all" else ", the others within a thousandth"
+            return (
+                f"{count} {self.sampled} sampled of its {self.trials} trials repeated to the bit "
+                f"by this version{rest}"
+            )
         lost = self.sampled - self.near
-        return f"this version gives other results in {lost} of {self.sampled} of its trials"
+        return (
+            f"this version gives other results in {lost} of {self.sampled} sampled of its "
+            f"{self.trials} trials"
+        )
 
 
 @dataclass(frozen=True)
@@ -110,11 +114,6 @@ class Run:
     def processor(self) -> str:
         """On which processor it was flown."""
         return self.provenance.processor.replace("(R)", "")
-
-    @property
-    def stale(self) -> bool:
-        """Whether the code that is here does not repeat it, or nobody has asked it to."""
-        return self.repeats is None or not self.repeats.current
 
 
 def kind_of(folder: Path) -> str:

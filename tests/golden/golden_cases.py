@@ -2,8 +2,8 @@
 
 `python tests/golden/golden_cases.py` writes them to `numbers.json`: only where a change of numbers
 is meant, and then the commit says why. It runs itself with the code that NumPy, OpenBLAS and the C
-library have for every x86-64 processor, so that no newer instructions change a last bit. How a result is laid out may change: only `of_record`,
-`of_map` and `of_paper` know of that.
+library have for every x86-64 processor, so that no newer instructions change a last bit. How a
+result is laid out may change: only `of_record`, `of_map` and `of_paper` know of that.
 """
 
 import hashlib

@@ -36,9 +36,9 @@ def test_a_run_of_another_kind_of_processor_says_that_trials_may_end_differently
 
 
 @pytest.fixture
-def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def run_again(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Two runs, of which the code repeats one; the names of those that are run again."""
-    toy, again = references.load("toy"), list[str]()
+    toy, names = references.load("toy"), list[str]()
     whole = Repeats(trials=800, sampled=2, repeated=2, near=2)
     lost = whole.model_copy(update={"repeated": 1, "near": 1, "first": "a, b: other status"})
     results = {"same": whole, "other": lost}
@@ -46,22 +46,22 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     monkeypatch.setattr(references, "by_time", lambda: runs)
     monkeypatch.setattr(references.repeats, "write", lambda run: results[run.name])
     monkeypatch.setattr(references, "checkout", lambda: "0" * 40)
-    monkeypatch.setattr(references, "fly", lambda run, _: again.append(run.name))
+    monkeypatch.setattr(references, "fly", lambda run, _: names.append(run.name))
     monkeypatch.setattr(references.documents, "main", lambda _: 0)
-    return again
+    return names
 
 
-def test_the_list_says_which_runs_repeat_and_runs_nothing(asked, monkeypatch, capsys) -> None:
+def test_the_list_says_which_runs_repeat_and_runs_nothing(run_again, monkeypatch, capsys) -> None:
     monkeypatch.setattr(sys, "argv", ["references.py", "--list"])
     references.main()
     same, other = capsys.readouterr().out.splitlines()
-    assert same.endswith("2 of its 800 trials repeated to the bit by this version")
-    assert other.endswith("other results in 1 of 2 of its trials (a, b: other status)")
-    assert asked == []
+    assert same.endswith("all 2 sampled of its 800 trials repeated to the bit by this version")
+    assert other.endswith("in 1 of 2 sampled of its 800 trials (a, b: other status)")
+    assert run_again == []
 
 
-def test_only_a_run_that_does_not_repeat_is_run_again(asked, monkeypatch) -> None:
+def test_only_a_run_that_does_not_repeat_is_run_again(run_again, monkeypatch) -> None:
     monkeypatch.setattr(sys, "argv", ["references.py"])
     with pytest.raises(SystemExit):
         references.main()
-    assert asked == ["other"]
+    assert run_again == ["other"]

@@ -157,6 +157,15 @@ def to_numpy(array: Any) -> HostArray:
     return np.asarray(array)
 
 
+def row_bytes(array: Array) -> NDArray[np.uint8]:
+    """Return the bytes of each row, `[B, bytes]`, of whatever type the numbers are, such as torch's
+    bfloat16, which NumPy has not; this waits for the device."""
+    if _is_torch(array):
+        flat = array.detach().cpu().reshape(array.shape[0], -1).contiguous()
+        return to_numpy(flat.view(namespace(array).uint8))
+    return np.ascontiguousarray(to_numpy(array).reshape(array.shape[0], -1)).view(np.uint8)
+
+
 def together(one: Any, other: Any) -> tuple[Any, Any]:
     """Return two masks or counts on one device: off the host where either is off it.
 

@@ -16,11 +16,19 @@ from faultpath.core.arrays import (
     to_numpy,
 )
 from faultpath.core.errors import UserError
-from faultpath.core.text import unknown
+from faultpath.core.text import listed, unknown
 from faultpath.faults import Draws, Fault, Moment
 from faultpath.faults.base import Memory
 from faultpath.interface import Interface, Provenance
-from faultpath.loop.reading import MalformedReading, NotFinite, Query, Reading
+from faultpath.loop.reading import (
+    IllegalRead,
+    MalformedReading,
+    NotFinite,
+    Query,
+    Reading,
+    TapError,
+    UndeclaredReader,
+)
 from faultpath.loop.receipts import CorruptionReceipt, Guard, Receipt, Tally
 
 
@@ -241,3 +249,39 @@ class DeliveryListener:
 
     def faulted(self, step: int, in_force: Any) -> None:
         """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""
+
+
+def refusal(
+    interface: Interface, tap: Tap | None, channel: str, consumer: str, reading: Any, step: int
+) -> TapError:
+    """Return what is wrong with a delivery that the interface or the variant does not allow."""
+    here = f"tap {channel} -> {consumer}"
+    if tap is None:
+        declared = interface.channel(channel).consumers
+        if consumer in declared:
+            return UndeclaredReader(
+                f"{here}: this variant has no such consumer; name it in the variant's consumers"
+            )
+        return UndeclaredReader(
+            f"{here}: the channel does not declare this consumer; add it to the interface, "
+            f"declared: {listed(declared)}"
+        )
+    if not isinstance(reading, Reading):
+        return MalformedReading(
+            f"{here}: deliver() was given a {type(reading).__name__}; wrap it: "
+            f"Reading(value, '{tap.source}', step)"
+        )
+    if reading.source != tap.source:
+        return IllegalRead(
+            f"{here}: the reading is of source '{reading.source}', but the channel is bound to "
+            f"'{tap.source}'; deliver that one, or bind the channel in the variant"
+        )
+    if not tap.permitted:
+        return IllegalRead(
+            f"{here}: source '{tap.source}' is privileged and this arm does not permit it; "
+            "read another one, or name it in the variant's privileged sources"
+        )
+    return IllegalRead(
+        f"{here}: the reading is of step {reading.step}, which is after step {step}; deliver "
+        "what is known by then"
+    )

@@ -9,22 +9,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.arrays import Array, copy, differs, namespace, place, read_only, to_numpy
+from faultpath.core.arrays import Array, differs, namespace, place, read_only, to_numpy
 from faultpath.core.errors import UserError
-from faultpath.core.text import listed, unknown
+from faultpath.core.text import unknown
 from faultpath.faults import Draws, Fault
 from faultpath.interface import Interface, modules
 from faultpath.loop.reading import (
-    IllegalRead,
     MalformedReading,
     Query,
     Reading,
     TapError,
-    UndeclaredReader,
     WrittenTo,
 )
 from faultpath.loop.receipts import Guard, Receipts, Tally, check_delivered
-from faultpath.loop.tap import Corruption, DeliveryListener, Tap, wire
+from faultpath.loop.tap import Corruption, DeliveryListener, Tap, refusal, wire
 from faultpath.loop.trajectory import Trajectories
 
 
@@ -77,7 +75,6 @@ class Taps:
         self._scenes = tuple(scenes)
         self._active: Array = None
         self._placed: Array = None
-        self._kept_mask: Array = None
         self._trajectories = Trajectories(len(self._scenes))
         self._faulted, self._altered = Tally(), Tally()
         self._open: Array = None
@@ -132,16 +129,17 @@ class Taps:
             NotFinite: The first reading at this tap is not finite.
         """
         tap = self._taps.get((channel, consumer))
+        address = self._interface, tap, channel, consumer
         if tap is None:
-            raise self._refused(channel, consumer, reading, step)
+            raise refusal(*address, reading, step)
         try:
             value = reading.value
             if step < 0:
                 raise MalformedReading(f"tap {tap}: step {step} is before the first, which is 0")
             if reading.source != tap.source or not tap.permitted or reading.step > step:
-                raise self._refused(channel, consumer, reading, step)
+                raise refusal(*address, reading, step)
         except AttributeError:
-            raise self._refused(channel, consumer, reading, step) from None
+            raise refusal(*address, reading, step) from None
         if step != tap.last_step:
             if step < tap.last_step:
                 raise MalformedReading(
@@ -164,7 +162,7 @@ class Taps:
                     got = self._closed
                 elif tap.guard is not None:
                     got = tap.guard.hand_out(got)
-                self._trajectories.note(got, self._ran())
+                self._trajectories.note(got)
             tap.cached = got
         elif value is not tap.value:
             tap.check_same(value, step)
@@ -218,13 +216,7 @@ class Taps:
     def set_active(self, mask: Array | None) -> None:
         """Say which scenes still run, a boolean array `[B]`; `None`: all. Receipts count these."""
         self._active = self._placed = mask
-        self._kept_mask = None
-
-    def _ran(self) -> Array:
-        """Return a copy of the mask of scenes that run: a plant may write to its own later."""
-        if self._kept_mask is None and self._active is not None:
-            self._kept_mask = copy(self._active)
-        return self._kept_mask
+        self._trajectories.set_running(mask)
 
     def trajectory_hashes(self) -> tuple[str, ...]:
         """Return a hash a scene of all that its readers got while it ran; waits for the device."""
@@ -275,37 +267,3 @@ class Taps:
                 )
         last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
         check_delivered(self.receipts(), self._named, last)
-
-    def _refused(self, channel: str, consumer: str, reading: Any, step: int) -> TapError:
-        """Return what is wrong with a delivery that the interface or the variant does not allow."""
-        here = f"tap {channel} -> {consumer}"
-        tap = self._taps.get((channel, consumer))
-        if tap is None:
-            declared = self._interface.channel(channel).consumers
-            if consumer in declared:
-                return UndeclaredReader(
-                    f"{here}: this variant has no such consumer; name it in the variant's consumers"
-                )
-            return UndeclaredReader(
-                f"{here}: the channel does not declare this consumer; add it to the interface, "
-                f"declared: {listed(declared)}"
-            )
-        if not isinstance(reading, Reading):
-            return MalformedReading(
-                f"{here}: deliver() was given a {type(reading).__name__}; wrap it: "
-                f"Reading(value, '{tap.source}', step)"
-            )
-        if reading.source != tap.source:
-            return IllegalRead(
-                f"{here}: the reading is of source '{reading.source}', but the channel is bound to "
-                f"'{tap.source}'; deliver that one, or bind the channel in the variant"
-            )
-        if not tap.permitted:
-            return IllegalRead(
-                f"{here}: source '{tap.source}' is privileged and this arm does not permit it; "
-                "read another one, or name it in the variant's privileged sources"
-            )
-        return IllegalRead(
-            f"{here}: the reading is of step {reading.step}, which is after step {step}; deliver "
-            "what is known by then"
-        )

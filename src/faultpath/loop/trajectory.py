@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.arrays import Array, copy, is_array, to_numpy
+from faultpath.core.arrays import Array, copy, is_array, row_bytes, to_numpy
 
 _MOST_WAITING = 1 << 22
 """Bytes that wait to be hashed together: one call a scene is far cheaper than one a delivery."""
@@ -26,9 +26,15 @@ class Trajectories:
         self._waiting: list[tuple[Array, Array]] = []
         """Values, and which scenes ran then: `[B, ...]` and bool `[B]`."""
         self._size = 0
+        self._mask: Array = None
+        self._kept_mask: Array = None
 
-    def note(self, value: Any, running: Array) -> None:
-        """Take in what a reader got; `running` is `None` where all scenes run.
+    def set_running(self, mask: Array | None) -> None:
+        """Say which scenes run from now on, bool `[B]`; `None`: all."""
+        self._mask, self._kept_mask = mask, None
+
+    def note(self, value: Any) -> None:
+        """Take in what a reader got.
 
         What is no array with a row a scene, such as the answers of a query, is left out: it shows
         in what is done with it.
@@ -36,7 +42,11 @@ class Trajectories:
         scenes = len(self._hashes)
         if not is_array(value) or value.shape[:1] != (scenes,) or 0 in value.shape:
             return
-        self._waiting.append((copy(value), running))
+        if self._kept_mask is None and self._mask is not None:
+            self._kept_mask = copy(self._mask)  # a plant may write to its own later
+        # Without its history: a reading that torch can differentiate would keep all steps alive.
+        value = value.detach() if hasattr(value, "detach") else value
+        self._waiting.append((copy(value), self._kept_mask))
         self._size += prod(value.shape) * 8
         if self._size > _MOST_WAITING:
             self._take_in()
@@ -52,9 +62,8 @@ class Trajectories:
         scenes = len(self._hashes)
         masks, parts = list[NDArray[np.bool_]](), list[NDArray[np.uint8]]()
         for value, running in self._waiting:
-            rows = np.ascontiguousarray(to_numpy(value).reshape(scenes, -1)).view(np.uint8)
             mask = np.ones(scenes, np.bool_) if running is None else to_numpy(running)
-            parts.append(rows)
+            parts.append(row_bytes(value))
             masks.append(np.broadcast_to(mask, (scenes,)))
         numbers = np.concatenate(parts, axis=1)
         widths = [part.shape[1] for part in parts]

@@ -96,12 +96,17 @@ def read_rows(data: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
 
 @_sound()
 def decode(
-    data: bytes, schema: Schema, may_lack: Collection[str] = (), more: Any = None
+    data: bytes,
+    schema: Schema,
+    may_lack: Collection[str] = (),
+    more: Any = None,
+    absent: Collection[str] = (),
 ) -> tuple[Iterator[dict[str, Any]], dict[str, str]]:
     """Return the rows of a Parquet file and its notes.
 
     Beside the columns of `schema` the rows have all others of the type `more`, which may have gaps.
-    `Unreadable` when a column of `schema` that is not in `may_lack` is not there or has gaps.
+    `Unreadable` when a column of `schema` is not there and not in `absent`, whose columns then hold
+    `None`, or has gaps and is not in `may_lack`.
     """
     table = read_table(data)
     others = [f.name for f in table.schema if f.type == more and f.name not in schema]
@@ -109,7 +114,7 @@ def decode(
     columns: list[list[Any]] = []
     for name, kind in kinds.items():
         if name not in table.column_names:
-            if name in may_lack:
+            if name in absent:
                 columns.append([None] * table.num_rows)
                 continue
             raise Unreadable(f"there is no column {name!r}")

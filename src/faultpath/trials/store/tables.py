@@ -35,7 +35,7 @@ _HASHES = dict.fromkeys(("initial_hash", "disturbance_hash", "planner_noise_hash
 _TRAJECTORY = {"trajectory_hash": TEXT}
 _RESULT = {**_COUNTS, **_HASHES, **_TRAJECTORY, "error": TEXT}
 _TRACE = dict.fromkeys(("x_m", "y_m", "z_m"), NUMBERS)
-_MAY_LACK = ("time_s", "error", *_TRAJECTORY, *_TRACE)
+_MAY_LACK = ("time_s", "error", *_TRACE)
 _TRACES = {**_ADDRESS, **_TRACE}
 FIXED = frozenset({*_ADDRESS, *_PLACE, *_END, *_RESULT, *_TRACE})
 """Columns that no metric can be called."""
@@ -92,7 +92,7 @@ def decode_outcomes(
     Where a trial that did not fail has no time, it is not a number: other tools write none.
     """
     schema = {**_ADDRESS, **_PLACE, **_END, **_RESULT}
-    rows, _ = decode(data, schema, _MAY_LACK, more=NUMBER)
+    rows, _ = decode(data, schema, _MAY_LACK, more=NUMBER, absent=_TRAJECTORY)
     at, trials = ("variant", "path", "seed", *_PLACE), list[TrialRow]()
     for row in rows:
         trace = (traces or {}).get(_address(row))
@@ -159,7 +159,7 @@ def _outcome(row: Mapping[str, Any], trace: Trace | None, untimed: bool = False)
     fixed = {"scene", *_END, *_RESULT}
     others = fixed.union(_ADDRESS, _PLACE, _TRACE)
     fields = {name: row[name] for name in fixed}
-    fields["trajectory_hash"] = fields["trajectory_hash"] or ""  # files of other tools lack it
+    fields["trajectory_hash"] = fields["trajectory_hash"] or ""  # of before there was one
     metrics = {k: v for k, v in row.items() if k not in others and v is not None}
     try:
         fields["status"] = Status(fields["status"])
