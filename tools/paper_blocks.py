@@ -190,13 +190,18 @@ def _flown_again() -> str:
     paths = {CORRECT: CORRECT, SHARED: _FAULT, _MODULE: f"{_FAULT}@{_MODULE}"}
     setting = Setting(wind="L3")
     here = {
-        (row.variant, f"{setting}: {paths[row.path]}", row.seed, row.outcome.scene): row.outcome
-        for row in read_outcomes(REFERENCE / AGAIN / FILES[2]).rows
-        if row.path in paths
+        (
+            row.variant,
+            f"{setting}: {paths[row.condition]}",
+            row.seed,
+            row.outcome.scene,
+        ): row.outcome
+        for row in read_outcomes(REFERENCE / AGAIN / FILES[2])
+        if row.condition in paths
     }
     there = {
-        (row.variant, row.path, row.seed, row.outcome.scene): row.outcome
-        for row in read_outcomes(RUN / FILES[2]).rows
+        (row.variant, row.condition, row.seed, row.outcome.scene): row.outcome
+        for row in read_outcomes(RUN / FILES[2])
     }
     pairs = [(here[key], there[key]) for key in here.keys() & there.keys()]
     alike = sum(one == other for one, other in pairs)

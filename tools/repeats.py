@@ -13,6 +13,7 @@ from typing import Any
 
 from blocks import OUTCOMES, REFERENCE, REPEATS, ROOT, Repeats, Run
 
+from faultpath.api.replaying import outcomes_at
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.study import plan_map
@@ -21,7 +22,7 @@ from faultpath.trials import Arm, Outcome, Study, System, SystemSpec, library_of
 from faultpath.trials.attempt import Done, attempt
 from faultpath.trials.question import AuditQuestion, MapQuestion
 from faultpath.trials.store.folder import read_outcomes
-from faultpath.trials.store.tables import TrialAddress, address_of
+from faultpath.trials.store.tables import TrialAddress
 
 SECONDS = 3.0
 """About how long a sample may take; a scene with all versions and conditions is the least."""
@@ -33,8 +34,8 @@ _NEAR = 1e-3
 
 def repeat(run: Run) -> Repeats:
     """Run a sample of a stored run's trials with the code that is here and compare them."""
-    table = read_outcomes(REFERENCE / run.name / OUTCOMES)
-    before = {address_of(row): row.outcome for row in table.rows if not row.outcome.failed}
+    trials = read_outcomes(REFERENCE / run.name / OUTCOMES)
+    before = outcomes_at(trials)
     with chdir(ROOT):
         system, study = planned(run)
         arms: dict[str, Arm] = {}
@@ -56,7 +57,7 @@ def repeat(run: Run) -> Repeats:
                 place = ", ".join((address.variant, address.path, address.scene))
                 first = first or (differs and f"{place}, seed {address.seed}: {differs}")
     count = sum(map(len, at.values()))
-    return Repeats(trials=len(table.rows), sampled=count, repeated=repeated, near=near, first=first)
+    return Repeats(trials=len(trials), sampled=count, repeated=repeated, near=near, first=first)
 
 
 def planned(run: Run) -> tuple[System, Study]:

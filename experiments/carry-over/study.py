@@ -23,7 +23,7 @@ from faultpath.api.systems import executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.decisions.planning import plan_audit
 from faultpath.decisions.sentences.wording import counted
-from faultpath.trials import Row, Side, Study, SystemSpec, library_of, load_system, pair
+from faultpath.trials import Group, Row, Status, Study, SystemSpec, library_of, load_system, pair
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import RunResult, run_study
 from faultpath.trials.question import AuditQuestion
@@ -132,10 +132,11 @@ class Flight:
 
 
 def _ended(cell: Cell, rows: Sequence[Row], result: RunResult, scenes: Sequence[str]) -> Cell:
-    sides = (Side(name, rows[0].path) for name in (cell.baseline, cell.repair))
-    pairs = pair(result.outcomes, *sides)
-    arms = [arm.success[:, 0].astype(int) for arm in (pairs.first, pairs.second)]
-    known = [dict(zip(pairs.scenes, arm, strict=True)) for arm in arms]
+    groups = (Group(name, rows[0].path) for name in (cell.baseline, cell.repair))
+    pairs = pair(result.trials, *groups).whole()
+    names = [scene.id for scene in pairs.scenes]
+    arms = [success[:, 0].astype(int) for success in pairs.ended(Status.SUCCESS)]
+    known = [dict(zip(names, arm, strict=True)) for arm in arms]
     letters = tuple("".join(str(arm.get(scene, VOID)) for scene in scenes) for arm in known)
     return cell.model_copy(update={"ended": letters})
 

@@ -18,7 +18,7 @@ from faultpath.decisions.family import Family, decide_paths
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.faults import resolve
 from faultpath.statistics.estimate import RULE
-from faultpath.trials import Arm, OutcomeTable, Row, Side, Study, SystemSpec, load_system, pair
+from faultpath.trials import Arm, Group, Row, Status, Study, SystemSpec, Trials, load_system, pair
 from faultpath.trials.execution.runner import run_study
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -78,7 +78,7 @@ def study(design: Design, repair: str, library: str, scenes: tuple[str, ...]) ->
     )
 
 
-def decided(design: Design, repair: str, table: OutcomeTable) -> list[dict]:
+def decided(design: Design, repair: str, table: Trials) -> list[dict]:
     """Return the audit of a repair under each fault; a design errs in at most 5 %."""
     found = []
     for fault in design.faults:
@@ -91,16 +91,16 @@ def decided(design: Design, repair: str, table: OutcomeTable) -> list[dict]:
     return found
 
 
-def cancelled(design: Design, table: OutcomeTable) -> list[dict]:
+def cancelled(design: Design, table: Trials) -> list[dict]:
     """Return, of the baseline, success with the fault shared against the observation alone."""
     success = {}
     for fault in design.faults:
         both = pair(
             table,
-            Side(design.baseline, f"{fault}/{SHARED}"),
-            Side(design.baseline, f"{fault}/{OBSERVATION}"),
+            Group(design.baseline, f"{fault}/{SHARED}"),
+            Group(design.baseline, f"{fault}/{OBSERVATION}"),
         )
-        success[fault] = both.first.success, both.second.success
+        success[fault] = both.whole().ended(Status.SUCCESS)
     said = _said(success, decide_paths(success, rule=RULE))
     return [
         {"fault": fault, "success": said["success"][fault], "effect": said["effects"][fault]}
@@ -144,8 +144,8 @@ def main() -> None:
             print,
             shared=True,
         )
-        audits += decided(design, repair, result.outcomes)
-        baseline = cancelled(design, result.outcomes)
+        audits += decided(design, repair, result.trials)
+        baseline = cancelled(design, result.trials)
         found = {
             "library": asked.library,
             "scenes": len(scenes),

@@ -28,7 +28,7 @@ from faultpath.decisions.family import decide_paths
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.faults import Address, encode_record, parse_fault, resolve
 from faultpath.faults.recorded import decode_record
-from faultpath.trials import Arm, OutcomeTable, Row, Study, library_of, load_system
+from faultpath.trials import Arm, Row, Study, Trials, library_of, load_system
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import run_study
 from faultpath.trials.store.atomic import make_folder, write, write_text
@@ -121,7 +121,7 @@ def study_of(design: Design, system, scenes: Sequence[str], files: Files) -> Stu
     )
 
 
-def decided(design: Design, table: OutcomeTable) -> tuple[Audit, ...]:
+def decided(design: Design, table: Trials) -> tuple[Audit, ...]:
     """Return what is significant in each audit; all of them err in one of twenty studies."""
     audits = list[Audit]()
     for fault, repair in design.audits:
@@ -192,7 +192,7 @@ def fly(
         design=design,
         options=design.options,
         scenes=len(chosen),
-        audits=decided(design, result.outcomes),
+        audits=decided(design, result.trials),
         errors=sizes(files),
     )
     write_text(folder / AUDITS, audits.model_dump_json(indent=1) + "\n", folder)

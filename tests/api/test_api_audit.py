@@ -84,9 +84,9 @@ def test_what_is_read_back_is_what_was_held(run):
     assert again.provenance == run.provenance
     held, read = run.held, again.held
     assert read.system == held.system
-    assert (run.folder / OUTCOMES).read_bytes() == encode_outcomes(held.outcomes)
-    assert encode_outcomes(read.outcomes) == encode_outcomes(held.outcomes)
-    assert encode_traces(read.outcomes) == encode_traces(held.outcomes)
+    assert (run.folder / OUTCOMES).read_bytes() == encode_outcomes(held.trials)
+    assert encode_outcomes(read.outcomes) == encode_outcomes(held.trials)
+    assert encode_traces(read.outcomes) == encode_traces(held.trials)
     assert list(read.signals) == list(held.signals) != []
     assert encode_signals(read.signals) == encode_signals(held.signals)
     assert report_page(read) == report_page(held)

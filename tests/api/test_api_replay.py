@@ -15,6 +15,7 @@ from faultpath.cli.replay import replay as command
 from faultpath.core.errors import UserError
 from faultpath.trials.store.signals import IN_FORCE, SIGNALS, Signal
 from faultpath.trials.store.tables import TrialAddress
+from faultpath.trials.trials import Trials
 
 SCENE = "cart/001"
 ASKED = AUDIT | {"fault": "gain:scale=0.6,onset=20,for=30", "scenes": 3}
@@ -74,10 +75,10 @@ def test_signals_stay_with_the_run_and_a_changed_file_is_refused(folder, found, 
 def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
     source = read_run(folder)
     rows = tuple(
-        replace(row, outcome=replace(row.outcome, time_s=9.0)) if row.path == "shared" else row
-        for row in source.outcomes.rows
+        replace(row, outcome=replace(row.outcome, time_s=9.0)) if row.condition == "shared" else row
+        for row in source.trials
     )
-    changed = replace(source, outcomes=replace(source.outcomes, rows=rows))
+    changed = replace(source, trials=Trials.of(rows))
     found = replay(changed, (SCENE,), ("shared", "observer"), trust=True).trials
     differs = {each.address.path: bool(each.differs) for each in found}
     assert differs == {"shared": True, "observer": False}

@@ -42,7 +42,7 @@ def test_a_path_holds_the_taps_faulted_in_either_variant(tmp_path, text, in_forc
     result = run_study(audit.study, tmp_path, workers=0)
     controller = tap("controller.inverse", 4 * in_force, 4 * altered)
     observer = tap("observer.model", 4 * in_force, 4 * altered)
-    assert faulted(audit.conclude(result.outcomes, result.deliveries)) == {
+    assert faulted(audit.conclude(result.trials, result.deliveries)) == {
         "correct": ((), ()),
         "controller": ((controller,), (controller,)),
         "observer": ((), (observer,)),
@@ -53,5 +53,5 @@ def test_a_path_holds_the_taps_faulted_in_either_variant(tmp_path, text, in_forc
 def test_a_fault_after_the_end_faulted_nothing(tmp_path):
     audit = asked("gain:scale=0.6,onset=100")
     result = run_study(audit.study, tmp_path, workers=0)
-    record = audit.conclude(result.outcomes, result.deliveries)
+    record = audit.conclude(result.trials, result.deliveries)
     assert set(faulted(record).values()) == {((), ())}

@@ -53,7 +53,7 @@ def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None
 
     opened = faultpath.open_run(folder)
     assert opened.record == again.record
-    assert encode_outcomes(opened.held.outcomes) == encode_outcomes(again.held.outcomes)
+    assert encode_outcomes(opened.held.trials) == encode_outcomes(again.held.trials)
     assert report_page(opened.held) == report_page(again.held)
     page = (folder / "report.html").read_text()
     assert "Other tools ran the trials" in page

@@ -6,7 +6,7 @@ from math import comb
 from faultpath.decisions.decide import decide
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Path
 from faultpath.decisions.question import Question
-from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
+from faultpath.trials import Outcome, Status, Trial, Trials
 
 BASELINE, REPAIR = "old", "new"
 SCENES = 100
@@ -62,12 +62,12 @@ def rows(
     seed: int = 0,
     slower_s: float = 0.0,
     altered: int | None = None,
-) -> list[TrialRow]:
+) -> list[Trial]:
     """Return trials with these ends; the fault acts in the first `altered` of them, or in all."""
     return [
-        TrialRow(
+        Trial(
             variant=variant,
-            path=path,
+            condition=path,
             seed=seed,
             scene_index=i,
             topology="",
@@ -93,13 +93,13 @@ def rows(
     ]
 
 
-def table(cells: Mapping[str, Counts], n: int = SCENES, slower_s: float = 0.0) -> OutcomeTable:
-    out: list[TrialRow] = []
+def table(cells: Mapping[str, Counts], n: int = SCENES, slower_s: float = 0.0) -> Trials:
+    out: list[Trial] = []
     for path, counts in cells.items():
         for variant, statuses in arms(counts, n).items():
             late = slower_s if variant == REPAIR else 0.0
             out += rows(variant, path, statuses, slower_s=late)
-    return OutcomeTable(tuple(out))
+    return Trials.of(out)
 
 
 def record(cells: Mapping[str, Counts], n: int = SCENES, **changes: float) -> DecisionRecord:
@@ -119,7 +119,7 @@ def seeded(
     ]
     seeds = range(len(next(iter(cells.values()))))
     about = question(n, tuple(seeds)).model_copy(update=asked)
-    return decide(about, paths(*cells), OutcomeTable(tuple(out)))
+    return decide(about, paths(*cells), Trials.of(out))
 
 
 def three(correct: Counts, isolated: Counts, shared: Counts) -> DecisionRecord:

@@ -30,7 +30,7 @@ def judged(trials: list[tuple[str, str, str]], blank: int | None = None, **asked
     ]
     question = JudgeQuestion.model_validate({"baseline": "old", "repair": "new", **asked})
     laid = lay_out(rows, question)
-    return decide(laid.question, laid.paths, laid.table, laid.findings)
+    return decide(laid.question, laid.paths, laid.trials, laid.findings)
 
 
 def test_two_scenes_with_an_extra_seed_leave_the_other_28():

@@ -14,7 +14,7 @@ from faultpath.decisions.question import StopRule
 from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.sentences.phrases import in_short
-from faultpath.trials import OutcomeTable, Status
+from faultpath.trials import Status, Trials
 from faultpath.trials.question import StopWhen
 
 SIDES = ((REPAIR, 1), (BASELINE, -1))
@@ -93,7 +93,7 @@ def run(
         stop = StopRule(when=when, margin_pp=margin, order=(), order_seed=0, look=5, trials=8)
         update = {"stop": stop, "n_scenes": most or n}
         asked = asked.model_copy(update=update)
-    return decide(asked, paths(*over), OutcomeTable(tuple(out)))
+    return decide(asked, paths(*over), Trials.of(out))
 
 
 def sentences(made: DecisionRecord) -> Iterator[str]:

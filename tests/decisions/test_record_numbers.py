@@ -19,7 +19,7 @@ from outcome_tables import (
 from faultpath.core.errors import UserError
 from faultpath.decisions.decide import decide
 from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.trials import OutcomeTable, Status
+from faultpath.trials import Status, Trials
 
 
 @pytest.mark.parametrize("counts", [(40, 20, 5), (60, 3, 15), (50, 0, 0), (0, 7, 7), (94, 6, 0)])
@@ -94,7 +94,7 @@ def test_too_few_scenes_decide_nothing_and_the_number_that_would_is_known(n, eno
     assert [change.turn for change in made.changes] == ["reversal" if enough else "none"] * 2
 
 
-def _with_failures(*failed: tuple[str, str, int]) -> OutcomeTable:
+def _with_failures(*failed: tuple[str, str, int]) -> Trials:
     """Return trials on two paths of which some failed: variant, path, scene."""
     out = []
     for path, counts in {CORRECT: (40, 20, 10), "observer": (20, 10, 30)}.items():
@@ -103,7 +103,7 @@ def _with_failures(*failed: tuple[str, str, int]) -> OutcomeTable:
                 if (v, p) == (variant, path):
                     statuses[i] = Status.FAILED
             out += rows(variant, path, statuses)
-    return OutcomeTable(tuple(out))
+    return Trials.of(out)
 
 
 def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_paths_nothing():
@@ -171,7 +171,7 @@ def test_a_path_on_which_the_fault_never_acted_is_no_part_of_the_family():
     for path, counts in ((CORRECT, (50, 9, 1)), ("a", (40, 20, 2)), (SHARED, (40, 2, 20))):
         for variant, statuses in arms(counts).items():
             out += rows(variant, path, statuses, altered=0 if path == "a" else None)
-    made = decide(question(), paths(CORRECT, "a", SHARED), OutcomeTable(tuple(out)))
+    made = decide(question(), paths(CORRECT, "a", SHARED), Trials.of(out))
     idle = made.effects[1]
     assert not idle.acted
     assert not idle.detected

@@ -8,7 +8,7 @@ from outcome_tables import paths, question, record, table
 from faultpath.core.errors import UserError
 from faultpath.decisions.decide import decide
 from faultpath.decisions.planning import plan_audit
-from faultpath.trials import Metric, OutcomeTable, Status, SystemSpec, load_system
+from faultpath.trials import Metric, Status, SystemSpec, Trials, load_system
 from faultpath.trials.question import AuditQuestion, ask
 
 CELLS = {"correct": (96, 2, 2), "shared": (30, 40, 10)}
@@ -18,12 +18,12 @@ TOY = SystemSpec(name="examples/toy.py:create")
 def told(better: str, values: dict[str, float], *thresholds: float):
     """Return the record of a metric that grows with the scene and is larger in one variant."""
     rows = []
-    for row in table(CELLS).rows:
+    for row in table(CELLS):
         error = {"error": values[row.variant] + row.scene_index / 100}
         rows.append(replace(row, outcome=replace(row.outcome, metrics=error)))
     metrics = {"error": Metric(unit="rad", better=better)}
     update = {"metrics": metrics, "metric": "error", "thresholds": thresholds}
-    return decide(question().model_copy(update=update), paths(*CELLS), OutcomeTable(tuple(rows)))
+    return decide(question().model_copy(update=update), paths(*CELLS), Trials.of(rows))
 
 
 @pytest.mark.parametrize("better", ["less", "more"])
@@ -31,10 +31,10 @@ def test_success_at_a_threshold_is_no_crash_and_a_metric_that_is_good_enough(bet
     offset = {"old": 0.0, "new": 0.25}
     thresholds = told(better, offset, 0.5)
     percent = dict.fromkeys(offset, 0)
-    for row in table(CELLS).rows:
+    for row in table(CELLS):
         error = offset[row.variant] + row.scene_index / 100
         good = error <= 0.5 if better == "less" else error >= 0.5
-        if row.path == "correct" and row.outcome.status is not Status.CRASH:
+        if row.condition == "correct" and row.outcome.status is not Status.CRASH:
             percent[row.variant] += good
     (at,) = thresholds.effects[0].thresholds
     assert (at.baseline_percent, at.repair_percent) == (percent["old"], percent["new"])

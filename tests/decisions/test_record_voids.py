@@ -10,7 +10,7 @@ from faultpath.decisions.decide import decide
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
 from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.sentences.phrases import in_short
-from faultpath.trials import OutcomeTable, Status
+from faultpath.trials import Status, Trials
 
 YES, NO, FAILED = Status.SUCCESS, Status.CRASH, Status.FAILED
 Ends = list[Status]
@@ -32,7 +32,7 @@ def audit(
     ]
     graded = question(len(correct[0]), range(1 + len(seeds))).model_copy(update={"rule": "graded"})
     names = dict.fromkeys(path for path, _, _ in over)
-    return decide(graded, paths(*names), OutcomeTable(tuple(out)))
+    return decide(graded, paths(*names), Trials.of(out))
 
 
 def ends(success: np.ndarray, failed: np.ndarray | None = None) -> Ends:
@@ -211,7 +211,7 @@ def test_trials_that_do_not_repeat_or_are_no_pairs_support_nothing(invalid):
         last = trials[-1]
         trials[-1] = replace(last, outcome=replace(last.outcome, initial_hash="another"))
     graded = question().model_copy(update={"rule": "graded"})
-    table, over = OutcomeTable(tuple(trials)), paths(CORRECT, "observer", SHARED)
+    table, over = Trials.of(trials), paths(CORRECT, "observer", SHARED)
     made = decide(graded, over, table, repeats=invalid == "unpaired")
     assert made.invalid == invalid
     assert made.headline.startswith("No result: ")

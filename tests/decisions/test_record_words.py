@@ -10,7 +10,7 @@ from faultpath.decisions.decide import decide
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
 from faultpath.decisions.sentences import phrases
 from faultpath.decisions.sentences.phrases import in_short
-from faultpath.trials import OutcomeTable, Status
+from faultpath.trials import Status, Trials
 
 LEVEL = (50, 5, 5)
 GAIN = (40, 30, 2)
@@ -95,7 +95,7 @@ def test_a_fault_that_never_acted_was_not_tested():
         for path in (CORRECT, "observer", SHARED):
             for variant, statuses in arms(GAIN).items():
                 out += rows(variant, path, statuses, altered=altered.get(path))
-        return decide(question(), paths(CORRECT, "observer", SHARED), OutcomeTable(tuple(out)))
+        return decide(question(), paths(CORRECT, "observer", SHARED), Trials.of(out))
 
     never = made({"observer": 0, SHARED: 0})
     assert never.headline == "The fault never changed a reading: no effect of it was tested."
@@ -161,6 +161,6 @@ def test_a_training_that_failed_throughout_under_one_condition_is_left_out_there
         )
     ]
     about = question(100, range(6)).model_copy(update={"trained": True, "generalise": "models"})
-    made = decide(about, paths(*cells), OutcomeTable(tuple(trials)))
+    made = decide(about, paths(*cells), Trials.of(trials))
     assert [effect.success.n_seeds for effect in made.effects] == [6, 6, 5]
     assert made.changes[0].change.n_seeds == 5

@@ -11,7 +11,7 @@ from faultpath_paper.pages import figure_3, in_text, table_1, table_2, table_3, 
 from faultpath_paper.results import Results
 from toy_runs import CELLS, MEASUREMENTS, Ends, trials
 
-from faultpath.trials import OutcomeTable, Status, TrialRow
+from faultpath.trials import Status, Trial, Trials
 
 SCENES = 100
 WINDOWS = 2
@@ -113,19 +113,19 @@ def mirrored(cell: Cell, seed: int, scene: int) -> Status:
     return Status.CRASH if won else Status.SUCCESS
 
 
-def outcomes(ends: Ends, scenes: int = SCENES, slower_s: float = 1.4) -> OutcomeTable:
+def outcomes(ends: Ends, scenes: int = SCENES, slower_s: float = 1.4) -> Trials:
     """Return every trial of the paper; those of DKI are slower."""
 
-    def changed(row: TrialRow) -> TrialRow:
+    def changed(row: Trial) -> Trial:
         made = row.outcome
         if row.variant == "dki":
             made = replace(made, time_s=made.time_s + slower_s)
         lost = made.metrics["terminal_distance_m"] > 1
-        if (row.variant, row.path) == (FARTHER.variant, FARTHER.path) and lost:
+        if (row.variant, row.condition) == (FARTHER.variant, FARTHER.path) and lost:
             made = replace(made, metrics={**made.metrics, "terminal_distance_m": 2.5})
         return replace(row, outcome=made)
 
-    return OutcomeTable(tuple(map(changed, trials(CELLS, ends, range(scenes)).rows)))
+    return Trials.of(tuple(map(changed, trials(CELLS, ends, range(scenes)))))
 
 
 def windows(power: float = 1.0) -> EvidenceTable:

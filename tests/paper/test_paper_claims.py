@@ -14,7 +14,7 @@ from faultpath_paper.results import Results
 from study_toys import SCENES, as_published, mirrored, whole
 from toy_runs import EMPTY, NOTHING, trials
 
-from faultpath.trials import OutcomeTable, Status
+from faultpath.trials import Status, Trials
 
 Answers = dict[str, ClaimVerdict]
 
@@ -64,9 +64,9 @@ def test_a_reversal_in_two_of_three_seeds_is_none_in_every_seed() -> None:
 
 
 def test_what_was_not_run_is_named(published_run: Results) -> None:
-    cell, rows = table_1.DKI, published_run.outcomes.rows
+    cell, rows = table_1.DKI, published_run.trials
     others = tuple(row for row in rows if row.variant != cell.variant)
-    fewer = replace(published_run, outcomes=OutcomeTable(others))
+    fewer = replace(published_run, trials=Trials.of(others))
     (part,) = (answered(statement, fewer) for statement in STATEMENTS["C03"])
     assert (part.answer, part.reason) == ("undecided", f"not run: {cell}")
 

@@ -26,13 +26,13 @@ from toy_runs import (
 )
 
 from faultpath.decisions.tables import MISSING, Table
-from faultpath.trials import OutcomeTable
+from faultpath.trials import Trials
 
 NAMES = tuple(page.name for page in PAGES)
 
 
 @cache
-def whole() -> tuple[OutcomeTable, EvidenceTable]:
+def whole() -> tuple[Trials, EvidenceTable]:
     return trials(CELLS, won(calibrated)), measured(MEASUREMENTS, lambda m: 0.1)
 
 
@@ -40,8 +40,8 @@ def whole() -> tuple[OutcomeTable, EvidenceTable]:
 def test_a_page_flies_and_measures_exactly_what_it_reads(name: str) -> None:
     watched = Watched(*whole(), "toy")
     page(name).build(watched)
-    flown = {(cell.side, seed) for cell in page(name).cells for seed in cell.seeds}
-    read = {(cell.side, seed) for cell in watched.cells for seed in cell.seeds}
+    flown = {(cell.group, seed) for cell in page(name).cells for seed in cell.seeds}
+    read = {(cell.group, seed) for cell in watched.cells for seed in cell.seeds}
     assert set(watched.measurements) == set(page(name).measurements) or name == "text"
     assert read == flown or name == "text"
 

@@ -53,13 +53,13 @@ def test_what_was_saved_is_read_back(run: Path) -> None:
     results, found = read_results(run)
     assert found.trials == 2
     assert found.ledger.library == HELD_OUT
-    assert {row.outcome.scene.split("/")[0] for row in results.outcomes.rows} == {"selection"}
+    assert {row.outcome.scene.split("/")[0] for row in results.trials} == {"selection"}
     assert len(results.pairs(NOMINAL, FAULTY).scenes) == 1
     assert len(results.measured(ERROR).values) > 0
     assert found == Reproduction.model_validate_json(found.model_dump_json())
     for cell in (NOMINAL, FAULTY):
-        rows = results.outcomes.arm("wm-a", cell.path, 0)
-        assert {row.outcome.faulted_steps > 0 for row in rows} == {cell is FAULTY}
+        outcomes = results.trials.outcomes("wm-a", cell.path, 0)
+        assert {outcome.faulted_steps > 0 for outcome in outcomes} == {cell is FAULTY}
 
 
 def test_a_profile_takes_its_seeds_and_joins_cells_that_share_trials() -> None:
@@ -69,7 +69,7 @@ def test_a_profile_takes_its_seeds_and_joins_cells_that_share_trials() -> None:
     assert QUICK.cells([second]) == ()
     fine = Cell(table_1.STILL, "wm-a", (calibration(0.05),), quick=False)
     assert QUICK.cells([fine]) == ()
-    assert [cell.side for cell in PAPER.cells([fine])] == [fine.side]
+    assert [cell.group for cell in PAPER.cells([fine])] == [fine.group]
 
 
 def test_what_there_is_not_is_refused(tmp_path: Path) -> None:

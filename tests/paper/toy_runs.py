@@ -12,7 +12,7 @@ from faultpath_paper.pages import PAGES
 from faultpath_paper.results import Results
 
 from faultpath.decisions.tables import Entry, Line, Table
-from faultpath.trials import Outcome, OutcomeTable, Pairs, Status, TrialRow
+from faultpath.trials import Outcome, Pairs, Status, Trial, Trials
 
 SCENES = 20
 Ends = Callable[[Cell, int, int], Status]
@@ -27,16 +27,14 @@ def won(wins: Callable[[Cell], int]) -> Ends:
     return lambda cell, seed, scene: Status.SUCCESS if scene < wins(cell) else Status.CRASH
 
 
-def trials(
-    cells: Iterable[Cell], ends: Ends, scenes: Iterable[int] = range(SCENES)
-) -> OutcomeTable:
+def trials(cells: Iterable[Cell], ends: Ends, scenes: Iterable[int] = range(SCENES)) -> Trials:
     """Return a table with each variant, path and seed once."""
     arms = {(c.variant, c.path, seed): c for c in cells for seed in c.seeds}
     rows = (
-        TrialRow(*arm, i, "", _outcome(i, arm[-1], ends(cell, arm[-1], i)))
+        Trial(*arm, i, "", _outcome(i, arm[-1], ends(cell, arm[-1], i)))
         for (arm, cell), i in product(arms.items(), scenes)
     )
-    return OutcomeTable(tuple(rows))
+    return Trials.of(rows)
 
 
 def measured(
@@ -69,7 +67,7 @@ def run(
     return Results(trials(cells, ends, scenes), evidence, "toy")
 
 
-EMPTY = Results(OutcomeTable(()), NOTHING, "toy")
+EMPTY = Results(Trials.of(()), NOTHING, "toy")
 
 
 @dataclass(frozen=True)

@@ -62,7 +62,7 @@ def test_a_page_says_how_many_trials_repeat(repeated, near, current, text) -> No
 def test_the_sample_is_the_same_each_time_and_has_every_version_and_condition() -> None:
     run = load("toy")
     table = repeats.read_outcomes(REFERENCE / "toy" / "outcomes.parquet")
-    before = {repeats.address_of(row): row.outcome for row in table.rows}
+    before = repeats.outcomes_at(table)
     with repeats.chdir(repeats.ROOT):
         _, study = repeats.planned(run)
     drawn = [at for at, _ in repeats.sample(run, study, before)]

@@ -19,7 +19,7 @@ from faultpath.decisions.model import FaultedTap, Path
 from faultpath.decisions.question import Question
 from faultpath.interface import Interface, read_interface
 from faultpath.report.inputs import ReportInput
-from faultpath.trials import Outcome, OutcomeTable, Status, SystemShown, TrialRow, VariantShown
+from faultpath.trials import Outcome, Status, SystemShown, Trial, Trials, VariantShown
 from faultpath.trials.declared import FloorPlan, Pillar, Prism
 from faultpath.trials.provenance import RunProvenance
 
@@ -79,7 +79,8 @@ def make_input(
     """Build the audit; everything follows from the arguments. `lost`: every trial there failed."""
     paths = _paths()
     rows = tuple(
-        _lose(row) if row.path == lost else row for row in _rows(seeds, n_scenes, void, chances)
+        _lose(row) if row.condition == lost else row
+        for row in _rows(seeds, n_scenes, void, chances)
     )
     question = Question(
         system="quadrotor",
@@ -92,7 +93,7 @@ def make_input(
         n_scenes=n_scenes,
         seeds=seeds,
     )
-    outcomes = OutcomeTable(rows)
+    outcomes = Trials.of(rows)
     record = decide(question, paths, outcomes)
     return ReportInput(
         record=record,
@@ -103,11 +104,11 @@ def make_input(
             variants=(_variant(BASELINE), _variant(REPAIR)),
             plans={_scene(i): _plan(i) for i in range(n_scenes)},
         ),
-        outcomes=outcomes,
+        trials=outcomes,
     )
 
 
-def _lose(row: TrialRow) -> TrialRow:
+def _lose(row: Trial) -> Trial:
     return replace(row, outcome=replace(row.outcome, status=Status.FAILED, error="no number"))
 
 
@@ -194,7 +195,7 @@ def _scene(index: int) -> str:
 
 def _rows(
     seeds: tuple[int, ...], n_scenes: int, void: bool, law: Mapping[str, tuple[float, float]]
-) -> Iterator[TrialRow]:
+) -> Iterator[Trial]:
     for seed in seeds:
         for index in range(n_scenes):
             rng = np.random.default_rng([seed, index])
@@ -205,7 +206,7 @@ def _rows(
                     failed = void and at == (seeds[0], 17, "shared", REPAIR)
                     draw = hard + 0.11 * rng.standard_normal()
                     outcome = _outcome(index, seed, draw < chance, failed, path != "correct", rng)
-                    yield TrialRow(variant, path, seed, index, TOPOLOGIES[index % 5], outcome)
+                    yield Trial(variant, path, seed, index, TOPOLOGIES[index % 5], outcome)
 
 
 def _outcome(

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from faultpath.trials import OutcomeTable, TrialRow
+from faultpath.trials import Trial, Trials
 from faultpath.trials.store.tables import Trace
 
 
@@ -61,11 +61,11 @@ def unpack(packed: str) -> tuple[dict[str, Any], list[np.ndarray]]:
     return content, [np.cumsum(np.cumsum(steps)) for steps in content.pop("series")]
 
 
-def with_traces(outcomes: OutcomeTable, change: Callable[[Trace], Trace | None]) -> OutcomeTable:
+def with_traces(outcomes: Trials, change: Callable[[Trace], Trace | None]) -> Trials:
     """Return the trials with other positions."""
-    rows: list[TrialRow] = []
-    for row in outcomes.rows:
+    rows: list[Trial] = []
+    for row in outcomes:
         trace = row.outcome.trace
         changed = None if trace is None else change(trace)
         rows.append(replace(row, outcome=replace(row.outcome, trace=changed)))
-    return OutcomeTable(tuple(rows))
+    return Trials.of(rows)

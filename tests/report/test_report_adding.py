@@ -39,7 +39,7 @@ def heard(one_seed: ReportInput) -> ReportInput:
 
 
 def pairs_of(source: ReportInput):
-    return read_pairs(source.outcomes, source.record)
+    return read_pairs(source.trials, source.record)
 
 
 def test_the_first_scene_shows_both_errors_and_their_sum_on_every_path(heard) -> None:

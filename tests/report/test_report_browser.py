@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page, expect
 
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.trials import OutcomeTable
+from faultpath.trials import Trials
 from faultpath.trials.store.signals import Signal
 from faultpath.trials.store.tables import TrialAddress
 
@@ -145,13 +145,13 @@ def test_a_trial_that_was_not_recorded_shows_its_end_and_how_to_run_it_again(
         replace(
             row, outcome=replace(row.outcome, scene=names.get(row.outcome.scene, row.outcome.scene))
         )
-        for row in with_traces(one_seed.outcomes, lambda track: None).rows
+        for row in with_traces(one_seed.trials, lambda track: None)
     ]
     steps = np.arange(5, dtype=np.float32)[:, None]
     at = TrialAddress("gru", "shared", 0, "clutter-000")
     source = replace(
         one_seed,
-        outcomes=OutcomeTable(tuple(rows)),
+        trials=Trials.of(rows),
         system=one_seed.system.model_copy(update={"plans": {}}),
         signals={at: (Signal("thrust", "thrust", "N", steps),)},
     )

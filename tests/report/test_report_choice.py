@@ -31,7 +31,7 @@ def scenes(source: ReportInput, *patterns: str, ends: Mapping[int, Status] = {})
         )
         return replace(pair, baseline=one, repair=two)
 
-    pairs = read_pairs(source.outcomes, source.record)
+    pairs = read_pairs(source.trials, source.record)
     return [went(pair) for pair in pairs if pair.index < len(patterns)]
 
 
@@ -118,7 +118,7 @@ def test_void_scenes_are_neither_shown_nor_counted(one_seed: ReportInput) -> Non
 
 def test_the_choice_is_fixed_and_counts_every_seed(three_seeds: ReportInput) -> None:
     record = three_seeds.record
-    pairs = read_pairs(three_seeds.outcomes, record)
+    pairs = read_pairs(three_seeds.trials, record)
     chosen = choose(record, pairs)
     assert chosen == choose(record, pairs)
     shown = [scene for scene, _ in chosen]

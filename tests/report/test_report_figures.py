@@ -21,7 +21,7 @@ def test_an_axis_covers_any_number_that_a_record_may_hold() -> None:
 
 def test_all_figures_are_xml(one_seed: ReportInput) -> None:
     record = one_seed.record
-    pairs = read_pairs(one_seed.outcomes, record)
+    pairs = read_pairs(one_seed.trials, record)
     drawn = [
         *(row.picture for row in effect_rows(record)),
         effect_axis(record),

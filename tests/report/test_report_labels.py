@@ -53,10 +53,10 @@ def test_a_cart_has_its_goal(
     make: Callable[..., ReportInput], browser: Browser, tmp_path: Path
 ) -> None:
     source = make(n_scenes=4, void=False)
-    line = with_traces(source.outcomes, lambda track: track * np.float32([1, 0, 0]))
+    line = with_traces(source.trials, lambda track: track * np.float32([1, 0, 0]))
     rail = FloorPlan((0, 0, 0), (9, 0, 0), (), (), (0, 0, 0), (9.2, 0, 0), "")
     plans = dict.fromkeys(source.system.plans, rail)
-    flat = replace(source, outcomes=line, system=source.system.model_copy(update={"plans": plans}))
+    flat = replace(source, trials=line, system=source.system.model_copy(update={"plans": plans}))
     opened = browser.new_page()
     folder = tmp_path / "my cart"
     opened.goto(write_report(flat, folder)[0].as_uri())
@@ -72,8 +72,8 @@ def test_a_picture_moves_with_the_clock_and_lifts_its_pen(
     """Without positions: a cart that drives on, and a mark that stays."""
     source = make(n_scenes=4, void=False)
     system = source.system.model_copy(update={"plans": {}, "control_dt_s": 0.5})
-    bare = with_traces(source.outcomes, lambda track: None)
-    source = replace(source, outcomes=bare, system=system)
+    bare = with_traces(source.trials, lambda track: None)
+    source = replace(source, trials=bare, system=system)
     steps, lift = np.arange(9.0, dtype=np.float32)[:, None], np.full((9, 2), np.nan, np.float32)
     cart = np.hstack([steps, steps * 0, steps + 2, steps * 0, lift, steps * 0 + 5, steps * 0 + 1])
     named = (
@@ -81,12 +81,11 @@ def test_a_picture_moves_with_the_clock_and_lifts_its_pen(
         Signal("body", "body", "m, rad", np.hstack([steps, -steps]), ("place", "angle")),
     )
     heard = {
-        TrialAddress(r.variant, r.path, r.seed, r.outcome.scene): named
-        for r in source.outcomes.rows
+        TrialAddress(r.variant, r.condition, r.seed, r.outcome.scene): named for r in source.trials
     }
     opened = browser.new_page()
     written = write_report(replace(source, signals=heard), tmp_path / "cart")
-    opened.goto(f"{written[0].as_uri()}#scene={source.outcomes.rows[0].outcome.scene}&t=0")
+    opened.goto(f"{written[0].as_uri()}#scene={source.trials.scenes[0].id}&t=0")
     opened.wait_for_selector("#viewer[data-ready]")
     line = opened.locator("#viewer-across .plan path.v-track").first
     began = line.get_attribute("d") or ""

@@ -40,7 +40,7 @@ def test_verdict_comes_first_and_headings_do_not_skip(source: ReportInput, page:
 
 def test_every_pair_leads_to_its_trials(page: Page, source: ReportInput) -> None:
     cells = [a["href"] for tag, a in page.tags if tag == "a" and a.get("class") == "pair"]
-    assert len(cells) == len(source.outcomes.rows) / 2
+    assert len(cells) == len(source.trials) / 2
     assert all((link or "").startswith("#scene=") for link in cells)
 
 
@@ -53,7 +53,7 @@ def test_every_figure_is_named(page: Page) -> None:
 
 
 def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
-    pairs = read_pairs(source.outcomes, source.record)
+    pairs = read_pairs(source.trials, source.record)
     for effect in source.record.effects:
         for seed, won, lost in zip(
             source.record.question.seeds, effect.wins, effect.losses, strict=True
@@ -76,7 +76,7 @@ def test_a_path_of_which_every_trial_failed_costs_the_others_nothing(
     assert f"40 of {40 * len(source.record.paths)} pairs are void." in page.text
     assert "other pair" not in page.text
     assert page.text.count("no pair of trials is left to compare") == 2  # headline and finding
-    pairs = read_pairs(source.outcomes, source.record)
+    pairs = read_pairs(source.trials, source.record)
     assert PairKind.VOID not in {p.kind for p in pairs if p.path != lost}
 
 

@@ -16,14 +16,14 @@ from faultpath.trials.store.tables import TrialAddress, traces_of
 
 
 def _unpacked(source: ReportInput) -> tuple[dict[str, Any], list[Any]]:
-    made = viewer_data(source, read_pairs(source.outcomes, source.record))
+    made = viewer_data(source, read_pairs(source.trials, source.record))
     assert made is not None
     return unpack(made.packed)
 
 
 def test_every_trial_is_there_to_the_centimetre(three_seeds: ReportInput) -> None:
     data, series = _unpacked(three_seeds)
-    traces, seen = traces_of(three_seeds.outcomes), 0
+    traces, seen = traces_of(three_seeds.trials), 0
     for scene in data["scenes"]:
         for pair in scene["pairs"]:
             for arm, variant in (("baseline", "gru"), ("repair", "gru-dcc")):
@@ -53,8 +53,8 @@ def test_numbers_come_out_of_a_page_as_they_went_in() -> None:
 def test_a_player_with_nothing_to_play_is_not_shown(one_seed: ReportInput) -> None:
     """Without positions only scenes of which signals were recorded can be played."""
     system = one_seed.system.model_copy(update={"plans": {}})
-    bare = with_traces(one_seed.outcomes, lambda track: None)
-    still = replace(one_seed, outcomes=bare, system=system)
+    bare = with_traces(one_seed.trials, lambda track: None)
+    still = replace(one_seed, trials=bare, system=system)
     page = report_page(still)
     assert 'id="flights"' not in page
     assert 'href="#scene=' not in page
@@ -88,7 +88,7 @@ def test_without_positions_the_player_opens_on_what_the_plant_measures(
     still = replace(
         one_seed,
         system=one_seed.system.model_copy(update={"interface": interface, "plans": {}}),
-        outcomes=with_traces(one_seed.outcomes, lambda track: None),
+        trials=with_traces(one_seed.trials, lambda track: None),
         signals={TrialAddress("gru", "shared", 0, scene): signals},
     )
     data, _ = _unpacked(still)

@@ -137,7 +137,7 @@ def test_two_processes_in_one_folder_do_each_block_once(undisturbed, tmp_path):
 def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path):
     result = run_study(study(raises="s05"), tmp_path, workers=2)
     sound = run_study(study(), undisturbed, workers=0)
-    for row, expected in zip(result.outcomes.rows, sound.outcomes.rows, strict=True):
+    for row, expected in zip(result.trials, sound.trials, strict=True):
         if row.outcome.scene == "s05":
             assert row.outcome.failed
             assert row.outcome.error == "ValueError: no air in s05"
@@ -187,7 +187,7 @@ def test_a_worker_that_dies_once_costs_nothing(undisturbed, tmp_path):
 
 def test_a_scene_that_kills_its_worker_loses_itself_alone(tmp_path):
     result = run_study(study_of(SYSTEM, dies="s05"), tmp_path, workers=2)
-    assert [row.outcome.scene for row in result.outcomes.failed()] == ["s05"]
+    assert [trial.outcome.scene for trial in result.trials if trial.outcome.failed] == ["s05"]
     (failure,) = result.failures
     assert "SIGKILL" in failure.error
     assert "SIGKILL" in failure.details.read_text()

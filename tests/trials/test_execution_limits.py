@@ -132,7 +132,7 @@ def test_a_system_that_is_never_built_in_a_worker_is_not_waited_for(tmp_path, mo
 def test_a_malformed_outcome_fails_its_trial_alone(tmp_path, wrong, workers):
     trials = study_of(UNRULY, does=wrong, where="s05")
     result = run_study(trials, tmp_path, workers=workers)
-    statuses = {row.outcome.scene: row.outcome.status for row in result.outcomes.rows}
+    statuses = {row.outcome.scene: row.outcome.status for row in result.trials}
     assert [scene for scene in SCENES if statuses[scene] is Status.FAILED] == ["s05"]
     (failure,) = result.failures
     assert failure.error

@@ -8,7 +8,7 @@ from toy_study import SCENES, rows, study
 from faultpath.core.errors import Stopped, UserError
 from faultpath.trials.arm import Study
 from faultpath.trials.execution.runner import RunResult, run_study
-from faultpath.trials.table import OutcomeTable
+from faultpath.trials.trials import Trials
 from faultpath.trials.work.executor import Progress
 
 ORDER = ("s07", "s02", "s09", "s00", "s05", "s01", "s08", "s03", "s06", "s04")
@@ -18,8 +18,8 @@ def sequential(scenes: tuple[str, ...] = ORDER, look: int = 2, **options: str) -
     return study(scenes, **options).model_copy(update={"look": look, "rows": rows()[::3]})
 
 
-def seen(table: OutcomeTable) -> set[str]:
-    return {row.outcome.scene for row in table.rows}
+def seen(table: Trials) -> set[str]:
+    return {row.outcome.scene for row in table}
 
 
 def after(count: int) -> object:
@@ -39,7 +39,7 @@ def stopped(tmp_path_factory: pytest.TempPathFactory) -> tuple[RunResult, Path]:
 
 def test_it_holds_the_first_scenes_of_its_order_and_no_others(stopped, tmp_path):
     result, _ = stopped
-    assert seen(result.outcomes) == set(ORDER[:6])
+    assert seen(result.trials) == set(ORDER[:6])
     plain = run_study(sequential(tuple(sorted(ORDER[:6])), look=0), tmp_path, workers=0)
     assert result.outcomes_sha256 == plain.outcomes_sha256
     assert [row.taps for row in result.deliveries.rows] == [r.taps for r in plain.deliveries.rows]
@@ -48,13 +48,13 @@ def test_it_holds_the_first_scenes_of_its_order_and_no_others(stopped, tmp_path)
 def test_every_look_is_taken_once_and_holds_all_scenes_before_it(tmp_path):
     looks: list[set[str]] = []
 
-    def stop(table: OutcomeTable) -> bool:
+    def stop(table: Trials) -> bool:
         looks.append(seen(table))
         return False
 
     result = run_study(sequential(look=4), tmp_path, workers=2, stop=stop)
     assert looks == [set(ORDER[:4]), set(ORDER[:8]), set(ORDER)]
-    assert seen(result.outcomes) == set(SCENES)
+    assert seen(result.trials) == set(SCENES)
 
 
 @pytest.mark.parametrize(("blocks", "workers"), [(1, 0), (8, 2)])
@@ -83,7 +83,7 @@ def test_more_scenes_go_on_with_what_was_flown(tmp_path):
     first = run_study(sequential(ORDER[:4]), tmp_path, workers=0, stop=after(99))
     more = run_study(sequential(), tmp_path, workers=0, stop=after(6))
     assert more.blocks_kept == first.blocks_computed
-    assert seen(more.outcomes) == set(ORDER[:6])
+    assert seen(more.trials) == set(ORDER[:6])
 
 
 def test_a_failed_trial_is_tried_again_before_its_look_is_taken(tmp_path):

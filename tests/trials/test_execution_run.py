@@ -19,7 +19,7 @@ from faultpath.trials.execution.schedule import plan
 from faultpath.trials.store import tables
 from faultpath.trials.store.folder import read_outcomes
 from faultpath.trials.store.tables import decode_traces, traces_of
-from faultpath.trials.table import TrialRow
+from faultpath.trials.trials import Trial
 from faultpath.trials.work.executor import Progress
 
 
@@ -29,16 +29,16 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[RunResult, Path]:
     return run_study(study(), folder, workers=0), folder
 
 
-def _comparable(rows: tuple[TrialRow, ...]) -> list[tuple[object, ...]]:
+def _comparable(rows: tuple[Trial, ...]) -> list[tuple[object, ...]]:
     return [
-        (r.variant, r.path, r.seed, r.scene_index, r.topology, replace(r.outcome, trace=None))
+        (r.variant, r.condition, r.seed, r.scene_index, r.topology, replace(r.outcome, trace=None))
         for r in rows
     ]
 
 
 def test_rows_are_in_the_order_of_the_study_then_of_the_library(whole):
     result, _ = whole
-    addresses = [(r.variant, r.path, r.seed, r.outcome.scene) for r in result.outcomes.rows]
+    addresses = [(r.variant, r.condition, r.seed, r.outcome.scene) for r in result.trials]
     assert addresses == [(r.variant, r.path, r.seed, s) for r in rows() for s in SCENES]
     assert result.blocks_computed == UNITS
     assert not result.failures
@@ -46,17 +46,17 @@ def test_rows_are_in_the_order_of_the_study_then_of_the_library(whole):
 
 def test_the_fault_changes_what_it_should(whole):
     result, _ = whole
-    table = result.outcomes
+    table = result.trials
 
     def distances(variant: str, path: str) -> list[float | None]:
-        return [r.outcome.metrics["distance"] for r in table.arm(variant, path, 0)]
+        return [o.metrics["distance"] for o in table.outcomes(variant, path, 0)]
 
     assert distances("plain", "shared") == distances("plain", "planner")
     assert distances("plain", "shared") != distances("plain", "correct")
     assert distances("observed", "shared") != distances("observed", "planner")
-    faulted = {r.outcome.faulted_steps for r in table.arm("observed", "shared", 0)}
+    faulted = {o.faulted_steps for o in table.outcomes("observed", "shared", 0)}
     assert faulted == {9}  # 12 steps, from step 3 on
-    assert {r.outcome.altered_steps for r in table.arm("observed", "correct", 0)} == {0}
+    assert {o.altered_steps for o in table.outcomes("observed", "correct", 0)} == {0}
 
 
 def test_worker_processes_give_the_same_bytes(whole, tmp_path):
@@ -70,21 +70,21 @@ def test_worker_processes_give_the_same_bytes(whole, tmp_path):
 def test_the_tables_read_back(whole):
     result, folder = whole
     table = read_outcomes(folder / "outcomes.parquet")
-    assert _comparable(table.rows) == _comparable(result.outcomes.rows)
+    assert _comparable(table) == _comparable(result.trials)
     traces = decode_traces((folder / "traces.parquet").read_bytes())
-    assert traces.keys() == traces_of(result.outcomes).keys()
-    assert len(traces) == len(table.rows)
+    assert traces.keys() == traces_of(result.trials).keys()
+    assert len(traces) == len(table)
     for address, trace in traces.items():
         assert trace.dtype == np.float32
-        np.testing.assert_array_equal(trace, traces_of(result.outcomes)[address])
+        np.testing.assert_array_equal(trace, traces_of(result.trials)[address])
 
 
 @pytest.mark.parametrize("scenes", [("s03",), SCENES[2:9], SCENES[::-1]])
 def test_a_selection_in_any_order_gives_the_rows_of_the_whole(whole, tmp_path, scenes):
     result, _ = whole
     part = run_study(study(scenes), tmp_path, workers=0)
-    expected = tuple(r for r in result.outcomes.rows if r.outcome.scene in scenes)
-    assert _comparable(part.outcomes.rows) == _comparable(expected)
+    expected = tuple(r for r in result.trials if r.outcome.scene in scenes)
+    assert _comparable(part.trials) == _comparable(expected)
 
 
 def test_a_quick_look_grows_into_the_whole_and_then_nothing_is_computed(whole, tmp_path):

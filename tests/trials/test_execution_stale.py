@@ -32,7 +32,7 @@ def _edit(mine: Mine, place: str) -> str:
 
 
 def _distances(result) -> list[float]:
-    return [row.outcome.metrics["distance"] for row in result.outcomes.rows]
+    return [row.outcome.metrics["distance"] for row in result.trials]
 
 
 @pytest.mark.parametrize("place", PLACES)

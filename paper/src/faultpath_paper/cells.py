@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import yaml
 
 from faultpath.core.results import Frozen
-from faultpath.trials import Side
+from faultpath.trials import Group
 
 SYSTEM = "quadrotor"
 HELD_OUT = "held-out"
@@ -60,9 +60,9 @@ class Cell:
         return f"{self.setting}: {' and '.join(self.faults) or CORRECT}"
 
     @property
-    def side(self) -> Side:
-        """Side of a contrast."""
-        return Side(self.variant, self.path, self.seeds[0] if self.fixed else None)
+    def group(self) -> Group:
+        """Its trials."""
+        return Group(self.variant, self.path, self.seeds[0] if self.fixed else None)
 
     def __str__(self) -> str:
         return f"{self.variant} ({self.path})"

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
+from faultpath.trials import Arm, Row, Study, System, SystemSpec, Trials, load_system
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.work.executor import Progress
 from faultpath_paper.cells import SYSTEM, Cell, Profile, Setting
@@ -43,9 +43,9 @@ class Flown:
     results: tuple[RunResult, ...]
 
     @property
-    def outcomes(self) -> OutcomeTable:
+    def trials(self) -> Trials:
         """All trials, leg by leg."""
-        return OutcomeTable(tuple(row for result in self.results for row in result.outcomes.rows))
+        return Trials.of(trial for result in self.results for trial in result.trials)
 
     @property
     def fingerprint(self) -> str:

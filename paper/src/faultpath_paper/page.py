@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import compress
 from typing import TypeAlias
 
 from faultpath.decisions.sentences import wording
@@ -35,8 +36,8 @@ def flown(results: Results, cells: Iterable[Cell]) -> str:
             run_seeds = results.seeds(cell)
             scenes, seeds = libraries.setdefault(cell.setting.library, (set(), set()))
             seeds.update(run_seeds)
-            rows = results.outcomes.arm(cell.variant, cell.path, run_seeds[0])
-            scenes.update(row.outcome.scene for row in rows)
+            rows = results.trials.rows(cell.variant, cell.path, run_seeds[:1])[0]
+            scenes.update(scene.id for scene in compress(results.trials.scenes, rows >= 0))
     if not libraries:
         return "No trial of this table was run."
     parts = (

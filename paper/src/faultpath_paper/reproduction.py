@@ -66,9 +66,8 @@ def read_reproduction(folder: Path) -> ReproductionRun:
     provenance = read_provenance(folder)
     unseal(folder, provenance.files, RESULTS)
     results, record = read_results(folder)
-    rows = results.outcomes.rows
-    failed = sum(row.outcome.failed for row in rows)
-    if (record.trials, record.failed_trials) != (len(rows), failed):
+    counts = len(results.trials), int(results.trials.failed.sum())
+    if (record.trials, record.failed_trials) != counts:
         raise UserError(
             f"the files of {folder} do not belong together (reproduction.json counts other trials "
             f"than outcomes.parquet holds): {AGAIN}."
@@ -138,7 +137,7 @@ def carry_out(plan: ReproductionPlan, job: Job) -> ReproductionRun:
                 f"interrupted; what is finished is kept in {folder}, and the same "
                 f"{display.called} resumes."
             ) from None
-    results = plan.results(flown.outcomes, evidence)
+    results = plan.results(flown.trials, evidence)
     place = folder / plan.place
     record = conclude(plan, results)
     result = save(place, flown, results, record)

@@ -1,6 +1,6 @@
 """Outcomes and measurements of the studies' runs, as tables, figures and claims read them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -10,7 +10,7 @@ from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.effects import success_rate
 from faultpath.statistics.estimate import Estimate, Sign
 from faultpath.statistics.resamples import Resamples
-from faultpath.trials import Outcome, OutcomeTable, PairingRefused, Pairs, pair
+from faultpath.trials import Outcome, PairingRefused, Pairs, Status, Trials, pair
 from faultpath_paper.cells import Cell
 from faultpath_paper.evidence.table import EvidenceTable, Measured, Measurement
 
@@ -27,14 +27,14 @@ class Undecidable(Exception):
 class Results:
     """A run of studies: its outcome table, and what was measured on recorded windows."""
 
-    outcomes: OutcomeTable
+    trials: Trials
     evidence: EvidenceTable
     library_hash: str
     """Names the bootstrap's stream, so that intervals do not depend on where they are made."""
 
     def seeds(self, cell: Cell) -> tuple[int, ...]:
         """Return the seeds of a cell that were run; `NotRun` without any."""
-        run = [s for s in self.outcomes.seeds(cell.variant, cell.path) if s in cell.seeds]
+        run = [s for s in self.trials.seeds_of(cell.variant, cell.path) if s in cell.seeds]
         if not run:
             raise NotRun(cell)
         return tuple(run)
@@ -53,14 +53,14 @@ class Results:
 
     def has(self, cell: Cell) -> bool:
         """Return whether any trial of a cell was run."""
-        return bool(self.outcomes.seeds(cell.variant, cell.path))
+        return bool(self.trials.seeds_of(cell.variant, cell.path))
 
     def pairs(
         self,
         first: Cell,
         second: Cell,
         *,
-        scenes: Sequence[int] | None = None,
+        scenes: Collection[int] | None = None,
         other_noise: bool = False,
     ) -> Pairs:
         """Pair two cells over their common seeds; `scenes` keeps some indices.
@@ -69,12 +69,12 @@ class Results:
         `PairingRefused` where two trials met different conditions: these systems are our own.
         """
         seeds = self.common_seeds(first, second)
-        pairs = pair(self.outcomes, first.side, second.side, seeds, other_noise=other_noise)
+        pairs = pair(self.trials, first.group, second.group, seeds, other_noise=other_noise)
         if pairs.mismatches:
             raise PairingRefused(str(pairs.mismatches[0]))
+        pairs = pairs.whole()
         if scenes is not None:
-            kept = zip(pairs.scenes, pairs.scene_indices, strict=True)
-            pairs = pairs.only([scene for scene, index in kept if index in scenes])
+            pairs = pairs.only({scene.id for scene in pairs.scenes if scene.index in scenes})
         if not pairs.scenes:
             raise NotRun(f"a scene of {first} and {second} to compare")
         return pairs
@@ -82,13 +82,13 @@ class Results:
     def rate(self, cell: Cell) -> Estimate:
         """Return the success of a cell in percent, mean over its seeds."""
         pairs = self.pairs(cell, cell)
-        return success_rate(pairs.first.success, self.resamples(pairs)).estimate()
+        return success_rate(pairs.ended(Status.SUCCESS)[0], self.resamples(pairs)).estimate()
 
     def first(self, cell: Cell) -> list[Outcome]:
         """Return the outcomes of seed 0's trials, without failed ones; `NotRun` without any."""
         if 0 not in self.seeds(cell):
             raise NotRun(f"{cell}, seed 0")
-        ends = [row.outcome for row in self.outcomes.arm(cell.variant, cell.path, 0)]
+        ends = self.trials.outcomes(cell.variant, cell.path, 0)
         ended = [outcome for outcome in ends if not outcome.failed]
         if not ended:
             raise NotRun(f"a trial of {cell} that did not fail")

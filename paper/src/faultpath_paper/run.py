@@ -9,7 +9,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.decisions.tables import Table
-from faultpath.trials import Deliveries, OutcomeTable, System, SystemSpec, load_system
+from faultpath.trials import Deliveries, System, SystemSpec, Trials, load_system
 from faultpath.trials.code import system_code
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.provenance import RunProvenance
@@ -87,9 +87,9 @@ class ReproductionPlan:
         spec = SystemSpec(name=SYSTEM, options=dict(self.options))
         return keyed(Path("runs"), name, system_code(self.system, spec).state)
 
-    def results(self, outcomes: OutcomeTable, evidence: EvidenceTable) -> Results:
+    def results(self, trials: Trials, evidence: EvidenceTable) -> Results:
         """Return what was run and measured, as pages and claims ask for it."""
-        return Results(outcomes, evidence, self.system.library(HELD_OUT).content_hash)
+        return Results(trials, evidence, self.system.library(HELD_OUT).content_hash)
 
 
 def plan(
@@ -125,7 +125,6 @@ def conclude(plan: ReproductionPlan, results: Results) -> Reproduction:
     """Evaluate pages and claims."""
     library = plan.system.library(HELD_OUT)
     built = [part for page in plan.pages for part in page.build(results)]
-    rows = results.outcomes.rows
     return Reproduction(
         profile=plan.profile.name,
         ledger=ledger(
@@ -138,25 +137,24 @@ def conclude(plan: ReproductionPlan, results: Results) -> Reproduction:
         ),
         tables=tuple(part for part in built if isinstance(part, Table)),
         figures=tuple(part for part in built if isinstance(part, Sweep)),
-        trials=len(rows),
-        failed_trials=sum(row.outcome.failed for row in rows),
+        trials=len(results.trials),
+        failed_trials=int(results.trials.failed.sum()),
     )
 
 
 def save(folder: Path, flown: Flown, results: Results, record: Reproduction) -> RunResult:
     """Write outcomes, evidence and conclusions; return the run as one result, without traces."""
     folder.mkdir(parents=True, exist_ok=True)
-    slim = (replace(row, outcome=replace(row.outcome, trace=None)) for row in results.outcomes.rows)
     findings = (finding for result in flown.results for finding in result.findings)
     deliveries = Deliveries(
         rows=tuple(row for result in flown.results for row in result.deliveries.rows),
         findings=tuple(dict.fromkeys(findings)),
     )
-    digest = RunFolder(folder).save_tables(OutcomeTable(tuple(slim)), deliveries)
+    digest = RunFolder(folder).save_tables(replace(results.trials, traces={}), deliveries)
     write_evidence(folder / EVIDENCE, results.evidence)
     write_text(folder / CONCLUSIONS, record.model_dump_json(indent=1) + "\n", folder)
     return RunResult(
-        outcomes=results.outcomes,
+        trials=results.trials,
         deliveries=deliveries,
         blocks_computed=sum(result.blocks_computed for result in flown.results),
         blocks_kept=sum(result.blocks_kept for result in flown.results),
@@ -192,6 +190,6 @@ def read_results(folder: Path) -> tuple[Results, Reproduction]:
             f"{folder} holds no finished reproduction: give the folder of one, or make it with "
             "`faultpath reproduce`."
         ) from None
-    outcomes = read_outcomes(folder / OUTCOMES)
+    trials = read_outcomes(folder / OUTCOMES)
     evidence = read_evidence(folder / EVIDENCE)
-    return Results(outcomes, evidence, record.ledger.library_hash), record
+    return Results(trials, evidence, record.ledger.library_hash), record

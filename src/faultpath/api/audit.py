@@ -113,7 +113,7 @@ def carry_out(audit: Audit, job: Job) -> Run:
     _, result = job.trials(audit)
 
     def conclude(question: Question, deliveries: Deliveries = result.deliveries) -> DecisionRecord:
-        return replace(audit, question=question).conclude(result.outcomes, deliveries)
+        return replace(audit, question=question).conclude(result.trials, deliveries)
 
     record = concluded(folder, question, conclude)
     signals = _kept_signals(folder, result)
@@ -132,7 +132,7 @@ def carry_out(audit: Audit, job: Job) -> Run:
         write_file(folder / SIGNALS, encode_signals(signals), folder)
     files = (*MADE_FROM, SIGNALS) if signals else MADE_FROM
     provenance = job.finish(result, system, files)
-    source = ReportInput(record, provenance, shown, result.outcomes, signals)
+    source = ReportInput(record, provenance, shown, result.trials, signals)
     return Run(folder, source)
 
 
@@ -175,9 +175,9 @@ def _recorded(
 
     What goes wrong here is a finding, never an error of the audit.
     """
-    few = shown_first(record, result.outcomes)[: 1 + record.scenes // _SCENES_FOR_ONE]
+    few = shown_first(record, result.trials)[: 1 + record.scenes // _SCENES_FOR_ONE]
     named = {path.name for path in record.paths}
-    before = outcomes_at(result.outcomes)
+    before = outcomes_at(result.trials)
     missing = [
         at
         for at in before

@@ -39,6 +39,6 @@ def _map(plan: MapPlan, job: Job) -> MapRun:
     Raises `Stopped` on Ctrl-C, and `UserError` where the trials cannot be run.
     """
     points, result = job.trials(plan)
-    record = plan.conclude(result.outcomes, result.deliveries, points)
+    record = plan.conclude(result.trials, result.deliveries, points)
     write_text(job.folder / MAP, record.model_dump_json(indent=1) + "\n", job.folder)
     return MapRun(job.folder, record, job.finish(result, plan.system, MAP_MADE_FROM))

@@ -1,14 +1,13 @@
 """The folder of a finished run: its files, and whether they belong together."""
 
 import json
-import math
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
 from pydantic import BaseModel
 
 from faultpath.core.errors import UserError
@@ -18,7 +17,7 @@ from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import faulted_taps
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
-from faultpath.trials import Deliveries, OutcomeTable, Status, SystemShown
+from faultpath.trials import Deliveries, Status, SystemShown, Trials
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, read_regular, unseal
 from faultpath.trials.store.signals import SIGNALS, decode_signals
@@ -46,13 +45,13 @@ def read_run(folder: Path) -> ReportInput:
     shown = parsed(contents[SYSTEM], folder / SYSTEM, SystemShown)
     deliveries = parsed(contents[DELIVERIES], folder / DELIVERIES, Deliveries)
     traces = _decoded(decode_traces, contents, folder / TRACES)
-    outcomes = _decoded(partial(decode_outcomes, traces=traces), contents, folder / OUTCOMES)
+    trials = _decoded(partial(decode_outcomes, traces=traces), contents, folder / OUTCOMES)
     signals = {}
     if SIGNALS in contents:
         signals = _decoded(decode_signals, contents, folder / SIGNALS)
-    for doubt in _doubts(record, provenance, shown, outcomes, deliveries):
+    for doubt in _doubts(record, provenance, shown, trials, deliveries):
         raise UserError(f"the files of {folder} do not belong together ({doubt}): {AGAIN}.")
-    return ReportInput(record, provenance, shown, outcomes, signals)
+    return ReportInput(record, provenance, shown, trials, signals)
 
 
 def _decoded(
@@ -92,7 +91,7 @@ def _doubts(
     record: DecisionRecord,
     provenance: RunProvenance,
     shown: SystemShown,
-    outcomes: OutcomeTable,
+    trials: Trials,
     deliveries: Deliveries,
 ) -> Iterator[str]:
     """Yield what shows that the files are of different runs, or were put together by hand."""
@@ -105,28 +104,29 @@ def _doubts(
         yield "the system's variants are not those of the question"
     if question.metric and question.metric not in question.metrics:
         yield f"the result shows a metric '{question.metric}' that its question does not declare"
-    yield from _other_trials(record, outcomes)
+    yield from _other_trials(record, trials)
     yield from _other_effects(record)
     yield from _other_taps(record, shown.interface, deliveries)
     if not set(deliveries.findings) <= set(record.findings):
         yield "the result leaves out a finding of the run"
 
 
-def _other_trials(record: DecisionRecord, outcomes: OutcomeTable) -> Iterator[str]:
+def _other_trials(record: DecisionRecord, trials: Trials) -> Iterator[str]:
     """Yield where the record tells of other trials than the outcomes hold."""
-    question, rows = record.question, outcomes.rows
+    question = record.question
     arms = set(product((question.baseline, question.repair), (p.name for p in record.paths)))
     cells = {(cell.variant, cell.path): (cell.trials, cell.success) for cell in record.cells}
-    trials = Counter((row.variant, row.path) for row in rows)
-    solved = Counter((r.variant, r.path) for r in rows if r.outcome.status is Status.SUCCESS)
-    if not arms or set(cells) != arms or set(trials) != arms:
+    rows = {arm: trials.rows(*arm).ravel() for arm in product(trials.variants, trials.conditions)}
+    rows = {arm: of[of >= 0] for arm, of in rows.items() if (of >= 0).any()}
+    if not arms or set(cells) != arms or set(rows) != arms:
         yield "the result and the outcomes have different versions, conditions or seeds"
-    untimed = any(math.isnan(row.outcome.time_s) for row in rows if not row.outcome.failed)
-    if untimed and question.judged is None:
+        return
+    if np.isnan(trials.time_s[~trials.failed]).any() and question.judged is None:
         yield "trials of an audit have no time"
-    if any(cells[arm] != (trials[arm], solved[arm]) for arm in arms):
+    solved = trials.has(Status.SUCCESS)
+    if any(cells[arm] != (len(of), int(solved[of].sum())) for arm, of in rows.items()):
         yield "the result and the outcomes count different successes"
-    measured = {name for row in rows for name in row.outcome.metrics}
+    measured = set(trials.metrics)
     names = {name for effect in record.effects for name in effect.metrics}
     for name in sorted(names - measured):
         yield f"the result has a metric '{name}', and the outcomes have no such column"

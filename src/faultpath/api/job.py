@@ -150,13 +150,13 @@ class Job:
                 noticed.add("Kept ")  # what later rounds keep, this call has run itself
                 computed += result.blocks_computed
                 try:
-                    part = rounds.send(result.outcomes)
+                    part = rounds.send(result.trials)
                 except StopIteration as end:
                     items = end.value
                     break
             if several:
                 result = run(part.study)
-                trials = len(result.outcomes.rows)
+                trials = len(result.trials)
                 show(Progress(trials, trials, f"{part.items} {analysis.noun}"))
         blocks = result.blocks_kept + result.blocks_computed
         return items, replace(result, blocks_computed=computed, blocks_kept=blocks - computed)

@@ -21,6 +21,7 @@ from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.question import Question
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
+from faultpath.trials.deliveries import Deliveries, RowDeliveries
 from faultpath.trials.execution.provenance import amend, run_provenance
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.question import ask
@@ -30,7 +31,7 @@ from faultpath.trials.shown import SystemShown, VariantShown
 from faultpath.trials.store.atomic import begin, locked, write_file, write_text
 from faultpath.trials.store.folder import DELIVERIES, OUTCOMES, TRACES
 from faultpath.trials.store.tables import encode_outcomes, encode_traces
-from faultpath.trials.table import Deliveries, OutcomeTable, RowDeliveries
+from faultpath.trials.trials import Trials
 from faultpath.trials.work.processes import local
 
 
@@ -67,7 +68,7 @@ def judge(
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
 
     def conclude(question: Question) -> DecisionRecord:
-        return decide(question, laid.paths, laid.table, laid.findings)
+        return decide(question, laid.paths, laid.trials, laid.findings)
 
     begin(folder)
     record = concluded(folder, laid.question, conclude)
@@ -77,7 +78,7 @@ def judge(
         write_text(folder / RECORD, as_text(record), folder)
         provenance = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
         provenance = amend(folder, provenance.model_copy(update={"data": sources}), MADE_FROM)
-    run = Run(folder, ReportInput(record, provenance, system, laid.table))
+    run = Run(folder, ReportInput(record, provenance, system, laid.trials))
     run.report()
     if not shown.is_command:
         for finding in laid.findings:
@@ -110,18 +111,18 @@ def _system(question: Question) -> SystemShown:
 
 def _stored(folder: Path, laid: LaidOut, system: SystemShown) -> RunResult:
     """Write the trials and what else pages are made from."""
-    question, table = laid.question, laid.table
-    rows = dict.fromkeys((row.variant, row.path, row.seed) for row in table.rows)
+    question, trials = laid.question, laid.trials
+    rows = dict.fromkeys((t.variant, t.condition, t.seed) for t in trials)
     taps = tuple(RowDeliveries(variant=v, path=p, seed=s, taps=()) for v, p, s in rows)
     deliveries = Deliveries(rows=taps, findings=laid.findings)
-    outcomes = encode_outcomes(table)
+    outcomes = encode_outcomes(trials)
     write_file(folder / OUTCOMES, outcomes, folder)
-    write_file(folder / TRACES, encode_traces(OutcomeTable(())), folder)
+    write_file(folder / TRACES, encode_traces(Trials.of(())), folder)
     write_text(folder / DELIVERIES, deliveries.model_dump_json(indent=1) + "\n", folder)
     write_text(folder / SYSTEM, system.model_dump_json(indent=1) + "\n", folder)
     digest = hashlib.sha256(outcomes).hexdigest()
     return RunResult(
-        outcomes=table,
+        trials=trials,
         deliveries=deliveries,
         blocks_computed=0,
         blocks_kept=0,

@@ -16,7 +16,7 @@ from faultpath.decisions.planning import plan_audit
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.systems.checks.blocks import BlockSpec, RecordedBlock, run_blocks
-from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
+from faultpath.trials import Arm, Outcome, Study, System, SystemSpec, Trials, library_of
 from faultpath.trials.attempt import Done
 from faultpath.trials.code import CodeState, named, system_code
 from faultpath.trials.execution.dispatch import Built
@@ -66,7 +66,7 @@ def chosen_scenes(
 
     `UserError` for a scene or condition that the run does not have.
     """
-    every = list(dict.fromkeys(row.outcome.scene for row in source.outcomes.rows))
+    every = [scene.id for scene in source.trials.scenes]
     named = [path.name for path in source.record.paths]
     for what, names, known in (("scene", scenes, every), ("condition", paths, named)):
         for name in names:
@@ -74,12 +74,12 @@ def chosen_scenes(
                 raise UserError(f"the run: {unknown(what, name, known)}")
     if scenes:
         return tuple(dict.fromkeys(scenes))
-    return tuple(scene for scene, _ in shown_first(source.record, source.outcomes))
+    return tuple(scene for scene, _ in shown_first(source.record, source.trials))
 
 
-def shown_first(record: DecisionRecord, outcomes: OutcomeTable) -> tuple[tuple[str, int], ...]:
+def shown_first(record: DecisionRecord, trials: Trials) -> tuple[tuple[str, int], ...]:
     """Return the scenes that the report begins with, and the seed of each."""
-    pairs = read_pairs(outcomes, record)
+    pairs = read_pairs(trials, record)
     return picked(record, pairs) or tuple(by_scene(pairs))[:1]
 
 
@@ -118,7 +118,7 @@ def replay(
     kept = ("baseline", "repair", "fault", "seeds")
     request = ask(AuditQuestion, {name: getattr(question, name) for name in kept})
     study = plan_audit(system, chosen.spec, request, library).study
-    before = outcomes_at(source.outcomes)
+    before = outcomes_at(source.trials)
     named = paths or {row.path for row in study.rows}
     addresses = [at for at in before if at.scene in scenes and at.path in named]
 
@@ -154,9 +154,11 @@ def changes(run: RunProvenance, system: System, state: CodeState) -> tuple[str, 
     return tuple(changed)
 
 
-def outcomes_at(outcomes: OutcomeTable) -> dict[TrialAddress, Outcome]:
+def outcomes_at(trials: Trials) -> dict[TrialAddress, Outcome]:
     """Return the trials of a run that ran to their end."""
-    return {address_of(row): row.outcome for row in outcomes.rows if not row.outcome.failed}
+    addresses = (address_of(trials, row) for row in range(len(trials)))
+    every = zip(addresses, trials, strict=True)
+    return {address: trial.outcome for address, trial in every if not trial.outcome.failed}
 
 
 def run_again(

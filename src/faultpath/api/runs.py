@@ -70,7 +70,7 @@ class Run(FinishedRun):
     @property
     def failed(self) -> int:
         """Number of trials in which the program raised an error; each voids its pair."""
-        return len(self.held.outcomes.failed())
+        return int(self.held.trials.failed.sum())
 
     @property
     def broken(self) -> bool:
@@ -95,7 +95,7 @@ class Run(FinishedRun):
 
         Its `to_pandas` makes a DataFrame where pandas is installed.
         """
-        return read_table(encode_outcomes(self.held.outcomes))
+        return read_table(encode_outcomes(self.held.trials))
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html and table.md, and return their paths.

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
 
 from faultpath.decisions.question import Resolved
-from faultpath.trials import Deliveries, OutcomeTable, Study, System
+from faultpath.trials import Deliveries, Study, System, Trials
 from faultpath.trials.execution.state import Stop
 from faultpath.trials.question import Running
 
@@ -28,7 +28,7 @@ class Round:
     """Asked at each look of a sequential study."""
 
 
-Rounds: TypeAlias = Generator[Round, OutcomeTable, Items]
+Rounds: TypeAlias = Generator[Round, Trials, Items]
 """Rounds, each from the trials of those before; they return all that they added."""
 
 
@@ -50,5 +50,5 @@ class Analysis(ABC, Generic[Items]):
         """Yield the rounds. `UserError` where trials leave nothing to go on."""
 
     @abstractmethod
-    def conclude(self, table: OutcomeTable, deliveries: Deliveries, items: Items) -> Any:
+    def conclude(self, trials: Trials, deliveries: Deliveries, items: Items) -> Any:
         """Return the record. `UserError` where nothing is left to compare."""

@@ -8,8 +8,8 @@ import numpy as np
 
 from faultpath.core.errors import UserError
 from faultpath.statistics.inputs import Floats
-from faultpath.trials.pairing import Bools, Mismatch, Pairs, Side, Trials, pair
-from faultpath.trials.table import OutcomeTable
+from faultpath.trials.pairing import Group, Mismatch, Pairs, pair
+from faultpath.trials.trials import Bools, Trials
 
 Outcomes: TypeAlias = tuple[Floats, Floats]
 """Success of the repair and of the baseline, each `[scenes, seeds]`: 1 or 0, and not a number where
@@ -29,19 +29,15 @@ class ComparedTrials:
     mismatches: tuple[Mismatch, ...]
 
 
-def compared(
-    repair: str, baseline: str, paths: Iterable[str], table: OutcomeTable
-) -> ComparedTrials:
+def compared(repair: str, baseline: str, paths: Iterable[str], trials: Trials) -> ComparedTrials:
     """Return the trials of two variants that are compared; `UserError` when no pair is left.
 
     Each condition keeps its own scenes and seeds: what failed elsewhere costs it nothing. Where all
     seeds gave the same in everything, one counts.
     """
-    pairs = {path: pair(table, Side(repair, path), Side(baseline, path)) for path in paths}
+    pairs = {path: pair(trials, Group(repair, path), Group(baseline, path)) for path in paths}
     mismatches = tuple(mismatch for paired in pairs.values() for mismatch in paired.mismatches)
-    success = {
-        path: (_known(paired.ended[0]), _known(paired.ended[1])) for path, paired in pairs.items()
-    }
+    success = {path: paired.success for path, paired in pairs.items()}
     left = [path for path, pair in success.items() if paired_scenes(*pair).any()]
     if not left:
         raise UserError(
@@ -62,8 +58,3 @@ def compared(
 def paired_scenes(repair: Floats, baseline: Floats) -> Bools:
     """Return `[scenes]` whether any seed has both outcomes."""
     return np.asarray(~np.isnan(repair - baseline).all(axis=1), dtype=np.bool_)
-
-
-def _known(trials: Trials) -> Floats:
-    """Return success; a trial that failed has no outcome."""
-    return np.where(trials.failed, np.nan, trials.success)

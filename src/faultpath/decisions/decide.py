@@ -31,8 +31,9 @@ from faultpath.statistics.breakeven import break_even, mixture_curve, only
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import EM, Region
 from faultpath.statistics.power import detectable
+from faultpath.trials.outcome import Status
 from faultpath.trials.pairing import mismatch_words
-from faultpath.trials.table import OutcomeTable
+from faultpath.trials.trials import Trials
 
 FLOOR_PERCENT, CEILING_PERCENT = 10.0, 90.0
 
@@ -40,7 +41,7 @@ FLOOR_PERCENT, CEILING_PERCENT = 10.0, 90.0
 def decide(
     question: Question,
     paths: Sequence[Path],
-    table: OutcomeTable,
+    trials: Trials,
     findings: Sequence[str] = (),
     repeats: bool = True,
 ) -> DecisionRecord:
@@ -53,23 +54,23 @@ def decide(
     does not have, and where newly trained models are asked for and too few trainings differ.
     """
     question = question.model_copy(update={"primary": primary_path(question.primary, paths)})
-    cells = cells_of(question, paths, table)
+    cells = cells_of(question, paths, trials)
     # Whether a fault acted is told by receipts, and other tools' results have none.
     untested = () if question.judged else untested_paths(paths, cells)
-    trials, family = family_of(question, paths, table, untested)
-    invalid: Invalid | None = "unpaired" if trials.mismatches else None
+    comparison, family = family_of(question, paths, trials, untested)
+    invalid: Invalid | None = "unpaired" if comparison.mismatches else None
     if not repeats:
         invalid = "unrepeatable"
     if invalid:
         family = family.without_claims()
     effects = {
-        path: _effect(question, path, trials, family, path not in untested)
-        for path in trials.success
+        path: _effect(question, path, comparison, family, path not in untested)
+        for path in comparison.success
     }
 
     def between(pairs: Sequence[tuple[str, str]], words: phrases.Shares) -> list[PathBreakEven]:
         shares = (
-            _break_even(question, trials, family, (effects[none], effects[every]), words)
+            _break_even(question, comparison, family, (effects[none], effects[every]), words)
             for none, every in pairs
         )
         return [share for share in shares if share]
@@ -77,7 +78,7 @@ def decide(
     faulted = [path for path in effects if path not in (CORRECT, AS_RUN, *untested)]
     from_none = [(CORRECT, path) for path in faulted] if CORRECT in effects else []
     from_one = [(path, SHARED) for path in family.changes]
-    state = stopped(question, family, table)
+    state = stopped(question, family, trials)
     record = DecisionRecord(
         question=question,
         paths=tuple(paths),
@@ -94,10 +95,10 @@ def decide(
         stopped=state and state.model_copy(update={"small": ()} if invalid else {}),
     )
     noted = (
-        *(f"{phrases.no_pair(path)}: the table shows what failed." for path in trials.void),
+        *(f"{phrases.no_pair(path)}: the table shows what failed." for path in comparison.void),
         *phrases.failed_trials(record),
         *phrases.partly_measured(record),
-        *mismatch_words(trials.mismatches),
+        *mismatch_words(comparison.mismatches),
         *findings,  # a record that is decided anew has some of the above already
     )
     return record.model_copy(update={**in_words(record), "findings": tuple(dict.fromkeys(noted))})
@@ -118,10 +119,10 @@ def primary_path(named: str, paths: Sequence[Path]) -> str:
 
 
 def _effect(
-    question: Question, path: str, trials: ComparedTrials, family: Family, acted: bool
+    question: Question, path: str, comparison: ComparedTrials, family: Family, acted: bool
 ) -> Effect:
-    repair, baseline = trials.success[path]
-    effect, pairs = family.effects[path], trials.pairs[path]
+    repair, baseline = comparison.success[path]
+    effect, pairs = family.effects[path], comparison.pairs[path]
     assert effect.counts is not None
     assert effect.test is not None
     assert effect.pairs is not None
@@ -135,7 +136,7 @@ def _effect(
     failed, least = None, None
     if path in family.fills:
         against, favour = family.fills[path]
-        ours, theirs = (int(side.failed.sum()) for side in pairs.ended)
+        ours, theirs = (int(failed.sum()) for failed in pairs.ended(Status.FAILED))
         failed = FailedTrials(
             repair=ours,
             baseline=theirs,
@@ -160,7 +161,7 @@ def _effect(
         mcnemar_p_value=sign_p_value(wins[0], losses[0]) if effect.test.name == EM else None,
         scenes=effect.n_scenes,
         ahead=effect.ahead,
-        void_pairs=pairs.void,
+        void_pairs=int(pairs.void.sum()),
         failed=failed,
         wins=wins,
         losses=losses,
@@ -192,7 +193,7 @@ def _change(question: Question, path: str, family: Family) -> Change:
 
 def _break_even(
     question: Question,
-    trials: ComparedTrials,
+    comparison: ComparedTrials,
     family: Family,
     ends: tuple[Effect, Effect],
     shares: phrases.Shares,
@@ -202,7 +203,9 @@ def _break_even(
     at_none, at_all = ends
     decided = [family.effects[end.path].decision for end in ends]
     level = 1.0 - min(decision.critical_p for decision in decided if decision)
-    tested = family.measure.together(trials.success[at_none.path], trials.success[at_all.path])
+    tested = family.measure.together(
+        comparison.success[at_none.path], comparison.success[at_all.path]
+    )
     if tested is None:
         return None
     filled = [family.fills[end.path] for end in ends if end.path in family.fills]

@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
-from math import isfinite
-from statistics import median
 from typing import Any
 
 import numpy as np
@@ -16,8 +14,8 @@ from faultpath.statistics.estimate import Estimate
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.resamples import Resamples
 from faultpath.trials.outcome import Status
-from faultpath.trials.pairing import Pairs, Trials
-from faultpath.trials.table import OutcomeTable
+from faultpath.trials.pairing import Pairs
+from faultpath.trials.trials import Bools, Trials
 
 
 def percent(success: Floats) -> float:
@@ -26,31 +24,31 @@ def percent(success: Floats) -> float:
     return 100.0 * float(seed_sums(ran).sum()) / ran.size
 
 
-def cells_of(
-    question: Question, paths: Sequence[Path], table: OutcomeTable
-) -> tuple[ArmCounts, ...]:
-    """Return how the trials of both arms ended on every path."""
+def cells_of(question: Question, paths: Sequence[Path], trials: Trials) -> tuple[ArmCounts, ...]:
+    """Return how the trials of both versions ended under every condition."""
     cells: list[ArmCounts] = []
     for path in paths:
         for variant in (question.baseline, question.repair):
-            seeds = table.seeds(variant, path.name)
-            ends = [r.outcome for seed in seeds for r in table.arm(variant, path.name, seed)]
-            count = {status: sum(end.status is status for end in ends) for status in Status}
-            ran = len(ends) - count[Status.FAILED]
-            times = [e.time_s for e in ends if e.status is Status.SUCCESS and isfinite(e.time_s)]
+            rows = trials.rows(variant, path.name).ravel()
+            rows = rows[rows >= 0]
+            count = {status: int(trials.has(status)[rows].sum()) for status in Status}
+            ran = len(rows) - count[Status.FAILED]
+            times = trials.time_s[rows[trials.has(Status.SUCCESS)[rows]]]
+            times = times[np.isfinite(times)]
+            faulted, altered = (trials.steps[:, rows] > 0).sum(axis=1).tolist()
             cells.append(
                 ArmCounts(
                     variant=variant,
                     path=path.name,
-                    trials=len(ends),
+                    trials=len(rows),
                     success=count[Status.SUCCESS],
                     crash=count[Status.CRASH],
                     timeout=count[Status.TIMEOUT],
                     failed=count[Status.FAILED],
                     success_percent=100 * count[Status.SUCCESS] / ran if ran else 0.0,
-                    median_time_s=median(times) if times else None,
-                    faulted_trials=sum(end.faulted_steps > 0 for end in ends),
-                    altered_trials=sum(end.altered_steps > 0 for end in ends),
+                    median_time_s=float(np.median(times)) if len(times) else None,
+                    faulted_trials=faulted,
+                    altered_trials=altered,
                 )
             )
     return tuple(cells)
@@ -65,34 +63,37 @@ def untested_paths(paths: Sequence[Path], cells: Sequence[ArmCounts]) -> tuple[s
 def secondary(pairs: Pairs, question: Question) -> dict[str, Any]:
     """Return the fields of an `Effect` on time and metrics, over the scenes of which every seed has
     both outcomes, for new scenes and the seeds run."""
+    pairs = pairs.whole()
     if not pairs.scenes:
         return {"time_s": None, "joint_successes": 0, "metrics": {}}
-    first, second = pairs.first, pairs.second
     library, scenes = question.library_hash, len(pairs.scenes)
-    joint = first.success & second.success
-    joint &= np.isfinite(first.time_s) & np.isfinite(second.time_s)  # no times, in some results
+    repair, baseline = pairs.ended(Status.SUCCESS)
+    times = pairs.time_s
+    joint = repair & baseline
+    joint &= np.isfinite(times[0]) & np.isfinite(times[1])  # no times, in some results
     time_s = None
     if joint.any():
-        drawn = _resamples(library, scenes)
-        time_s = median_effect(first.time_s, second.time_s, joint, drawn).estimate()
+        time_s = median_effect(*times, joint, _resamples(library, scenes)).estimate()
         time_s = _honest(time_s, "median", question)
     metrics: dict[str, Estimate] = {}
     means, thresholds = None, list[AtThreshold]()
     for name, metric in question.metrics.items():
-        if name not in first.metrics or name not in second.metrics:
+        if (both := pairs.metric(name)) is None:
             continue
-        full = np.asarray(np.isfinite(first.metrics[name] + second.metrics[name]).all(axis=1))
+        full = np.asarray(np.isfinite(both[0] + both[1]).all(axis=1))
         if not (n_scenes := int(full.sum())):
             continue
         # Of a scene in which a trial has no value nothing is told.
-        baseline, repair, drawn = second.only(full), first.only(full), _resamples(library, n_scenes)
-        values = baseline.metrics[name], repair.metrics[name]
-        difference = mean_effect(values[1], values[0], drawn, metric.unit)
+        new, old = (values[full] for values in both)
+        drawn = _resamples(library, n_scenes)
+        difference = mean_effect(new, old, drawn, metric.unit)
         metrics[name] = _honest(difference.estimate(), "mean", question)
         if name == question.metric:
-            means = float(values[0].mean()), float(values[1].mean())
+            means = float(old.mean()), float(new.mean())
+            crashed = [ended[full] for ended in pairs.ended(Status.CRASH)]
             thresholds = [
-                _at_threshold(at, baseline, repair, drawn, question) for at in question.thresholds
+                _at_threshold(at, (new, old), crashed, drawn, question)
+                for at in question.thresholds
             ]
     return {
         "time_s": time_s,
@@ -123,13 +124,16 @@ def _honest(estimate: Estimate, what: str, question: Question) -> Estimate:
 
 
 def _at_threshold(
-    threshold: float, baseline: Trials, repair: Trials, resamples: Resamples, question: Question
+    threshold: float,
+    values: Sequence[Floats],
+    crashed: Sequence[Bools],
+    resamples: Resamples,
+    question: Question,
 ) -> AtThreshold:
     less = question.metrics[question.metric].better == "less"
-    old, new = (
-        ~arm.crash & (values <= threshold if less else values >= threshold)
-        for arm in (baseline, repair)
-        for values in [arm.metrics[question.metric]]
+    new, old = (
+        ~crash & (metric <= threshold if less else metric >= threshold)
+        for metric, crash in zip(values, crashed, strict=True)
     )
     sequential = question.stop is not None
     difference = success_effect(new, old, resamples, sequential=sequential, rule=question.rule)

@@ -32,7 +32,7 @@ from faultpath.statistics.decisions import Turn, decide_family, turn, with_test
 from faultpath.statistics.estimate import ALPHA, RULES, RuleName
 from faultpath.statistics.power import fewest_scenes
 from faultpath.trials.question import FEWEST_TRAININGS
-from faultpath.trials.table import OutcomeTable
+from faultpath.trials.trials import Trials
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Family:
 
 
 def family_of(
-    question: Question, paths: Sequence[Path], table: OutcomeTable, untested: Sequence[str]
+    question: Question, paths: Sequence[Path], trials: Trials, untested: Sequence[str]
 ) -> tuple[ComparedTrials, Family]:
     """Return the trials of an audit that are compared, and what is decided of them.
 
@@ -83,10 +83,10 @@ def family_of(
     trainings gave different outcomes.
     """
     names = [path.name for path in paths]
-    trials = compared(question.repair, question.baseline, names, table)
+    comparison = compared(question.repair, question.baseline, names, trials)
     if question.generalise == "models":
-        columns = np.concatenate([part for pair in trials.success.values() for part in pair])
-        ran = np.all([~np.isnan(a - b).all(axis=0) for a, b in trials.success.values()], axis=0)
+        columns = np.concatenate([part for pair in comparison.success.values() for part in pair])
+        ran = np.all([~np.isnan(a - b).all(axis=0) for a, b in comparison.success.values()], axis=0)
         trainings = len({column.tobytes() for column in columns.T[ran]})
         if trainings < FEWEST_TRAININGS:
             raise UserError(
@@ -95,14 +95,14 @@ def family_of(
                 f"{FEWEST_TRAININGS}: leave --generalise models out."
             )
     family = decide_paths(
-        trials.success,
+        comparison.success,
         rule=question.rule,
         primary=question.primary,
         models=question.generalise == "models",
         untested=untested,
         shares=alpha_shares(names, question.primary) if question.stop is not None else None,
     )
-    return trials, family
+    return comparison, family
 
 
 def decide_paths(

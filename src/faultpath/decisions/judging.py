@@ -1,4 +1,4 @@
-"""From trials that other tools ran to what an audit is decided from: question, paths, table."""
+"""From trials that other tools ran to what an audit is decided from: question, paths, trials."""
 
 import hashlib
 import json
@@ -14,12 +14,12 @@ from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Path
 from faultpath.decisions.question import JudgedTrials, Question, resolve
 from faultpath.decisions.sentences.wording import capital, counted, where
 from faultpath.statistics.estimate import RULE
-from faultpath.trials import Library, SystemSpec
+from faultpath.trials import Library, SystemSpec, Trials
+from faultpath.trials.deliveries import unproven
 from faultpath.trials.outcome import Metric, Status
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import NO_OUTCOME, Received
 from faultpath.trials.store.tables import FIXED
-from faultpath.trials.table import OutcomeTable, unproven
 
 _ONE = "one module"
 """The path of a condition that is called isolated, and says no module."""
@@ -35,7 +35,7 @@ class LaidOut:
 
     question: Question
     paths: tuple[Path, ...]
-    table: OutcomeTable
+    trials: Trials
     findings: tuple[str, ...]
 
 
@@ -55,14 +55,14 @@ def lay_out(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
     names = _path_names({row.condition for row in rows}, request)
     if request.cluster == "task" and not all(row.task for row in rows):
         raise UserError("not every trial names its task: give --column task=NAME.")
-    trials = _by_address(rows, names, request)
+    received = _by_address(rows, names, request)
     paths = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
-    _check_paired(trials, paths, request)
+    _check_paired(received, paths, request)
 
-    units = units_of(trials, request)
+    units = units_of(received, request)
     hashed = _hashed(rows)
-    tasks = {address[2][0]: row.task for address, row in trials.items()}
-    table, missing = table_of(trials, paths, units, request, hashed)
+    tasks = {address[2][0]: row.task for address, row in received.items()}
+    trials, missing = table_of(received, paths, units, request, hashed)
     keys = {unit: sorted(members) for unit, members in units.labels.items()}
     laid = tuple(_path(name) for name in paths)
     dull = not any(row.status is Status.CRASH for row in rows)
@@ -85,8 +85,8 @@ def lay_out(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
         judged=JudgedTrials(pairing="hashes" if hashed else "keys", unit=request.cluster),
     )
     longer = [unit for unit, members in units.labels.items() if len(members) > len(units.seeds)]
-    findings = _findings(table, missing, longer, tasks, request, hashed)
-    return LaidOut(question, laid, table, tuple(findings))
+    findings = _findings(trials, missing, longer, tasks, request, hashed)
+    return LaidOut(question, laid, trials, tuple(findings))
 
 
 def _path_names(conditions: Collection[str], question: JudgeQuestion) -> dict[str, str]:
@@ -199,7 +199,7 @@ def _metrics(question: JudgeQuestion) -> dict[str, Metric]:
 
 
 def _findings(
-    table: OutcomeTable,
+    trials: Trials,
     missing: Mapping[tuple[str, str], Sequence[Key]],
     longer: Sequence[str],
     tasks: Mapping[str, str],
@@ -225,11 +225,10 @@ def _findings(
             f"The scenes come from {several} tasks and are taken as independent: what is "
             "significant need not hold for new tasks. --cluster task tests whether it does."
         )
-    ended = [row.outcome for row in table.rows if not row.outcome.failed]
     if hashed:
-        yield from unproven(ended)
-    silent = [row for row in table.failed() if row.outcome.error == NO_OUTCOME]
-    if silent and all(outcome.status is Status.SUCCESS for outcome in ended):
+        yield from unproven(trials.met())
+    succeeded = trials.has(Status.SUCCESS)
+    if NO_OUTCOME in trials.errors.values() and (succeeded | trials.failed).all():
         yield (
             "No trial ended without success, and some say nothing: where `failed` or an empty cell "
             "means no success, write 0."

@@ -10,7 +10,7 @@ from faultpath.trials.outcome import Outcome, Status, failed_outcome
 from faultpath.trials.question import FEWEST_TRAININGS
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import Received
-from faultpath.trials.table import OutcomeTable, TrialRow
+from faultpath.trials.trials import Trial, Trials
 
 _NONE = "none"
 Key = tuple[str, str]
@@ -64,9 +64,9 @@ def table_of(
     units: Units,
     request: JudgeQuestion,
     hashed: bool,
-) -> tuple[OutcomeTable, dict[tuple[str, str], list[Key]]]:
+) -> tuple[Trials, dict[tuple[str, str], list[Key]]]:
     """Return a row for each trial that should be there, and by arm and path those that are not."""
-    rows: list[TrialRow] = []
+    rows: list[Trial] = []
     missing: dict[tuple[str, str], list[Key]] = {}
     tasks = {unit: row.task for (_, _, (unit, _)), row in trials.items()}
     ordered = sorted(units.labels, key=_in_order)
@@ -78,9 +78,9 @@ def table_of(
                 missing.setdefault((arm, path), []).append((unit, "".join(labels)))
             topology = tasks[unit] if request.cluster == "scene" else ""
             outcome = _outcome(unit, row, hashed)
-            rows.append(TrialRow(arm, path, seed, index, topology, outcome))
-    rows.sort(key=lambda row: (paths.index(row.path), row.variant, row.seed, row.scene_index))
-    return OutcomeTable(tuple(rows)), missing
+            rows.append(Trial(arm, path, seed, index, topology, outcome))
+    rows.sort(key=lambda row: (paths.index(row.condition), row.variant, row.seed, row.scene_index))
+    return Trials.of(rows), missing
 
 
 def _outcome(scene: str, row: Received | None, hashed: bool) -> Outcome:

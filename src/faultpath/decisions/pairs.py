@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from faultpath.decisions.model import DecisionRecord
-from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
+from faultpath.trials import Outcome, Status, Trial, Trials
 from faultpath.trials.pairing import unlike
 
 
@@ -73,29 +73,29 @@ class Pair:
         return {PairKind.REPAIR_ONLY: 1, PairKind.BASELINE_ONLY: -1}.get(self.kind, 0)
 
 
-def read_pairs(outcomes: OutcomeTable, record: DecisionRecord) -> tuple[Pair, ...]:
+def read_pairs(outcomes: Trials, record: DecisionRecord) -> tuple[Pair, ...]:
     """Return every pair of the record's arms, ordered by path, topology, scene index and seed."""
     question = record.question
-    named = [path.name for path in record.paths]
+    named = {path.name for path in record.paths}
     trials: dict[tuple[str, str, int, str], Outcome] = {}
-    places: dict[tuple[str, int, str], TrialRow] = {}
-    for row in outcomes.rows:
-        if row.variant in (question.baseline, question.repair) and row.path in named:
-            place = (row.path, row.seed, row.outcome.scene)
-            trials[row.variant, *place] = row.outcome
-            places.setdefault(place, row)
+    places: dict[tuple[str, int, str], Trial] = {}
+    for trial in outcomes:
+        if trial.variant in (question.baseline, question.repair) and trial.condition in named:
+            place = (trial.condition, trial.seed, trial.outcome.scene)
+            trials[trial.variant, *place] = trial.outcome
+            places.setdefault(place, trial)
     paths = list(dict.fromkeys(path for path, _, _ in places))
     pairs = [
         Pair(
-            path=row.path,
-            seed=row.seed,
-            scene=row.outcome.scene,
-            index=row.scene_index,
-            topology=row.topology,
+            path=trial.condition,
+            seed=trial.seed,
+            scene=trial.outcome.scene,
+            index=trial.scene_index,
+            topology=trial.topology,
             baseline=trials.get((question.baseline, *place)),
             repair=trials.get((question.repair, *place)),
         )
-        for place, row in places.items()
+        for place, trial in places.items()
     ]
     return tuple(sorted(pairs, key=lambda p: (paths.index(p.path), p.topology, p.index, p.seed)))
 

@@ -22,11 +22,11 @@ from faultpath.trials import (
     Arm,
     Deliveries,
     Library,
-    OutcomeTable,
     Row,
     Study,
     System,
     SystemSpec,
+    Trials,
     Variant,
 )
 from faultpath.trials.question import FEWEST_TRAININGS, AuditQuestion, RepairQuestion
@@ -52,7 +52,7 @@ class Audit(Analysis[None]):
         yield Round(self.study, stop=self.stops)
 
     def conclude(
-        self, table: OutcomeTable, deliveries: Deliveries, items: None = None
+        self, trials: Trials, deliveries: Deliveries, items: None = None
     ) -> DecisionRecord:
         """Return the decision record of a run; raises as `faultpath.decisions.decide`."""
         question = self.question
@@ -65,11 +65,11 @@ class Audit(Analysis[None]):
             )
             for path in self.paths
         ]
-        return decide(question, paths, table, deliveries.findings, repeats=deliveries.repeats)
+        return decide(question, paths, trials, deliveries.findings, repeats=deliveries.repeats)
 
-    def stops(self, table: OutcomeTable) -> bool:
+    def stops(self, trials: Trials) -> bool:
         """Return whether a sequential audit ends with these trials."""
-        return stops(self.question, self.paths, table)
+        return stops(self.question, self.paths, trials)
 
 
 def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:

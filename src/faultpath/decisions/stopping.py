@@ -8,21 +8,21 @@ from faultpath.decisions.family import Family, family_of
 from faultpath.decisions.model import DecisionRecord, Path, StoppedAudit
 from faultpath.decisions.question import EarlierLook, Question
 from faultpath.decisions.sentences import phrases
-from faultpath.trials.table import OutcomeTable
+from faultpath.trials.trials import Trials
 
 
-def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> bool:
+def stops(question: Question, paths: Sequence[Path], trials: Trials) -> bool:
     """Return whether a sequential audit stops with these trials; their order does not matter."""
-    untested = untested_paths(paths, cells_of(question, paths, table))
+    untested = untested_paths(paths, cells_of(question, paths, trials))
     try:
-        _, family = family_of(question, paths, table, untested)
+        _, family = family_of(question, paths, trials, untested)
     except UserError:  # no pair is sound so far
         return False
-    state = stopped(question, family, table)
+    state = stopped(question, family, trials)
     return state is not None and state.reached
 
 
-def stopped(question: Question, family: Family, table: OutcomeTable) -> StoppedAudit | None:
+def stopped(question: Question, family: Family, trials: Trials) -> StoppedAudit | None:
     """Return how a sequential audit stands with these trials; `None` of one that is not.
 
     Every claim on a contrast, of who is ahead or of how little, follows from its one interval, at
@@ -43,7 +43,7 @@ def stopped(question: Question, family: Family, table: OutcomeTable) -> StoppedA
             small.append(path)
     settled = {path for path, effect in family.effects.items() if effect.sign or path in small}
     required = set(family.effects) if rule.when == "all-decided" else {question.primary}
-    scenes = len({row.outcome.scene for row in table.rows})
+    scenes = len(trials.scenes)
     return StoppedAudit(scenes=scenes, reached=required <= settled, small=tuple(small))
 
 

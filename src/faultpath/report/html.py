@@ -23,7 +23,7 @@ from faultpath.report.viewer import viewer_data
 def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
     record, question = source.record, source.record.question
-    pairs = read_pairs(source.outcomes, record)
+    pairs = read_pairs(source.trials, record)
     viewer = viewer_data(source, pairs)
     shown = viewer.shown if viewer else ()
     titles = {path.name: path.title for path in record.paths}
@@ -38,7 +38,7 @@ def report_page(source: ReportInput) -> str:
         asked=question,
         provenance=source.provenance,
         sources=source.provenance.data if question.judged else {},
-        n_trials=len(source.outcomes.rows),
+        n_trials=len(source.trials),
         paths=titles,
         names=(question.baseline, question.repair),
         plain=answers(record),

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from faultpath.decisions.model import DecisionRecord
-from faultpath.trials import OutcomeTable, SystemShown
+from faultpath.trials import SystemShown, Trials
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.signals import Signal, Signals
 from faultpath.trials.store.tables import TrialAddress
@@ -17,7 +17,7 @@ class ReportInput:
     provenance: RunProvenance
     system: SystemShown
     """Interface, how baseline and repair are wired, and floor plans."""
-    outcomes: OutcomeTable
+    trials: Trials
     """The trials, with their positions where the system gives any."""
     signals: Signals = field(default_factory=dict[TrialAddress, tuple[Signal, ...]])
     """Signals of the trials of which they were recorded."""

@@ -51,7 +51,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
 
     Left out are scenes without any track and, where no trial has one, those without signals.
     """
-    plans, tracks = source.system.plans, traces_of(source.outcomes)
+    plans, tracks = source.system.plans, traces_of(source.trials)
     flat, every = _flat(source, tracks), by_scene(pairs)
     recorded = {(at.scene, at.seed) for at in source.signals}
     tracked = {(at.scene, at.seed) for at, track in tracks.items() if len(track)}

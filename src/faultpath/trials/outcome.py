@@ -85,6 +85,11 @@ class Outcome:
     """Of all that its readers got while it ran, to the bit; empty where other tools ran it."""
 
     @property
+    def met(self) -> tuple[str, tuple[str, ...]]:
+        """The scene, and the hashes of what the trial met there."""
+        return self.scene, (self.initial_hash, self.disturbance_hash, self.planner_noise_hash)
+
+    @property
     def failed(self) -> bool:
         """Whether the program failed, so that the trial says nothing."""
         return self.status is Status.FAILED

@@ -3,14 +3,15 @@
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.checks import library_of
 from faultpath.trials.declared import FloorPlan, Library, Pillar, Prism, SceneRef, Variant
+from faultpath.trials.deliveries import Deliveries, RowDeliveries
 from faultpath.trials.loop_system import LoopSystem, Wiring
 from faultpath.trials.options import Offered, Option
 from faultpath.trials.outcome import VEHICLE, Metric, Outcome, Status
-from faultpath.trials.pairing import PairingRefused, Pairs, Side, pair
+from faultpath.trials.pairing import Group, PairingRefused, Pairs, pair
 from faultpath.trials.registry import load_system, system_options
 from faultpath.trials.shown import SystemShown, VariantShown, system_shown
 from faultpath.trials.system import ErrorSum, ErrorTerm, System
-from faultpath.trials.table import Deliveries, OutcomeTable, RowDeliveries, TrialRow
+from faultpath.trials.trials import Trial, Trials
 
 __all__ = [
     "VEHICLE",
@@ -19,13 +20,13 @@ __all__ = [
     "ErrorSum",
     "ErrorTerm",
     "FloorPlan",
+    "Group",
     "Library",
     "LoopSystem",
     "Metric",
     "Offered",
     "Option",
     "Outcome",
-    "OutcomeTable",
     "PairingRefused",
     "Pairs",
     "Pillar",
@@ -33,13 +34,13 @@ __all__ = [
     "Row",
     "RowDeliveries",
     "SceneRef",
-    "Side",
     "Status",
     "Study",
     "System",
     "SystemShown",
     "SystemSpec",
-    "TrialRow",
+    "Trial",
+    "Trials",
     "Variant",
     "VariantShown",
     "Wiring",

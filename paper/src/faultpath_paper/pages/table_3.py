@@ -3,6 +3,7 @@
 The paper averages some rows over three seeds at L3; all other entries use the first.
 """
 
+from faultpath.trials import Status
 from faultpath_paper.cells import SEEDS, Cell, Setting, of_seed, published
 from faultpath_paper.entries import EntryGroup, Made
 from faultpath_paper.page import FLOWN_ONCE, Page, Rows, TableRow, TableSpec, rates
@@ -84,7 +85,7 @@ def _won(row: Cell, paper: int | list[int]) -> EntryGroup:
     def make(results: Results) -> Made:
         trainings = (of_seed(shown, seed) for seed in results.seeds(shown))
         pairs = (results.pairs(cell, cell, scenes=UNMET) for cell in trainings)
-        return ("/".join(str(int(pair.first.success.sum())) for pair in pairs),)
+        return ("/".join(str(int(pair.ended(Status.SUCCESS)[0].sum())) for pair in pairs),)
 
     return EntryGroup(make, ("/".join(map(str, paper)) if by_seed else str(paper),), (shown,))
 

@@ -4,20 +4,15 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
 from faultpath.statistics.contrast import Contrast, weighted_sum
 from faultpath.statistics.decisions import with_test
 from faultpath.statistics.effects import mean_effect, median_effect, success_effect, success_rate
 from faultpath.statistics.resamples import Resamples
-from faultpath.trials import Pairs
-from faultpath.trials.pairing import Trials
+from faultpath.trials import Pairs, Status
 from faultpath_paper.cells import Cell
 from faultpath_paper.results import NotRun, Quantity, Results, decisive
 
 Pair: TypeAlias = tuple[Cell, Cell]
-Bools: TypeAlias = NDArray[np.bool_]
 Effect: TypeAlias = Callable[[Pairs, Resamples], Contrast]
 """Comparison of paired trials."""
 
@@ -25,26 +20,24 @@ TELLING_PP = 20.0
 """A difference in success that a run must be able to detect for its absence to say anything."""
 
 
-def ended(ends: Callable[[Trials], Bools]) -> Effect:
+def ended(status: Status) -> Effect:
     """Return the difference in how many trials end in a way, with the paper's test."""
 
     def effect(pairs: Pairs, resamples: Resamples) -> Contrast:
-        return with_test(success_effect(ends(pairs.first), ends(pairs.second), resamples), "exact")
+        return with_test(success_effect(*pairs.ended(status), resamples), "exact")
 
     return effect
 
 
-succeeded = ended(lambda trials: trials.success)
+succeeded = ended(Status.SUCCESS)
 
 
 def terminal_distance(pairs: Pairs, resamples: Resamples) -> Contrast:
     """Return the mean difference in distance to the goal at the end, m, over all paired scenes."""
-    first, second = (
-        side.metrics.get("terminal_distance_m") for side in (pairs.first, pairs.second)
-    )
-    if first is None or second is None:
+    distances = pairs.metric("terminal_distance_m")
+    if distances is None:
         raise NotRun("a trial without a terminal distance")
-    return mean_effect(first, second, resamples, "m")
+    return mean_effect(*distances, resamples, "m")
 
 
 def contrast(
@@ -77,19 +70,19 @@ def rate(cell: Cell) -> Quantity:
 
     def quantity(results: Results) -> Contrast:
         pairs = results.pairs(cell, cell)
-        return decisive(success_rate(pairs.first.success, results.resamples(pairs)))
+        return decisive(success_rate(pairs.ended(Status.SUCCESS)[0], results.resamples(pairs)))
 
     return quantity
 
 
 def crashes(first: Cell, second: Cell) -> Quantity:
     """Return the difference in crashes."""
-    return success(first, second, ended(lambda trials: trials.crash))
+    return success(first, second, ended(Status.CRASH))
 
 
 def timeouts(first: Cell, second: Cell) -> Quantity:
     """Return the difference in timeouts."""
-    return success(first, second, ended(lambda trials: ~(trials.success | trials.crash)))
+    return success(first, second, ended(Status.TIMEOUT))
 
 
 def time(first: Cell, second: Cell) -> Quantity:
@@ -97,11 +90,11 @@ def time(first: Cell, second: Cell) -> Quantity:
 
     def quantity(results: Results) -> Contrast:
         pairs = results.pairs(first, second)
-        one, two = pairs.first, pairs.second
-        both = one.success & two.success
+        one, two = pairs.ended(Status.SUCCESS)
+        both = one & two
         if not both.any():
             raise NotRun(f"a scene in which both {first} and {second} succeed")
-        return decisive(median_effect(one.time_s, two.time_s, both, results.resamples(pairs)))
+        return decisive(median_effect(*pairs.time_s, both, results.resamples(pairs)))
 
     return quantity
 
@@ -130,8 +123,8 @@ def joint(results: Results, *pairs: Pair) -> tuple[Pairs, ...]:
     """Return pairs over the seeds and the scenes that all of them have; `NotRun` without any."""
     seeds = results.common_seeds(*(cell for pair in pairs for cell in pair))
     cut = [(_cut(first, seeds), _cut(second, seeds)) for first, second in pairs]
-    first, *others = (results.pairs(*pair).scene_indices for pair in cut)
-    kept = [scene for scene in first if all(scene in other for other in others)]
+    every = (frozenset(s.index for s in results.pairs(*pair).scenes) for pair in cut)
+    kept = frozenset[int].intersection(*every)
     return tuple(results.pairs(*pair, scenes=kept) for pair in cut)
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.effects import success_rate
+from faultpath.trials import Status
 from faultpath_paper.cells import Cell, of_seed
 from faultpath_paper.pages import figure_3
 from faultpath_paper.quantities.differences import contrast, joint
@@ -46,7 +47,7 @@ def share(cells: Sequence[Cell], end: bool) -> Quantity:
     def quantity(results: Results) -> Contrast:
         own = [of_seed(cell) for cell in cells]
         every = joint(results, *((cell, cell) for cell in own))
-        ends = np.stack([pairs.first.success[:, 0] == end for pairs in every])
+        ends = np.stack([pairs.ended(Status.SUCCESS)[0][:, 0] == end for pairs in every])
         return decisive(success_rate(np.all(ends, axis=0), results.resamples(every[0])))
 
     return quantity
@@ -137,7 +138,9 @@ def _sweep(results: Results, *models: str) -> _Sweep:
             raise NotRun(f"the sweep of {' and '.join(models)} at e = {error:+g}")
     cells = [figure_3.cell(model, error) for model in models for error in errors]
     every = joint(results, *((cell, cell) for cell in cells))
-    effects = [success_rate(pairs.first.success, results.resamples(pairs)) for pairs in every]
+    effects = [
+        success_rate(pairs.ended(Status.SUCCESS)[0], results.resamples(pairs)) for pairs in every
+    ]
     columns = np.stack([np.append(effect.value, effect.draws) for effect in effects], axis=1)
     rates = np.split(columns, len(models), axis=1)
     return _Sweep(errors, rates, effects[0].n_scenes)

@@ -33,12 +33,24 @@ def encode(schema: Schema, rows: Iterable[Row], notes: Mapping[str, str] | None 
     for row in rows:
         for name, values in columns.items():
             values.append(row.get(name))
+    return encode_columns(schema, columns, notes)
+
+
+def encode_columns(
+    schema: Schema, columns: Mapping[str, Any], notes: Mapping[str, str] | None = None
+) -> bytes:
+    """Return a Parquet file of `columns`, sequences or arrays of one length, and of `notes`."""
     table = pa.table({name: pa.array(columns[name], type=kind) for name, kind in schema.items()})
     if notes:
         table = table.replace_schema_metadata(dict(notes))
     sink = pa.BufferOutputStream()
     pq.write_table(table, sink, compression="zstd")
     return sink.getvalue().to_pybytes()
+
+
+def masked(values: Any) -> Any:
+    """Return an array of numbers as a column that is empty where it holds none."""
+    return pa.array(values, type=NUMBER, from_pandas=True)
 
 
 @contextmanager

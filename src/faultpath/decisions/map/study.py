@@ -22,11 +22,11 @@ from faultpath.interface import module_of
 from faultpath.trials import (
     Deliveries,
     Library,
-    OutcomeTable,
     Row,
     Study,
     System,
     SystemSpec,
+    Trials,
     Variant,
 )
 from faultpath.trials.pairing import mismatch_words
@@ -74,19 +74,17 @@ class MapPlan(Analysis[list[Point]]):
             points += new
             study, notice = self.study(points), ""
 
-    def conclude(
-        self, table: OutcomeTable, deliveries: Deliveries, items: Sequence[Point]
-    ) -> MapRecord:
+    def conclude(self, trials: Trials, deliveries: Deliveries, items: Sequence[Point]) -> MapRecord:
         """Return the record of a map, to the bit the same in whatever order its points were run.
 
         `UserError` where a point has no pair left.
         """
-        differences, unlike = self.differences(sorted(items), table)
+        differences, unlike = self.differences(sorted(items), trials)
         findings = (*unlike, *deliveries.findings)
         invalid: Invalid | None = "unpaired" if unlike else None
         if not deliveries.repeats:
             invalid = "unrepeatable"
-        return decided(self.question, differences, len(table.failed()), findings, invalid)
+        return decided(self.question, differences, int(trials.failed.sum()), findings, invalid)
 
     def path(self, point: Point) -> str:
         """Return what rows of a point are called in the outcome table."""
@@ -124,12 +122,12 @@ class MapPlan(Analysis[list[Point]]):
         )
 
     def differences(
-        self, points: Sequence[Point], table: OutcomeTable
+        self, points: Sequence[Point], trials: Trials
     ) -> tuple[Differences, tuple[str, ...]]:
         """Return success at all points, cut to the scenes that every one has, and what is to be
         said of pairs that met different conditions; `UserError` where a point has no pair."""
         names = [self.path(point) for point in points]
-        comparison = compared(self.question.repair, self.question.baseline, names, table)
+        comparison = compared(self.question.repair, self.question.baseline, names, trials)
         if comparison.void:
             raise UserError(
                 f"at the errors {' and '.join(comparison.void[:3])} no pair is left to compare, "

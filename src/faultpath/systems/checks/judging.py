@@ -7,8 +7,8 @@ from faultpath.systems.checks.blocks import MISTAKES, TRIALS, coarsest, gap_of
 from faultpath.systems.checks.delivery import HELD, MOVED, delivery
 from faultpath.systems.checks.remarks import diverged, other_names, successes, without_room
 from faultpath.systems.checks.seen import UNDER, Check, Seen
-from faultpath.trials.pairing import Mismatch, Side, mismatch_words, unlike
-from faultpath.trials.table import unproven, unread
+from faultpath.trials.deliveries import unproven, unread
+from faultpath.trials.pairing import Group, Mismatch, mismatch_words, unlike
 
 _SEVERAL = 10.0
 """A difference up to this multiple of what a last digit of the readings does may be rounding."""
@@ -145,10 +145,10 @@ def _pairing(name: str, seen: Seen) -> Check:
     if seen.unsteady():
         return Check(name=name, says="results do not repeat, so no two are a pair", judged=False)
     firsts = list(seen.firsts())
-    sides = [(Side(variant, "correct inputs"), run) for variant, run in firsts]
+    groups = [(Group(variant, "correct inputs"), run) for variant, run in firsts]
     faulted = ((variant, seen.of(variant, "faulted")) for variant, _ in firsts)
-    sides += [(Side(variant, "a fault"), run) for variant, run in faulted if run.outcomes]
-    (one, base), *others = sides
+    groups += [(Group(variant, "a fault"), run) for variant, run in faulted if run.outcomes]
+    (one, base), *others = groups
     mismatches = [
         Mismatch(one, two, a.scene, seen.seed, causes)
         for two, run in others
@@ -159,8 +159,8 @@ def _pairing(name: str, seen: Seen) -> Check:
     failures = [
         f"{text[0].upper()}{text[1:].rstrip('.')}; {remedy}" for text in mismatch_words(mismatches)
     ]
-    failures += unproven([outcome for _, run in firsts for outcome in run.outcomes])
-    says = f"in {len(sides)} runs of a scene"
+    failures += unproven(o.met for _, run in firsts for o in run.outcomes if not o.failed)
+    says = f"in {len(groups)} runs of a scene"
     if not failures:
         says = f"the same initial states, disturbances and planner noise {says}"
     return Check(name=name, says=says, failures=tuple(failures))

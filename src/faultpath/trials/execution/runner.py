@@ -13,6 +13,7 @@ from faultpath.trials.arm import Arm, Study
 from faultpath.trials.attempt import Reply, Wrong, attempt
 from faultpath.trials.code import Code
 from faultpath.trials.declared import SceneRef
+from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.execution.dispatch import Built, dispatch
 from faultpath.trials.execution.recheck import Rechecks
 from faultpath.trials.execution.schedule import Task, TaskQueue, Unit, plan
@@ -21,7 +22,7 @@ from faultpath.trials.provenance import Recheck
 from faultpath.trials.registry import load_system
 from faultpath.trials.store.folder import Manifest, RunFolder
 from faultpath.trials.system import System
-from faultpath.trials.table import Deliveries, OutcomeTable, check_rows, selected
+from faultpath.trials.trials import Trials, check_rows, selected
 from faultpath.trials.work.executor import Executor, Progress
 from faultpath.trials.work.processes import local
 
@@ -43,7 +44,7 @@ class Failure:
 class RunResult:
     """A finished run."""
 
-    outcomes: OutcomeTable
+    trials: Trials
     deliveries: Deliveries
     """Deliveries of the taps, row by row, and what a reader of the results has to know."""
     blocks_computed: int
@@ -133,10 +134,10 @@ def run_study(
                 if recheck:
                     waiting = iter(again.tasks())
                     work(lambda worker: next(waiting, None), again.settle)
-            table, findings = state.table(), (*state.findings(), *again.findings())
+            trials, findings = state.trials(), (*state.findings(), *again.findings())
             repeats = not any(recheck.differs for recheck in again.flown())
-            deliveries = Deliveries.of(study, state.taps(), table, findings, repeats)
-            digest = run.save_tables(table, deliveries)
+            deliveries = Deliveries.of(study, state.taps(), trials, findings, repeats)
+            digest = run.save_tables(trials, deliveries)
     except KeyboardInterrupt:
         # What is on disk counts: the run may have been stopped between storing and noting.
         done = sum(bool(run.files_of(unit.key)) for unit in units)
@@ -145,7 +146,7 @@ def run_study(
             "same again to resume."
         ) from None
     return RunResult(
-        outcomes=table,
+        trials=trials,
         deliveries=deliveries,
         blocks_computed=state.computed,
         blocks_kept=state.kept,

@@ -14,14 +14,14 @@ from faultpath.trials.declared import Library
 from faultpath.trials.execution.schedule import Task, Unit
 from faultpath.trials.outcome import Outcome, failed_outcome
 from faultpath.trials.store.folder import RunFolder
-from faultpath.trials.table import OutcomeTable, assemble
+from faultpath.trials.trials import Trials, assemble
 from faultpath.trials.work.executor import Progress
 
 FEW = 5
 """So many failed trials without one that ran to its end stop the study."""
 _WHOLE = "All scenes of the block at once: "
 """Begins the traceback of a block that raised an error, of which each scene is then run alone."""
-Stop = Callable[[OutcomeTable], bool]
+Stop = Callable[[Trials], bool]
 """Says of the trials of all looks so far whether they are enough."""
 
 
@@ -175,10 +175,10 @@ class RunState:
             if not look or not self._taps.keys() >= set(look):
                 break
             self._looks += 1
-            self._over = self._stop(self.table())
+            self._over = self._stop(self.trials())
         return self._over
 
-    def table(self) -> OutcomeTable:
+    def trials(self) -> Trials:
         """Return the trials that count: all, or those of the looks that were taken."""
         study = self._study
         if self._stop:

@@ -21,6 +21,7 @@ from faultpath.core.results import Frozen
 from faultpath.trials.arm import Study
 from faultpath.trials.attempt import Done
 from faultpath.trials.code import CodeState, named
+from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.store import atomic
 from faultpath.trials.store.atomic import Say, locked, make_folder, write_file
 from faultpath.trials.store.tables import (
@@ -30,7 +31,7 @@ from faultpath.trials.store.tables import (
     encode_shard,
     encode_traces,
 )
-from faultpath.trials.table import Deliveries, OutcomeTable
+from faultpath.trials.trials import Trials
 
 OUTCOMES, TRACES, DELIVERIES = "outcomes.parquet", "traces.parquet", "deliveries.json"
 """Files that are assembled at the end of a run."""
@@ -210,11 +211,11 @@ class RunFolder:
         """Write what running some trials again has found."""
         self._write(self.rechecks, text.encode())
 
-    def save_tables(self, table: OutcomeTable, deliveries: Deliveries) -> str:
+    def save_tables(self, trials: Trials, deliveries: Deliveries) -> str:
         """Write what was assembled and return the SHA-256 of the outcomes."""
-        data = encode_outcomes(table)
+        data = encode_outcomes(trials)
         self._write(self.path / DELIVERIES, f"{deliveries.model_dump_json(indent=1)}\n".encode())
-        self._write(self.path / TRACES, encode_traces(table))
+        self._write(self.path / TRACES, encode_traces(trials))
         self._write(self.path / OUTCOMES, data)
         return _digest(data)
 
@@ -226,7 +227,7 @@ class RunFolder:
         write_file(path, data, self.path)
 
 
-def read_outcomes(path: Path) -> OutcomeTable:
+def read_outcomes(path: Path) -> Trials:
     """Read an assembled outcome table (without traces); `UserError` when there is none to read."""
     try:
         return decode_outcomes(read_regular(path))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
+from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import (
     INTEGER,
     NUMBER,
@@ -19,11 +20,13 @@ from faultpath.core.files.parquet import (
     Unreadable,
     decode,
     encode,
+    encode_columns,
+    masked,
 )
 from faultpath.loop import TapCount
 from faultpath.trials.attempt import Done
 from faultpath.trials.outcome import VEHICLE, Outcome, Status, checked
-from faultpath.trials.table import OutcomeTable, TrialRow
+from faultpath.trials.trials import STATUSES, Trial, Trials
 
 Trace = NDArray[np.float32]
 
@@ -58,7 +61,8 @@ class TrialAddress(NamedTuple):
 def encode_shard(key: str, shard: Done) -> bytes:
     """Return one block, traces included, with the key of its unit inside."""
     notes = {_KEY: key, _TAPS: _TAP_COUNTS.dump_json(shard.taps).decode()}
-    schema = {"scene": TEXT, **_columns(shard.outcomes), **_TRACE}
+    metrics = _columns(name for outcome in shard.outcomes for name in outcome.metrics)
+    schema = {"scene": TEXT, **_END, **metrics, **_RESULT, **_TRACE}
     return encode(schema, map(_cells, shard.outcomes), notes)
 
 
@@ -77,34 +81,56 @@ def decode_shard(data: bytes, key: str) -> Done:
     return Done(tuple(_outcome(row, _trace(row)) for row in rows), taps)
 
 
-def encode_outcomes(table: OutcomeTable) -> bytes:
-    """Return the table without its traces."""
-    schema = {**_ADDRESS, **_PLACE, **_columns(row.outcome for row in table.rows)}
-    return encode(schema, ({**vars(row), **_cells(row.outcome)} for row in table.rows))
+def encode_outcomes(trials: Trials) -> bytes:
+    """Return the trials without their traces, a row each."""
+    places: list[list[int]] = trials.places.T.tolist()
+    variant, condition, seed, scene = places
+    refs = trials.scenes
+    columns: dict[str, Any] = {
+        "variant": [trials.variants[at] for at in variant],
+        "path": [trials.conditions[at] for at in condition],
+        "seed": [trials.seeds[at] for at in seed],
+        "scene": [refs[at].id for at in scene],
+        "scene_index": [refs[at].index for at in scene],
+        "topology": [refs[at].topology for at in scene],
+        "status": [STATUSES[at] for at in trials.status],
+        "time_s": masked(trials.time_s),
+        "faulted_steps": trials.steps[0],
+        "altered_steps": trials.steps[1],
+        "error": [trials.errors.get(row) for row in range(len(trials))],
+        **trials.texts,
+    }
+    none = np.full(len(trials), np.nan)
+    metrics = _columns(trials.metrics)
+    columns |= {name: masked(trials.metrics.get(name, none)) for name in metrics}
+    schema = {**_ADDRESS, **_PLACE, **_END, **metrics, **_RESULT}
+    return encode_columns(schema, columns)
 
 
-def decode_outcomes(
-    data: bytes, traces: Mapping[TrialAddress, Trace] | None = None
-) -> OutcomeTable:
-    """Return an assembled outcome table, with `traces` where there are any; `Unreadable` when it is
-    not one.
+def decode_outcomes(data: bytes, traces: Mapping[TrialAddress, Trace] | None = None) -> Trials:
+    """Return the trials of an assembled table, with `traces` where there are any; `Unreadable` when
+    it is not one.
 
     Where a trial that did not fail has no time, it is not a number: other tools write none.
     """
     schema = {**_ADDRESS, **_PLACE, **_END, **_RESULT}
     rows, _ = decode(data, schema, _MAY_LACK, more=NUMBER, absent=_TRAJECTORY)
-    at, trials = ("variant", "path", "seed", *_PLACE), list[TrialRow]()
+    trials: list[Trial] = []
     for row in rows:
-        trace = (traces or {}).get(_address(row))
-        outcome = _outcome(row, trace, untimed=True)
-        trials.append(TrialRow(**{name: row[name] for name in at}, outcome=outcome))
-    return OutcomeTable(tuple(trials))
+        address = _address(row)
+        outcome = _outcome(row, (traces or {}).get(address), untimed=True)
+        place = row["scene_index"], row["topology"]
+        trials.append(Trial(address.variant, address.path, address.seed, *place, outcome))
+    try:
+        return Trials.of(trials)
+    except (ValueError, UserError) as error:
+        raise Unreadable(str(error)) from error
 
 
-def encode_traces(table: OutcomeTable) -> bytes:
+def encode_traces(trials: Trials) -> bytes:
     """Return the traces of the trials that have one."""
-    traced = (row for row in table.rows if row.outcome.trace is not None)
-    return encode(_TRACES, ({**vars(row), **_cells(row.outcome)} for row in traced))
+    traced = traces_of(trials).items()
+    return encode(_TRACES, ({**at._asdict(), **_axes(trace)} for at, trace in traced))
 
 
 def decode_traces(data: bytes) -> dict[TrialAddress, Trace]:
@@ -113,33 +139,42 @@ def decode_traces(data: bytes) -> dict[TrialAddress, Trace]:
     return {_address(row): trace for row in rows if (trace := _trace(row)) is not None}
 
 
-def traces_of(table: OutcomeTable) -> dict[TrialAddress, Trace]:
-    """Return the traces of a table by trial."""
-    trials = ((address_of(row), row.outcome.trace) for row in table.rows)
-    return {address: trace for address, trace in trials if trace is not None}
+def traces_of(trials: Trials) -> dict[TrialAddress, Trace]:
+    """Return the traces of trials by where these stand."""
+    return {address_of(trials, row): trials.traces[row] for row in sorted(trials.traces)}
 
 
-def address_of(row: TrialRow) -> TrialAddress:
-    """Return where a trial of a table stands."""
-    return TrialAddress(row.variant, row.path, row.seed, row.outcome.scene)
+def address_of(trials: Trials, row: int) -> TrialAddress:
+    """Return where a trial stands in its study."""
+    place: list[int] = trials.places[row].tolist()
+    variant, condition, seed, scene = place
+    return TrialAddress(
+        trials.variants[variant],
+        trials.conditions[condition],
+        trials.seeds[seed],
+        trials.scenes[scene].id,
+    )
 
 
 def _address(row: Row) -> TrialAddress:
     return TrialAddress(*(row[name] for name in _ADDRESS))
 
 
-def _columns(outcomes: Iterable[Outcome]) -> Schema:
-    """Return the columns of some outcomes; a metric that only some of them have is one too."""
-    metrics = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
-    vehicle = VEHICLE if any(name in VEHICLE for name in metrics) else ()
-    return {**_END, **dict.fromkeys((*vehicle, *metrics), NUMBER), **_RESULT}
+def _columns(metrics: Iterable[str]) -> Schema:
+    """Return the columns of metrics; one that only some trials have is one too."""
+    names = tuple(dict.fromkeys(metrics))
+    vehicle = VEHICLE if any(name in VEHICLE for name in names) else ()
+    return dict.fromkeys((*vehicle, *names), NUMBER)
 
 
 def _cells(outcome: Outcome) -> Row:
-    axes = (None,) * 3 if outcome.trace is None else np.asarray(outcome.trace, np.float32).T
     time_s = None if outcome.time_s != outcome.time_s else outcome.time_s  # not a number
-    traced = dict(zip(_TRACE, axes, strict=True))
-    return {**outcome.metrics, **vars(outcome), **traced, "time_s": time_s}
+    return {**outcome.metrics, **vars(outcome), **_axes(outcome.trace), "time_s": time_s}
+
+
+def _axes(trace: Trace | None) -> Row:
+    axes = (None,) * 3 if trace is None else np.asarray(trace, np.float32).T
+    return dict(zip(_TRACE, axes, strict=True))
 
 
 def _trace(row: Row) -> Trace | None:
