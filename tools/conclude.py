@@ -34,7 +34,7 @@ def conclude_all(tell: Callable[[str], None]) -> None:
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{RECORD}")):
         before = json.loads((folder / RECORD).read_bytes())
         record = audit(folder)
-        tell(f"{folder.name}: {before['headline']}\n    now: {record.headline}")
+        tell(f"{folder.name}: {before.get('headline')}\n    now: {record.headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
         tell(f"{folder.name}: {reversal_map(folder).headline}")
     for line in paper(RUN, PLACE):

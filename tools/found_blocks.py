@@ -136,7 +136,7 @@ def _of_references() -> Iterator[Audit]:
 
 
 def _effect(effect: model.Effect) -> Effect:
-    value, ends = effect.success.value, effect.success.interval
+    value, ends = effect.value, effect.interval
     if ends is None:
         raise Wrong(f"{effect.path} has no interval: the table of all audits cannot show it")
     return Effect(value, *ends, 0 if effect.extreme else effect.sign)
@@ -196,5 +196,5 @@ def audits(page: str) -> str:
 
 
 def _success(effect: model.Effect) -> str:
-    rates = (wording.plain(rate, 1) for rate in (effect.baseline_percent, effect.repair_percent))
+    rates = (wording.plain(rate, 1) for rate in effect.rates)
     return f"{' → '.join(rates)}, {_shown([_effect(effect)])}"

@@ -104,9 +104,9 @@ def _case(run: Run) -> Case:
     effects = {effect.path: effect for effect in record.effects}
     pair = effects[_MODULE], effects[SHARED]
     isolated, shared = (
-        PrintedEffect.of(wording.with_interval(effect.success), effect.detected) for effect in pair
+        PrintedEffect.of(wording.with_interval(effect), effect.significant) for effect in pair
     )
-    by_seed = zip(*(effect.success.per_seed or () for effect in pair), strict=True)
+    by_seed = zip(*(effect.per_seed or () for effect in pair), strict=True)
     return Case(
         place=f"{record.scenes} scenes of {question.library}, {wording.seeds(question.seeds)}",
         isolated=isolated,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from blocks import ROOT, Picture, Run, Wrong, difference, fence, load, pipes, printed
 
-from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.markdown import grid
 from faultpath.report.map_pictures import correlation_picture, map_picture
@@ -38,8 +38,8 @@ def table(name: str) -> str:
             f"correction for {record.hypotheses} contrasts). Floor, ceiling: both below 10 % or "
             f"above 90 %, no headline. Break-even: the fault frequency at which neither is ahead, "
             f"estimated, and those at which neither is significantly ahead. Intervals are for "
-            f"{record.estimand}. Void pairs: "
-            f"{sum(effect.void_pairs for effect in record.effects)}.{tests} {run.flown}",
+            f"{phrases.estimand(question)}. Void pairs: "
+            f"{sum(effect.void for effect in record.effects)}.{tests} {run.flown}",
         ]
     )
 
@@ -57,9 +57,9 @@ def contrast(name: str) -> str:
     opposed = [
         effect
         for effect in run.record.effects
-        if effect.detected
+        if effect.significant
         and effect.path not in ("correct", "shared")
-        and effect.success.value * shared.success.value < 0
+        and effect.value * shared.success.value < 0
     ]
     if not shared.detected or len(opposed) != 1:
         raise Wrong(f"{run.name} has no single significant reversal: the block cannot be filled")

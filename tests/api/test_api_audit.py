@@ -64,7 +64,7 @@ def test_the_rule_is_in_the_record_and_no_verdict_is_redone_by_another(run, tmp_
     told = io.StringIO()
     Console(file=told, width=200).print(decision(run.record, details=True))
     assert "McNemar" in told.getvalue()
-    assert all(effect.mcnemar_p_value is not None for effect in run.record.effects)
+    assert all(effect.mcnemar_p is not None for effect in run.record.effects)
     old = run.record.question.model_dump()
     del old["rule"]
     assert type(run.record.question).model_validate(old).rule == "exact"

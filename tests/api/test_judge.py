@@ -39,9 +39,9 @@ def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None
     again = judged(results, folder, baseline="calibrated", repair="blind", **named)
 
     for one, two in zip(run.record.effects, again.record.effects, strict=True):
-        for name in ("sign", "wins", "losses", "p_value", "adjusted_p_value", "baseline_percent"):
+        for name in ("sign", "won", "p_value", "corrected_p", "rates"):
             assert getattr(one, name) == getattr(two, name), (one.path, name)
-        assert (one.success.low, one.success.high) == (two.success.low, two.success.high)
+        assert (one.low, one.high) == (two.low, two.high)
         assert two.metrics["terminal_distance_m"].value == one.metrics["terminal_distance_m"].value
     turns = [[each.turn for each in each.record.changes] for each in (run, again)]
     assert turns[0] == turns[1]
@@ -81,8 +81,8 @@ def test_what_other_tools_write_is_read(
     run = judged([write(tmp_path, *each) for each in WON.items()], tmp_path / "run", **more)
     (effect,) = run.record.effects
     assert (effect.path, effect.scenes) == (AS_RUN, 30)
-    assert (effect.wins, effect.losses) == ((WINS,), (LOSSES,))
-    assert effect.time_s is None
+    assert effect.won == ((WINS, LOSSES),)
+    assert run.record.secondary[0].time_s is None
     assert run.record.question.judged is not None
     assert run.record.question.judged.pairing == pairing
     assert run.table().column("time_s").null_count == 60
@@ -103,7 +103,7 @@ def test_missing_pairs_are_named_and_bound_what_is_decided(tmp_path: Path) -> No
     file.write_text("".join(line for line in lines if line not in (*alone, *both)))
     run = judged(file, tmp_path / "run")
     nominal, shared = run.record.effects
-    assert (shared.path, shared.void_pairs, shared.scenes) == (SHARED, 9, 11)
+    assert (shared.path, shared.void, shared.scenes) == (SHARED, 9, 11)
     for each, against, favour in ((nominal, 55.0, 65.0), (shared, 15.0, 60.0)):
         assert each.failed is not None
         assert each.failed.against_pp == pytest.approx(against)
@@ -119,7 +119,7 @@ def test_trials_that_began_otherwise_are_no_pair(tmp_path: Path) -> None:
     file = table(tmp_path / "all.csv", {"": WON})
     file.write_text(file.read_text().replace("new,s3,0,,1,h3", "new,s3,0,,1,other"))
     run = judged(file, tmp_path / "run")
-    assert run.record.effects[0].void_pairs == 1
+    assert run.record.effects[0].void == 1
     assert run.headline == "No result: the two versions did not meet the same conditions."
     assert run.broken
     assert any("are no pair in scene 's3'" in said for said in run.record.findings)
@@ -136,7 +136,7 @@ def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
     (file := tmp_path / "all.csv").write_text(header + "\n".join(lines))
     run = judged(file, tmp_path / "run", cluster="task")
     assert run.record.scenes == 3
-    assert len(run.record.effects[0].wins) == 30  # though many of them came out alike
+    assert len(run.record.effects[0].won) == 30  # though many of them came out alike
     assert run.record.estimand == "new tasks like these"
     assert run.headline.startswith("Too few scenes")
     by_scene = judged(file, tmp_path / "scenes")

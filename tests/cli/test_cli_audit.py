@@ -153,7 +153,7 @@ def test_a_failed_trial_is_shown_and_the_status_says_so():
         (place,) = set(re.findall(r"\((\S+failures\S+\.txt)\)", ended.out)[:1])
         assert "has no wheels" in Path(place).read_text()
     effect = open_run("run").record.effects[0]
-    assert (effect.void_pairs, effect.scenes) == (1, 5)
+    assert (effect.void, effect.scenes) == (1, 5)
     assert re.search(r"^Shared fault .* 5 +1 ", ended.out, re.MULTILINE), "scenes, then void pairs"
 
 

@@ -126,7 +126,7 @@ FORGED: dict[str, tuple[str, Change]] = {
         record(lambda c: c["effects"][0].update(path="nowhere")),
     ),
     "no effects": ("contradict", record(lambda c: c.update(effects=[]))),
-    "wins without losses": ("contradict", record(lambda c: c["effects"][0].update(wins=[]))),
+    "no secondary outcomes": ("contradict", record(lambda c: c.update(secondary=[]))),
     "no cells": ("versions", record(lambda c: c.update(cells=[]))),
     "another count": ("count", record(lambda c: c["cells"][0].update(success=77))),
     "another library": ("libraries", record(lambda c: c["question"].update(library_hash="x"))),

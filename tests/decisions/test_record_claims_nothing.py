@@ -99,7 +99,7 @@ def run(
 def sentences(made: DecisionRecord) -> Iterator[str]:
     yield made.headline
     yield from made.sentences
-    yield from made.would_change
+    yield from would_change(made)
     yield from answers(made).values()
 
 
@@ -136,11 +136,11 @@ def may_be_said(made: DecisionRecord) -> tuple[dict[str, int], dict[str, int]]:
     signs: list[int] = []
     adjusted = shared_out(made, tested) if made.stopped else holm(made, tested)
     for each, p in zip(tested, adjusted, strict=True):
-        assert each.adjusted_p_value == pytest.approx(p)
-        shown = each.success if isinstance(each, Effect) else each.change
+        assert each.corrected_p == pytest.approx(p)
+        shown = each
         low, high = shown.low or 0.0, shown.high or 0.0
         signs.append((low > 0) - (high < 0) if p <= 0.05 and not each.unsettled else 0)
-        assert not each.unsettled or any(effect.failed for effect in made.effects)
+        assert not each.unsettled or any(effect.missing for effect in made.effects)
     of = {e.path: s for e, s in zip(tested, signs, strict=False) if isinstance(e, Effect)}
     turned = dict(zip([c.isolated for c in made.changes], signs[len(of) :], strict=True))
     return of, turned
@@ -160,13 +160,13 @@ def check(made: DecisionRecord) -> None:
         headed = {e.path for e in made.effects if effects.get(e.path) == sign and not e.extreme}
         assert not claimed(made.headline, who) or headed
     for change in made.changes:
-        opposite = effects[change.isolated] * effects[change.shared] < 0
+        opposite = effects[change.isolated] * effects[SHARED] < 0
         said = phrases.change(made, change)
         assert ("reverses" in said) == opposite
         assert ("Significant interaction" in said) == (
             not opposite and changes[change.isolated] != 0
         )
-    turned = {c.isolated for c in made.changes if effects[c.isolated] * effects[c.shared] < 0}
+    turned = {c.isolated for c in made.changes if effects[c.isolated] * effects[SHARED] < 0}
     extreme = {e.path for e in made.effects if e.extreme}
     correct = 0 if CORRECT in extreme else effects[CORRECT]
     misleading = {path for path in turned - extreme if effects[path] != correct}
@@ -188,11 +188,11 @@ def check(made: DecisionRecord) -> None:
     for effect in made.effects:
         short = in_short(made, effect)
         assert effect.acted or "not tested" in short
-        low, high = effect.success.low or 0.0, effect.success.high or 0.0
+        low, high = effect.low or 0.0, effect.high or 0.0
         if effect.unsettled:
             assert "failed" in short
         elif (low > 0 or high < 0) and effect.acted and not effects.get(effect.path):
-            assert made.scenes < made.scenes_needed or f"{effect.adjusted_p_value:.3f}" in short
+            assert made.scenes < made.scenes_needed or f"{effect.corrected_p:.3f}" in short
         for who, side in SIDES:
             assert claimed(short, who) == (effects.get(effect.path, 0) == side)
     frequencies = [(item, CORRECT, item.path) for item in made.break_even]
@@ -249,13 +249,13 @@ def says_how_it_stopped(made: DecisionRecord) -> None:
     assert ("all that it was allowed" in told) == (held.scenes == most)
     assert ("not significant" in told or "not every" in told) == (not held.reached)
     assert held.scenes == 1 or "1 scenes" not in told
-    for effect in made.effects:
+    for effect, secondary in zip(made.effects, made.secondary, strict=True):
         small = effect.path in held.small
         assert not small or asked.stop.margin_pp
-        low, high = effect.success.low or 0.0, effect.success.high or 0.0
+        low, high = effect.low or 0.0, effect.high or 0.0
         assert not small or max(-low, high) < (asked.stop.margin_pp or 0.0)
-        assert effect.minimum_detectable_pp is None
-        for other in (effect.time_s, *effect.metrics.values()):
+        assert effect.least_pp is None
+        for other in (secondary.time_s, *secondary.metrics.values()):
             assert other is None or (other.low, other.high) == (None, None)
     assert "differ by less than" not in made.headline or asked.primary in held.small
     whole = made.model_dump_json()

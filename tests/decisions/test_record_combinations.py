@@ -9,7 +9,6 @@ from outcome_tables import BASELINE, MOST_WORDS, REPAIR, record
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
 from faultpath.decisions.question import StopRule
 from faultpath.decisions.sentences.answers import answers
-from faultpath.decisions.sentences.headline import headline
 from faultpath.decisions.sentences.phrases import in_short, not_standing
 from faultpath.decisions.sentences.wording import where
 
@@ -29,13 +28,8 @@ def made(states: dict[str, State], primary: str, turned: str = "") -> DecisionRe
         if effect.path in states:
             sign, special = states[effect.path]
             rates = (5.0, 6.0) if special == "floor" else (55.0, 55.0 + 20.0 * sign)
-            update = {
-                "sign": sign,
-                "extreme": "floor" if special == "floor" else None,
-                "acted": special != "idle",
-                "baseline_percent": rates[0],
-                "repair_percent": rates[1],
-            }
+            corrected = None if special == "idle" else effect.corrected_p
+            update = {"sign": sign, "corrected_p": corrected, "rates": rates}
             effects.append(effect.model_copy(update=update))
     changes = [
         change.model_copy(update={"turn": turn(states, change.isolated, turned)})
@@ -54,7 +48,7 @@ def made(states: dict[str, State], primary: str, turned: str = "") -> DecisionRe
     partial = FOUR.model_copy(update=update | {"break_even": ()})
     if small:
         partial = DecisionRecord.model_validate(partial.model_dump() | {"stopped": held})
-    return partial.model_copy(update={"headline": headline(partial)})
+    return partial
 
 
 def turn(states: dict[str, State], isolated: str, turned: str) -> str:
@@ -90,9 +84,9 @@ def holds(said: str, it: DecisionRecord) -> None:
             if "under every condition" in clause and "is ahead" in found[0]:
                 assert len(others) == len(of), said
     for found in re.finditer(r"[Nn]o difference([^.;]*)", said):
-        assert all(not of[path].detected for path in places(found[1], list(of))), said
+        assert all(not of[path].significant for path in places(found[1], list(of))), said
     if "significant under any condition" in said:
-        assert not any(effect.detected for effect in of.values())
+        assert not any(effect.significant for effect in of.values())
     shared = of.get(SHARED)
     open_ = shared and shared.acted and not (shared.sign or shared.extreme)
     if open_ and f"{REPAIR} is ahead" in said and set(leads.values()) == {1}:
@@ -146,9 +140,9 @@ def test_what_follows_says_who_is_ahead_where_and_what_sharing_does() -> None:
 def test_an_interval_that_leaves_out_0_undetected_has_its_p_and_the_reason() -> None:
     it = record({CORRECT: (50, 3, 3), "a": (40, 30, 2), "b": (50, 3, 3), SHARED: (60, 1, 8)})
     shared = it.effects[-1]
-    assert (shared.success.high or 0.0) < 0
-    assert not shared.detected
-    p = f"p = {shared.adjusted_p_value:.3f} after Holm"
+    assert (shared.high or 0.0) < 0
+    assert not shared.significant
+    p = f"p = {shared.corrected_p:.3f} after Holm"
     assert in_short(it, shared) == f"no significant difference ({p})"
     (said,) = not_standing(it)
     assert said in answers(it)["Left open"]

@@ -25,15 +25,15 @@ from faultpath.trials import Status, Trials
 @pytest.mark.parametrize("counts", [(40, 20, 5), (60, 3, 15), (50, 0, 0), (0, 7, 7), (94, 6, 0)])
 def test_counts_make_the_effect_and_the_p_value(counts):
     both, wins, losses = counts
-    (effect,) = record({CORRECT: counts}).effects
-    assert effect.success.value == pytest.approx(wins - losses)  # of 100 scenes: points
-    assert effect.success.unit == "pp"
-    assert (effect.wins, effect.losses) == ((wins,), (losses,))
+    made = record({CORRECT: counts})
+    (effect,) = made.effects
+    assert effect.value == pytest.approx(wins - losses)  # of 100 scenes: points
+    assert effect.won == ((wins, losses),)
     assert effect.scenes == 100
-    assert effect.joint_successes == both
+    assert made.secondary[0].joint_successes == both
     assert effect.p_value == pytest.approx(exact_p(wins, losses), rel=1e-9)
-    low, high = effect.success.low, effect.success.high
-    assert low <= effect.success.value <= high
+    low, high = effect.low, effect.high
+    assert low <= effect.value <= high
     assert high - low > 2, "no interval is without width"
 
 
@@ -71,7 +71,7 @@ def test_break_even_follows_from_the_two_effects(correct, fault, p_star, signs):
     assert item.result.p_star == (None if p_star is None else pytest.approx(p_star))
     assert [region.sign for region in item.result.regions] == signs
     curve = np.array(item.curve)
-    d0, df = made.effects[0].success.value, made.effects[1].success.value
+    d0, df = made.effects[0].value, made.effects[1].value
     assert (curve[0, 0], curve[-1, 0]) == (0, 1)
     assert np.allclose(curve[:, 1], (1 - curve[:, 0]) * d0 + curve[:, 0] * df)
     assert (curve[:, 2] <= curve[:, 1] + 1e-9).all()
@@ -90,7 +90,7 @@ def test_too_few_scenes_decide_nothing_and_the_number_that_would_is_known(n, eno
     made = record({CORRECT: (0, n, 0), "a": (0, n, 0), "b": (0, n, 0), SHARED: (0, 0, n)}, n=n)
     assert made.hypotheses == 6
     assert made.scenes_needed == 8  # 2 / 2^8 <= 0.05 / 6 < 2 / 2^7
-    assert all(effect.detected == enough for effect in made.effects)
+    assert all(effect.significant == enough for effect in made.effects)
     assert [change.turn for change in made.changes] == ["reversal" if enough else "none"] * 2
 
 
@@ -110,11 +110,11 @@ def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_paths_nothing()
     # Scene 45 is won by the repair alone under correct inputs, and lost to the baseline otherwise.
     made = decide(question(), paths(CORRECT, "observer"), _with_failures((REPAIR, "observer", 45)))
     correct, observer = made.effects
-    assert (correct.void_pairs, observer.void_pairs) == (0, 1)
+    assert (correct.void, observer.void) == (0, 1)
     assert (correct.scenes, observer.scenes, made.scenes) == (100, 99, 100)
-    assert correct.wins == (20,)
-    assert observer.losses == (29,)
-    assert observer.success.value == pytest.approx(100 * (10 - 29) / 99)
+    assert correct.won[0][0] == 20
+    assert observer.won[0][1] == 29
+    assert observer.value == pytest.approx(100 * (10 - 29) / 99)
     assert correct.p_value == pytest.approx(exact_p(20, 10))
     cells = {(cell.variant, cell.path): cell for cell in made.cells}
     assert cells[REPAIR, "observer"].failed == 1
@@ -126,7 +126,7 @@ def test_a_path_without_any_pair_costs_the_others_nothing_and_is_named():
     every = tuple((REPAIR, "observer", i) for i in range(100))
     made = decide(question(), paths(CORRECT, "observer"), _with_failures(*every))
     (correct,) = made.effects
-    assert (correct.path, correct.scenes, correct.void_pairs) == (CORRECT, 100, 0)
+    assert (correct.path, correct.scenes, correct.void) == (CORRECT, 100, 0)
     assert not made.break_even
     said = "With the fault at the observer alone, no pair of trials is left to compare"
     assert made.headline.startswith(said)
@@ -138,22 +138,19 @@ def test_a_path_without_any_pair_costs_the_others_nothing_and_is_named():
 
 def test_several_seeds_are_averaged_within_each_scene():
     (effect,) = seeded({CORRECT: [(40, 20, 5), (40, 10, 5)]}).effects
-    assert effect.success.value == pytest.approx((15 + 5) / 2)
-    assert (effect.wins, effect.losses) == ((20, 10), (5, 5))
+    assert effect.value == pytest.approx((15 + 5) / 2)
+    assert effect.won == ((20, 5), (10, 5))
     assert effect.scenes == 100
     assert "sign test" in effect.test
-    assert effect.success.n_seeds == 2
-
-
-SECONDARY = {"time_s", "joint_successes", "metrics"}
+    assert len(effect.per_seed) == 2
 
 
 def test_seeds_that_change_nothing_are_counted_once():
     thrice = seeded({CORRECT: [(40, 9, 2)] * 3, "observer": [(40, 2, 9)] * 3})
     once = seeded({CORRECT: [(40, 9, 2)], "observer": [(40, 2, 9)]})
     for many, one in zip(thrice.effects, once.effects, strict=True):
-        assert many.model_dump(exclude=SECONDARY) == (one.model_dump(exclude=SECONDARY))
-        assert many.wins == one.wins
+        assert many == one
+        assert many.won == one.won
     assert "All 3 seeds gave the same outcome in every trial" in " ".join(thrice.sentences)
     assert "seeds" not in " ".join(once.sentences)
 
@@ -174,8 +171,8 @@ def test_a_path_on_which_the_fault_never_acted_is_no_part_of_the_family():
     made = decide(question(), paths(CORRECT, "a", SHARED), Trials.of(out))
     idle = made.effects[1]
     assert not idle.acted
-    assert not idle.detected
-    assert idle.adjusted_p_value is None
+    assert not idle.significant
+    assert idle.corrected_p is None
     assert made.hypotheses == 2
     assert made.changes == ()
     assert [each.path for each in made.break_even] == [SHARED]

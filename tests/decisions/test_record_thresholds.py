@@ -36,18 +36,18 @@ def test_success_at_a_threshold_is_no_crash_and_a_metric_that_is_good_enough(bet
         good = error <= 0.5 if better == "less" else error >= 0.5
         if row.condition == "correct" and row.outcome.status is not Status.CRASH:
             percent[row.variant] += good
-    (at,) = thresholds.effects[0].thresholds
+    (at,) = thresholds.secondary[0].thresholds
     assert (at.baseline_percent, at.repair_percent) == (percent["old"], percent["new"])
     assert at.difference.value == pytest.approx(percent["new"] - percent["old"])
     assert thresholds.effects[0].metric_means == pytest.approx((0.495, 0.745))
-    assert thresholds.effects[0].metrics["error"].unit == "rad"
+    assert thresholds.secondary[0].metrics["error"].unit == "rad"
 
 
 def test_nothing_that_is_decided_depends_on_it():
     plain = record(CELLS)
     found = told("less", {"old": 0.0, "new": 0.25}, 0.1, 0.5)
     for one, two in zip(found.effects, plain.effects, strict=True):
-        assert (one.success, one.adjusted_p_value) == (two.success, two.adjusted_p_value)
+        assert (one.success, one.corrected_p) == (two.success, two.corrected_p)
     assert found.headline == plain.headline
 
 

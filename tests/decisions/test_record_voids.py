@@ -61,7 +61,7 @@ def test_an_arm_whose_bad_trials_fail_is_not_announced(case):
     assert sum(each.effects[0].sign != 0 for each in made) <= 2
     assert sum(each.effects[0].p_value < 0.05 for each in made) >= 3
     for each in made:
-        found = each.effects[0].failed
+        found = each.effects[0].missing
         assert found is not None
         assert found.against_pp <= found.favour_pp
         (said,) = [text for text in each.findings if "failed" in text]
@@ -74,7 +74,7 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     worse, lost = [*[NO] * 5, *rest, YES], [*[YES] * 5, *rest, FAILED]
     whole = audit(([*[YES] * 5, *rest, YES], worse))
     assert whole.effects[0].sign == 1
-    assert whole.effects[0].failed is None
+    assert whole.effects[0].missing is None
     open_ = audit((lost, worse))
     effect = open_.effects[0]
     assert (effect.sign, effect.unsettled, effect.leads) == (0, True, False)
@@ -103,9 +103,14 @@ def test_a_failure_on_one_path_costs_the_others_nothing():
     failing = audit(correct, (ends(scene >= 0, scene < 30), ends(scene >= 50)))
     for path in (CORRECT, "observer"):
         one, two = (next(e for e in made.effects if e.path == path) for made in (whole, failing))
-        assert (one.success, one.p_value, one.scenes) == (two.success, two.p_value, two.scenes)
+        assert (one.value, one.interval, one.p_value, one.scenes) == (
+            two.value,
+            two.interval,
+            two.p_value,
+            two.scenes,
+        )
     shared_effect = failing.effects[-1]
-    assert (shared_effect.scenes, shared_effect.void_pairs) == (70, 30)
+    assert (shared_effect.scenes, shared_effect.void) == (70, 30)
 
 
 def test_no_reversal_rests_on_a_path_where_one_arm_fails_more_often():
@@ -130,9 +135,9 @@ def test_what_is_missing_of_a_seed_that_repeats_another_is_open():
     second = ends(wins, losses), ends(losses, (scene >= 40) & (scene < 60))
     result = audit(first, None, second)
     effect = result.effects[0]
-    assert len(effect.wins) == 2
-    assert effect.failed is not None
-    assert effect.failed.against_pp < effect.success.value
+    assert len(effect.won) == 2
+    assert effect.missing is not None
+    assert effect.missing.against_pp < effect.value
     assert effect.sign == 0
     assert effect.ahead == (16, 20)
     assert "new is ahead" not in result.headline
@@ -145,8 +150,10 @@ def test_a_pair_of_which_both_trials_failed_could_have_gone_either_way():
     new, old = scene < 14, (scene >= 14) & (scene < 16)
     made = audit((ends(new, neither), ends(old, neither)))
     effect = made.effects[0]
-    assert effect.failed is not None
-    assert (effect.failed.against_pp, effect.failed.favour_pp) == pytest.approx((-40 / 3, 160 / 3))
+    assert effect.missing is not None
+    assert (effect.missing.against_pp, effect.missing.favour_pp) == pytest.approx(
+        (-40 / 3, 160 / 3)
+    )
     assert (effect.sign, effect.unsettled, effect.leads) == (0, True, False)
     (said,) = [text for text in made.findings if "failed" in text]
     assert "lies anywhere from −13.3 to +53.3 pp" in said
@@ -173,11 +180,11 @@ def test_a_seed_that_repeats_another_stays_in_the_mean():
     wins, losses = scene < 16, scene >= 29
     first, third = (ends(wins), ends(scene < 0)), (ends(scene < 0), ends(losses))
     effect = audit(first, None, first, third).effects[0]
-    assert effect.wins == (16, 16, 0)
-    assert effect.success.value == pytest.approx(100 / 180)
+    assert [won for won, _ in effect.won] == [16, 16, 0]
+    assert effect.value == pytest.approx(100 / 180)
     assert effect.sign == 0
     same = audit(first, None, first, first).effects[0]
-    assert same.wins == (16,)
+    assert [won for won, _ in same.won] == [16]
 
 
 def test_how_many_failures_would_have_to_run_is_what_settles_it():
@@ -186,7 +193,7 @@ def test_how_many_failures_would_have_to_run_is_what_settles_it():
     new, old, failed = scene < 40, scene >= 60, scene >= 70
     effect = audit((ends(new, failed), ends(old))).effects[0]
     assert effect.unsettled
-    needed, of_baseline = effect.failed.repairs
+    needed, of_baseline = effect.missing.repairs
     assert of_baseline == 0
     leads = [
         audit((ends(new[left], failed[left]), ends(old[left]))).effects[0].leads

@@ -71,7 +71,7 @@ def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
         r"significant under correct inputs; a true one of (\d+) pp would be found in 8 of 10", words
     )
     assert least is not None
-    assert effect.minimum_detectable_pp <= int(least[1]) < effect.minimum_detectable_pp + 1
+    assert effect.least_pp <= int(least[1]) < effect.least_pp + 1
 
 
 @pytest.mark.parametrize(
@@ -114,9 +114,9 @@ def test_results_of_trained_models_are_said_to_be_theirs():
     cells = {CORRECT: [LEVEL] * 1, "observer": [GAIN], SHARED: [LOSS]}
     plain, trained = (seeded(cells, trained=flag) for flag in (False, True))
     assert "model" not in " ".join((plain.headline, *plain.sentences))
-    assert "model" not in plain.effects[0].success.estimand
+    assert "model" not in phrases.estimand(plain.question)
     assert trained.headline == plain.headline
-    assert trained.estimand == "new scenes like these, for these trained models"
+    assert phrases.estimand(trained.question) == "new scenes like these, for these trained models"
     assert "models trained anew may differ" in " ".join(trained.sentences)
 
 
@@ -124,7 +124,7 @@ def test_what_is_said_of_newly_trained_models_names_its_condition_and_a_sign_tes
     by_seed = [(40, 30, 2), (42, 28, 3), (38, 31, 1), (39, 30, 2), (41, 29, 0)]
     cells = {CORRECT: by_seed, "observer": by_seed}
     made = seeded(cells, trained=True, generalise="models")
-    assert made.estimand.endswith("models newly trained with other seeds")
+    assert phrases.estimand(made.question).endswith("models newly trained with other seeds")
     assert "these trained models" not in made.headline
     whole = " ".join(made.sentences)
     assert "5 trainings stand for new ones as far as trainings spread evenly" in whole
@@ -162,5 +162,5 @@ def test_a_training_that_failed_throughout_under_one_condition_is_left_out_there
     ]
     about = question(100, range(6)).model_copy(update={"trained": True, "generalise": "models"})
     made = decide(about, paths(*cells), Trials.of(trials))
-    assert [effect.success.n_seeds for effect in made.effects] == [6, 6, 5]
-    assert made.changes[0].change.n_seeds == 5
+    assert [len(effect.per_seed) for effect in made.effects] == [6, 6, 5]
+    assert len(made.changes[0].per_seed) == 5

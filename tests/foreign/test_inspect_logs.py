@@ -40,7 +40,7 @@ def test_a_log_of_the_package_is_decided(kind: str, tmp_path: Path) -> None:
     run = faultpath.judge(
         logs, baseline="old", repair="new", folder=tmp_path / "run", progress=False
     )
-    assert (run.record.effects[0].wins, run.record.effects[0].losses) == ((4,), (0,))
+    assert run.record.effects[0].won == ((4, 0),)
     data = Path(logs[0]).read_bytes()
     (tmp_path / "cut.eval").write_bytes(data[: len(data) // 2])
     with pytest.raises(faultpath.UserError, match="is no sound log of Inspect"):

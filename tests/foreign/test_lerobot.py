@@ -120,7 +120,7 @@ def test_a_shared_offset_cancels_and_the_repair_loses_that(monkeypatch):
     record = flown(example, library="training", scenes=20).record
     effects = {effect.path: effect for effect in record.effects}
     assert set(effects) == {"correct", "conversion", "policy", "shared"}
-    assert effects["policy"].success.value == 100
-    assert effects["shared"].success.value == -100
+    assert effects["policy"].value == 100
+    assert effects["shared"].value == -100
     turns = {change.isolated: change.turn for change in record.changes}
     assert turns["policy"] == "reversal"

@@ -99,4 +99,4 @@ def test_it_is_audited_with_a_path_for_each_part(example, tmp_path) -> None:
     run = audit(example.create(), **question, scenes=2, library="training", **how)
     paths = [path.name for path in run.record.paths]
     assert paths == ["correct", "current_ctrl", "observer", "reference_gen", "shared"]
-    assert sum(effect.void_pairs for effect in run.record.effects) == 0
+    assert sum(effect.void for effect in run.record.effects) == 0

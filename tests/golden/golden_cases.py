@@ -196,24 +196,45 @@ def of_record(record: Any) -> dict[str, Any]:
     """Return the numbers and decisions of an audit, without its words."""
     result = record.model_dump(mode="json")
     effects = {
-        effect["path"]: {
-            "success": estimate(effect["success"]),
-            **{name: effect[name] for name in _OF_AN_EFFECT},
-            "metrics": {name: estimate(value) for name, value in effect["metrics"].items()},
-            "time_s": estimate(effect["time_s"]),
+        effect.path: {
+            "success": of_difference(effect),
+            "sign": effect.sign,
+            "test": effect.test,
+            "p_value": effect.p_value,
+            "corrected_p": effect.corrected_p,
+            "mcnemar_p": effect.mcnemar_p,
+            "scenes": effect.scenes,
+            "ahead": effect.ahead,
+            "void_pairs": effect.void,
+            "failed": of_missing(effect.missing),
+            "wins": [won for won, _ in effect.won],
+            "losses": [lost for _, lost in effect.won],
+            "baseline_percent": effect.rates[0],
+            "repair_percent": effect.rates[1],
+            "extreme": effect.extreme,
+            "least_pp": effect.least_pp,
+            "joint_successes": secondary["joint_successes"],
+            "metric_means": secondary["metric_means"],
+            "metrics": {name: estimate(value) for name, value in secondary["metrics"].items()},
+            "time_s": estimate(secondary["time_s"]),
             "thresholds": [
                 [*(at[name] for name in _OF_A_THRESHOLD), *estimate(at["difference"])]
-                for at in effect["thresholds"]
+                for at in secondary["thresholds"]
             ],
         }
-        for effect in result["effects"]
+        for effect, secondary in zip(record.effects, result["secondary"], strict=True)
     }
     changes = {
-        f"{change['isolated']} to {change['shared']}": {
-            "change": estimate(change["change"]),
-            **{name: change[name] for name in _OF_A_CHANGE},
+        f"{change.isolated} to shared": {
+            "change": of_difference(change),
+            "sign": change.sign,
+            "test": change.test,
+            "p_value": change.p_value,
+            "corrected_p": change.corrected_p,
+            "unsettled": change.unsettled,
+            "turn": change.turn,
         }
-        for change in result["changes"]
+        for change in record.changes
     }
     even = {
         name: {
@@ -233,27 +254,7 @@ def of_record(record: Any) -> dict[str, Any]:
     return {**whole, "effects": effects, "changes": changes, **even, "cells": cells}
 
 
-_OF_AN_EFFECT = (
-    "sign",
-    "test",
-    "p_value",
-    "adjusted_p_value",
-    "mcnemar_p_value",
-    "scenes",
-    "ahead",
-    "void_pairs",
-    "failed",
-    "wins",
-    "losses",
-    "baseline_percent",
-    "repair_percent",
-    "extreme",
-    "minimum_detectable_pp",
-    "joint_successes",
-    "metric_means",
-)
 _OF_A_THRESHOLD = ("threshold", "baseline_percent", "repair_percent")
-_OF_A_CHANGE = ("sign", "test", "p_value", "adjusted_p_value", "unsettled", "turn")
 _OF_A_CELL = ("trials", "success", "crash", "timeout", "failed", "median_time_s")
 
 
@@ -288,6 +289,18 @@ def of_paper() -> dict[str, Any]:
         ]
         for claim in evaluate(whole())
     }
+
+
+def of_difference(of: Any) -> list[Any]:
+    """Return a difference with its interval."""
+    return [of.value, of.low, of.high, of.scenes, len(of.per_seed), of.per_seed]
+
+
+def of_missing(missing: Any) -> dict[str, Any] | None:
+    """Return the bounds that trials leave open, where some failed."""
+    if missing is None or missing.against_pp is None:
+        return None
+    return {name: value for name, value in missing.model_dump().items() if name != "void"}
 
 
 def estimate(value: dict[str, Any] | None) -> list[Any]:

@@ -15,14 +15,14 @@ def test_a_run_decided_anew_is_still_enough_for_report(tmp_path: Path) -> None:
     toy = Path(shutil.copytree(REFERENCE / "toy", tmp_path / "toy"))
     traces = (toy / "traces.parquet").read_bytes()
     record = json.loads((toy / "record.json").read_bytes())
-    record["headline"] = "Something of before."
+    record["effects"][0]["value"] = 12.345
     (toy / "record.json").write_text(json.dumps(record))
     now = conclude.audit(toy)
-    assert now.headline != "Something of before."
+    assert now.effects[0].value != 12.345
     before = {path.name: path.read_bytes() for path in toy.iterdir()}
     open_run(toy).report()
     assert {path.name: path.read_bytes() for path in toy.iterdir()} == before
-    assert b"Something of before." not in b"".join(before.values())
+    assert b"12.345" not in b"".join(before.values())
     assert before["traces.parquet"] == traces
 
 

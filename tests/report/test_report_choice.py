@@ -39,7 +39,7 @@ def announcing(source: ReportInput, **signs: int) -> DecisionRecord:
     """Return the record as if it announced these signs, and what follows from them."""
     record = source.record
     effects = tuple(
-        effect.model_copy(update={"sign": signs.get(effect.path, 0), "extreme": None})
+        effect.model_copy(update={"sign": signs.get(effect.path, 0), "rates": (50.0, 50.0)})
         for effect in record.effects
     )
     changes = tuple(
@@ -94,7 +94,7 @@ def test_the_path_that_is_shown_first_was_announced(
 def test_what_is_decided_at_the_floor_announces_nothing(one_seed: ReportInput, sign: int) -> None:
     """Nothing announced: first scenes in which trials end apart, then what most scenes do."""
     record = announcing(one_seed, reconstruction=sign)
-    floor = tuple(e.model_copy(update={"extreme": "floor"}) for e in record.effects)
+    floor = tuple(e.model_copy(update={"rates": (5.0, 6.0)}) for e in record.effects)
     quiet = tuple(c.model_copy(update={"turn": "none"}) for c in record.changes)
     record = record.model_copy(update={"effects": floor, "changes": quiet})
     pairs = scenes(one_seed, "rrrr", "bbrb", "nnnn", "bbbb", "nnnn", "bbbb")

@@ -155,7 +155,9 @@ def test_other_paths_are_blank_and_not_left_out(
     record, moved = second.record, {"path": "planner"}
     planner = FaultPath(name="planner", title="Planner only", consumers=(), baseline_consumers=())
     copied = [cell for cell in record.cells if cell.path == record.effects[1].path]
+    secondary = (*record.secondary, record.secondary[1].model_copy(update=moved))
     update = {
+        "secondary": secondary,
         "paths": (*record.paths, planner),
         "effects": (*record.effects, record.effects[1].model_copy(update=moved)),
         "cells": (*record.cells, *(cell.model_copy(update=moved) for cell in copied)),

@@ -55,14 +55,12 @@ def test_every_figure_is_named(page: Page) -> None:
 def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
     pairs = read_pairs(source.trials, source.record)
     for effect in source.record.effects:
-        for seed, won, lost in zip(
-            source.record.question.seeds, effect.wins, effect.losses, strict=True
-        ):
+        for seed, (won, lost) in zip(source.record.question.seeds, effect.won, strict=True):
             kinds = [p.kind for p in pairs if (p.path, p.seed) == (effect.path, seed)]
             assert kinds.count(PairKind.REPAIR_ONLY) == won
             assert kinds.count(PairKind.BASELINE_ONLY) == lost
         kinds = [p.kind for p in pairs if p.path == effect.path]
-        assert kinds.count(PairKind.VOID) == effect.void_pairs
+        assert kinds.count(PairKind.VOID) == effect.void
         scenes = {p.scene for p in pairs if p.path == effect.path and p.kind is not PairKind.VOID}
         assert len(scenes) == effect.scenes
 

@@ -60,7 +60,7 @@ def test_the_fault_is_in_words_whoever_gets_it(one_seed: ReportInput, readers) -
 
 
 def test_the_legend_names_the_grey_box_where_there_is_one(one_seed: ReportInput) -> None:
-    record, unknown = one_seed.record, {"minimum_detectable_pp": None}
+    record, unknown = one_seed.record, {"least_pp": None}
     without = tuple(effect.model_copy(update=unknown) for effect in record.effects)
     bare = replace(one_seed, record=record.model_copy(update={"effects": without}))
     assert not all(effect.sign for effect in record.effects)
@@ -72,12 +72,12 @@ def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> N
     said = screen(one_seed)
     open_ = said[: said.index("what would change this")]
     for effect in one_seed.record.effects:
-        low, high = effect.success.low or 0.0, effect.success.high or 0.0
+        low, high = effect.low or 0.0, effect.high or 0.0
         shown = f"[{low:.1f}, {high:.1f}]".replace("-", "−")
         assert open_.count(shown) == 1
-        rates = f"{effect.baseline_percent:.1f} → {effect.repair_percent:.1f}"
+        rates = f"{effect.rates[0]:.1f} → {effect.rates[1]:.1f}"
         assert open_.count(rates) >= 1
-        assert open_.count(f"{effect.success.value:+.1f}".replace("-", "−")) <= 2
+        assert open_.count(f"{effect.value:+.1f}".replace("-", "−")) <= 2
     assert "gru succeeds more often" in open_
     assert "%" not in one_seed.record.headline
 

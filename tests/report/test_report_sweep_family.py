@@ -21,7 +21,7 @@ def drawn(source: ReportInput, rng: np.random.Generator, sizes: int) -> list[Com
             p = correct if effect.path == CORRECT else float(rng.random())
             own = min(1.0, len(contrasts(source.record)) * p)
             sign = (1 if rng.random() < 0.5 else -1) if own <= 0.05 else 0
-            changed = {"p_value": p, "adjusted_p_value": own, "sign": sign}
+            changed = {"p_value": p, "corrected_p": own, "sign": sign}
             told.append(effect.model_copy(update=changed))
         question = source.record.question.model_copy(update={"fault": f"calibration={number}"})
         changed = {"effects": tuple(told), "question": question}

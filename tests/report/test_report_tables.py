@@ -22,17 +22,17 @@ def _expected(record: DecisionRecord) -> dict[str, list[str]]:
     return {
         "gru (baseline)": [f"{e.baseline_percent:.1f}" for e in effects],
         "gru-dcc (repair)": [f"{e.repair_percent:.1f}" for e in effects],
-        "Difference, pp": [f"{e.success.value:+.1f}" for e in effects],
-        "95 % interval": [f"[{e.success.low:.1f}, {e.success.high:.1f}]" for e in effects],
+        "Difference, pp": [f"{e.value:+.1f}" for e in effects],
+        "95 % interval": [f"[{e.low:.1f}, {e.high:.1f}]" for e in effects],
         "Won:lost": [
             "/".join(f"{w}:{n}" for w, n in zip(e.wins, e.losses, strict=True)) for e in effects
         ],
         "p, alone": [_p(e.p_value) for e in effects],
-        "p, Holm": [_p(e.adjusted_p_value) for e in effects],
+        "p, Holm": [_p(e.corrected_p) for e in effects],
         "Ahead": [{1: "gru-dcc", -1: "gru", 0: "not shown"}[e.sign] for e in effects],
-        "80 % power, pp": [str(math.ceil(e.minimum_detectable_pp)) for e in effects],
+        "80 % power, pp": [str(math.ceil(e.least_pp)) for e in effects],
         "Scenes": [str(e.scenes) for e in effects],
-        "Void pairs": [str(e.void_pairs) for e in effects],
+        "Void pairs": [str(e.void) for e in effects],
         "Break-even, %": [breaks.get(e.path, "-") for e in effects],
     }
 
@@ -78,9 +78,9 @@ def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportIn
     text = re.sub(" +", " ", text)
     assert "[red]Shared[/]" in text
     for effect in record.effects:
-        assert f"{effect.success.value:+.1f} [{effect.success.low:.1f}" in text
-        assert f"{effect.baseline_percent:.1f}" in text
-        assert f"{effect.repair_percent:.1f}" in text
+        assert f"{effect.value:+.1f} [{effect.low:.1f}" in text
+        assert f"{effect.rates[0]:.1f}" in text
+        assert f"{effect.rates[1]:.1f}" in text
     assert "What would change this" not in text
     with console.capture() as captured:
         console.print(decision(record, details=True))
@@ -108,8 +108,8 @@ def test_the_two_numbers_below_the_headline_are_both_decided(path: Path) -> None
     record = DecisionRecord.model_validate_json(path.read_bytes())
     found = [effect for effect, _ in _finding(record)]
     assert bool(found) == any(change.turn == "reversal" for change in record.changes)
-    assert all(effect.detected for effect in found)
-    assert not found or found[0].success.value * found[1].success.value < 0
+    assert all(effect.significant for effect in found)
+    assert not found or found[0].value * found[1].value < 0
 
 
 def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:
@@ -124,7 +124,7 @@ def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:
 
 def test_an_interval_that_leaves_out_0_undetected_has_its_p(one_seed: ReportInput) -> None:
     record, left_out = one_seed.record, "the interval excludes 0"
-    undetected = record.effects[-1].model_copy(update={"sign": 0, "adjusted_p_value": 0.25})
+    undetected = record.effects[-1].model_copy(update={"sign": 0, "corrected_p": 0.25})
     changed = record.model_copy(update={"effects": (*record.effects[:-1], undetected)})
     assert "0.250" in decided_for(changed, undetected).aside
     assert left_out in markdown_table(changed)

@@ -91,8 +91,8 @@ def test_each_contrast_stands_at_its_own_share():
     decided = decide_family(family, 0.05, shares)
     for name, each in decided.items():
         p = family[name].test.p_value
-        assert each.decision.adjusted_p == pytest.approx(min(1.0, p / shares[name]))
-        assert each.decision.critical_p == pytest.approx(0.05 * shares[name])
+        assert each.test.corrected_p == pytest.approx(min(1.0, p / shares[name]))
+        assert each.test.critical_p == pytest.approx(0.05 * shares[name])
         assert each.sign == (family[name].test.leans if p <= 0.05 * shares[name] else 0)
     assert (decided["one"].sign, decided["two"].sign) == (1, 0)
 

@@ -134,7 +134,7 @@ def test_resampled_it_has_the_percentile_interval_and_else_stays():
     found = with_test(success_effect(first, second, RESAMPLES), "exact")
     as_draws = found.resampled()
     assert as_draws.interval == percentile_interval(found.draws) != found.interval
-    for name in ("value", "test", "counts"):
+    for name in ("value", "test", "won"):
         assert getattr(as_draws, name) == getattr(found, name)
     assert as_draws.estimate().method == "percentile bootstrap of scenes, 500 resamples"
     metres = mean_effect(first, second, RESAMPLES, "m")
@@ -146,7 +146,7 @@ def test_per_seed_values_and_counts():
     second = np.array([[0, 0], [0, 1], [0, 0], [0, 0]])
     estimate = success_effect(first, second, Resamples.draw("four", 4)).estimate()
     assert estimate.per_seed == (50.0, 0.0)
-    assert (estimate.value, str(estimate.counts)) == (25.0, "2:0/1:1")
+    assert (estimate.value, estimate.won) == (25.0, ((2, 0), (1, 1)))
     assert (estimate.n_scenes, estimate.n_seeds, estimate.unit) == (4, 2, "pp")
     assert estimate.method == "score on scene means (Tango's, cluster-robust)"
 

@@ -13,7 +13,7 @@ from statsmodels.stats.multitest import multipletests
 from faultpath.statistics.contrast import Contrast, change
 from faultpath.statistics.decisions import decide_family, turn, with_test
 from faultpath.statistics.effects import mean_effect, success_effect, success_rate
-from faultpath.statistics.estimate import Decision, PairedTest
+from faultpath.statistics.estimate import Test
 from faultpath.statistics.power import fewest_scenes
 from faultpath.statistics.resamples import Resamples
 
@@ -24,7 +24,7 @@ RESAMPLES = Resamples.draw("decisions", N, n_resamples=400)
 def contrast(p_value, low=1.0, high=2.0, leans=1):
     """Return a contrast with these ends of its interval and this test."""
     draws = np.repeat([low, high], 50)
-    return Contrast((low + high) / 2, "pp", 9, draws=draws, test=PairedTest("t", p_value, leans))
+    return Contrast((low + high) / 2, "pp", 9, draws=draws, test=Test("t", p_value, leans))
 
 
 def test_effects_and_changes_are_tested_by_the_signs_of_scenes():
@@ -75,7 +75,7 @@ def test_the_adjustment_is_holms(p_values):
     with patch("gc.collect"):  # which every call asks for, and which takes far longer than the test
         rejected, adjusted, *_ = multipletests(p_values, alpha=0.05, method="holm")
     for i, each in enumerate(family.values()):
-        assert each.decision.adjusted_p == pytest.approx(adjusted[i])
+        assert each.test.corrected_p == pytest.approx(adjusted[i])
         if abs(adjusted[i] - 0.05) > 1e-12:
             assert (each.sign == 1) == rejected[i]
 
@@ -97,17 +97,17 @@ def test_weighted_holm_is_the_closed_test_of_weighted_bonferroni(p_values, data)
             for others in combinations([j for j in range(number) if j != i], size)
             for inside in [(i, *others)]
         )
-        near = abs(decided[name].decision.adjusted_p - 0.05) < 1e-12
+        near = abs(decided[name].test.corrected_p - 0.05) < 1e-12
         assert near or (decided[name].sign == 1) == rejected
-        again = family | {name: contrast(decided[name].decision.critical_p * (1 - 1e-9))}
+        again = family | {name: contrast(decided[name].test.critical_p * (1 - 1e-9))}
         weighed = dict(zip(names, weights, strict=True))
         assert decide_family(again, weights=weighed)[name].sign == 1
-        again[name] = contrast(decided[name].decision.critical_p * (1 + 1e-9))
+        again[name] = contrast(decided[name].test.critical_p * (1 + 1e-9))
         assert decide_family(again, weights=weighed)[name].sign == 0
 
 
 def decided(sign):
-    return Contrast(0.0, "pp", 9, decision=Decision(sign, adjusted_p=0.5, critical_p=0.05))
+    return Contrast(0.0, "pp", 9, test=Test("t", 0.5, sign, sign, 0.5, 0.05))
 
 
 @pytest.mark.parametrize(

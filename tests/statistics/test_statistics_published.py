@@ -7,6 +7,7 @@ import pytest
 import yaml
 from faultpath_paper.quantities.summaries import spearman
 
+from faultpath.decisions.sentences import wording
 from faultpath.statistics.breakeven import break_even
 from faultpath.statistics.contrast import change, percentile_interval
 from faultpath.statistics.decisions import with_test
@@ -57,7 +58,7 @@ def test_differences_counts_and_intervals_of_tables_2_and_4(name):
     counts, (low, high) = CONTRASTS[name]["counts"], CONTRASTS[name]["ci95"]
     effect = widest(counts)
     assert round(effect.value, 1) == CONTRASTS[name]["pp"]
-    assert str(effect.counts) == "/".join(counts)
+    assert wording.won(effect.won) == "/".join(counts)
     narrowest = success_effect(*arms(counts, overlap=False), RESAMPLES)
     outer, inner = (percentile_interval(found.draws) for found in (effect, narrowest))
     assert outer[0] - 0.7 <= low <= inner[0] + 0.7
@@ -90,7 +91,7 @@ def test_mcnemar_p_values_of_table_6(row):
     assert round(sign_p_value(first_only, second_only), 3) == row["p"]
     assert first_only - second_only == row["success"][0] - row["success"][1]
     found = with_test(widest([row["counts"]]), "exact")
-    assert str(found.counts) == row["counts"]
+    assert wording.won(found.won) == row["counts"]
     assert found.test.p_value == sign_p_value(first_only, second_only)
 
 

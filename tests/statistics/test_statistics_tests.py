@@ -86,8 +86,7 @@ def test_swapped_arms_mirror_to_the_bit_and_copies_and_orders_change_nothing(
     low, high = once.interval
     assert (mirrored.value, mirrored.interval) == (-once.value, (-high, -low))
     assert (mirrored.test.p_value, mirrored.test.leans) == (once.test.p_value, -once.test.leans)
-    forth = [(seed.first_only, seed.second_only) for seed in once.counts.per_seed]
-    assert [(seed.second_only, seed.first_only) for seed in mirrored.counts.per_seed] == forth
+    assert [(lost, won) for won, lost in mirrored.won] == [*once.won]
     assert (same.test.p_value, same.test.leans) == (1.0, 0)
 
     copied = found(*np.tile(pair, (1, 1, times)), rule)

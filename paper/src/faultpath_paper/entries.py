@@ -163,7 +163,7 @@ def difference(first: Cell, second: Cell, published: PublishedContrast) -> Entry
         return (
             decided(effect),
             *map(interval_of, (effect.resampled(), effect)),
-            str(effect.counts),
+            wording.won(effect.won or ()),
             wording.p_value(effect.test.p_value),
             "none" if effect.least is None else wording.plain(effect.least),
         )

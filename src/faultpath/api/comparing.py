@@ -6,14 +6,15 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
-from faultpath.api.folders import RECORD
+from faultpath.api.folders import as_text
 from faultpath.api.runs import Run, open_run
 from faultpath.core.errors import UserError
+from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.sentences.answers import would_change
 from faultpath.report.compared import Compared, differing, together
 from faultpath.report.comparison import headline, page, sentences
 from faultpath.report.frame import PAGE
 from faultpath.trials.store.atomic import check_output, write_text
-from faultpath.trials.store.folder import read_regular
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -41,11 +42,10 @@ class RunComparison:
         """Return headline, sentences, what differs, and each result, for `json.dumps`."""
         entries: list[dict[str, object]] = []
         for run in self.runs:
-            entry = folder_and_record(Path(run.folder))
+            entry = in_json(run.folder, run.record)
             if run.family is not None:
                 entry["over_all_sizes"] = {
-                    path: {"sign": sign, "adjusted_p_value": p}
-                    for path, (sign, p) in run.family.items()
+                    path: {"sign": sign, "corrected_p": p} for path, (sign, p) in run.family.items()
                 }
             entries.append(entry)
         return {
@@ -60,9 +60,15 @@ class RunComparison:
         return f"<Comparison: {self.headline}>"
 
 
-def folder_and_record(folder: Path) -> dict[str, object]:
-    """Return what `--json` prints of an audit, for `json.dumps`."""
-    return {"folder": str(folder), "record": json.loads(read_regular(folder / RECORD))}
+def in_json(folder: str | Path, record: DecisionRecord) -> dict[str, object]:
+    """Return what `--json` prints of an audit, for `json.dumps`: its words, and its numbers."""
+    return {
+        "folder": str(folder),
+        "headline": record.headline,
+        "sentences": record.sentences,
+        "would_change": tuple(would_change(record)),
+        "record": json.loads(as_text(record)),
+    }
 
 
 def compare(runs: Sequence[str | PathLike[str] | Run]) -> RunComparison:

@@ -13,7 +13,7 @@ from pydantic import BaseModel
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, model_of
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.model import SHARED, DecisionRecord
 from faultpath.decisions.planning import faulted_taps
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
@@ -127,7 +127,7 @@ def _other_trials(record: DecisionRecord, trials: Trials) -> Iterator[str]:
     if any(cells[arm] != (len(of), int(solved[of].sum())) for arm, of in rows.items()):
         yield "the result and the outcomes count different successes"
     measured = set(trials.metrics)
-    names = {name for effect in record.effects for name in effect.metrics}
+    names = {name for of in record.secondary for name in of.metrics}
     for name in sorted(names - measured):
         yield f"the result has a metric '{name}', and the outcomes have no such column"
 
@@ -138,9 +138,9 @@ def _other_effects(record: DecisionRecord) -> Iterator[str]:
     results = (*record.effects, *record.break_even, *record.break_even_beta)
     if not paths.issuperset(result.path for result in results):
         yield "the result has effects under conditions that it does not name"
-    ends = {path for change in record.changes for path in (change.isolated, change.shared)}
-    seeds = all(len(effect.wins) == len(effect.losses) for effect in record.effects)
-    if not seeds or not ends.issubset(effect.path for effect in record.effects):
+    names = [effect.path for effect in record.effects]
+    ends = {path for change in record.changes for path in (change.isolated, SHARED)}
+    if not ends.issubset(names) or [of.path for of in record.secondary] != names:
         yield "the result has effects that contradict each other"
 
 

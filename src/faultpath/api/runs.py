@@ -55,7 +55,7 @@ class Run(FinishedRun):
     """
 
     record: DecisionRecord
-    """Result of the audit: `headline` in a sentence, `effects` in numbers."""
+    """Result of the audit in numbers: `effects`, `changes`, ..."""
 
     def __init__(self, folder: Path, source: ReportInput) -> None:
         super().__init__(folder, source.record, source.provenance)
@@ -66,6 +66,11 @@ class Run(FinishedRun):
     def headline(self) -> str:
         """The result in one sentence."""
         return self.record.headline
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What follows, how sure it is and what stays open, a sentence or two each."""
+        return self.record.sentences
 
     @property
     def failed(self) -> int:

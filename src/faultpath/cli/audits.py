@@ -145,15 +145,14 @@ def _print(
     details: bool = False,
 ) -> int:
     """Print what was decided in each run, and its folder and record as JSON; return the status."""
-    from faultpath.api.comparing import compare, folder_and_record
+    from faultpath.api.comparing import compare, in_json
     from faultpath.api.display import SafeConsole
     from faultpath.report.terminal import decision
 
     if as_json:
         several = len(runs) > 1  # of several sizes with what stands over all of them
-        entries = (
-            compare(runs).as_json()["runs"] if several else [folder_and_record(runs[0].folder)]
-        )
+        alone = [in_json(run.folder, run.record) for run in runs]
+        entries = compare(runs).as_json()["runs"] if several else alone
         typer.echo(json.dumps(entries, indent=1))
     console = SafeConsole(stderr=as_json)
     for run in runs if sentences else ():

@@ -1,6 +1,7 @@
 """From the outcome table to the decision record."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -16,26 +17,22 @@ from faultpath.decisions.model import (
     Change,
     DecisionRecord,
     Effect,
-    Extreme,
-    FailedTrials,
     Invalid,
+    Missing,
     Path,
     PathBreakEven,
 )
 from faultpath.decisions.question import Question
 from faultpath.decisions.sentences import phrases, wording
-from faultpath.decisions.sentences.answers import in_words
 from faultpath.decisions.sentences.phrases import BETA, FREQUENCY
 from faultpath.decisions.stopping import stopped
 from faultpath.statistics.breakeven import break_even, mixture_curve, only
-from faultpath.statistics.distributions import sign_p_value
-from faultpath.statistics.estimate import EM, Region
+from faultpath.statistics.contrast import Contrast
+from faultpath.statistics.estimate import Region
 from faultpath.statistics.power import detectable
 from faultpath.trials.outcome import Status
 from faultpath.trials.pairing import mismatch_words
 from faultpath.trials.trials import Trials
-
-FLOOR_PERCENT, CEILING_PERCENT = 10.0, 90.0
 
 
 def decide(
@@ -63,10 +60,7 @@ def decide(
         invalid = "unrepeatable"
     if invalid:
         family = family.without_claims()
-    effects = {
-        path: _effect(question, path, comparison, family, path not in untested)
-        for path in comparison.success
-    }
+    effects = {path: _effect(question, path, comparison, family) for path in comparison.success}
 
     def between(pairs: Sequence[tuple[str, str]], words: phrases.Shares) -> list[PathBreakEven]:
         shares = (
@@ -79,19 +73,21 @@ def decide(
     from_none = [(CORRECT, path) for path in faulted] if CORRECT in effects else []
     from_one = [(path, SHARED) for path in family.changes]
     state = stopped(question, family, trials)
+    first = next(iter(family.effects.values()))
     record = DecisionRecord(
         question=question,
-        paths=tuple(paths),
+        paths=tuple(path.model_copy(update={"acted": path.name not in untested}) for path in paths),
         cells=cells,
         effects=tuple(effects.values()),
-        changes=tuple(_change(question, path, family) for path in family.changes),
+        changes=tuple(_change(path, family) for path in family.changes),
+        secondary=tuple(secondary(path, comparison.pairs[path], question) for path in effects),
         break_even=tuple(between(from_none, FREQUENCY)),
         break_even_beta=tuple(between(from_one, BETA)),
         scenes=max(effect.scenes for effect in effects.values()),
         invalid=invalid,
         scenes_needed=family.scenes_needed,
         hypotheses=family.hypotheses,
-        estimand=phrases.estimand(question),
+        intervals=first.estimate().method,
         stopped=state and state.model_copy(update={"small": ()} if invalid else {}),
     )
     noted = (
@@ -101,7 +97,7 @@ def decide(
         *mismatch_words(comparison.mismatches),
         *findings,  # a record that is decided anew has some of the above already
     )
-    return record.model_copy(update={**in_words(record), "findings": tuple(dict.fromkeys(noted))})
+    return record.model_copy(update={"findings": tuple(dict.fromkeys(noted))})
 
 
 def primary_path(named: str, paths: Sequence[Path]) -> str:
@@ -118,26 +114,20 @@ def primary_path(named: str, paths: Sequence[Path]) -> str:
     return led(named, names)
 
 
-def _effect(
-    question: Question, path: str, comparison: ComparedTrials, family: Family, acted: bool
-) -> Effect:
+def _effect(question: Question, path: str, comparison: ComparedTrials, family: Family) -> Effect:
     repair, baseline = comparison.success[path]
     effect, pairs = family.effects[path], comparison.pairs[path]
-    assert effect.counts is not None
     assert effect.test is not None
     assert effect.pairs is not None
-    counts = effect.counts.per_seed
-    wins, losses = (tuple(getattr(c, f) for c in counts) for f in ("first_only", "second_only"))
+    assert effect.won is not None
     unpaired = np.isnan(repair - baseline)
-    rates = tuple(percent(np.where(unpaired, np.nan, part)) for part in (baseline, repair))
-    extreme: Extreme | None = "floor" if max(rates) < FLOOR_PERCENT else None
-    if min(rates) > CEILING_PERCENT:
-        extreme = "ceiling"
-    failed, least = None, None
+    rates = [percent(np.where(unpaired, np.nan, part)) for part in (baseline, repair)]
+    void, missing = int(pairs.void.sum()), None
     if path in family.fills:
         against, favour = family.fills[path]
         ours, theirs = (int(failed.sum()) for failed in pairs.ended(Status.FAILED))
-        failed = FailedTrials(
+        missing = Missing(
+            void=void,
             repair=ours,
             baseline=theirs,
             against_pp=against.value,
@@ -146,49 +136,49 @@ def _effect(
             unsettled=effect_name(path) in family.unsettled,
             repairs=family.repairs.get(path),
         )
+    elif void:
+        missing = Missing(void=void)
     # None is known for newly trained models, whose spread a few seeds do not give, and of an audit
     # that stops where it has decided.
-    if effect.decision and question.generalise == "scenes" and question.stop is None:
-        level = effect.decision.critical_p
+    level, least = effect.test.critical_p, None
+    if level and question.generalise == "scenes" and question.stop is None:
         least = detectable(effect.pairs, rule=question.rule, alpha=level, on_top=True)
     return Effect(
         path=path,
-        success=effect.estimate().model_copy(update={"estimand": phrases.estimand(question)}),
-        sign=effect.sign,
-        test=effect.test.name,
-        p_value=effect.test.p_value,
-        adjusted_p_value=effect.decision.adjusted_p if effect.decision else None,
-        mcnemar_p_value=sign_p_value(wins[0], losses[0]) if effect.test.name == EM else None,
-        scenes=effect.n_scenes,
+        **_difference(effect),
+        won=effect.won,
         ahead=effect.ahead,
-        void_pairs=int(pairs.void.sum()),
-        failed=failed,
-        wins=wins,
-        losses=losses,
-        baseline_percent=rates[0],
-        repair_percent=rates[1],
-        extreme=extreme,
-        acted=acted,
-        minimum_detectable_pp=least,
-        **secondary(pairs, question),
+        rates=(rates[0], rates[1]),
+        missing=missing,
+        least_pp=least,
     )
 
 
-def _change(question: Question, path: str, family: Family) -> Change:
+def _change(path: str, family: Family) -> Change:
     contrast = family.changes[path]
-    assert contrast.test is not None
-    assert contrast.decision is not None
     return Change(
         isolated=path,
-        shared=SHARED,
-        change=contrast.estimate().model_copy(update={"estimand": phrases.estimand(question)}),
-        sign=contrast.sign,
-        test=contrast.test.name,
-        p_value=contrast.test.p_value,
-        adjusted_p_value=contrast.decision.adjusted_p,
+        **_difference(contrast),
         unsettled=change_name(path) in family.unsettled,
         turn=family.turns[path],
     )
+
+
+def _difference(contrast: Contrast) -> dict[str, Any]:
+    """Return the fields that an effect and a change share."""
+    assert contrast.test is not None
+    low, high = contrast.interval or (None, None)
+    return {
+        "value": contrast.value,
+        "low": low,
+        "high": high,
+        "per_seed": contrast.per_seed,
+        "scenes": contrast.n_scenes,
+        "test": contrast.test.name,
+        "p_value": contrast.test.p_value,
+        "corrected_p": contrast.test.corrected_p,
+        "sign": contrast.test.sign,
+    }
 
 
 def _break_even(
@@ -201,8 +191,8 @@ def _break_even(
     """Return where baseline and repair are even between the effects at two ends of a share, over
     the scenes that both have, as a result of the condition with the fault, or of the one module."""
     at_none, at_all = ends
-    decided = [family.effects[end.path].decision for end in ends]
-    level = 1.0 - min(decision.critical_p for decision in decided if decision)
+    tests = [family.effects[end.path].test for end in ends]
+    level = 1.0 - min(test.critical_p for test in tests if test and test.critical_p is not None)
     tested = family.measure.together(
         comparison.success[at_none.path], comparison.success[at_all.path]
     )

@@ -2,11 +2,10 @@
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
-from faultpath.decisions.model import CORRECT, ArmCounts, AtThreshold, Path
+from faultpath.decisions.model import CORRECT, ArmCounts, AtThreshold, Path, Secondary
 from faultpath.decisions.question import Question
 from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.statistics.effects import mean_effect, median_effect, seed_sums, success_effect
@@ -60,12 +59,12 @@ def untested_paths(paths: Sequence[Path], cells: Sequence[ArmCounts]) -> tuple[s
     return tuple(path.name for path in paths if path.name != CORRECT and path.name not in acted)
 
 
-def secondary(pairs: Pairs, question: Question) -> dict[str, Any]:
-    """Return the fields of an `Effect` on time and metrics, over the scenes of which every seed has
-    both outcomes, for new scenes and the seeds run."""
+def secondary(path: str, pairs: Pairs, question: Question) -> Secondary:
+    """Return time and metrics under a condition, over the scenes of which every seed has both
+    outcomes, for new scenes and the seeds run."""
     pairs = pairs.whole()
     if not pairs.scenes:
-        return {"time_s": None, "joint_successes": 0, "metrics": {}}
+        return Secondary(path=path)
     library, scenes = question.library_hash, len(pairs.scenes)
     repair, baseline = pairs.ended(Status.SUCCESS)
     times = pairs.time_s
@@ -95,13 +94,14 @@ def secondary(pairs: Pairs, question: Question) -> dict[str, Any]:
                 _at_threshold(at, (new, old), crashed, drawn, question)
                 for at in question.thresholds
             ]
-    return {
-        "time_s": time_s,
-        "joint_successes": int(joint.sum()),
-        "metrics": metrics,
-        "metric_means": means,
-        "thresholds": tuple(thresholds),
-    }
+    return Secondary(
+        path=path,
+        time_s=time_s,
+        joint_successes=int(joint.sum()),
+        metrics=metrics,
+        metric_means=means,
+        thresholds=tuple(thresholds),
+    )
 
 
 @lru_cache(maxsize=2)

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.model import SHARED, DecisionRecord
 from faultpath.decisions.pairs import Pair, PairKind, by_scene
 
 At: TypeAlias = tuple[str, int]
@@ -31,8 +31,7 @@ def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
         pattern = patterns[at]
         shown = {path: signs.get(path, 0) * arms.get(kind, 0) for path, kind in pattern}
         reversals = sum(
-            change.turn == "reversal"
-            and shown.get(change.isolated) == shown.get(change.shared) == 1
+            change.turn == "reversal" and shown.get(change.isolated) == shown.get(SHARED) == 1
             for change in record.changes
         )
         alike = len({kind for _, kind in pattern}) == 1 and pattern[0][1] not in arms

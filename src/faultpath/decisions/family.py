@@ -193,5 +193,4 @@ def _turn(
 
 
 def _with_sign_0(contrast: Contrast) -> Contrast:
-    decision = contrast.decision
-    return replace(contrast, decision=decision and decision._replace(sign=0))
+    return replace(contrast, test=contrast.test and contrast.test._replace(sign=0))

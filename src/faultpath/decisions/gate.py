@@ -56,7 +56,7 @@ def found(record: DecisionRecord, what: str) -> Answer:
             settled = main is not None and (main.sign != 0 or record.is_small(main))
             return Answer(not settled, f"{capital(where(primary))}: {in_short(record, main)}.")
         case "void":
-            void = sum(effect.void_pairs for effect in record.effects)
+            void = sum(effect.void for effect in record.effects)
             lost = [path.name for path in record.paths]
             lost = [name for name in lost if name not in {effect.path for effect in record.effects}]
             sentences = [f"{counted(void, 'pair')} of trials {'is' if void == 1 else 'are'} void."]

@@ -2,10 +2,13 @@
 
 from typing import Literal
 
+from pydantic import Field
+
 from faultpath.core.results import Result
 from faultpath.decisions.question import EarlierLook, Question
 from faultpath.statistics.decisions import Turn
-from faultpath.statistics.estimate import BreakEven, Estimate, Sign
+from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.estimate import EM, BreakEven, Estimate, Sign
 
 CORRECT = "correct"
 SHARED = "shared"
@@ -15,8 +18,9 @@ Invalid = Literal["unrepeatable", "unpaired"]
 """Trials that came out otherwise when they ran again; pairs that met different conditions."""
 FEW_DIFFER = 10
 """With fewer scenes that differ, a headline says how many there are."""
+FLOOR_PERCENT, CEILING_PERCENT = 10.0, 90.0
 Extreme = Literal["floor", "ceiling"]
-"""Both arms below 10 %, or both above 90 %."""
+"""Both versions below the one, or both above the other."""
 
 
 class FaultedTap(Result):
@@ -64,20 +68,23 @@ class ArmCounts(Result):
     altered_trials: int
 
 
-class FailedTrials(Result):
-    """Range of an effect that failed trials leave open, as the record has it."""
+class Missing(Result):
+    """Pairs without both outcomes, and the range of an effect that they leave open."""
 
-    repair: int
-    """Failed trials of the repair on this path."""
-    baseline: int
-    against_pp: float
-    """The difference over all scenes where all trials that failed go against the repair."""
-    favour_pp: float
+    void: int = 0
+    """Pairs, seed by seed, that count for nothing: a trial failed, or the two are no pair."""
+    repair: int = 0
+    """Failed trials of the repair under this condition."""
+    baseline: int = 0
+    against_pp: float | None = None
+    """The difference over all scenes where all trials that failed go against the repair; `None`
+    where none failed under any condition."""
+    favour_pp: float | None = None
     """Where they go for it."""
-    uneven: bool
-    """Whether one arm failed more often than chance explains: then no headline rests on it."""
-    unsettled: bool
-    """Whether the trials that ran decide for a variant, and those that failed could undo that."""
+    uneven: bool = False
+    """Whether one version failed more often than chance explains: no headline rests on it."""
+    unsettled: bool = False
+    """Whether the trials that ran decide for a version, and those that failed could undo that."""
     repairs: tuple[int, int] | None = None
     """Where they could: how many failed trials of the repair and of the baseline have to run to
     settle it, if they come out as the others did."""
@@ -93,83 +100,124 @@ class AtThreshold(Result):
     """Percentage points; secondary, with an interval that stands by itself."""
 
 
-class Effect(Result):
-    """The repair minus the baseline on one path, over the scenes of which a pair ran there."""
+class Difference(Result):
+    """A difference in success with its interval, its test and what the family decides of it."""
 
-    path: str
-    success: Estimate
+    value: float
     """Percentage points."""
-    sign: Sign
-    """Decision of the family of all paths: 1 for the repair, -1 for the baseline, 0 for neither."""
+    low: float | None
+    """Lower end of the 95 % interval."""
+    high: float | None
+    per_seed: tuple[float, ...]
+    """The same from each seed alone."""
+    scenes: int
+    """Scenes that it rests on: those of which a pair has both outcomes with any seed."""
     test: str
     p_value: float
-    adjusted_p_value: float | None
-    """Over the family, after Holm or by the shares of a sequential audit; `None` for a path that is
-    not in it."""
-    mcnemar_p_value: float | None = None
-    """Exact McNemar's, to stand beside that of another test of one seed; it decides nothing."""
-    scenes: int
-    """Scenes that the effect rests on: those of which a pair has both outcomes with any seed."""
-    ahead: tuple[int, int] | None = None
+    corrected_p: float | None
+    """Over the family, after Holm or by the shares of a sequential audit; `None` outside of it."""
+    sign: Sign
+    """Decision of the family of all contrasts: 1 for the repair, -1 for the baseline, 0 for
+    neither."""
+
+    @property
+    def significant(self) -> bool:
+        """Whether the family decides for one of the versions."""
+        return self.sign != 0
+
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """Both ends, where there are any."""
+        return None if self.low is None or self.high is None else (self.low, self.high)
+
+
+class Effect(Difference):
+    """The repair minus the baseline under one condition, over the scenes of which a pair ran."""
+
+    path: str
+    won: tuple[tuple[int, int], ...]
+    """Seed by seed: scenes in which only the repair succeeded, and those in which only the baseline
+    did."""
+    ahead: tuple[int, int]
     """Scenes in which the repair succeeded with more seeds than the baseline, and those in which
-    the baseline did; unknown in older results."""
-    void_pairs: int
-    """Pairs of trials, seed by seed, that count for nothing."""
-    failed: FailedTrials | None = None
-    """Range that failed trials leave open, where some failed on any path."""
-    wins: tuple[int, ...]
-    """Scenes where only the repair succeeded, one count for each seed that differs."""
-    losses: tuple[int, ...]
-    baseline_percent: float
-    """Success over the pairs that are compared."""
-    repair_percent: float
-    extreme: Extreme | None
-    """Where both arms are at the floor or at the ceiling; such an effect makes no headline."""
-    acted: bool
-    """Whether the fault changed anything in any trial of the path; correct inputs count as so."""
-    minimum_detectable_pp: float | None
+    the baseline did."""
+    rates: tuple[float, float]
+    """Success of baseline and repair over the pairs that are compared, percent."""
+    missing: Missing | None = None
+    """Where pairs are missing; with bounds where trials failed under any condition."""
+    least_pp: float | None
     """True difference that the deciding rule finds with 80 % power, if it comes on top of the
     discordance that was seen."""
-    time_s: Estimate | None
-    """Secondary, as all that follow: nothing is decided from it. On jointly successful scenes."""
-    joint_successes: int
-    metrics: dict[str, Estimate]
+
+    @property
+    def acted(self) -> bool:
+        """Whether the fault changed anything in any trial; else nothing was tested. Correct inputs
+        count as so."""
+        return self.corrected_p is not None
+
+    @property
+    def mcnemar_p(self) -> float | None:
+        """P-value of exact McNemar, to stand beside that of another test of one seed."""
+        return sign_p_value(*self.won[0]) if self.test == EM else None
+
+    @property
+    def few_differ(self) -> bool:
+        """Whether so few scenes differ that a headline says how many."""
+        return sum(self.ahead) < FEW_DIFFER
+
+    @property
+    def leads(self) -> bool:
+        """Whether a headline may rest on it: significant, away from floor and ceiling, and not
+        among trials that one version survived."""
+        return self.sign != 0 and self.extreme is None and not self.uneven
+
+    @property
+    def extreme(self) -> Extreme | None:
+        """Where both versions are at the floor or at the ceiling; this makes no headline."""
+        if min(self.rates) > CEILING_PERCENT:
+            return "ceiling"
+        return "floor" if max(self.rates) < FLOOR_PERCENT else None
+
+    @property
+    def void(self) -> int:
+        """Pairs of trials, seed by seed, that count for nothing."""
+        return self.missing.void if self.missing else 0
+
+    @property
+    def uneven(self) -> bool:
+        """Whether one version's trials failed more often than chance explains."""
+        return self.missing is not None and self.missing.uneven
+
+    @property
+    def unsettled(self) -> bool:
+        """Whether it would be significant, if failed trials could not undo that."""
+        return self.missing is not None and self.missing.unsettled
+
+
+class Change(Difference):
+    """How the effect changes from a fault at one module to the shared one."""
+
+    isolated: str
+    unsettled: bool = False
+    """Whether it would be significant, if failed trials could not undo that."""
+    turn: Turn
+    """`reversal`: both effects are significant, with opposite signs. `interaction`: the change
+    alone is."""
+
+
+class Secondary(Result):
+    """Time and metrics under one condition, repair minus baseline; nothing is decided from them."""
+
+    path: str
+    time_s: Estimate | None = None
+    """On jointly successful scenes."""
+    joint_successes: int = 0
+    metrics: dict[str, Estimate] = Field(default_factory=dict[str, Estimate])
     """Difference in each metric that all trials have."""
     metric_means: tuple[float, float] | None = None
     """Means of the question's metric: baseline and repair."""
     thresholds: tuple[AtThreshold, ...] = ()
     """For each of the question's thresholds."""
-
-    @property
-    def detected(self) -> bool:
-        """Whether the family decides for one of the arms."""
-        return self.sign != 0
-
-    @property
-    def few_differ(self) -> bool:
-        """Whether so few scenes differ that a headline says how many."""
-        return self.ahead is not None and sum(self.ahead) < FEW_DIFFER
-
-    @property
-    def leads(self) -> bool:
-        """Whether a headline may rest on it: decided, away from floor and ceiling, and not among
-        trials that one arm survived."""
-        return self.sign != 0 and self.extreme is None and not self.uneven
-
-    @property
-    def estimate(self) -> Estimate:
-        """The difference in success."""
-        return self.success
-
-    @property
-    def uneven(self) -> bool:
-        """Whether one arm's trials failed more often than chance explains."""
-        return self.failed is not None and self.failed.uneven
-
-    @property
-    def unsettled(self) -> bool:
-        """Whether it would be decided, if failed trials could not undo that."""
-        return self.failed is not None and self.failed.unsettled
 
 
 class PathBreakEven(Result):
@@ -183,29 +231,6 @@ class PathBreakEven(Result):
     touches 0 exactly where the share is in the set of `result`."""
     words: str
     """Sentence part on it, without the path; empty where no end has an effect that leads."""
-
-
-class Change(Result):
-    """How the effect changes from a fault at one module to the shared one."""
-
-    isolated: str
-    shared: str
-    change: Estimate
-    """Effect under the shared fault minus effect under the isolated one, percentage points."""
-    sign: Sign
-    test: str
-    p_value: float
-    adjusted_p_value: float
-    unsettled: bool = False
-    """Whether it would be decided, if failed trials could not undo that."""
-    turn: Turn
-    """`reversal`: both effects are decided, with opposite signs. `interaction`: the change alone
-    is decided."""
-
-    @property
-    def estimate(self) -> Estimate:
-        """The change itself."""
-        return self.change
 
 
 class StoppedAudit(Result):
@@ -222,12 +247,14 @@ class StoppedAudit(Result):
 class DecisionRecord(Result):
     """Everything that tables, pictures and the report show; written as `record.json`."""
 
-    format: Literal[3] = 3
+    format: Literal[4] = 4
     question: Question
     paths: tuple[Path, ...]
     cells: tuple[ArmCounts, ...]
     effects: tuple[Effect, ...]
     changes: tuple[Change, ...]
+    secondary: tuple[Secondary, ...] = ()
+    """Under each condition that has an effect."""
     break_even: tuple[PathBreakEven, ...]
     """Over the frequency of the fault, each path but that of correct inputs."""
     break_even_beta: tuple[PathBreakEven, ...] = ()
@@ -241,18 +268,29 @@ class DecisionRecord(Result):
     """With fewer, nothing can be decided, whatever comes out."""
     hypotheses: int
     """Contrasts that share the error rate of 5 %: all that the audit may announce."""
-    estimand: str  # what intervals and tests speak of
-    headline: str = ""
-    sentences: tuple[str, ...] = ()
-    """The answer in words."""
-    would_change: tuple[str, ...] = ()
-    """Changes of the audit that could change the result."""
+    intervals: str
+    """Method of the effects' intervals."""
     findings: tuple[str, ...] = ()
     """Remarks on the run that a reader has to know, a sentence each."""
     stopped: StoppedAudit | None = None
     """State at which a sequential audit ended."""
     earlier: tuple[EarlierLook, ...] = ()
     """Concluded before, from the same trials and otherwise."""
+
+    # Words are made from the numbers where they are shown, by modules that need this one.
+    @property
+    def headline(self) -> str:
+        """The result in one sentence."""
+        from faultpath.decisions.sentences.headline import headline
+
+        return headline(self)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """All that it says: changes, what follows, how sure it is and what stays open."""
+        from faultpath.decisions.sentences.answers import sentences
+
+        return sentences(self)
 
     @property
     def few(self) -> bool:

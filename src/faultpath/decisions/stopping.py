@@ -33,9 +33,10 @@ def stopped(question: Question, family: Family, trials: Trials) -> StoppedAudit 
         return None
     small: list[str] = []
     for path, effect in family.effects.items():
-        if effect.decision is None or effect.n_scenes < family.scenes_needed:
+        critical = effect.test.critical_p if effect.test else None
+        if critical is None or effect.n_scenes < family.scenes_needed:
             continue
-        level, margin = 1.0 - effect.decision.critical_p, rule.margin_pp or 0.0
+        level, margin = 1.0 - critical, rule.margin_pp or 0.0
         # Whatever failed trials would have been.
         filled = (effect, *family.fills.get(path, ()))
         ends = [contrast.ends(level) or (-100.0, 100.0) for contrast in filled]

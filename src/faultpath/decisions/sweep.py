@@ -10,7 +10,7 @@ from faultpath.statistics.estimate import ALPHA, RULES, Sign
 
 def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
     """Return p and weight of every contrast that a record tested, by its name."""
-    tested = [effect for effect in record.effects if effect.adjusted_p_value is not None]
+    tested = [effect for effect in record.effects if effect.corrected_p is not None]
     p_values = {effect_name(effect.path): effect.p_value for effect in tested}
     p_values |= {change_name(change.isolated): change.p_value for change in record.changes}
     question = record.question
@@ -45,7 +45,7 @@ def decide_sizes(
     for size, record in enumerate(records):
         family: dict[str, tuple[Sign, float]] = {}
         for effect in record.effects:
-            if effect.adjusted_p_value is not None:
+            if effect.corrected_p is not None:
                 p = adjusted[key(size, effect_name(effect.path))]
                 family[effect.path] = effect.sign if p <= ALPHA else 0, p
         families.append(family)

@@ -11,7 +11,7 @@ from pathlib import Path
 from faultpath.decisions.contrasts import effect_name
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
 from faultpath.decisions.question import Question
-from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.sweep import decide_sizes
 from faultpath.report.inputs import ReportInput
 from faultpath.statistics.estimate import Sign
@@ -56,7 +56,7 @@ class Compared:
         if effect is None or self.family is None or path not in self.family:
             return effect
         sign, p = self.family[path]
-        return effect.model_copy(update={"sign": sign, "adjusted_p_value": p})
+        return effect.model_copy(update={"sign": sign, "corrected_p": p})
 
     @property
     def headline(self) -> str:
@@ -107,7 +107,7 @@ def _asked(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
             "Scenes compared": str(run.record.scenes),
             "Seeds": ", ".join(map(str, run.asked.seeds)),
             "Primary contrast": run.asked.primary,
-            "Intervals and tests hold for": run.record.estimand,
+            "Intervals and tests hold for": phrases.estimand(run.asked),
             "Stopping": wording.sentence(run.record.stopping or "all scenes were run"),
             **{f"Option {key}": value for key, value in sorted(run.asked.options.items())},
         }
@@ -166,7 +166,7 @@ def same_correct_trials(runs: Sequence[Compared]) -> bool:
     """Return whether all runs saw the same of the same code under correct inputs."""
     effects = [run.effect(CORRECT) for run in runs]
     code = {run.provenance.system_fingerprint for run in runs}
-    same = {(effect.success.value, effect.wins, effect.losses) for effect in effects if effect}
+    same = {(effect.value, effect.won) for effect in effects if effect}
     return None not in effects and len(same) == len(code) == 1
 
 

@@ -148,8 +148,6 @@ def facts_table(runs: Sequence[Compared], facts: Facts) -> Table:
 
 def effects(runs: Sequence[Compared]) -> Table:
     """Return the effect of every run on every path; bold is significant, by its own audit."""
-    levels = {f"{100 * e.success.level:g} % interval" for run in runs for e in run.record.effects}
-    interval = levels.pop() if len(levels) == 1 else "interval"
     lines: list[Line] = []
     for path, title in titles(runs).items():
         lines.append(line(title))
@@ -157,14 +155,14 @@ def effects(runs: Sequence[Compared]) -> Table:
             if (effect := run.effect(path)) is None:
                 lines.append(line(label, MISSING, MISSING, run.absent(path)))
                 continue
-            rates = map(wording.plain, (effect.baseline_percent, effect.repair_percent))
-            difference = Entry(text=wording.with_interval(effect.success), detected=effect.detected)
+            rates = map(wording.plain, effect.rates)
+            difference = Entry(text=wording.with_interval(effect), detected=effect.significant)
             decided = decided_for(run.record, effect)
             lines.append(line(label, " → ".join(rates), difference, decided))
     return Table(
         title=f"{'All sizes' if swept(runs) else 'Each run by itself'}; bold is significant",
         corner="Run",
-        columns=("Baseline → repair, %", f"Difference, pp [{interval}]", "Ahead"),
+        columns=("Baseline → repair, %", "Difference, pp [95 % interval]", "Ahead"),
         lines=tuple(lines),
         words=("Ahead",),
     )

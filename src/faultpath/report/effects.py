@@ -50,13 +50,12 @@ def effect_rows(record: DecisionRecord) -> list[EffectRow]:
             rows.append(EffectRow(path.title, primary, "", "", "open", words, svg.render(), False))
             continue
         _mark(svg, plot, effect, _HIGH / 2)
-        rates = (effect.baseline_percent, effect.repair_percent)
         rows.append(
             EffectRow(
                 title=path.title,
                 notes=", ".join(filter(None, (primary, wording.reservation(effect)))),
-                rates=" → ".join(map(wording.plain, rates)),
-                difference=wording.with_interval(effect.success),
+                rates=" → ".join(map(wording.plain, effect.rates)),
+                difference=wording.with_interval(effect),
                 side={1: "repair", -1: "baseline", 0: "open"}[effect.sign],
                 words=words,
                 picture=svg.render(),
@@ -84,15 +83,15 @@ def shared_axis(panels: Sequence[Sequence[Row]]) -> Axis:
     ends: list[float] = []
     for *_, effect in (row for rows in panels for row in rows):
         if not isinstance(effect, str):
-            e, band = effect.success, _band(effect)
-            ends += [v for v in (e.value, e.low, e.high, *(e.per_seed or ())) if v is not None]
+            e, band = effect, _band(effect)
+            ends += [v for v in (e.value, e.low, e.high, *e.per_seed) if v is not None]
             ends += [-band, band] if band else []
     return covering(ends, least=10.0)
 
 
 def _band(effect: Effect) -> float | None:
     """Return the difference that is detected with 80 % power, where none is decided."""
-    return None if effect.detected else effect.minimum_detectable_pp
+    return None if effect.significant else effect.least_pp
 
 
 def panel(title: str, rows: Sequence[Row], axis: Axis) -> str:
@@ -101,7 +100,7 @@ def panel(title: str, rows: Sequence[Row], axis: Axis) -> str:
     A filled dot is a decided effect; the light band behind an open one reaches as far as the
     difference that is detected with 80 % power.
     """
-    values = [e if isinstance(e, str) else wording.with_interval(e.success) for *_, e in rows]
+    values = [e if isinstance(e, str) else wording.with_interval(e) for *_, e in rows]
     described = "; ".join(f"{row[0]}: {value}" for row, value in zip(rows, values, strict=True))
     width, bottom = 350.0, _TOP + _PITCH * len(rows)
     name = f"{title}: success of the repair minus success of the baseline, percentage points"
@@ -151,7 +150,7 @@ def _sides(svg: Svg, plot: Axis, y: float) -> None:
 def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
     """Draw dot, whiskers, a ring for each seed, and the undetectable band where one is given, in
     the colour of the arm that is decided for."""
-    e, band = effect.success, _band(effect)
+    e, band = effect, _band(effect)
     side = {1: " repair", -1: " baseline", 0: ""}[effect.sign]
     if band:
         svg.rect(plot(-band), y - 11, plot(band) - plot(-band), 22, "band", 2)
@@ -162,7 +161,7 @@ def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
         svg.line((plot(e.low), y), (plot(e.high), y), "range" + side)
         for end in (e.low, e.high):
             svg.line((plot(end), y - 4), (plot(end), y + 4), "range" + side)
-    if e.per_seed is not None and len(e.per_seed) > 1:
+    if len(e.per_seed) > 1:
         for value in e.per_seed:
             svg.circle((plot(value), y + 10), 2.2, "seed")
     svg.circle((plot(e.value), y), 4.5, "dot" + side if side else "dot open")

@@ -4,11 +4,10 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.decisions.model import DecisionRecord, Effect
+from faultpath.decisions.model import SHARED, DecisionRecord, Effect
 from faultpath.decisions.pairs import PairKind, read_pairs
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.answers import answers
-from faultpath.decisions.sentences.phrases import change
+from faultpath.decisions.sentences import phrases, wording
+from faultpath.decisions.sentences.answers import answers, would_change
 from faultpath.decisions.tables.html import html
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels
@@ -35,6 +34,9 @@ def report_page(source: ReportInput) -> str:
         (*STYLES, "viewer.css"),
         ("cells.js", "viewer.js"),
         record=record,
+        headline=record.headline,
+        would_change=would_change(record),
+        estimand=phrases.estimand(question),
         asked=question,
         provenance=source.provenance,
         sources=source.provenance.data if question.judged else {},
@@ -43,7 +45,7 @@ def report_page(source: ReportInput) -> str:
         names=(question.baseline, question.repair),
         plain=answers(record),
         finding=_finding(record),
-        changes=[(moved.turn, change(record, moved)) for moved in record.changes],
+        changes=[(moved.turn, phrases.change(record, moved)) for moved in record.changes],
         adding=why,
         adding_panels=list(map(Markup, adding_panels(why))) if why else (),
         void=[pair for pair in pairs if pair.kind is PairKind.VOID],
@@ -87,6 +89,6 @@ def _finding(record: DecisionRecord) -> list[tuple[Effect, str]]:
     """
     effects = {effect.path: effect for effect in record.effects}
     for moved in record.changes:
-        if moved.turn == "reversal" and {moved.isolated, moved.shared} <= effects.keys():
-            return [(effects[p], wording.where(p)) for p in (moved.isolated, moved.shared)]
+        if moved.turn == "reversal" and {moved.isolated, SHARED} <= effects.keys():
+            return [(effects[p], wording.where(p)) for p in (moved.isolated, SHARED)]
     return []

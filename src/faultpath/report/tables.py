@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from faultpath.decisions.model import DecisionRecord, Effect
-from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.sentences.phrases import adjusted, not_standing, only_alone
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import block
@@ -26,24 +26,24 @@ def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str
     """Return all that a record says of a path, by the name of the quantity."""
     break_evens = {b.path: wording.break_even(b.result) for b in record.break_even}
     betas = {b.path: wording.break_even(b.result) for b in record.break_even_beta}
-    beside = effect.mcnemar_p_value
+    beside = effect.mcnemar_p
     return {
-        "baseline": wording.plain(effect.baseline_percent),
-        "repair": wording.plain(effect.repair_percent),
+        "baseline": wording.plain(effect.rates[0]),
+        "repair": wording.plain(effect.rates[1]),
         "difference": Entry(
-            text=wording.signed(effect.success.value),
-            detected=effect.detected,
+            text=wording.signed(effect.value),
+            detected=effect.significant,
             aside=wording.reservation(effect),
         ),
-        "interval": wording.interval(effect.success) or MISSING,
-        "won": wording.wins_losses(effect.wins, effect.losses),
+        "interval": wording.interval(effect) or MISSING,
+        "won": wording.won(effect.won),
         "p": wording.p_value(effect.p_value),
         "mcnemar": MISSING if beside is None else wording.p_value(beside),
         "holm": wording.adjusted(effect),
         "decided": decided_for(record, effect),
         "power": wording.detectable(effect),
         "scenes": str(effect.scenes),
-        "void": Entry(text=str(effect.void_pairs), tone="bad" if effect.void_pairs else ""),
+        "void": Entry(text=str(effect.void), tone="bad" if effect.void else ""),
         "break-even": break_evens.get(effect.path, MISSING),
         "beta": betas.get(effect.path, MISSING),
     }
@@ -52,12 +52,11 @@ def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str
 def _labels(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
     """Return the quantities of `names` that the record has, each with its label."""
     effects, question = record.effects, record.question
-    levels = {f"{100 * effect.success.level:g} % interval" for effect in effects}
     labels = {
         "baseline": question.baseline,
         "repair": question.repair,
         "difference": "Difference, pp",
-        "interval": levels.pop() if len(levels) == 1 else "Interval",
+        "interval": "95 % interval",
         "won": "Won:lost",
         "p": "p, alone",
         "mcnemar": "p, exact McNemar",
@@ -72,7 +71,7 @@ def _labels(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
     there = {
         "power": record.stopped is None,
         "beta": bool(record.break_even_beta),
-        "mcnemar": any(effect.mcnemar_p_value is not None for effect in effects),
+        "mcnemar": any(effect.mcnemar_p is not None for effect in effects),
     }
     return {name: labels[name] for name in names if there.get(name, True)}
 
@@ -149,7 +148,7 @@ def whole_table(record: DecisionRecord) -> Table:
         "any: no bound could be shown. A dash: there is nothing to compute it from."
         + (_BETA if record.break_even_beta else ""),
         f"Primary contrast: {question.primary}. {tests}{corrected} Intervals and tests speak of "
-        f"{record.estimand}.",
+        f"{phrases.estimand(question)}.",
         *not_standing(record),
         record.headline,
     )
@@ -191,10 +190,10 @@ def ended(record: DecisionRecord) -> Table:
 def secondary(record: DecisionRecord) -> Table | None:
     """Return time and metrics, repair minus baseline, by condition; `None` without any."""
     question = record.question
-    shown = {"time on joint successes (s)": [effect.time_s for effect in record.effects]}
+    shown = {"time on joint successes (s)": [of.time_s for of in record.secondary]}
     for name, metric in question.metrics.items():
         label = f"{metric.said(name)} ({metric.unit})"
-        shown[label] = [effect.metrics.get(name) for effect in record.effects]
+        shown[label] = [of.metrics.get(name) for of in record.secondary]
 
     def entry(e: Estimate | None) -> str:
         return MISSING if e is None else wording.with_interval(e, 2)
@@ -222,21 +221,21 @@ def by_threshold(record: DecisionRecord) -> Table | None:
     label = metric.said(question.metric)
     sign = "≤" if metric.better == "less" else "≥"
     means: list[str] = []
-    for effect in record.effects:
-        difference = effect.metrics.get(question.metric)
-        if difference is None or effect.metric_means is None:
+    for of in record.secondary:
+        difference = of.metrics.get(question.metric)
+        if difference is None or of.metric_means is None:
             means.append(MISSING)
             continue
-        one, two = effect.metric_means
+        one, two = of.metric_means
         means.append(f"{one:.3g} → {two:.3g}, {wording.with_interval(difference, 3)}")
     lines = [line(f"{label} ({metric.unit})", *means)]
     for number, at in enumerate(question.thresholds):
         rates: list[str] = []
-        for effect in record.effects:
-            if len(effect.thresholds) <= number:
+        for of in record.secondary:
+            if len(of.thresholds) <= number:
                 rates.append(MISSING)
                 continue
-            there = effect.thresholds[number]
+            there = of.thresholds[number]
             one, two = map(wording.plain, (there.baseline_percent, there.repair_percent))
             rates.append(f"{one} → {two}, {wording.with_interval(there.difference)}")
         lines.append(line(f"success if {label} {sign} {at:g} {metric.unit}, %", *rates))

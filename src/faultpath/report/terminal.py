@@ -9,7 +9,7 @@ from rich.text import Text
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.answers import answers
+from faultpath.decisions.sentences.answers import answers, would_change
 from faultpath.decisions.sentences.phrases import (
     for_trainings,
     in_trials_that_ran,
@@ -31,7 +31,7 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     `details` adds every sentence of the record, and what would change it.
     """
     question = record.question
-    void = any(effect.void_pairs for effect in record.effects)
+    void = any(effect.void for effect in record.effects)
     names = [name for name in _EFFECTS if void or name != "void"]
     success = by_quantity(record, ("baseline", "repair"))
     effects = by_path(record, names, f"{question.repair} minus {question.baseline}")
@@ -59,10 +59,10 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
         parts += [Text(""), drawn(table)]
     parts += _list("Found in the run", record.findings, "bold red")
     if details:
-        if any(effect.mcnemar_p_value is not None for effect in record.effects):
+        if any(effect.mcnemar_p is not None for effect in record.effects):
             parts += [Text(""), Parted(by_path(record, ("p", "mcnemar", "holm")))]
         parts += [Text(""), *map(Text, record.sentences)]
-        parts += _list("What would change this", record.would_change, "bold")
+        parts += _list("What would change this", tuple(would_change(record)), "bold")
     return Group(*parts)
 
 

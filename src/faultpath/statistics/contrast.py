@@ -14,12 +14,9 @@ from faultpath.statistics.distributions import normal_quantile, t_interval
 from faultpath.statistics.estimate import (
     SCENES,
     SCENES_AND_SEEDS,
-    Decision,
-    Discordant,
     Estimate,
-    PairedTest,
-    SeedCounts,
     Sign,
+    Test,
 )
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.power import detectable, fewest_scenes
@@ -58,28 +55,17 @@ class Contrast:
     scenes: SceneValues | None = field(default=None, repr=False)
     against_zero: bool = True
     """Whether 0 is no difference; not so for rates, ratios and what is counted."""
-    test: PairedTest | None = None
+    test: Test | None = None
     """See `with_test`; without one the interval decides."""
-    decision: Decision | None = None
-    """Its place in a family of contrasts; `None` outside of one."""
     notable: float | None = None
     """Where a greater difference than this could have been missed, detecting none says nothing."""
 
     @property
-    def counts(self) -> SeedCounts | None:
+    def won(self) -> tuple[tuple[int, int], ...] | None:
         """Return seed by seed in how many scenes only one of the variants succeeded."""
         if self.pairs is None:
             return None
-        return SeedCounts(
-            per_seed=tuple(
-                Discordant(
-                    first_only=int((column > 0).sum()),
-                    second_only=int((column < 0).sum()),
-                    n_pairs=int(np.isfinite(column).sum()),
-                )
-                for column in self.pairs.T
-            )
-        )
+        return tuple((int((c > 0).sum()), int((c < 0).sum())) for c in self.pairs.T)
 
     @property
     def ahead(self) -> tuple[int, int]:
@@ -138,8 +124,8 @@ class Contrast:
             estimand=self.estimand,
             n_scenes=self.n_scenes,
             n_seeds=self.n_seeds,
-            counts=self.counts,
             per_seed=self.per_seed,
+            won=self.won,
         )
 
     @property
@@ -166,7 +152,7 @@ class Contrast:
     @property
     def sign(self) -> Sign:
         """Return the side that is decided in its family; 0 for neither."""
-        return self.decision.sign if self.decision else 0
+        return self.test.sign if self.test else 0
 
     @cached_property
     def least(self) -> float | None:
@@ -230,7 +216,6 @@ def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Con
         pairs=None,
         scenes=scenes,
         test=None,
-        decision=None,
         notable=None,
     )
 

@@ -15,9 +15,8 @@ from faultpath.statistics.estimate import (
     EM,
     FLIPS,
     SCENES_AND_SEEDS,
-    Decision,
-    PairedTest,
     RuleName,
+    Test,
 )
 
 Turn: TypeAlias = Literal["reversal", "interaction", "none"]
@@ -56,7 +55,7 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
             name = "sign test on scene differences" if contrast.pairs is None else name
             p = sign_p_value(first, second)
     leans = 1 if ahead > 0 else -1 if ahead < 0 else 0
-    return replace(contrast, test=PairedTest(name, p, leans))
+    return replace(contrast, test=Test(name, p, leans))
 
 
 def decide_family(
@@ -97,7 +96,8 @@ def decide_family(
                     break
                 del left[other]
             critical = alpha * weighs[name] / sum(left.values())
-        decided[name] = replace(contrast, decision=Decision(sign, adjusted[name], critical))
+        test = tests[name]._replace(sign=sign, corrected_p=adjusted[name], critical_p=critical)
+        decided[name] = replace(contrast, test=test)
     return decided
 
 

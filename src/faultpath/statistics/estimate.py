@@ -17,33 +17,6 @@ SCENES = "new scenes like these, for these trained models and recorded execution
 SCENES_AND_SEEDS = "new scenes like these and models newly trained with other seeds"
 
 
-class Discordant(Frozen, allow_inf_nan=False):
-    """Pairs in which exactly one arm succeeded; printed as the paper prints them, ``2:15``."""
-
-    first_only: int = Field(ge=0)
-    second_only: int = Field(ge=0)
-    n_pairs: int | None = Field(default=None, ge=0, description="all pairs, concordant included")
-
-    @model_validator(mode="after")
-    def _fits(self) -> Self:
-        total = self.first_only + self.second_only
-        if self.n_pairs is not None and self.n_pairs < total:
-            raise ValueError(f"{total} discordant pairs cannot come from {self.n_pairs} pairs")
-        return self
-
-    def __str__(self) -> str:
-        return f"{self.first_only}:{self.second_only}"
-
-
-class SeedCounts(Frozen, allow_inf_nan=False):
-    """Discordant counts of each seed, in seed order; printed ``2:15/2:11/2:9``."""
-
-    per_seed: tuple[Discordant, ...] = Field(min_length=1)
-
-    def __str__(self) -> str:
-        return "/".join(str(c) for c in self.per_seed)
-
-
 class Estimate(Frozen, allow_inf_nan=False):
     """A value, its interval, and what that interval generalises to.
 
@@ -60,8 +33,9 @@ class Estimate(Frozen, allow_inf_nan=False):
     estimand: str
     n_scenes: int = Field(ge=1)
     n_seeds: int = Field(ge=1)
-    counts: SeedCounts | None = None
     per_seed: tuple[float, ...] | None = None
+    won: tuple[tuple[int, int], ...] | None = None
+    """Seed by seed: in how many scenes only the first succeeded, and in how many the second."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -77,28 +51,23 @@ class Estimate(Frozen, allow_inf_nan=False):
         return None if self.low is None or self.high is None else (self.low, self.high)
 
 
-class PairedTest(NamedTuple):
-    """A two-sided test of no difference."""
+class Test(NamedTuple):
+    """A two-sided test of no difference, and its place in the family that is decided together."""
 
     name: str
     p_value: float
     leans: Sign
     """Side of 0 that it would find ahead, did it reject."""
+    sign: Sign = 0
+    """Side of 0 on which the difference is significant within the family; 0 where it is not."""
+    corrected_p: float | None = None
+    """Holm's; `None` outside of a family, as the next."""
+    critical_p: float | None = None
+    """Largest p at which it would be significant, given the others' p-values."""
 
     def rejects(self, alpha: float = ALPHA) -> bool:
-        """Return whether the test rejects no difference at level ``alpha``."""
+        """Return whether the test alone rejects no difference at level ``alpha``."""
         return self.p_value <= alpha
-
-
-class Decision(NamedTuple):
-    """The place of a contrast in the family that it is decided with."""
-
-    sign: Sign
-    """Side of 0 on which the difference is detected; 0 where it is not."""
-    adjusted_p: float
-    """Holm's."""
-    critical_p: float
-    """Largest p at which it would be detected, given the others' p-values."""
 
 
 class Region(Frozen, allow_inf_nan=False):

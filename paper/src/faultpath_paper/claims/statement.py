@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
+from faultpath.decisions.sentences import wording
 from faultpath.statistics.contrast import ROUNDING, Contrast, change
 from faultpath_paper.answers import ClaimVerdict, Size, StatementPart
 from faultpath_paper.cells import Printed, PublishedClaim
@@ -140,7 +141,7 @@ def shown(
         p_value=None if contrast.test is None else contrast.test.p_value,
         test="" if contrast.test is None else contrast.test.name,
         mde=contrast.least,
-        counts=str(contrast.counts or counts),
+        counts=wording.won(contrast.won) if contrast.won else counts,
         reason=judged.reason,
         size=size(contrast.value, contrast.interval, contrast.n_scenes, paper, no_effect),
         **beside(paper),
@@ -238,7 +239,7 @@ class TurnsDown:
         """Answer the statement from a run."""
         one, two = together(results, self.before, self.after)
         turned = Turned(decisive(change(one, two)), one, two)
-        counts = f"{one.counts}, then {two.counts}"
+        counts = ", then ".join(wording.won(part.won or ()) for part in (one, two))
         return shown(self.words, turned.judge(), turned.change, self.paper, 0.0, counts)
 
 

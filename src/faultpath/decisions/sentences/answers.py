@@ -4,11 +4,10 @@ Whoever reads nothing else reads these, so what qualifies a decision is said her
 """
 
 from collections.abc import Iterator
-from typing import Any
 
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Invalid
 from faultpath.decisions.sentences import phrases
-from faultpath.decisions.sentences.headline import headline, reversed_at
+from faultpath.decisions.sentences.headline import reversed_at
 from faultpath.decisions.sentences.phrases import margin, places
 from faultpath.decisions.sentences.wording import (
     capital,
@@ -34,14 +33,10 @@ _PAIRED = {
 }
 
 
-def in_words(record: DecisionRecord) -> dict[str, Any]:
-    """Return the fields in which a record says what it decides."""
+def sentences(record: DecisionRecord) -> tuple[str, ...]:
+    """Return all that a record says, a sentence or two each: changes first, then the answers."""
     changes = [phrases.change(record, change) for change in record.changes if not record.invalid]
-    return {
-        "headline": headline(record),
-        "sentences": (*changes, *sum(_answers(record).values(), list[str]())),
-        "would_change": tuple(_would_change(record)),
-    }
+    return (*changes, *sum(_answers(record).values(), list[str]()))
 
 
 def answers(record: DecisionRecord) -> dict[str, str]:
@@ -124,11 +119,11 @@ def _unknown(record: DecisionRecord) -> str:
     """Say that no choice follows, and which differences the primary contrast leaves possible."""
     main = next((e for e in record.effects if e.path == record.question.primary), None)
     text = "Not enough is known to prefer either"
-    if main is None or not main.acted or main.success.low is None or main.success.high is None:
+    if main is None or not main.acted or main.low is None or main.high is None:
         return f"{text}."
     if main.unsettled:
         return f"{text}: {where(main.path)} it depends on trials that failed."
-    low, high = signed(main.success.low), signed(main.success.high)
+    low, high = signed(main.low), signed(main.high)
     return f"{text}: {where(main.path)}, any difference from {low} to {high} pp is possible."
 
 
@@ -138,7 +133,7 @@ def reach(record: DecisionRecord) -> Iterator[str]:
     holds = "The intervals hold" if record.few else "What is significant holds"
     conditional = question.trained and question.generalise == "scenes"
     anew = "; models trained anew may differ" if conditional else ""
-    yield f"{holds} for {record.estimand}{anew}."
+    yield f"{holds} for {phrases.estimand(question)}{anew}."
     if question.judged:
         yield _PAIRED[question.judged.pairing]
         yield (
@@ -149,7 +144,7 @@ def reach(record: DecisionRecord) -> Iterator[str]:
     run = len(question.seeds)
     yield from phrases.for_trainings(record)
     tasks = question.judged is not None and question.judged.unit == "task"
-    if run > 1 and not tasks and record.effects and len(record.effects[0].wins) == 1:
+    if run > 1 and not tasks and record.effects and len(record.effects[0].won) == 1:
         yield f"All {run} seeds gave the same outcome in every trial: together they count as one."
     yield from _stopped(record)
 
@@ -221,7 +216,7 @@ def _insignificant(record: DecisionRecord) -> Iterator[str]:
     yield f"No difference is significant {series(list(sizes))}{would}."
 
 
-def _would_change(record: DecisionRecord) -> Iterator[str]:
+def would_change(record: DecisionRecord) -> Iterator[str]:
     """Say what would change the result."""
     if record.invalid:
         yield "Trials that repeat and are pairs: see the remarks on what differed."
@@ -244,7 +239,7 @@ def _would_change(record: DecisionRecord) -> Iterator[str]:
         yield "Easier scenes or a smaller fault: where both fail, a difference can hardly show."
     if any(effect.extreme == "ceiling" for effect in tested):
         yield "Harder scenes or a larger fault: where both succeed, a difference can hardly show."
-    if not record.few and any(e.minimum_detectable_pp and not e.sign for e in tested):
+    if not record.few and any(e.least_pp and not e.sign for e in tested):
         instead = "" if judged else ", or --stop-when, which allows for looks"
         yield (
             f"Fresh scenes, which no audit has looked at, and more of them{instead}: they find "

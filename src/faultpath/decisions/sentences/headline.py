@@ -36,8 +36,8 @@ def headline(record: DecisionRecord) -> str:
         return "The fault never changed a reading: no effect of it was tested."
     if not main.acted:
         return f"{capital(where(primary))}, the fault never acted: nothing was tested there."
-    ends = {rate for effect in tested for rate in (effect.baseline_percent, effect.repair_percent)}
-    if ends <= {0.0, 100.0} and not any(any((*e.wins, *e.losses)) for e in tested):
+    ends = {rate for effect in tested for rate in effect.rates}
+    if ends <= {0.0, 100.0} and not any(any(map(any, effect.won)) for effect in tested):
         every = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
         return f"No difference could show: in every scene both versions {' or '.join(every)}."
     turned = reversed_at(record)
@@ -54,7 +54,7 @@ def _few_scenes(record: DecisionRecord) -> str:
     few = [effect for effect in leading if effect.few_differ]
     if not few:
         return ""
-    least = min(few, key=lambda effect: sum(effect.ahead or ()))
+    least = min(few, key=lambda effect: sum(effect.ahead))
     at = f"{where(least.path)} " if len(leading) > 1 else ""
     return f" ({at}{in_few_scenes(least)})"
 
@@ -65,7 +65,7 @@ def reversed_at(record: DecisionRecord) -> list[Effect]:
     return [
         of[change.isolated]
         for change in record.changes
-        if change.turn == "reversal" and change.isolated in of and change.shared in of
+        if change.turn == "reversal" and change.isolated in of and SHARED in of
     ]
 
 

@@ -43,22 +43,22 @@ def margin(record: DecisionRecord) -> str:
 
 def adjusted(record: DecisionRecord, of: Effect | Change) -> str:
     """Return `p = 0.250 after Holm`; nothing where nothing was tested."""
-    if of.adjusted_p_value is None:
+    if of.corrected_p is None:
         return ""
-    p = p_value(of.adjusted_p_value)
+    p = p_value(of.corrected_p)
     return f"p {p if p.startswith('<') else f'= {p}'} {record.question.family}"
 
 
 def only_alone(of: Effect | Change) -> bool:
     """Return whether the interval excludes 0 and yet the difference is not significant."""
-    low, high = of.estimate.interval or (0.0, 0.0)
-    tested = of.adjusted_p_value is not None and not (of.sign or of.unsettled)
+    low, high = of.interval or (0.0, 0.0)
+    tested = of.corrected_p is not None and not (of.sign or of.unsettled)
     return tested and (low > 0 or high < 0)
 
 
 def in_few_scenes(effect: Effect) -> str:
     """Return in how many scenes the version that is ahead is so, and in how many the other one."""
-    more, less = sorted(effect.ahead or (0, 0), reverse=True)
+    more, less = sorted(effect.ahead, reverse=True)
     never = "never the other way" if not less else f"the other way in {less}"
     return f"in {counted(more, 'scene')}, {never}"
 
@@ -66,7 +66,7 @@ def in_few_scenes(effect: Effect) -> str:
 def trainings(record: DecisionRecord, effect: Effect) -> str:
     """Return in how many trainings which version is ahead, with a sign test's p-value: it holds
     whatever the distribution of trainings."""
-    values = effect.success.per_seed or ()
+    values = effect.per_seed
     repair, baseline = sum(value > 0 for value in values), sum(value < 0 for value in values)
     ahead = record.winner(1 if repair >= baseline else -1)
     p = p_value(sign_p_value(repair, baseline))
@@ -82,7 +82,7 @@ def for_trainings(record: DecisionRecord) -> Iterator[str]:
     """Say on what a result for newly trained models rests."""
     if record.question.generalise != "models" or record.invalid:
         return
-    run = min((effect.success.n_seeds for effect in record.effects), default=0)
+    run = min((len(effect.per_seed) for effect in record.effects), default=0)
     yield (
         f"{run} trainings stand for new ones as far as trainings spread evenly around their "
         "mean, as a Gaussian does: a rare collapse that none of them had is not seen."
@@ -93,8 +93,8 @@ def for_trainings(record: DecisionRecord) -> Iterator[str]:
 
 def failed_more(record: DecisionRecord, effect: Effect) -> str:
     """Say which version's trials failed more often than chance explains."""
-    failed, question = effect.failed, record.question
-    more = failed is not None and failed.repair > failed.baseline
+    missing, question = effect.missing, record.question
+    more = missing is not None and missing.repair > missing.baseline
     return f"trials of {question.repair if more else question.baseline} failed more often"
 
 
@@ -104,17 +104,17 @@ def in_trials_that_ran(record: DecisionRecord) -> Iterator[str]:
 
 
 def _ran(record: DecisionRecord, effect: Effect) -> str:
-    failed, question = effect.failed, record.question
-    assert failed is not None
-    ahead = record.winner(1 if effect.success.value > 0 else -1)
+    missing, question = effect.missing, record.question
+    assert missing is not None
+    ahead = record.winner(1 if effect.value > 0 else -1)
     text = (
         f"{capital(where(effect.path))}, the trials that ran favour {ahead} "
-        f"({with_interval(effect.success)} pp, {adjusted(record, effect)}), which holds if failing "
+        f"({with_interval(effect)} pp, {adjusted(record, effect)}), which holds if failing "
         "has nothing to do with how a trial would have ended"
     )
-    if failed.repairs is None:
+    if missing.repairs is None:
         return f"{text}."
-    of = zip(failed.repairs, (question.repair, question.baseline), strict=True)
+    of = zip(missing.repairs, (question.repair, question.baseline), strict=True)
     needed = series([f"{count} of {name}" for count, name in of if count])
     how = (
         "add their outcomes to the results"
@@ -163,14 +163,14 @@ def change(record: DecisionRecord, of: Change) -> str:
     if record.invalid:
         return (
             f"Nothing follows of the change from the effect {where(of.isolated)} to that "
-            f"{where(of.shared)}."
+            f"{where(SHARED)}."
         )
-    ends = effects[of.isolated], effects[of.shared]
-    values = " to ".join(f"{signed(end.success.value)} pp" for end in ends)
-    numbers = f"{values}; change {signed(of.estimate.value)} pp {interval(of.estimate)}".rstrip()
+    ends = effects[of.isolated], effects[SHARED]
+    values = " to ".join(f"{signed(end.value)} pp" for end in ends)
+    numbers = f"{values}; change {signed(of.value)} pp {interval(of)}".rstrip()
     numbers += f", {adjusted(record, of)}"
     numbers += ": not significant, although the interval excludes 0" if only_alone(of) else ""
-    alone, shared = where(of.isolated), where(of.shared)
+    alone, shared = where(of.isolated), where(SHARED)
     if of.turn == "reversal":
         one, other = (record.winner(end.sign) for end in ends)
         aside = " One of the two lies at the floor or ceiling: this carries no headline."
@@ -270,9 +270,9 @@ def hardly_acted(record: DecisionRecord) -> Iterator[str]:
 
 def partly_measured(record: DecisionRecord) -> Iterator[str]:
     """Say of which metrics not every trial has a value."""
-    for effect in record.effects:
+    for effect, secondary in zip(record.effects, record.secondary, strict=True):
         for name in record.question.metrics:
-            whole = effect.metrics[name].n_scenes if name in effect.metrics else 0
+            whole = secondary.metrics[name].n_scenes if name in secondary.metrics else 0
             if whole < effect.scenes and (whole or record.question.judged):
                 scenes = f"{whole} of {counted(effect.scenes, 'scene')}"
                 yield (
@@ -285,15 +285,17 @@ def failed_trials(record: DecisionRecord) -> Iterator[str]:
     """Say by version and condition how many trials failed, and how far that could matter."""
     question = record.question
     for effect in record.effects:
-        failed = effect.failed
-        if failed is None or not (failed.repair or failed.baseline or failed.unsettled):
+        missing = effect.missing
+        if missing is None or missing.against_pp is None or missing.favour_pp is None:
+            continue
+        if not (missing.repair or missing.baseline or missing.unsettled):
             continue
         lost = "failed or missing" if question.judged else "failed"
         yield (
-            f"{capital(where(effect.path))}, {counted(failed.repair, 'trial')} of "
-            f"{question.repair} {lost}, {failed.baseline} of {question.baseline}: depending on how "
-            "they would have ended, the difference over all scenes lies anywhere from "
-            f"{signed(failed.against_pp)} to {signed(failed.favour_pp)} pp."
+            f"{capital(where(effect.path))}, {counted(missing.repair, 'trial')} of "
+            f"{question.repair} {lost}, {missing.baseline} of {question.baseline}: depending on "
+            "how they would have ended, the difference over all scenes lies anywhere from "
+            f"{signed(missing.against_pp)} to {signed(missing.favour_pp)} pp."
         )
 
 

@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Sequence
 
-from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Effect
+from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Difference, Effect
 from faultpath.decisions.question import Question
 from faultpath.statistics.estimate import BreakEven, Estimate
 
@@ -28,14 +28,14 @@ def plain(value: float, digits: int = 1) -> str:
     return (text.removeprefix("-") if float(text) == 0.0 else text).replace("-", MINUS)
 
 
-def interval(estimate: Estimate, digits: int = 1) -> str:
+def interval(estimate: Estimate | Difference, digits: int = 1) -> str:
     """Return `[−16.0, −4.0]`, or nothing where no interval exists."""
     if estimate.low is None or estimate.high is None:
         return ""
     return f"[{plain(estimate.low, digits)}, {plain(estimate.high, digits)}]"
 
 
-def with_interval(estimate: Estimate | None, digits: int = 1) -> str:
+def with_interval(estimate: Estimate | Difference | None, digits: int = 1) -> str:
     """Return `−9.7 [−16.0, −4.0]`; a dash for an estimate that does not exist."""
     if estimate is None:
         return "–"
@@ -44,13 +44,13 @@ def with_interval(estimate: Estimate | None, digits: int = 1) -> str:
 
 def detectable(effect: Effect) -> str:
     """Return the difference that 8 of 10 audits would find, in whole percentage points."""
-    least = effect.minimum_detectable_pp
+    least = effect.least_pp
     return "–" if least is None else str(math.ceil(least))
 
 
-def wins_losses(wins: tuple[int, ...], losses: tuple[int, ...]) -> str:
+def won(counts: Sequence[tuple[int, int]]) -> str:
     """Return `2:15/2:11/2:9`, one pair of counts a seed."""
-    return "/".join(f"{w}:{lost}" for w, lost in zip(wins, losses, strict=True))
+    return "/".join(f"{won}:{lost}" for won, lost in counts)
 
 
 def p_value(value: float) -> str:
@@ -93,7 +93,7 @@ def percent(fraction: float) -> str:
 
 def adjusted(effect: Effect) -> str:
     """Return an effect's p-value within its family; a dash where it is in none."""
-    return "–" if effect.adjusted_p_value is None else p_value(effect.adjusted_p_value)
+    return "–" if effect.corrected_p is None else p_value(effect.corrected_p)
 
 
 def reservation(effect: Effect) -> str:
