@@ -12,7 +12,7 @@ from faultpath.decisions.decide import decide
 from faultpath.decisions.model import CORRECT, SHARED, Change, DecisionRecord, Effect
 from faultpath.decisions.question import StopRule
 from faultpath.decisions.sentences import phrases, wording
-from faultpath.decisions.sentences.answers import answers
+from faultpath.decisions.sentences.answers import answers, would_change
 from faultpath.decisions.sentences.phrases import in_short
 from faultpath.trials import Status, Trials
 from faultpath.trials.question import StopWhen
