@@ -157,7 +157,9 @@ def _effect(
         test=effect.test.name,
         p_value=effect.test.p_value,
         adjusted_p_value=effect.decision.adjusted_p if effect.decision else None,
-        mcnemar_p_value=sign_p_value(wins[0], losses[0]) if effect.test.name == EM else None,
+        mcnemar_p_value=sign_p_value(wins[0], losses[0])
+        if effect.test.name.startswith(EM)
+        else None,
         scenes=effect.n_scenes,
         ahead=effect.ahead,
         void_pairs=pairs.void,
