@@ -37,6 +37,8 @@ SIDES: Mapping[str, tuple[str, Mapping[str, str]]] = {
     "mj_multiRay": ("benchmarks.peers.mujoco_side:rays", {}),
     "bootstrap": ("benchmarks.physics:bootstrap", {}),
     "scipy.stats.bootstrap": ("benchmarks.peers.scipy_side:percentile", {}),
+    "100,000 scenes": ("benchmarks.many_scenes:many", {}),
+    "10,000 scenes": ("benchmarks.many_scenes:few", {}),
 }
 """Function that builds each side, as `module:function`, and its environment."""
 ELSEWHERE = {"jax-mppi": ".venv-bench-jax/bin/python"}
@@ -77,4 +79,5 @@ ROWS = (
     Row("Portable plant, RotorPy", _STEPS, "portable plant", "RotorPy"),
     Row("Depth image 64 x 36", "images/s", "rendering", "mj_multiRay", _ratio(1.0)),
     Row("Bootstrap with its draw", "ms", "bootstrap", "scipy.stats.bootstrap", _at_most(20.0)),
+    Row("Tests of 100,000 scenes", "scenes/s", "100,000 scenes", "10,000 scenes", _ratio(0.5)),
 )

@@ -25,6 +25,7 @@ from simulation import (
     trainings,
 )
 from simulation_blanks import BLANKS, blanks
+from simulation_many import LEVELS, SCENES, largest_level
 from simulation_skewed import skewed, skewed_coverage
 
 import faultpath
@@ -157,6 +158,19 @@ def sections() -> Iterator[Section]:
                 "power, 1 seed",
             ),
             ((share([rate]) for rate in (*skewed(1000), powered(3), powered(1))),),
+        ),
+    )
+    yield (
+        "Many scenes",
+        "Above 1,000 scenes the E step of one seed's test is approximated. Largest chance, "
+        "computed, that the test of two equal versions reports a difference, over all shares of "
+        "scenes that differ. Columns: level. Promised: at most that level.",
+        lambda: markdown(
+            ("scenes", *(f"{level:g}".removeprefix("0") for level in LEVELS)),
+            (
+                (f"{n:,}", *(f"{largest_level(n, a):.5f}".removeprefix("0") for a in LEVELS))
+                for n in SCENES
+            ),
         ),
     )
     yield (

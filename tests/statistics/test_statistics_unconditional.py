@@ -1,15 +1,19 @@
 """The E+M test against enumerating every table by its definition, and against exact McNemar."""
 
-from itertools import pairwise
+import tracemalloc
+from itertools import pairwise, product
 from math import comb, sqrt
 
 import numpy as np
 import pytest
+from simulation_many import largest_level
 
 from faultpath.statistics import unconditional
 from faultpath.statistics.decisions import with_test
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.effects import success_effect
+from faultpath.statistics.many_pairs import ManyPairs
+from faultpath.statistics.null_law import NullLaw, bounds
 from faultpath.statistics.power import rule_power
 from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import quantile, rejects
@@ -75,6 +79,51 @@ def test_the_critical_counts_are_where_p_passes_the_level(n, alpha):
         for fewer in range(max(0, critical - 1), min(critical + 2, total // 2) + 1):
             p = unconditional.p_value(total - fewer, fewer, n)
             assert (p <= alpha) == (fewer <= critical)
+
+
+@pytest.mark.parametrize("alpha", [0.05, 0.0125, 1e-4])
+def test_of_many_pairs_the_level_holds_and_is_used_and_p_agrees_with_the_region(alpha):
+    """Of more pairs than E is summed for; levels by SciPy's binomial."""
+    n = 4 * unconditional.MOST_SUMMED
+    assert 0.98 * alpha < largest_level(n, alpha, shares=200) <= alpha
+    critical = unconditional.critical(n, alpha)[1]
+    for total in (12, 60, 256, 257, 400, n // 2, n - 1, n):
+        for fewer in range(max(0, critical[total] - 1), critical[total] + 2):
+            p = unconditional.p_value(total - fewer, fewer, n)
+            assert (p <= alpha) == (fewer <= critical[total])
+
+
+def test_of_many_pairs_p_is_nearly_that_of_the_summed_e_step():
+    n = 1200
+    summed, many = NullLaw(n), ManyPairs(n)
+    for total, apart in product((20, 257, 600, n), (1.5, 2.1, 3.5)):
+        z = (total - 2 * round((total - apart * sqrt(total)) / 2)) / sqrt(total)
+        one, other = (
+            law.worst(law.region(float(law.chance(*tables)[0]), *bounds(n)))
+            for law in (summed, many)
+            for tables in [(np.array([z]), np.array([float(total)]))]
+        )
+        assert other == pytest.approx(one, rel=0.02)
+
+
+def test_hundred_thousand_pairs_take_no_table_of_their_square():
+    """Four times the pairs, at most some eight times the memory."""
+    peaks = []
+    for n in (25_000, 100_000):
+        tracemalloc.start()
+        unconditional.p_value(n // 10, n // 11, n)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < 9 * peaks[0]
+    assert peaks[1] < 3e8
+
+
+@pytest.mark.parametrize(("n", "named"), [(1000, "E+M (Lloyd)"), (1001, "E+M (Lloyd), normal E")])
+def test_the_name_says_where_e_is_approximated(n, named):
+    first = np.zeros((n, 1))
+    first[:40] = 1
+    effect = success_effect(first, 0 * first, Resamples.draw("em", n, n_resamples=1))
+    assert with_test(effect, "graded").test.name == named
 
 
 def test_more_of_the_same_side_has_a_smaller_p_and_very_many_pairs_do_not_underflow():

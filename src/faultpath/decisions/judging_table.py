@@ -37,9 +37,12 @@ def units_of(trials: Iterable[Address], request: JudgeQuestion) -> Units:
     for _, _, (unit, label) in trials:
         labels.setdefault(unit, {})[label] = None
     often = Counter(label for members in labels.values() for label in members)
-    sizes = [len(members) for members in labels.values()]
+    sizes = Counter(len(members) for members in labels.values())
     # As many trials of each as leave the most of all, and first those that most scenes have.
-    most = max(sorted(sizes), key=lambda size: size * sum(other >= size for other in sizes))
+    most = max(
+        sorted(sizes),
+        key=lambda size: size * sum(units for other, units in sizes.items() if other >= size),
+    )
     compared = {
         unit: sorted(sorted(members, key=lambda x: (-often[x], _in_order(x)))[:most], key=_in_order)
         for unit, members in labels.items()

@@ -158,7 +158,7 @@ class Effect(Difference):
     @property
     def mcnemar_p(self) -> float | None:
         """P-value of exact McNemar, to stand beside that of another test of one seed."""
-        return sign_p_value(*self.won[0]) if self.test == EM else None
+        return sign_p_value(*self.won[0]) if self.test.startswith(EM) else None
 
     @property
     def few_differ(self) -> bool:

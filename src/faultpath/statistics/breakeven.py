@@ -111,8 +111,13 @@ class _Mixture:
         first, second = correct.scenes, faulty.scenes
         if first is None or second is None:
             raise ValueError("only effects on bounded outcomes have a break-even frequency")
-        both = np.stack([first.scale * first.values, second.scale * second.values])
-        self.kinds, counts = np.unique(both, axis=1, return_counts=True)
+        # Each by itself and then their pairs: NumPy sorts columns some ten times slower.
+        (ones, one), (twos, two) = (
+            np.unique(scenes.scale * scenes.values, return_inverse=True)
+            for scenes in (first, second)
+        )
+        pairs, counts = np.unique(one * len(twos) + two, return_counts=True)
+        self.kinds: Floats = np.stack([ones[pairs // len(twos)], twos[pairs % len(twos)]])
         self.counts: Floats = counts.astype(np.float64)
         self.far = first.scale * first.far, second.scale * second.far
         self.bounds = first.scale * first.bound, second.scale * second.bound

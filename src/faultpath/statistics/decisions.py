@@ -41,7 +41,8 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
         name = "bets on the mean"
         p, ahead = betting.p_value(*scenes.kinds(), scenes.bound)
     elif scenes.graded and (contrast.pairs is None or seeds > 1):
-        name, p = DEGREES, score.degrees_p_value(*scenes.kinds(), scenes.bound)
+        name = DEGREES + unconditional.approximation(contrast.n_scenes)
+        p = score.degrees_p_value(*scenes.kinds(), scenes.bound)
     elif rule != "exact" and (contrast.pairs is None or seeds > 1):
         name = FLIPS
         p = max(signflip.p_value(scenes.values, seeds), score.p_value(*scenes.kinds(), scenes.far))
@@ -49,7 +50,8 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
         first, second = contrast.ahead
         ahead = first - second
         if rule != "exact":
-            name, p = EM, unconditional.p_value(first, second, contrast.n_scenes)
+            name = EM + unconditional.approximation(contrast.n_scenes)
+            p = unconditional.p_value(first, second, contrast.n_scenes)
         else:
             name = "exact McNemar" if seeds == 1 else "sign test on scene means"
             name = "sign test on scene differences" if contrast.pairs is None else name

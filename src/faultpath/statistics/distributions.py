@@ -35,6 +35,22 @@ def binomial_pmf(successes: ArrayLike, trials: int, probability: ArrayLike) -> F
     return np.asarray(np.exp(choose + chance), dtype=np.float64)
 
 
+def likely(trials: int, lowest: float, highest: float) -> tuple[int, int]:
+    """Return the first and last number of successes that count, at probabilities in between.
+
+    Beyond 9 standard deviations and 40 more a binomial has less than 1e-16, by Bernstein's
+    inequality.
+    """
+    spreads = [9.0 * np.sqrt(trials * share * (1.0 - share)) + 40.0 for share in (lowest, highest)]
+    first, last = trials * lowest - spreads[0], trials * highest + spreads[1]
+    return max(0, int(first)), min(trials, int(np.ceil(last)))
+
+
+def log_factorials(most: int) -> Floats:
+    """Return the logarithms of the factorials of 0 to ``most``."""
+    return np.asarray(scipy.special.gammaln(np.arange(1.0, most + 2.0)), dtype=np.float64)
+
+
 def sign_p_value(first: int, second: int) -> float:
     """Return the exact two-sided binomial p of ``first`` against ``second`` at even odds."""
     return min(1.0, 2.0 * float(binomial_cdf(min(first, second), first + second, 0.5)))
@@ -74,6 +90,11 @@ def t_quantile(probability: float, freedom: float) -> float:
 def normal_quantile(probability: float) -> float:
     """Return the standard normal quantile."""
     return float(scipy.special.ndtri(probability))
+
+
+def normal_tails(z: Floats) -> Floats:
+    """Return the chances that a standard normal value lies beyond ``z`` on either side."""
+    return np.asarray(2.0 * scipy.special.ndtr(-np.abs(z)), dtype=np.float64)
 
 
 def normal_p_value(z: float) -> float:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from faultpath.core.streams import generator
 from faultpath.statistics import signflip, unconditional
-from faultpath.statistics.distributions import binomial_cdf, binomial_pmf
+from faultpath.statistics.distributions import binomial_cdf, binomial_pmf, likely
 from faultpath.statistics.estimate import ALPHA, RULES, RuleName
 from faultpath.statistics.inputs import Floats, Numbers, by_scene_and_seed
 from faultpath.statistics.score import degrees_rejects, quantile, reach, rejects
@@ -56,8 +56,9 @@ def rule_power(
         )
     if discordant_rate == 0.0:
         return 0.0
-    discordants = np.arange(n_scenes + 1)
-    critical = _critical(n_scenes, alpha, rule)
+    first, last = likely(n_scenes, discordant_rate, discordant_rate)
+    discordants = np.arange(first, last + 1)
+    critical = _critical(n_scenes, alpha, rule)[discordants]
     favour = 0.5 * (1.0 + abs(difference) / discordant_rate)
     detects = binomial_cdf(critical, discordants, favour)
     detects = detects + binomial_cdf(critical, discordants, 1.0 - favour)
@@ -66,21 +67,31 @@ def rule_power(
 
 @lru_cache(maxsize=64)
 def _critical(n_scenes: int, alpha: float, rule: RuleName) -> NDArray[np.int64]:
-    """Return per number of discordants the largest smaller count that detects; -1: none does.
-
-    Bisected: what detects also does so with fewer.
-    """
+    """Return per number of discordants the largest smaller count that detects; -1: none does."""
     total = np.arange(n_scenes + 1)
-    known = unconditional.critical(n_scenes, alpha)[1] if rule != "exact" else None
-    low, high = np.full_like(total, -1), total.copy()  # the one detects, the other does not
-    while (apart := high - low > 1).any():
-        fewer = (low + high) // 2
-        tested = binomial_cdf(fewer, total, 0.5) <= alpha / 2.0 if known is None else fewer <= known
-        # Tango's statistic of no difference is (first - second)^2 / discordants.
-        further = total - 2 * fewer
-        excluded = (further > 0) & (further**2 > quantile(LEVEL) ** 2 * total)
-        low = np.where(apart & tested & excluded, fewer, low)
-        high = np.where(apart & ~(tested & excluded), fewer, high)
+    if rule == "exact":
+        tested = _sign_critical(total, alpha)
+    else:
+        tested = unconditional.critical(n_scenes, alpha)[1]
+    # Tango's statistic of no difference is (first - second)^2 / discordants.
+    excluded = np.ceil((total - quantile(LEVEL) * np.sqrt(total)) / 2.0) - 1.0
+    return np.minimum(tested, np.maximum(excluded, -1.0).astype(np.int64))
+
+
+def _sign_critical(total: NDArray[np.int64], alpha: float) -> NDArray[np.int64]:
+    """Return [discordants]: the largest smaller count that the sign test rejects; -1: none.
+
+    Bisected, since what is rejected also is with fewer, and first of all near the normal law's.
+    """
+    normal = np.floor((total - quantile(1.0 - alpha) * np.sqrt(total)) / 2.0).astype(np.int64)
+    low, high = np.maximum(normal - 2, -1), np.clip(normal + 2, 0, total)
+    low = np.where(binomial_cdf(low, total, 0.5) <= alpha / 2.0, low, -1)
+    high = np.where(binomial_cdf(high, total, 0.5) <= alpha / 2.0, total, high)
+    while len(apart := np.flatnonzero(high - low > 1)):
+        middle = (low[apart] + high[apart]) // 2
+        inside = binomial_cdf(middle, total[apart], 0.5) <= alpha / 2.0
+        low[apart] = np.where(inside, middle, low[apart])
+        high[apart] = np.where(inside, high[apart], middle)
     return low
 
 
@@ -146,7 +157,9 @@ def detectable(
     ``on_top`` takes what was seen for noise that favours neither arm, and the difference for wins
     beside it, so that pairs are discordant more often: the number to plan by.
     """
-    seeds = np.unique(by_scene_and_seed(np.nan_to_num(pairs, nan=_MISSING), "pairs"), axis=1)
+    filled = by_scene_and_seed(np.nan_to_num(pairs, nan=_MISSING), "pairs") + 0.0  # never -0.0
+    # Columns as bytes: NumPy's sort of columns takes each scene for a field.
+    seeds = np.stack(list({column.tobytes(): column for column in filled.T}.values()), axis=1)
     ran = seeds != _MISSING
     seeds = np.where(ran, seeds, 0.0)
     n_scenes, n_seeds = seeds.shape

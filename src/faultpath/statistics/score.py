@@ -13,6 +13,7 @@ width zero, because what was not observed in n scenes may still exist.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +88,10 @@ class SceneValues:
 
     def kinds(self) -> tuple[Floats, Floats]:
         """Return the different values, ascending, and how often each occurred."""
+        return self._kinds
+
+    @cached_property
+    def _kinds(self) -> tuple[Floats, Floats]:
         values, counts = np.unique(self.values, return_counts=True)
         return values, counts.astype(np.float64)
 

@@ -10,22 +10,18 @@ Tables are named by their discordant pairs and the smaller of both counts, the *
 """
 
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics.distributions import binomial_pmf
 from faultpath.statistics.inputs import Floats
+from faultpath.statistics.many_pairs import ManyPairs
+from faultpath.statistics.null_law import TIE, Counts, NullLaw, bounds
 
-Counts, Bools = NDArray[np.int64], NDArray[np.bool_]
+Bools = NDArray[np.bool_]
 
-_TIE = 1e-9
-"""Relative: what differs by less is as far out, but for rounding."""
-_SPREAD = 9.0
-"""Standard deviations of a number of discordant pairs beyond which none is expected."""
-_PEAKS, _FINER = 3, 25
-"""Peaks of the chance over the shares that are looked at closely, and at how many points."""
+MOST_SUMMED = 1000
+"""Pairs up to which E is summed for every table; of more see `many_pairs`."""
 
 
 @lru_cache(maxsize=4096)
@@ -39,129 +35,32 @@ def p_value(first: int, second: int, n_pairs: int) -> float:
 def degrees_p_value(z: float, discordants: float, n_pairs: int) -> float:
     """Return the two-sided p of ``z`` where the number of discordant pairs need not be whole."""
     law = _law(n_pairs)
-    seen = law.chance(np.array([z]), *_near(n_pairs, np.array([discordants])))[0]
-    return law.worst(law.region(float(seen), *_bounds(n_pairs))) if z else 1.0
+    seen = law.chance(np.array([z]), np.array([discordants]))[0]
+    return law.worst(law.region(float(seen), *bounds(n_pairs))) if z else 1.0
+
+
+def approximation(n_pairs: int) -> str:
+    """Return what the name of the test says of its E step."""
+    return "" if n_pairs <= MOST_SUMMED else ", normal E"
 
 
 def degrees_rejects(z: Floats, discordants: Floats, n_pairs: int, alpha: float) -> Bools:
     """Return [tables]: whether that p is at most ``alpha``."""
-    seen = _law(n_pairs).chance(z, *_near(n_pairs, discordants))
-    return (z > 0.0) & (seen <= critical(n_pairs, alpha)[0] * (1.0 + _TIE))
+    seen = _law(n_pairs).chance(z, discordants)
+    return (z > 0.0) & (seen <= critical(n_pairs, alpha)[0] * (1.0 + TIE))
 
 
-@lru_cache(maxsize=256)
 def critical(n_pairs: int, alpha: float) -> tuple[float, Counts]:
     """Return the E step's largest chance with a p of at most ``alpha``, and [discordants] the
     largest smaller count within it; -1: none."""
-    law = _law(n_pairs)
-    inside, outside = _bounds(n_pairs)
-    low, high = 0.0, 1.0
-    while high - low > _TIE * high:
-        middle = 0.5 * (low + high)
-        region = law.region(middle, inside, outside)
-        if law.worst(region, limit=alpha) <= alpha:
-            low, inside = middle, region
-        else:
-            high, outside = middle, region
-    return low, inside
+    return _critical(n_pairs, round(alpha, 15))  # 1 - 0.95 is 0.05
 
 
-def _bounds(n_pairs: int) -> tuple[Counts, Counts]:
-    total = np.arange(n_pairs + 1)
-    return np.full_like(total, -1), (total - 1) // 2
-
-
-class _NullLaw(NamedTuple):
-    """The law of tables of one number of pairs under no difference."""
-
-    tails: Floats
-    """[discordants, 1 + fewer]: the chance of so few or fewer on either side."""
-    others: Counts
-    """[discordants, expected]: numbers of discordant pairs that are expected beside that one."""
-    chances: Floats
-    """[discordants, expected]: of each of them."""
-    shares: Floats
-    """Shares of discordant pairs, at which the largest chance is looked for."""
-    mixed: Floats
-    """[shares, discordants]: the chance of each number of discordant pairs."""
-
-    def expected(self, total: Counts, fewer: Counts) -> Floats:
-        """Return [tables]: the E step's chance of tables whose counts differ."""
-        z = (total - 2 * fewer) / np.sqrt(np.maximum(total, 1))
-        return self.chance(z, self.others[total], self.chances[total])
-
-    def chance(self, z: Floats, others: Counts, chances: Floats) -> Floats:
-        """Return [tables]: the chance of a statistic as large as ``z``, with these of `_near`."""
-        apart = z[:, np.newaxis] * np.sqrt(others)
-        # Halves of whole numbers and of roots of fractions: as near as this only where they agree.
-        most = np.maximum(np.floor((others - apart) / 2.0 + 1e-9), -1.0).astype(np.int64)
-        most[others == 0] = -1
-        return (chances * self.tails[others, most + 1]).sum(axis=1)
-
-    def region(self, chance: float, inside: Counts, outside: Counts) -> Counts:
-        """Return [discordants]: the largest smaller count that is as far out as ``chance``.
-
-        It lies between those of the regions ``inside`` and ``outside``. Bisected: with a smaller
-        one a table is further out.
-        """
-        low, high = inside.copy(), outside + 1
-        high[0] = 0
-        while len(total := np.flatnonzero(high - low > 1)):
-            middle = (low[total] + high[total]) // 2
-            within = self.expected(total, middle) <= chance * (1.0 + _TIE)
-            low[total] = np.where(within, middle, low[total])
-            high[total] = np.where(within, high[total], middle)
-        return low
-
-    def worst(self, region: Counts, limit: float = 1.0) -> float:
-        """Return the largest chance of a region over the shares of discordant pairs.
-
-        Beyond ``limit`` it is not looked for closely.
-        """
-        often = self.tails[np.arange(len(region)), region + 1]
-        at = self.mixed @ often
-        if at.max() > limit:
-            return float(at.max())
-        inner = np.flatnonzero((at[1:-1] >= at[:-2]) & (at[1:-1] >= at[2:])) + 1
-        best = float(at.max())
-        for peak in inner[np.argsort(-at[inner])][:_PEAKS]:
-            low, high = self.shares[peak - 1], self.shares[peak + 1]
-            for _ in range(2):
-                finer = np.linspace(low, high, _FINER)
-                near = _mixed(len(region) - 1, finer) @ often
-                top = int(near.argmax())
-                low, high = finer[max(top - 1, 0)], finer[min(top + 1, _FINER - 1)]
-                best = max(best, float(near[top]))
-        return min(1.0, best)
+@lru_cache(maxsize=256)
+def _critical(n_pairs: int, alpha: float) -> tuple[float, Counts]:
+    return _law(n_pairs).critical(alpha)
 
 
 @lru_cache(maxsize=4)
-def _law(n_pairs: int) -> _NullLaw:
-    others, chances = _near(n_pairs, np.arange(n_pairs + 1.0))
-    points = 32 + 16 * int(np.ceil(np.sqrt(n_pairs)))
-    shares = np.sin(np.linspace(0.0, np.pi / 2.0, points)) ** 2
-    split = np.zeros(n_pairs // 2 + 2)  # of one more discordant pair with each row of the tails
-    split[0] = 1.0
-    tails = np.zeros((n_pairs + 1, len(split)))
-    for total in range(n_pairs + 1):
-        if total:
-            split[1:] = 0.5 * (split[1:] + split[:-1])
-            split[0] *= 0.5
-        tails[total, 1:] = np.minimum(1.0, 2.0 * np.cumsum(split[:-1]))
-    return _NullLaw(
-        tails=tails, others=others, chances=chances, shares=shares, mixed=_mixed(n_pairs, shares)
-    )
-
-
-def _near(n_pairs: int, discordants: Floats) -> tuple[Counts, Floats]:
-    """Return [tables, expected]: how many pairs may be discordant beside so many, and how likely
-    that is."""
-    width = min(n_pairs + 1, 2 * int(np.ceil(_SPREAD * np.sqrt(n_pairs) / 2.0)) + 1)
-    start = np.clip(np.rint(discordants).astype(np.int64) - width // 2, 0, n_pairs + 1 - width)
-    others = start[:, np.newaxis] + np.arange(width)
-    share = np.minimum(discordants / n_pairs, 1.0)[:, np.newaxis]
-    return others, binomial_pmf(others, n_pairs, share)
-
-
-def _mixed(n_pairs: int, shares: Floats) -> Floats:
-    return binomial_pmf(np.arange(n_pairs + 1), n_pairs, shares[:, np.newaxis])
+def _law(n_pairs: int) -> NullLaw | ManyPairs:
+    return NullLaw(n_pairs) if n_pairs <= MOST_SUMMED else ManyPairs(n_pairs)
