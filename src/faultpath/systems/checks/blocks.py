@@ -131,8 +131,9 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
     outcomes, counts, reads = list[Outcome](), list[TapCount](), list[Read]()
     signals_by_scene = list[tuple[Signal, ...]]()
     error = fails = ""
-    for first in range(0, len(block.scenes), system.block_size):
-        scenes = block.scenes[first : first + system.block_size]
+    size = system.scenes_a_block(len(block.scenes))
+    for first in range(0, len(block.scenes), size):
+        scenes = block.scenes[first : first + size]
         recording, log, result = Recording(), ReadLog(scenes, block.steps), None
         if block.signals:
             result = attempt(_with_plant(system, recording), block.arm, scenes, observer=recording)

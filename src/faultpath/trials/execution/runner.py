@@ -166,7 +166,8 @@ def _units(study: Study, built: Built) -> tuple[Unit, ...]:
         scenes = sorted(scenes, key=lambda scene: study.scenes.index(scene.id))
     check_rows(study.rows, system.variants)
     fingerprint = built.code.state.digest
-    return plan(study.arms(), scenes, system.block_size, library, fingerprint, study.look)
+    size = system.scenes_a_block(len(library.scenes))
+    return plan(study.arms(), scenes, size, library, fingerprint, study.look)
 
 
 def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:
