@@ -95,8 +95,7 @@ class ReadLog(DeliveryListener):
 
 @dataclass(slots=True)
 class _Noted:
-    """What one consumer got of one channel in one step. A `Read` for each would cost more than the
-    trial."""
+    """One delivery under way. To make a `Read` of it at once would cost more than the trial."""
 
     source: str
     valid_step: int
