@@ -57,8 +57,7 @@ class Recording(DeliveryListener):
             self.queries.setdefault(reading.source, {})[reading.step] = reading.value
             return
         self.source(reading.source, reading.value, reading.step)
-        clean = _numbers(reading.value)
-        received = _numbers(got) if tap.corruptions else clean
+        clean, received = _numbers(reading.value), _numbers(got)
         if clean is not None and received is not None:
             at = tap.channel, tap.consumer
             self.clean.setdefault(at, {})[step] = clean
@@ -148,10 +147,7 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
         series.append((name, topic, units.get(like, ""), parts.get(like, ()), by_step))
     for (channel, consumer), got in recording.got.items():
         clean = recording.clean[channel, consumer]
-        if all(
-            got[step] is clean[step] or np.array_equal(got[step], clean[step], equal_nan=True)
-            for step in got
-        ):
+        if all(np.array_equal(got[step], clean[step], equal_nan=True) for step in got):
             continue
         unit, named_parts = units[fed[channel]], parts.get(fed[channel], ())
         error = {step: got[step] - clean[step] for step in got}
