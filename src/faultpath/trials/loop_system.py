@@ -35,6 +35,8 @@ class LoopSystem(System):
     the loop. Its author writes the parts, and says which of them each variant has.
     """
 
+    block_size = None
+
     @property
     @abstractmethod
     def wirings(self) -> Mapping[str, Wiring]:

@@ -17,7 +17,7 @@ from faultpath.trials.declared import FloorPlan, Library, Variant
 from faultpath.trials.outcome import Metric, Outcome, Status
 
 BLOCK = 20
-"""Scenes of a block, of a system that does not say."""
+"""Scenes of a block, unless the system states its own."""
 
 Values: TypeAlias = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ class System(ABC):
 
     name: str
     control_dt_s: float
-    block_size: int | None = None
+    block_size: int | None = BLOCK
     """Scenes handed to one call of `run`: the unit of work, of storage and of resuming. `None`: as
     `scenes_a_block` says."""
     parallel: bool = True
