@@ -139,6 +139,7 @@ def _declared(system: System, attribute: str, label: str) -> Any:
             mistake.place = place(error)
             raise mistake from error
         value = None
-    if value is None and getattr(System, attribute, attribute) is not None:
+    may_be_none = attribute == "block_size"  # then the library decides
+    if value is None and not may_be_none and getattr(System, attribute, attribute) is not None:
         raise SystemMistake(f"{label} declares no `{attribute}`: set it in the class")
     return value
