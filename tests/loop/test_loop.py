@@ -19,7 +19,7 @@ from faultpath.loop import (
     graph,
 )
 from faultpath.loop import interface_of as derived
-from faultpath.systems.checks.recording import Recording
+from faultpath.systems.checks.reads import ReadLog
 
 
 def fault(text):
@@ -177,13 +177,14 @@ def test_a_privileged_source_is_not_read_unasked() -> None:
 
 
 def test_a_trace_says_who_read_what_of_which_step() -> None:
-    trace = Recording(SCENES, steps=2)
-    execute((Guess(), Planner()), trace=trace, place=", latency_s: 0.1")
-    assert len(trace.reads) == 2 * 5
-    assert trace.reads[1, "position", "observer.seen"].valid_step == 0
-    assert trace.reads[1, "position", "observer.seen"].source == "place"
-    assert trace.reads[1, "action", "line.motor"].valid_step == 1
-    assert trace.reads[1, "clearance", "planner.cost"].asks == 1
+    log = ReadLog(SCENES, steps=2)
+    execute((Guess(), Planner()), trace=log, place=", latency_s: 0.1")
+    reads = {(read.step, *read.tap): read for read in log.reads()}
+    assert len(reads) == 2 * 5
+    assert reads[1, "position", "observer.seen"].valid_step == 0
+    assert reads[1, "position", "observer.seen"].source == "place"
+    assert reads[1, "action", "line.motor"].valid_step == 1
+    assert reads[1, "clearance", "planner.cost"].asks == 1
 
 
 def test_the_interface_follows_from_the_ports() -> None:

@@ -6,7 +6,7 @@ from faultpath_quadrotor.estimators.protocol import ExactEstimator
 from flights import HELD_OUT, STEPS, quadrotor
 
 from faultpath.loop import Batch, consumers
-from faultpath.systems.checks.recording import Recording
+from faultpath.systems.checks.reads import ReadLog
 from faultpath.trials import Arm
 from faultpath.trials.attempt import taps_of
 
@@ -32,12 +32,12 @@ def test_a_variants_consumers_follow_from_its_ports_and_truth_has_one_door(clear
 def test_what_flies_reads_every_port_and_commands_late(options, variant):
     system = quadrotor(**options)
     batch = Batch(HELD_OUT[:2], 0, system.control_dt_s)
-    recording = Recording(batch.scenes)
-    taps = taps_of(system, Arm(variant=variant), batch.scenes, observer=recording)
+    log = ReadLog(batch.scenes)
+    taps = taps_of(system, Arm(variant=variant), batch.scenes, observer=log)
     with torch.inference_mode():
         instants = list(system.loop(variant, 0).execute(batch, taps))
     assert (len(instants), instants[-1].step) == (STEPS + 1, STEPS)
-    reads = recording.reads.values()
+    reads = log.reads()
     assert {each.consumer for each in reads} == set(system.variants[variant].consumers)
     assert all(tap.deliveries == STEPS for tap in taps.receipts().taps)
     assert (system.variants[variant].privileged == set()) == (options is LEARNED)

@@ -100,3 +100,20 @@ def test_a_key_that_the_state_has_not_is_told_with_those_that_it_has():
     sentence = "observes: source 'place': the state has no key 'plce'; it has at, clock"
     with pytest.raises(SystemMistake, match=sentence):
         functions(start, step, observes={"place": "plce"})
+
+
+def test_a_state_may_hold_what_has_another_shape_in_each_scene():
+    def drawn(rng):
+        return start(rng) | {"obstacles": np.zeros(int(rng.integers(1, 50)))}
+
+    def moved(state, push, rng):
+        return step(state, push, rng) | {"obstacles": state["obstacles"]}
+
+    observes = {"place": "at", "clock": "clock"}
+    plant = functions(drawn, moved, steps=6, dt_s=0.5, observes=observes)
+    built = ComposedSystem("cart", plant, {"only": [Steer()]}, UNITS)
+    assert (
+        len({len(world.observation["obstacles"]) for world in map(plant.world, SCENES, [0] * 6)})
+        > 1
+    )
+    assert [outcome.failed for outcome in fly(built)] == [False] * len(SCENES)

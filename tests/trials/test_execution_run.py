@@ -1,5 +1,6 @@
 """What a run computes, whoever computes it and in whatever order."""
 
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from faultpath.trials.declared import Library, SceneRef
 from faultpath.trials.execution.runner import RunResult, run_study
 from faultpath.trials.execution.schedule import plan
 from faultpath.trials.store import tables
-from faultpath.trials.store.folder import read_outcomes
+from faultpath.trials.store.folder import RunFolder, read_outcomes
 from faultpath.trials.store.tables import decode_traces, traces_of
 from faultpath.trials.trials import Trial
 from faultpath.trials.work.executor import Progress
@@ -147,6 +148,21 @@ def test_progress_reaches_the_end_and_never_goes_back(tmp_path):
     assert (rows[0], rows[-1], seen[-1].count) == (0, 120, "120 of 120 trials")
     assert seen[-1].done == seen[-1].total == 10 * len(study().arms())
     assert all(0 <= progress.done <= progress.total for progress in seen)
+
+
+def test_bookkeeping_grows_with_the_rows_and_not_with_rows_times_blocks(tmp_path, monkeypatch):
+    calls: list[str] = []
+    key, list_shards = Arm.key, RunFolder.list_shards
+    monkeypatch.setattr(Arm, "key", lambda arm: calls.append("key") or key(arm))
+    monkeypatch.setattr(
+        RunFolder, "list_shards", lambda folder: calls.append("list") or list_shards(folder)
+    )
+    counts: list[Counter[str]] = []
+    for scenes in (SCENES[:2], SCENES):
+        calls.clear()
+        run_study(study(scenes), tmp_path / str(len(scenes)), workers=0)
+        counts.append(Counter(calls))
+    assert counts[0] == counts[1]
 
 
 def _study_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Study:

@@ -96,7 +96,7 @@ def test_of_two_shards_of_a_block_the_one_that_failed_less_is_taken(folder):
     (after,) = folder.shards.iterdir()
     assert after != before
     before.write_bytes(data)  # as a process leaves it that was killed before it tidied up
-    found = folder.load_shard("k", SCENES, _unexpected)
+    found = RunFolder(folder.path).load_shard("k", SCENES, _unexpected)
     assert found is not None
     assert not any(outcome.failed for outcome in found.outcomes)
 
@@ -105,6 +105,7 @@ def test_a_shard_of_another_unit_or_of_other_scenes_is_not_taken(folder):
     (shard,) = folder.shards.iterdir()
     digest = shard.stem.partition("-")[2]
     shard.with_name(f"other-{digest}.parquet").write_bytes(shard.read_bytes())
+    folder = RunFolder(folder.path)
     notices: list[str] = []
     assert folder.load_shard("other", SCENES, notices.append) is None
     assert folder.load_shard("k", SCENES[:2], notices.append) is None

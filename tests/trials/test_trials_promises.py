@@ -8,6 +8,7 @@ import pytest
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.trials import (
+    Arm,
     FloorPlan,
     Metric,
     Pillar,
@@ -18,6 +19,7 @@ from faultpath.trials import (
     load_system,
     system_shown,
 )
+from faultpath.trials.attempt import Done, attempt
 from faultpath.trials.checks import check_system, library_of, paths_of
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -144,3 +146,38 @@ def test_a_plan_that_cannot_be_drawn_is_the_systems_mistake(
     monkeypatch.setattr(planned, "floor_plan", lambda scene: plan)
     with pytest.raises(UserError, match=says):
         system_shown(planned, ("calibrated",), ("cart/000",))
+
+
+@pytest.mark.parametrize(
+    ("scenes", "stated", "size"),
+    [
+        (1, None, 20),
+        (100, None, 20),
+        (1280, None, 20),
+        (1281, None, 21),
+        (10_000, None, 157),
+        (10**6, None, 500),
+        (10_000, 3, 3),
+        (100, 50, 50),
+    ],
+)
+def test_the_size_of_a_block_follows_from_that_of_the_library(toy, scenes, stated, size) -> None:
+    mine = type("Mine", (toy,), {"block_size": stated})()
+    assert mine.scenes_a_block(scenes) == size
+    assert System.scenes_a_block(mine, scenes) == (stated or 20)
+
+
+def test_a_scene_comes_out_the_same_in_a_block_of_any_size(toy) -> None:
+    system, scenes = toy(), [f"cart/{i:03d}" for i in range(50)]
+
+    def trials(size: int) -> list[tuple[object, ...]]:
+        blocks = [scenes[first : first + size] for first in range(0, len(scenes), size)]
+        replies = [attempt(system, Arm(variant="calibrated"), block) for block in blocks]
+        assert all(isinstance(reply, Done) for reply in replies), replies
+        return [
+            (replace(outcome, trace=None), outcome.trace.tobytes())
+            for reply in replies
+            for outcome in reply.outcomes
+        ]
+
+    assert trials(50) == trials(20) == trials(1)

@@ -37,6 +37,8 @@ def namespace(array: Array) -> Any:
 
 def is_array(value: Any) -> bool:
     """Return whether `value` is an array of a namespace that `array_api_compat` knows."""
+    if isinstance(value, np.ndarray):
+        return True
     return bool(_COMPAT.is_array_api_obj(value)) and isinstance(
         getattr(value, "shape", None), tuple
     )
@@ -64,6 +66,8 @@ def read_only(array: Array) -> Array:
 
 def copy(array: Array) -> Array:
     """Return a copy that no later write to `array` can reach."""
+    if type(array) is np.ndarray:
+        return np.array(array)
     return namespace(array).asarray(array, copy=True)
 
 
@@ -129,12 +133,18 @@ def pick(condition: Array, yes: Array, no: Array) -> Array:
 def differs(value: Array, reading: Array) -> Array:
     """Return `[B]`: whether any number of a scene differs. A NaN equals a NaN."""
     unequal = value != reading
-    if namespace(reading).isdtype(reading.dtype, "real floating"):
+    if _has_fractions(reading):
         unequal = unequal & ((value == value) | (reading == reading))
     if unequal.ndim == 1:
         return unequal
     xp = namespace(unequal)
     return xp.any(xp.reshape(unequal, (unequal.shape[0], -1)), axis=1)
+
+
+def _has_fractions(reading: Array) -> bool:
+    if isinstance(reading, np.ndarray):
+        return cast(HostArray, reading).dtype.kind == "f"
+    return bool(namespace(reading).isdtype(reading.dtype, "real floating"))
 
 
 def is_zero(value: Constant) -> bool:
@@ -152,6 +162,8 @@ def misfit(name: str, value: Constant, shape: tuple[int, ...]) -> str | None:
 
 def to_numpy(array: Any) -> HostArray:
     """Return `array` as NumPy; this waits for the device that holds it."""
+    if type(array) is np.ndarray:
+        return array
     if _is_torch(array):
         return np.asarray(array.detach().cpu())
     return np.asarray(array)

@@ -7,8 +7,11 @@ same numbers whatever else runs beside them, which is what makes arms of a contr
 import hashlib
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+from numpy.random.bit_generator import ISpawnableSeedSequence
+from typing_extensions import override
 
 
 @lru_cache(maxsize=65536)
@@ -30,7 +33,29 @@ def generator(purpose: str, scene: str, seed: int, step: int = 0) -> np.random.G
     occupies the high word of its counter, so streams of different steps cannot overlap.
     """
     counter = np.array([0, 0, 0, step], dtype=np.uint64)
-    return np.random.Generator(np.random.Philox(key=key(purpose, scene, seed), counter=counter))
+    source: Any = _Key(key(purpose, scene, seed), step)
+    return np.random.Generator(np.random.Philox(source, counter=counter))
+
+
+class _Key(ISpawnableSeedSequence):
+    """A key where NumPy takes a seed: given as a key it would draw a seed from the system as well,
+    never to use it, which takes longer than all the rest."""
+
+    def __init__(self, key: int, step: int) -> None:
+        self._key, self._step = key, step
+        self._seeds: np.random.SeedSequence | None = None
+
+    @override
+    def generate_state(self, n_words: int, dtype: Any = np.uint32) -> np.ndarray:
+        """Return the key, which is what Philox asks for."""
+        del n_words, dtype
+        return words(self._key)
+
+    @override
+    def spawn(self, n_children: int) -> list[Any]:
+        """Return seeds for further generators, which the address decides too."""
+        self._seeds = self._seeds or np.random.SeedSequence([self._key, self._step])
+        return list(self._seeds.spawn(n_children))
 
 
 def generators(

@@ -113,7 +113,7 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         library=library.name,
         scenes=chosen,
         rows=tuple(rows),
-        look=min(LOOK, system.block_size) if sequential else 0,
+        look=min(LOOK, system.block_size or LOOK) if sequential else 0,
     )
     stop = None
     if request.stop_when is not None:

@@ -105,7 +105,7 @@ class _Execution:
         read = {graph.bindings[port.channel] for part in graph.parts for port in part.ports}
         self._clocks = {name: Clock(loop.interface.source(name), batch.dt_s) for name in read}
         """Clocks of the sources that somebody reads."""
-        self._ports = {id(part): sorted(part.ports) for part in graph.parts}
+        self._ports = {id(part): tuple(_ports_of(part, graph)) for part in graph.parts}
         self._past: dict[str, Reading] = {}
         self._state = graph.plant.start(batch)
         self._memories = [module.begin(batch) for module in graph.modules]
@@ -119,8 +119,13 @@ class _Execution:
     def run(self) -> Iterator[Instant]:
         plant, modules, memories = self._graph.plant, self._graph.modules, self._memories
         state, step = self._state, 0
-        while step < plant.steps and not plant.over(state, step):
+        told_apart = type(plant).over is not Plant.over
+        while step < plant.steps:
+            if told_apart and plant.over(state, step):
+                break
             running = plant.progress(state).running
+            if not told_apart and not running.any():
+                break
             self._taps.set_active(running)
             self._past, self._now = self._now, {}
             sensed = plant.sense(state)
@@ -146,19 +151,17 @@ class _Execution:
     def _inputs(self, part: Part, step: int, truths: Mapping[str, Any], running: Array) -> Inputs:
         delivered: dict[tuple[str, str], Any] = {}
         at_read: dict[Port, Callable[[], Any]] = {}
-        for port in self._ports[id(part)]:
-            source = self._graph.bindings[port.channel]
-            reading = self._now[source] if port in part.reads else self._past.get(source)
+        for port, consumer, source, past, at_read_only in self._ports[id(part)]:
+            reading = self._past.get(source) if past else self._now[source]
             if reading is None:
                 raise SystemMistake(
                     f"{label_of(part)} reads what channel '{port.channel}' held one step before, "
                     f"but {self._no_past(source)}"
                 )
-            tap = port.channel, part.consumer(port)
-            if port in part.at_read:
-                at_read[port] = partial(self._taps.deliver, *tap, reading, step)
+            if at_read_only:
+                at_read[port] = partial(self._taps.deliver, port.channel, consumer, reading, step)
             else:
-                delivered[port] = self._taps.deliver(*tap, reading, step)
+                delivered[port] = self._taps.deliver(port.channel, consumer, reading, step)
         declared = part.truths if isinstance(part, Module) else ()
         shown = {name: truths[name] for name in declared}
         return Inputs(part.name, step, delivered, shown, running, at_read, label_of(part))
@@ -174,6 +177,13 @@ class _Execution:
             f"nobody says what source '{source}' held before the first step: write "
             f'`@writes("{source}", before=0.0)`, or return it from before() of its module'
         )
+
+
+def _ports_of(part: Part, graph: Graph) -> Iterator[tuple[Port, str, str, bool, bool]]:
+    """Yield each port, its consumer and source, whether it reads the past, and only when asked."""
+    for port in sorted(part.ports):
+        source = graph.bindings[port.channel]
+        yield port, part.consumer(port), source, port not in part.reads, port in part.at_read
 
 
 def _returned(part: Part, outputs: Outputs, name: str, step: int) -> Any:

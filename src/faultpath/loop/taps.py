@@ -70,6 +70,7 @@ class Taps:
         guard: bool = False,
         observer: DeliveryListener | None = None,
     ) -> None:
+        self._refusal = partial(refusal, interface)
         self._interface = interface
         self._observer = observer
         self._scenes = tuple(scenes)
@@ -129,17 +130,16 @@ class Taps:
             NotFinite: The first reading at this tap is not finite.
         """
         tap = self._taps.get((channel, consumer))
-        address = self._interface, tap, channel, consumer
         if tap is None:
-            raise refusal(*address, reading, step)
+            raise self._refusal(tap, channel, consumer, reading, step)
         try:
             value = reading.value
             if step < 0:
                 raise MalformedReading(f"tap {tap}: step {step} is before the first, which is 0")
             if reading.source != tap.source or not tap.permitted or reading.step > step:
-                raise refusal(*address, reading, step)
+                raise self._refusal(tap, channel, consumer, reading, step)
         except AttributeError:
-            raise refusal(*address, reading, step) from None
+            raise self._refusal(tap, channel, consumer, reading, step) from None
         if step != tap.last_step:
             if step < tap.last_step:
                 raise MalformedReading(

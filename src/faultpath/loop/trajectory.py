@@ -60,16 +60,21 @@ class Trajectories:
         if not self._waiting:
             return
         scenes = len(self._hashes)
-        masks, parts = list[NDArray[np.bool_]](), list[NDArray[np.uint8]]()
-        for value, running in self._waiting:
-            mask = np.ones(scenes, np.bool_) if running is None else to_numpy(running)
+        masks, widths, parts = list[Array](), list[int](), list[NDArray[np.uint8]]()
+        for value, mask in self._waiting:  # those of one step have one mask
             parts.append(row_bytes(value))
-            masks.append(np.broadcast_to(mask, (scenes,)))
+            if not masks or mask is not masks[-1]:
+                masks.append(mask)
+                widths.append(0)
+            widths[-1] += parts[-1].shape[1]
+        ran = np.ones((scenes, len(masks)), np.bool_)
+        for step, mask in enumerate(masks):
+            if mask is not None:
+                ran[:, step] = to_numpy(mask)
         numbers = np.concatenate(parts, axis=1)
-        widths = [part.shape[1] for part in parts]
-        for state, row, ran in zip(self._hashes, numbers, np.stack(masks, axis=1), strict=True):
-            if ran.all():
+        for state, row, steps in zip(self._hashes, numbers, ran, strict=True):
+            if steps.all():
                 state.update(row)
-            elif ran.any():
-                state.update(row[np.repeat(ran, widths)])
+            elif steps.any():
+                state.update(row[np.repeat(steps, widths)])
         self._waiting, self._size = [], 0

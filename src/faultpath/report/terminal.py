@@ -19,7 +19,7 @@ from faultpath.decisions.tables import Line, Table, line
 from faultpath.decisions.tables.terminal import Parted, drawn
 from faultpath.interface import Gap, Interface, rank, transitive_consumers
 from faultpath.report.tables import DIFFERENCE, by_path, by_quantity, by_threshold
-from faultpath.systems.checks.recording import Read
+from faultpath.systems.checks.reads import Read
 from faultpath.systems.checks.tracing import TraceReport
 
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")

@@ -19,6 +19,7 @@ from faultpath.systems.episodes import SCENE, EpisodePlant
 from faultpath.systems.modules import FunctionModule
 from faultpath.trials import Library, LoopSystem, SceneRef, Wiring
 from faultpath.trials.checks import UNNAMED
+from faultpath.trials.system import BLOCK
 
 SCENES: Mapping[str, Sequence[int]] = {
     "training": range(100),
@@ -67,6 +68,9 @@ class ComposedSystem(LoopSystem):
     Raises:
         SystemMistake: The parts do not fit together, or a source has no unit.
     """
+
+    block_size = BLOCK
+    """Its plant moves a scene at a time: in larger blocks there is little to gain."""
 
     def __init__(
         self,

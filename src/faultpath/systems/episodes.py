@@ -10,10 +10,10 @@ from typing_extensions import override
 
 from faultpath.core.arrays import HostArray, to_numpy
 from faultpath.core.errors import SystemMistake
-from faultpath.core.text import listed, unknown
+from faultpath.core.text import unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
 from faultpath.systems.arguments import check_episode
-from faultpath.systems.observed import stacked
+from faultpath.systems.observed import Look, look
 from faultpath.trials import Metric
 
 SCENE = "seed/"
@@ -76,11 +76,6 @@ class Measure:
 
     metric: Metric
     of: Callable[[Episode], float]
-
-
-Look = str | int | slice | tuple[Any, ...] | Callable[[Any], Any]
-"""Place of a source in the observation: a key, an index or slice, several in turn, or a
-function of the batch's observation that returns an array `[B, ...]`."""
 
 
 Show = Callable[[Any], Any]
@@ -162,33 +157,10 @@ class EpisodePlant(Plant):
         self, worlds: Sequence[SceneInstance], observations: Sequence[Any]
     ) -> dict[str, HostArray]:
         """Return every source, `[B, ...]`, of worlds with these observations."""
-        batch, sources = stacked(observations), dict[str, HostArray]()
-        try:
-            for name, at in self._observes.items():
-                part = at(batch) if callable(at) else batch
-                keys = () if callable(at) else at if isinstance(at, tuple) else (at,)
-                for key in keys:
-                    part = self._part(name, part, key) if isinstance(key, str) else part[:, key]
-                sources[name] = np.array(part)
-        except (LookupError, TypeError) as error:
-            kind = type(batch).__name__ if not hasattr(batch, "shape") else list(batch.shape[1:])
-            raise SystemMistake(
-                f"observes: {self.observed} ({kind}) holds no such part ({error}): give a key, an "
-                "index or a slice of it"
-            ) from error
+        sources = look(self._observes, observations, self.observed)
         for name in self.facts:
             sources[name] = np.array([np.asarray(world.facts[name]) for world in worlds])
         return sources
-
-    def _part(self, source: str, observation: Any, key: str) -> Any:
-        """Return what a key of an observation holds."""
-        try:
-            return observation[key]
-        except KeyError:
-            raise SystemMistake(
-                f"observes: source '{source}': {self.observed} has no key '{key}'; it has "
-                f"{listed(map(str, observation))}"
-            ) from None
 
     @override
     def start(self, batch: Batch) -> _Batch:
@@ -255,10 +227,10 @@ class EpisodePlant(Plant):
             result = state.worlds[i].step(action[i], inputs.step)
             state.seen[i], rewards[i], ends[0, i], ends[1, i], info[i] = result
         fresh = self._sensed(state.worlds, state.seen)
-        before, state.sensed = state.sensed, {}
+        before, state.sensed, all_run = state.sensed, {}, running.all()
         for name, old in before.items():
             value = fresh[name]
-            if not running.all():
+            if not all_run:
                 value = np.where(running.reshape(-1, *[1] * (value.ndim - 1)), value, old)
             if value.ndim > 2:
                 state.log[name].clear()
@@ -268,6 +240,19 @@ class EpisodePlant(Plant):
         state.steps = state.steps + running
         terminated, truncated = ends
         ended = running & (terminated | truncated | (state.steps == self.steps))
+        state.at = self._places(state.worlds)
+        if ended.any():
+            self._end(state, ended, terminated, info)
+        return state
+
+    def _end(
+        self,
+        state: _Batch,
+        ended: HostArray,
+        terminated: HostArray,
+        info: Sequence[Mapping[str, Any]],
+    ) -> None:
+        """Judge the episodes that ended at a step."""
         succeeded, crashed = state.succeeded.copy(), state.crashed.copy()
         for i in map(int, np.flatnonzero(ended)):
             signals = {name: np.stack([rows[i] for rows in log]) for name, log in state.log.items()}
@@ -283,12 +268,10 @@ class EpisodePlant(Plant):
             for name, measure in self.metrics.items():
                 state.metrics[name][i] = measure.of(episode)
             crashed[i] = terminated[i] and not succeeded[i]
-        state.running, state.succeeded, state.crashed = running & ~ended, succeeded, crashed
-        state.at = self._places(state.worlds)
+        state.running, state.succeeded, state.crashed = state.running & ~ended, succeeded, crashed
         if not state.running.any():
             for world in state.worlds:
                 world.close()
-        return state
 
     @override
     def progress(self, state: _Batch) -> Progress:

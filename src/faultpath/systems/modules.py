@@ -98,6 +98,7 @@ class FunctionModule(Module):
         read = {Port(name, name) for name in parameters if name not in (MEMORY, *values)}
         self.reads_past = frozenset(port for port in read if port.channel in past)
         self.reads = frozenset(read - self.reads_past) | self.at_read
+        self._handed_over = tuple(sorted(read))
 
     def given(self, **values: Any) -> "FunctionModule":
         """Return it with other values for some arguments, which it then reads no more.
@@ -152,7 +153,7 @@ class FunctionModule(Module):
 
     @override
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
-        rows = {port.channel: inputs[port] for port in self.ports - self.at_read}
+        rows = {port.channel: inputs[port] for port in self._handed_over}
         if self._of:
             for i, scene in enumerate(cast("list[Made]", memory)):
                 if inputs.running is None or inputs.running[i]:

@@ -1,16 +1,67 @@
 """Observations of environments, nested or plain arrays, stacked into a batch or hashed."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from hashlib import sha256
 from typing import Any, cast
 
 import numpy as np
 
 from faultpath.core.arrays import HostArray
+from faultpath.core.errors import SystemMistake
+from faultpath.core.text import listed
 
 _PLACE = re.compile(r"faultpath_system_\w+\.| at 0x[0-9a-f]+")
 """The module of a system, called after where its file lies, and where in memory an object is."""
+
+
+Look = str | int | slice | tuple[Any, ...] | Callable[[Any], Any]
+"""Place of a source in the observation: a key, an index or slice, several in turn, or a
+function of the batch's observation that returns an array `[B, ...]`."""
+
+
+def look(
+    observes: Mapping[str, Look], observations: Sequence[Any], observed: str
+) -> dict[str, HostArray]:
+    """Return every source, `[B, ...]`, of the observations of single scenes.
+
+    `observed` is what messages call these. Raises `SystemMistake` for what they do not hold.
+    """
+    batch = cache(lambda: stacked(observations))  # most observe a few keys of what may be large
+    mapped, sources = isinstance(observations[0], Mapping), dict[str, HostArray]()
+    try:
+        for name, at in observes.items():
+            keys = () if callable(at) else at if isinstance(at, tuple) else (at,)
+            if callable(at):
+                part = at(batch())
+            elif mapped and keys and isinstance(keys[0], str):
+                part = stacked([_part(name, row, keys[0], observed) for row in observations])
+                keys = keys[1:]
+            else:
+                part = batch()
+            for key in keys:
+                part = _part(name, part, key, observed) if isinstance(key, str) else part[:, key]
+            sources[name] = np.array(part)
+    except (LookupError, TypeError) as error:
+        shape = getattr(batch(), "shape", None)
+        kind = type(batch()).__name__ if shape is None else list(shape[1:])
+        raise SystemMistake(
+            f"observes: {observed} ({kind}) holds no such part ({error}): give a key, an "
+            "index or a slice of it"
+        ) from error
+    return sources
+
+
+def _part(source: str, observation: Any, key: str, observed: str) -> Any:
+    """Return what a key of an observation holds."""
+    try:
+        return observation[key]
+    except KeyError:
+        raise SystemMistake(
+            f"observes: source '{source}': {observed} has no key '{key}'; it has "
+            f"{listed(map(str, observation))}"
+        ) from None
 
 
 def stacked(rows: Sequence[Any]) -> Any:
@@ -22,7 +73,24 @@ def stacked(rows: Sequence[Any]) -> Any:
         }
     if isinstance(first, tuple):
         return tuple(stacked(column) for column in zip(*rows, strict=True))
-    return np.stack(rows)
+    return np.array(rows) if _alike(rows) else np.stack(rows)
+
+
+def _alike(rows: Sequence[Any]) -> bool:
+    """Return whether `np.array` gives, in a third of the time, what `np.stack` does."""
+    first = rows[0]
+    if type(first) is float:
+        return all(type(row) is float for row in rows)
+    if type(first) is not np.ndarray:
+        return False
+    return (
+        first.ndim < 2
+        and first.dtype.kind in "biuf"
+        and all(
+            type(row) is np.ndarray and row.dtype == first.dtype and row.shape == first.shape
+            for row in rows
+        )
+    )
 
 
 def hashed(*parts: Any) -> str:

@@ -70,8 +70,8 @@ def _mapping(holds: Callable[[Any, Any], bool], least: int = 0) -> Callable[[Any
 _PROMISED: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "control_dt_s": (_positive, "give the seconds of a control step"),
     "block_size": (
-        lambda size: isinstance(size, Integral) and int(size) >= 1,
-        "give a whole number, 1 or more",
+        lambda size: size is None or (isinstance(size, Integral) and int(size) >= 1),
+        "give a whole number, 1 or more, or None",
     ),
     "parallel": (lambda flag: isinstance(flag, int), "give True or False"),
     "trained": (lambda flag: isinstance(flag, int), "give True or False"),
@@ -139,6 +139,7 @@ def _declared(system: System, attribute: str, label: str) -> Any:
             mistake.place = place(error)
             raise mistake from error
         value = None
-    if value is None and getattr(System, attribute, attribute) is not None:
+    may_be_none = attribute == "block_size"  # then the library decides
+    if value is None and not may_be_none and getattr(System, attribute, attribute) is not None:
         raise SystemMistake(f"{label} declares no `{attribute}`: set it in the class")
     return value

@@ -1,5 +1,6 @@
 """A system that is nothing but its parts: a plant and modules, executed by the one loop."""
 
+import math
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -12,7 +13,10 @@ from faultpath.core.arrays import Array, namespace, to_numpy
 from faultpath.interface import Provenance
 from faultpath.loop import Batch, Deliverer, Graph, Loop, Module, Plant, Taps, consumers, graph
 from faultpath.trials.outcome import Outcome, Status, control_steps
-from faultpath.trials.system import System, Variant
+from faultpath.trials.system import BLOCK, System, Variant
+
+BLOCKS, LARGEST_BLOCK = 64, 500
+"""Blocks of a large library, enough for many workers, and scenes of a block."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +34,8 @@ class LoopSystem(System):
     Consumers and privileged sources of its variants follow from the modules' ports, and `run` is
     the loop. Its author writes the parts, and says which of them each variant has.
     """
+
+    block_size = None
 
     @property
     @abstractmethod
@@ -79,6 +85,16 @@ class LoopSystem(System):
         Raises `SystemMistake` where its parts do not fit together; see `faultpath.loop.graph`.
         """
         return Loop(self.interface, self._graph(variant, seed))
+
+    @override
+    def scenes_a_block(self, scenes: int) -> int:
+        """Return the size of the blocks of a library with so many scenes.
+
+        A step of arrays costs hardly more for many scenes than for a few, so a large library has so
+        many blocks and no more, up to a size that bounds what a block keeps in memory and what is
+        lost where one ends early.
+        """
+        return self.block_size or min(max(BLOCK, math.ceil(scenes / BLOCKS)), LARGEST_BLOCK)
 
     @override
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:

@@ -16,6 +16,9 @@ from faultpath.loop import Taps
 from faultpath.trials.declared import FloorPlan, Library, Variant
 from faultpath.trials.outcome import Metric, Outcome, Status
 
+BLOCK = 20
+"""Scenes of a block, unless the system states its own."""
+
 Values: TypeAlias = NDArray[np.float64]
 
 
@@ -64,8 +67,9 @@ class System(ABC):
 
     name: str
     control_dt_s: float
-    block_size: int = 20
-    """Scenes handed to one call of `run`: the unit of work, of storage and of resuming."""
+    block_size: int | None = BLOCK
+    """Scenes handed to one call of `run`: the unit of work, of storage and of resuming. `None`: as
+    `scenes_a_block` says."""
     parallel: bool = True
     """Whether several worker processes are faster than one; not where a GPU does the work."""
     time_limit_s: float | None = None
@@ -114,6 +118,15 @@ class System(ABC):
         The taps are new, and for these scenes. Who runs the block fills `faulted_steps` and
         `altered_steps` in from their receipts.
         """
+
+    def scenes_a_block(self, scenes: int) -> int:
+        """Return the size of the blocks of a library with so many scenes.
+
+        It follows from counts alone, never from how long a block took, so that a run that is
+        resumed, on whatever machine, finds its blocks again.
+        """
+        del scenes
+        return self.block_size or BLOCK
 
     @property
     def data_files(self) -> Sequence[str | PathLike[str]]:

@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,8 @@ from faultpath.loop import (
     TapCount,
     UndeclaredReader,
 )
-from faultpath.systems.checks.recording import Enough, Read, Recording, signals
+from faultpath.systems.checks.reads import Enough, Read, ReadLog
+from faultpath.systems.checks.recording import Recording, signals
 from faultpath.systems.episodes import EpisodePlant
 from faultpath.trials import Arm, LoopSystem, Outcome, System
 from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
@@ -78,6 +80,15 @@ class RecordedBlock:
 
         `what` is a field of `Read` by scene: a digest, or the sum.
         """
+        if (dt_s, what) not in self._readings:
+            self._readings[dt_s, what] = self._by_reading(dt_s, what)
+        return self._readings[dt_s, what]
+
+    @cached_property
+    def _readings(self) -> dict[tuple[float, str], dict[tuple[str, int, str, str], Any]]:
+        return {}
+
+    def _by_reading(self, dt_s: float, what: str) -> dict[tuple[str, int, str, str], Any]:
         ends = {outcome.scene: outcome.steps(dt_s) for outcome in self.outcomes}
         return {
             (scene, read.step, *read.tap): noted
@@ -120,13 +131,16 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
     outcomes, counts, reads = list[Outcome](), list[TapCount](), list[Read]()
     signals_by_scene = list[tuple[Signal, ...]]()
     error = fails = ""
-    for first in range(0, len(block.scenes), system.block_size):
-        scenes = block.scenes[first : first + system.block_size]
-        recording = Recording(() if block.signals else scenes, block.steps)
-        shown, result = _with_plant(system, recording) if block.signals else system, None
-        with suppress(Enough):
-            result = attempt(shown, block.arm, scenes, observer=recording)
-        reads += () if block.signals else recording.reads.values()
+    size = system.scenes_a_block(len(block.scenes))
+    for first in range(0, len(block.scenes), size):
+        scenes = block.scenes[first : first + size]
+        recording, log, result = Recording(), ReadLog(scenes, block.steps), None
+        if block.signals:
+            result = attempt(_with_plant(system, recording), block.arm, scenes, observer=recording)
+        else:
+            with suppress(Enough):
+                result = attempt(system, block.arm, scenes, observer=log)
+        reads += log.reads()
         if isinstance(result, Done):
             outcomes += result.outcomes
             counts += result.taps

@@ -14,7 +14,7 @@ from faultpath.faults import Sequence as InTurn
 from faultpath.systems.checks.blocks import BlockSpec, RecordedBlock, coarsest, run_blocks
 from faultpath.systems.checks.delivery import HELD, MOVED, reader_at, unanswered
 from faultpath.systems.checks.judging import judged
-from faultpath.systems.checks.recording import Read
+from faultpath.systems.checks.reads import Read
 from faultpath.systems.checks.seen import UNDER, Check, Seen
 from faultpath.trials import Arm, System, SystemSpec, Variant, library_of
 from faultpath.trials.execution.dispatch import Built

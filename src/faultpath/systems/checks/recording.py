@@ -1,4 +1,4 @@
-"""Recordings of an arm's taps and plant while it runs: who read what, and named signals.
+"""Recordings of an arm's taps and plant while it runs, and the named signals in them.
 
 Nothing that runs knows of it: an observer sees what taps deliver, and the plant of a loop senses
 what it senses. Signals are small arrays of numbers: what a source held, what a consumer got where
@@ -6,20 +6,17 @@ a fault changed it, by how much, and when a fault was in force.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from hashlib import blake2b
 from typing import Any, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 from typing_extensions import override
 
 from faultpath.core.arrays import is_array, to_numpy
 from faultpath.core.error_source import described
 from faultpath.core.errors import SystemMistake
-from faultpath.core.results import Result
 from faultpath.interface import Provenance
 from faultpath.loop import DeliveryListener, Query, Reading, Tap
 from faultpath.systems.composed import ComposedSystem
@@ -37,60 +34,10 @@ _MOST_NUMBERS = 9
 """Largest size of a signal, that of a rotation matrix; images and candidates are no signals."""
 
 
-class Enough(BaseException):
-    """All steps that were asked for are recorded. No `Exception`: a system may catch those."""
-
-
-class Read(Result):
-    """A delivery of one channel to one consumer in one control step."""
-
-    step: int
-    consumer: str
-    channel: str
-    source: str
-    valid_step: int
-    """Step of the reading: before `step` for what is late, held or read of the past; -1 is what
-    the source held before the first step."""
-    asks: int = 0
-    """Answers that the consumer got of a query."""
-    altered_by: tuple[str, ...] = ()
-    """Faults at the tap, where what was delivered differs from the reading."""
-    dtype: str = Field(default="", exclude=True)
-    low: float = Field(default=math.inf, exclude=True)
-    high: float = Field(default=-math.inf, exclude=True)
-    """Largest of the finite numbers of all scenes, as `low` is the smallest."""
-    lost: str = Field(default="", exclude=True)
-    """A scene with a number that is not finite."""
-    clean: Mapping[str, bytes] = Field(default={}, exclude=True)
-    """A digest of what the source held, by scene."""
-    sums: Mapping[str, float] = Field(default={}, exclude=True)
-    """Sum of the finite numbers that the source held, by scene."""
-    got: Mapping[str, bytes] = Field(default={}, exclude=True)
-    """A digest of what the consumer got, by scene."""
-
-    @property
-    def tap(self) -> tuple[str, str]:
-        """Channel and consumer."""
-        return self.channel, self.consumer
-
-    @property
-    def altered(self) -> int:
-        """Number of scenes in which the consumer got something else than the source held."""
-        return sum(self.clean[scene] != self.got[scene] for scene in self.clean)
-
-
 class Recording(DeliveryListener):
-    """The deliveries of the taps of a run.
+    """The numbers that passed the taps of a run, and what can be made of them."""
 
-    Args:
-        scenes: Scenes of the run, for digests of its reads; none where only signals are wanted.
-        steps: After so many it raises `Enough`; `None`: never.
-    """
-
-    def __init__(self, scenes: Sequence[str] = (), steps: int | None = None) -> None:
-        self._scenes, self._steps = scenes, steps
-        self.reads: dict[tuple[int, str, str], Read] = {}
-        """By step, channel and consumer, in the order in which they happened."""
+    def __init__(self) -> None:
         self.sources: dict[str, Steps] = {}
         """By source, or by `plant.truth` for what the plant shows to estimators alone."""
         self.got: dict[tuple[str, str], Steps] = {}
@@ -106,38 +53,21 @@ class Recording(DeliveryListener):
 
     @override
     def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
-        if self._steps is not None and step >= self._steps:
-            raise Enough
-        key = step, tap.channel, tap.consumer
-        new = key not in self.reads
-        if new:
-            self.reads[key] = Read(
-                step=step,
-                consumer=tap.consumer,
-                channel=tap.channel,
-                source=reading.source,
-                valid_step=reading.step,
-            )
         if isinstance(reading.value, Query):
             self.queries.setdefault(reading.source, {})[reading.step] = reading.value
             return
-        if new and self._scenes:
-            tap.check_shape(reading.value)
-            self._note(key, reading.value, got, asks=0)
         self.source(reading.source, reading.value, reading.step)
         clean, received = _numbers(reading.value), _numbers(got)
         if clean is not None and received is not None:
-            self.clean.setdefault(key[1:], {})[step] = clean
-            self.got.setdefault(key[1:], {})[step] = received
+            at = tap.channel, tap.consumer
+            self.clean.setdefault(at, {})[step] = clean
+            self.got.setdefault(at, {})[step] = received
 
     @override
     def answered(
         self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
     ) -> None:
         self.requests.setdefault(tap.source, request)
-        if self._scenes:
-            key = step, tap.channel, tap.consumer
-            self._note(key, query.value(answer), query.value(got), asks=1)
 
     @override
     def faulted(self, step: int, in_force: Any) -> None:
@@ -154,33 +84,14 @@ class Recording(DeliveryListener):
         if step >= 0 and step not in by_step and (numbers := _numbers(value)) is not None:
             by_step[step] = numbers
 
-    def _note(self, key: tuple[int, str, str], clean: Any, got: Any, asks: int) -> None:
-        read, values = self.reads[key], to_numpy(clean)
-        numbers, finite = values.astype(np.float64), np.isfinite(values)
-        lost = np.flatnonzero(~finite.reshape(len(values), -1).all(axis=1))
-        changed: dict[str, Any] = {
-            "dtype": str(values.dtype),
-            "low": float(np.min(numbers, initial=read.low, where=finite)),
-            "high": float(np.max(numbers, initial=read.high, where=finite)),
-            "lost": self._scenes[lost[0]] if lost.size else read.lost,
-            "asks": read.asks + asks,
-        }
-        sums = np.where(finite, numbers, 0.0).reshape(len(values), -1).sum(axis=1).tolist()
-        scenes = zip(self._scenes, sums, strict=False)
-        changed["sums"] = {scene: read.sums.get(scene, 0.0) + total for scene, total in scenes}
-        for name, before, rows in (("clean", read.clean, values), ("got", read.got, to_numpy(got))):
-            changed[name] = {
-                scene: blake2b(before.get(scene, b"") + row.tobytes(), digest_size=8).digest()
-                for scene, row in zip(self._scenes, rows, strict=False)
-            }
-        self.reads[key] = read.model_copy(update=changed)
-
 
 def _numbers(value: Any) -> Values | None:
     if not is_array(value) or math.prod(value.shape[1:]) > _MOST_NUMBERS:
         return None
     host = np.array(to_numpy(value))
-    return host.reshape(len(host), -1).astype(np.float64) if host.dtype.kind in "fiub" else None
+    if host.dtype.kind not in "fiub":
+        return None
+    return host.reshape(len(host), -1).astype(np.float64, copy=False)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from faultpath.faults import AnyFault, resolve
 from faultpath.interface import module_of
 from faultpath.systems.checks.blocks import BlockSpec, run_block
 from faultpath.systems.checks.check import chosen_variants
-from faultpath.systems.checks.recording import Read
+from faultpath.systems.checks.reads import Read
 from faultpath.trials import Arm, LoopSystem, System, SystemSpec, library_of
 from faultpath.trials.question import TraceQuestion
 

@@ -105,7 +105,7 @@ class Rechecks:
         sound = [
             unit
             for unit in self._units
-            if not any(self._outcomes[unit.arm.key(), scene].failed for scene in unit.scenes)
+            if not any(self._outcomes[unit.arm_key, scene].failed for scene in unit.scenes)
         ]
         if not sound:
             return ()
@@ -136,7 +136,8 @@ class Rechecks:
         # Results have to repeat here: that readings differ in a last bit with the number of scenes
         # in a call, as products of matrices do, is no reason to conclude nothing.
         first = [
-            replace(self._outcomes[arm.key(), scene], trajectory_hash="") for scene in task.scenes
+            replace(self._outcomes[task.unit.arm_key, scene], trajectory_hash="")
+            for scene in task.scenes
         ]
         wrote, other = "", task.scenes
         if isinstance(reply, Wrong) and isinstance(reply.error, WrittenTo):

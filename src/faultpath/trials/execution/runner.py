@@ -140,7 +140,7 @@ def run_study(
             digest = run.save_tables(trials, deliveries)
     except KeyboardInterrupt:
         # What is on disk counts: the run may have been stopped between storing and noting.
-        done = sum(bool(run.files_of(unit.key)) for unit in units)
+        done = len(run.list_shards().keys() & {unit.key for unit in units})
         raise Stopped(
             f"interrupted with {done} of {len(units)} blocks done and kept in {run.path}; run the "
             "same again to resume."
@@ -167,14 +167,15 @@ def _units(study: Study, built: Built) -> tuple[Unit, ...]:
         scenes = sorted(scenes, key=lambda scene: study.scenes.index(scene.id))
     check_rows(study.rows, system.variants)
     fingerprint = built.code.state.digest
-    return plan(study.arms(), scenes, system.block_size, library, fingerprint, study.look)
+    size = system.scenes_a_block(len(library.scenes))
+    return plan(study.arms(), scenes, size, library, fingerprint, study.look)
 
 
 def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:
     for unit in state.units:
         details = folder.failures / f"{unit.key}.txt"
         for scene in unit.scenes:
-            outcome = state.outcomes[unit.arm.key(), scene]
+            outcome = state.outcomes[unit.arm_key, scene]
             if outcome.failed:
                 where = details if details.exists() else None
                 yield Failure(unit.arm, scene, outcome.error or "", where)

@@ -19,6 +19,8 @@ class Unit:
     key: str
     """Content hash of everything that decides the result."""
     arm: Arm
+    arm_key: str
+    """That of `arm`, which a model computes anew each time."""
     block: int
     scenes: tuple[str, ...]
 
@@ -42,17 +44,18 @@ def plan(
         block = place // look if look else scene.index // block_size
         parts.setdefault(block, []).append(scene.id)
     units: list[Unit] = []
+    dumped = [(arm, arm.key(), arm.model_dump(mode="json")) for arm in arms]
     for block, ids in parts.items():
-        for arm in arms:
+        for arm, arm_key, arm_content in dumped:
             content = {
                 "faultpath": __version__,
                 "system": fingerprint,
-                "arm": arm.model_dump(mode="json"),
+                "arm": arm_content,
                 "scenes": ids,
                 "library": library.content_hash,
             }
             key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
-            units.append(Unit(key, arm, block, tuple(ids)))
+            units.append(Unit(key, arm, arm_key, block, tuple(ids)))
     return tuple(units)
 
 

@@ -62,6 +62,10 @@ class RunState:
         self._taps: dict[str, tuple[TapCount, ...]] = {}
         self._partial: dict[str, _Partial] = {}
         self._began, self._ended = time.monotonic(), 0
+        self._trials = sum(len(unit.scenes) for unit in units)
+        self._in_rows = sum(len(unit.scenes) * self._rows[unit.arm_key] for unit in units)
+        self._done = self._done_in_rows = 0
+        """Trials with an outcome, and in how many of the rows' trials they stand."""
         self._failed, self._sound = 0, False
         self._stop = stop if study.look else None
         self._looks, self._over = 0, False
@@ -81,6 +85,7 @@ class RunState:
                 missing.append(unit)
             else:
                 self._enter(unit, shard)
+                self._count(unit, len(unit.scenes))
         self.kept = len(self._taps)
         self._sound = self.kept > 0
         if self.kept or failed:
@@ -121,6 +126,7 @@ class RunState:
         for scene, detail in details.items():
             partial.tracebacks.append(f"{scene}: {unit.arm.model_dump_json()}\n{detail}\n")
         partial.outcomes |= {outcome.scene: outcome for outcome in outcomes}
+        self._count(unit, len(outcomes))
         partial.taps = added((*partial.taps, *taps))
         self._ended += len(outcomes)
         self._failed += len(details)
@@ -161,12 +167,15 @@ class RunState:
             )
 
     def _outcomes_of(self, unit: Unit) -> list[Outcome]:
-        return [self.outcomes[unit.arm.key(), scene] for scene in unit.scenes]
+        return [self.outcomes[unit.arm_key, scene] for scene in unit.scenes]
 
     def _enter(self, unit: Unit, shard: Done) -> None:
-        key = unit.arm.key()
-        self.outcomes.update(((key, outcome.scene), outcome) for outcome in shard.outcomes)
+        self.outcomes.update(((unit.arm_key, outcome.scene), outcome) for outcome in shard.outcomes)
         self._taps[unit.key] = shard.taps
+
+    def _count(self, unit: Unit, trials: int) -> None:
+        self._done += trials
+        self._done_in_rows += trials * self._rows[unit.arm_key]
 
     def enough(self) -> bool:
         """Take the looks whose trials are all there; return whether the study stops."""
@@ -195,20 +204,13 @@ class RunState:
         """Return what the taps did in the units that count, by the key of their arm."""
         counts: dict[str, list[TapCount]] = {}
         for unit in self.units:
-            counts.setdefault(unit.arm.key(), []).extend(self._taps[unit.key])
+            counts.setdefault(unit.arm_key, []).extend(self._taps[unit.key])
         return {key: added(taps) for key, taps in counts.items()}
 
     def progress(self) -> Progress:
         """Return how far the run is, and how long it takes yet at the pace that it had."""
-        trials = rows = done = rows_done = 0
-        for unit in self._units:
-            repeats, some = self._rows[unit.arm.key()], len(unit.scenes)
-            trials, rows = trials + some, rows + repeats * some
-            if unit.key not in self._taps:
-                partial = self._partial.get(unit.key)
-                some = len(partial.outcomes) if partial else 0
-            done, rows_done = done + some, rows_done + repeats * some
         left = None
         if self._ended:
-            left = (trials - done) * (time.monotonic() - self._began) / self._ended
-        return Progress(done, trials, f"{rows_done} of {rows} trials", left)
+            left = (self._trials - self._done) * (time.monotonic() - self._began) / self._ended
+        count = f"{self._done_in_rows} of {self._in_rows} trials"
+        return Progress(self._done, self._trials, count, left)

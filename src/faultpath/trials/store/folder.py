@@ -133,6 +133,8 @@ class RunFolder:
         self.failures = path / "failures"
         self.manifest = path / "manifest.json"
         self.rechecks = path / "rechecks.json"
+        self._shard_files: dict[str, list[Path]] | None = None
+        """By key, as they were listed last: a list for each block would cost its square."""
 
     @contextmanager
     def open(
@@ -156,6 +158,7 @@ class RunFolder:
                 atomic.sweep(folder)
             if previous != manifest:
                 self._write(self.manifest, manifest.encode())
+            self._shard_files = self.list_shards()
             yield
 
     def save_shard(self, key: str, shard: Done) -> None:
@@ -163,19 +166,20 @@ class RunFolder:
         data = encode_shard(key, shard)
         path = self.shards / f"{key}-{_digest(data)[:32]}.parquet"
         self._write(path, data)
-        for other in self.files_of(key):
+        for other in self._files_of(key):
             if other != path:  # the block as it was before its failed trials were tried again
                 other.unlink(missing_ok=True)
+        self._files_of(key)[:] = [path]
 
     def written(self, keys: Sequence[str]) -> tuple[datetime, datetime]:
         """Return when the first and the last of some stored blocks were written, UTC."""
-        times = [path.stat().st_mtime for key in keys for path in self.files_of(key)]
+        times = [path.stat().st_mtime for key in keys for path in self._files_of(key)]
         return datetime.fromtimestamp(min(times), UTC), datetime.fromtimestamp(max(times), UTC)
 
     def load_shard(self, key: str, scenes: Sequence[str], notice: Say) -> Done | None:
         """Return a finished block, or `None` without a whole one; a damaged one is removed."""
         shards: list[Done] = []
-        for path in self.files_of(key):
+        for path in tuple(self._files_of(key)):
             try:
                 data = contents(path)
             except OSError as error:
@@ -189,6 +193,7 @@ class RunFolder:
             except Unreadable as error:
                 notice(f"{path} is damaged ({error}); removing it and running its trials again")
                 path.unlink()
+                self._files_of(key).remove(path)
             else:
                 shards.append(shard)
         # A process killed between writing and tidying leaves two; the later one failed less often.
@@ -219,9 +224,17 @@ class RunFolder:
         self._write(self.path / OUTCOMES, data)
         return _digest(data)
 
-    def files_of(self, key: str) -> list[Path]:
-        """Return the files of a finished block."""
-        return sorted(self.shards.glob(f"{key}-*.parquet"))
+    def list_shards(self) -> dict[str, list[Path]]:
+        """Return the files of the finished blocks that are on disk, by key."""
+        files: dict[str, list[Path]] = {}
+        for path in sorted(self.shards.glob("*-*.parquet")):
+            files.setdefault(path.name.rpartition("-")[0], []).append(path)
+        return files
+
+    def _files_of(self, key: str) -> list[Path]:
+        if self._shard_files is None:
+            self._shard_files = self.list_shards()
+        return self._shard_files.setdefault(key, [])
 
     def _write(self, path: Path, data: bytes) -> None:
         write_file(path, data, self.path)
