@@ -46,7 +46,7 @@ def test_a_window_gets_what_a_flight_of_its_name_and_seed_gets(kind: faults.Inte
     images = np.random.default_rng(0).uniform(size=(WINDOWS, STEPS, 6, 8)).astype(np.float32)
     data = Windows(INTERFACE, "encoder", {"image": images}, targets=np.zeros(WINDOWS), dt_s=DT_S)
     everywhere = faults.Fault(channel="image", intervention=kind, onset_step=1)
-    (fault,) = everywhere.resolved(INTERFACE, {"encoder.pixels"})
+    (fault,) = faults.resolve((everywhere,), INTERFACE, {"encoder.pixels"})
     got, counts = delivered(data, (fault,), data.readings, range(WINDOWS), 0, epoch=2)
     (seen,) = got.values()
     taps = Taps(INTERFACE, (fault,), scenes=data.ids, dt_s=DT_S, seed=2)

@@ -7,7 +7,7 @@ import numpy as np
 
 from faultpath import faults as kinds
 from faultpath.core.streams import generator
-from faultpath.faults import Coupled, Fault, resolve
+from faultpath.faults import Fault, resolve
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.loop import Reading, Taps
 
@@ -65,13 +65,13 @@ def series(scene: str, channel: str, steps: int) -> np.ndarray[Any, Any]:
     return generator("series", scene, 0).normal(size=(steps, *SHAPES[channel]))
 
 
-def make(faults: Iterable[Fault | Coupled] = (), scenes: Sequence[str] = "ab", **more: Any) -> Taps:
+def make(faults: Iterable[Fault] = (), scenes: Sequence[str] = "ab", **more: Any) -> Taps:
     found = resolve(faults, INTERFACE, more.get("consumers"))
     return Taps(INTERFACE, found, scenes=tuple(scenes), dt_s=DT_S, **more)
 
 
 def play(
-    faults: Iterable[Fault | Coupled],
+    faults: Iterable[Fault],
     scenes: Sequence[str],
     *,
     consumer: str = "predictor.wind",
