@@ -40,6 +40,7 @@ SOURCES = {"mass": "scale", "wind": "still"}
 INTERVENTIONS: tuple[kinds.Intervention, ...] = (
     kinds.Scale(factor=1.1),
     kinds.UniformScale(half_range=0.2),
+    kinds.Offset(by=0.1),
     kinds.Offset(by=(0.1, 0.0, -0.2)),
     kinds.Rotate(by=(0.1, 0.0, -0.2)),
     kinds.Quantise(step_size=0.25),

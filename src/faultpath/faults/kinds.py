@@ -12,6 +12,26 @@ from faultpath.faults.recorded import Recorded
 from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Rotate, Scale
 from faultpath.interface import Channel
 
+__all__ = [
+    "Bias",
+    "Delay",
+    "Drift",
+    "Dropout",
+    "Erase",
+    "Freeze",
+    "Hold",
+    "Noise",
+    "Offset",
+    "Quantise",
+    "Recorded",
+    "Rotate",
+    "Scale",
+    "Sequence",
+    "Shuffle",
+    "UniformScale",
+]
+"""Every kind, for `faultpath.faults`."""
+
 
 class Sequence(Intervention):
     """Apply interventions in turn: each acts on what the one before delivers.

@@ -1,45 +1,30 @@
 """Names that `faultpath.faults` offers."""
 
+import faultpath.faults.kinds as kinds
 from faultpath.faults.base import Draws, Intervention, Moment
-from faultpath.faults.drawn import Bias, Drift, Dropout, Noise, Shuffle, UniformScale
 from faultpath.faults.fault import ALL, Fault, at_readers, describe, resolve
-from faultpath.faults.kinds import INTERVENTIONS, AnyIntervention, Sequence
+from faultpath.faults.kinds import *  # noqa: F403 - a new kind is listed there alone
+from faultpath.faults.kinds import INTERVENTIONS, AnyIntervention
 from faultpath.faults.parse import FaultPreset, parse_fault
-from faultpath.faults.recorded import Address, Record, Recorded, encode_record
+from faultpath.faults.recorded import Address, Record, encode_record
 from faultpath.faults.text import FaultText
-from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Rotate, Scale
 
-__all__ = [
+__all__: list[str] = [
     "ALL",
     "INTERVENTIONS",
     "Address",
     "AnyIntervention",
-    "Bias",
-    "Delay",
     "Draws",
-    "Drift",
-    "Dropout",
-    "Erase",
     "Fault",
     "FaultPreset",
     "FaultText",
-    "Freeze",
-    "Hold",
     "Intervention",
     "Moment",
-    "Noise",
-    "Offset",
-    "Quantise",
     "Record",
-    "Recorded",
-    "Rotate",
-    "Scale",
-    "Sequence",
-    "Shuffle",
-    "UniformScale",
     "at_readers",
     "describe",
     "encode_record",
     "parse_fault",
     "resolve",
 ]
+__all__ += kinds.__all__

@@ -42,7 +42,7 @@ class FaultText:
     readers: tuple[str, ...]
     """Modules and places; empty for every reader."""
     joined: tuple["FaultText", ...] = ()
-    """What stands after each `&`."""
+    """Faults after each `&`, which share the cause."""
 
     @classmethod
     def read(cls, text: str) -> Self:
@@ -108,7 +108,7 @@ class FaultText:
 
     @property
     def cause(self) -> str:
-        """What addresses the random numbers: no size, so that they are the same at each."""
+        """Address of the random numbers: without sizes, so that they are the same at each."""
         head = self.name if self.kind is None else f"{self.name}:{self.kind}"
         return " & ".join((head, *(part.cause for part in self.joined)))
 
