@@ -78,7 +78,7 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
         ({"points": 9 * 10**400}, "takes at most 10000"),
         ({"against": ("controller",)}, "--against needs two modules"),
         ({"against": ("controller", "controller.inverse")}, "share no place"),
-        ({"against": ("controller", "speedometer")}, "unknown reader"),
+        ({"against": ("controller", "speedometer")}, "name two of controller, observer"),
         ({"against": ("controller", "observer"), "baseline": "blind"}, "two different variants"),
         ({"up_to": None}, "say how large errors may be"),
         ({"up_to": 1.0}, "less than 1"),

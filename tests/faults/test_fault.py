@@ -41,7 +41,7 @@ def test_consumers_that_a_variant_lacks_are_left_out() -> None:
     assert resolve(calibration(0.1), INTERFACE, plain) == at_readers(everywhere, plain)
     assert at_readers(everywhere, {"observer"}) == resolve(aimed("observer"), INTERFACE)
     assert at_readers(at_readers(everywhere, {"observer"}), plain) == ()
-    with pytest.raises(UserError, match="reaches no reader in this variant"):
+    with pytest.raises(UserError, match="reaches no reader: here are predictor"):
         resolve(aimed("observer"), INTERFACE, plain)
 
 

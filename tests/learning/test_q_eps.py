@@ -106,7 +106,7 @@ def of_observer(repair):
         (lambda: windows(readings=UNEVEN), "interface says"),
         (lambda: of_observer(uncertainty_training("gain")), "gain"),
         (lambda: of_observer(uncertainty_training("wind:scale=2")), "unknown channel 'wind'"),
-        (lambda: of_observer(uncertainty_training("gain:scale=2@controller")), "acts on none of"),
+        (lambda: of_observer(uncertainty_training("gain:scale=2@controller")), "reaches no reader"),
         (lambda: of_observer(withholding("heading", value=0.0)), r"shape \[3\]"),
         (lambda: of_observer(withholding("gain", "pilot")), "does not read it"),
     ],

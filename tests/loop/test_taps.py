@@ -72,7 +72,7 @@ def test_steps_do_not_run_backwards() -> None:
         ({"faults": [SCALE.aimed_at("pilot")]}, "channel 'mass': unknown reader 'pilot'"),
         (
             {"faults": [SCALE], "consumers": {"predictor.dynamics"}},
-            "fault 'mass scaled by 2 at observer' reaches no reader",
+            "fault 'mass scaled by 2 at observer.model' reaches no reader",
         ),
     ],
 )

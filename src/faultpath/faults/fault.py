@@ -113,6 +113,18 @@ def at_readers(faults: Iterable[Fault], names: Collection[str]) -> tuple[Fault, 
     return tuple(narrowed)
 
 
+def reaching(faults: Iterable[Fault], present: Collection[str]) -> tuple[Fault, ...]:
+    """Return resolved faults at the readers that are present; `UserError` where none of them is."""
+    faults = tuple(faults)
+    reached = at_readers(faults, present)
+    if faults and not reached:
+        raise UserError(
+            f"fault '{describe(faults)}' reaches no reader: here are {listed(present)}; leave the "
+            "fault out or name other readers"
+        )
+    return reached
+
+
 def resolve(
     faults: Iterable[Fault], interface: Interface, present: Collection[str] | None = None
 ) -> tuple[Fault, ...]:
@@ -120,8 +132,8 @@ def resolve(
     defaults filled in.
 
     A reader that they name needs to read only one of their channels. Readers that are not `present`
-    in a variant are left out. Raises `UserError` for a fault that cannot act on `interface`, and
-    where no reader is left.
+    in a variant are left out, see `reaching`. Raises `UserError` for a fault that cannot act on
+    `interface`.
     """
     faults = tuple(faults)
     channels = [interface.channel(fault.channel) for fault in faults]
@@ -140,14 +152,7 @@ def resolve(
         }
         names = channel.consumers if ALL in fault.consumers else fault.consumers
         resolved += at_readers((fault.model_copy(update=update),), names)
-    reached = resolved if present is None else at_readers(resolved, present)
-    if resolved and not reached:
-        names = {reader for fault in resolved for reader in fault.consumers}
-        raise UserError(
-            f"fault '{describe(faults)}' reaches no reader in this variant, "
-            f"which has no {listed(names)}; leave the fault out or name other readers"
-        )
-    return tuple(reached)
+    return tuple(resolved) if present is None else reaching(resolved, present)
 
 
 def _check_readers(names: Iterable[str], channels: Iterable[Channel], interface: Interface) -> None:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any, TypeAlias
 
 from pydantic import ValidationError
@@ -96,13 +97,10 @@ _LOADING = "a loading is a number from -1 to 1, and of errors that are drawn"
 
 
 def _loading(text: str) -> float:
-    try:
-        loading = number_in(text)
-    except ValueError:
-        raise UserError(_LOADING) from None
-    if not -1.0 <= loading <= 1.0:
-        raise UserError(_LOADING)
-    return loading
+    with suppress(ValueError):
+        if -1.0 <= (loading := number_in(text)) <= 1.0:
+            return loading
+    raise UserError(_LOADING)
 
 
 def _preset(

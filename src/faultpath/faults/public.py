@@ -2,7 +2,7 @@
 
 import faultpath.faults.kinds as kinds
 from faultpath.faults.base import Draws, Intervention, Moment
-from faultpath.faults.fault import ALL, Fault, at_readers, describe, resolve
+from faultpath.faults.fault import ALL, Fault, at_readers, describe, reaching, resolve
 from faultpath.faults.kinds import *  # noqa: F403 - a new kind is listed there alone
 from faultpath.faults.kinds import INTERVENTIONS, AnyIntervention
 from faultpath.faults.parse import FaultPreset, parse_fault
@@ -25,6 +25,7 @@ __all__: list[str] = [
     "describe",
     "encode_record",
     "parse_fault",
+    "reaching",
     "resolve",
 ]
 __all__ += kinds.__all__

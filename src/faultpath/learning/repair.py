@@ -11,17 +11,7 @@ from faultpath.core.arrays import Constant
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.text import listed
-from faultpath.faults import (
-    ALL,
-    Bias,
-    Erase,
-    Fault,
-    Noise,
-    at_readers,
-    describe,
-    parse_fault,
-    resolve,
-)
+from faultpath.faults import ALL, Bias, Erase, Fault, Noise, parse_fault, resolve
 from faultpath.interface import Interface
 
 Persistence: TypeAlias = Literal["window", "step"] | float
@@ -65,13 +55,7 @@ class Repair(Frozen):
                 _check_value(fault, interface)
         reached: list[Fault] = []
         for faults in understood(self.faults, interface, dt_s):
-            here = at_readers(resolve(faults, interface), present)
-            if not here:
-                raise UserError(
-                    f"{self.kind}: '{describe(faults)}' acts on none of {listed(present)}, which "
-                    "are fitted; name one of these, or another reader"
-                )
-            reached += here
+            reached += resolve(faults, interface, present)
         return self.model_copy(update={"faults": tuple(reached)})
 
 

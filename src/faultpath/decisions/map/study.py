@@ -8,6 +8,7 @@ from pathlib import PurePath
 import numpy as np
 
 from faultpath.core.errors import UserError
+from faultpath.core.text import listed
 from faultpath.decisions.analysis import Analysis, Round, Rounds
 from faultpath.decisions.compared import compared
 from faultpath.decisions.map.decide import decided
@@ -17,9 +18,8 @@ from faultpath.decisions.map.surface import Differences, next_points
 from faultpath.decisions.model import CORRECT, Invalid
 from faultpath.decisions.planning import rows_of, scenes_of, two_variants
 from faultpath.decisions.question import resolve
-from faultpath.faults import Fault, FaultText, at_readers, describe
-from faultpath.faults import resolve as resolve_fault
-from faultpath.interface import Interface, module_of
+from faultpath.faults import Fault, FaultText, at_readers, describe, reaching
+from faultpath.interface import module_of
 from faultpath.trials import (
     Deliveries,
     Library,
@@ -158,7 +158,7 @@ def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Li
     unsure = [error.expected_std for error in errors if error.relative is relative]
     largest = _largest(request, max(unsure, default=None), relative)
     ends = [_sized(system, fault, end) for end in (-largest, largest)]
-    modules, others = _places(interface, ends[1], request.against, variants)
+    modules, others = _places(ends[1], request.against, variants)
     least = len(lattice(COARSE))
     if not least <= request.points <= _MOST_POINTS:
         raise UserError(
@@ -244,10 +244,7 @@ def _largest(request: MapQuestion, expected: float | None, relative: bool) -> fl
 
 
 def _places(
-    interface: Interface,
-    faults: Sequence[Fault],
-    against: tuple[str, ...],
-    variants: Sequence[Variant],
+    faults: Sequence[Fault], against: tuple[str, ...], variants: Sequence[Variant]
 ) -> tuple[tuple[str, str], tuple[str, ...]]:
     """Return the two modules, and the other readers of what the fault acts on."""
     if len(against) != 2 or len(set(against)) < 2 or not all(against):
@@ -256,18 +253,18 @@ def _places(
             "--against reconstruction,predictor."
         )
     present = frozenset[str]().union(*(variant.consumers for variant in variants))
+    faults = reaching(faults, present)
 
     def readers(faults: Iterable[Fault]) -> set[str]:
-        return {place for fault in at_readers(faults, present) for place in fault.consumers}
+        return {place for fault in faults for place in fault.consumers}
 
-    aimed = ([fault.aimed_at(name) for fault in faults] for name in against)
-    reached = [readers(resolve_fault(parts, interface)) for parts in aimed]
+    reached = [readers(at_readers(faults, (name,))) for name in against]
     for name, places in zip(against, reached, strict=True):
         if not places:
             both = " nor ".join(f"'{variant.name}'" for variant in variants)
             raise UserError(
                 f"--against: neither {both} has '{name}' read what the fault ({describe(faults)}) "
-                "acts on: name another module."
+                f"acts on: name two of {listed({module_of(place) for place in readers(faults)})}."
             )
     if both := reached[0] & reached[1]:
         raise UserError(f"--against: both names hold {min(both)}: name two that share no place.")

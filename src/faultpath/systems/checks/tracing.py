@@ -6,7 +6,7 @@ from typing import Literal
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
 from faultpath.core.text import unknown
-from faultpath.faults import at_readers, describe
+from faultpath.faults import describe, reaching
 from faultpath.interface import module_of
 from faultpath.systems.checks.blocks import BlockSpec, run_block
 from faultpath.systems.checks.check import chosen_variants
@@ -49,13 +49,8 @@ def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> T
     scene = known[0] if question.scene is None else question.scene
     if scene not in known:
         raise UserError(f"library '{question.library}': {unknown('scene', scene, known)}")
-    declared = () if question.fault is None else system.fault(question.fault)
-    faults = at_readers(declared, consumers)
-    if declared and not faults:
-        raise UserError(
-            f"fault '{question.fault}' reaches no reader in variant '{variant}': trace another "
-            "variant, or name another fault."
-        )
+    faults = () if question.fault is None else system.fault(question.fault)
+    faults = reaching(faults, consumers)
     arm = Arm(variant=variant, faults=faults, seed=question.seed)
     run = run_block(system, BlockSpec(arm, (scene,), steps=steps))
     if run.error and not run.reads:
