@@ -151,3 +151,9 @@ def test_a_mistake_is_one_sentence_that_quotes_the_text(text: str, said: str) ->
         parse(text)
     assert str(caught.value).startswith(f"fault '{text}': ")
     assert said in str(caught.value)
+
+
+def test_a_preset_that_returns_no_faults_is_a_mistake_of_the_system() -> None:
+    alone = Fault(channel="mass", intervention=Freeze())
+    with pytest.raises(UserError, match="'one=1': preset 'one' of the system has to return a tup"):
+        parse_fault("one=1", INTERFACE, {"one": lambda size: alone}, 0.05)  # pyright: ignore[reportArgumentType]

@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 
 from pydantic import ValidationError
 
-from faultpath.core.errors import UserError
+from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.numbers import number_in
 from faultpath.core.text import listed, unknown
 from faultpath.core.validation_messages import misfit_of
@@ -122,7 +122,10 @@ def _preset(
         raise UserError(f"'{name}' needs a size, as in {name}=+0.1")
     if options:
         raise UserError(unknown("option", next(iter(options)), _ANY_FAULT))
-    return presets[name](number_of(name, part.sizes[0]))
+    faults: Any = presets[name](number_of(name, part.sizes[0]))
+    if not faults or not all(isinstance(fault, Fault) for fault in faults):
+        raise SystemMistake(f"preset '{name}' of the system has to return a tuple of Faults")
+    return faults
 
 
 def _of_kind(
