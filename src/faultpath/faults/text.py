@@ -17,6 +17,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Self
 
+from pydantic_core import CoreSchema, core_schema
+
 from faultpath.core.errors import UserError
 from faultpath.core.numbers import number_in
 
@@ -125,6 +127,20 @@ class FaultText:
 
     def __str__(self) -> str:
         return self.text
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: object, handler: object) -> CoreSchema:
+        """Take text as a field of a model, and write it word for word."""
+        written = core_schema.to_string_ser_schema(when_used="always")
+        return core_schema.no_info_plain_validator_function(cls._field, serialization=written)
+
+    @classmethod
+    def _field(cls, value: object) -> Self:
+        if isinstance(value, cls):
+            return value
+        if not isinstance(value, str):
+            raise ValueError(f"{value!r:.80} is no text, such as gain:scale=0.6")
+        return cls.read(value)
 
 
 def number_of(key: str, text: str, what: str = "a number") -> float:

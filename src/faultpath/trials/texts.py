@@ -5,10 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, cast
 
-from pydantic import BeforeValidator, Field, InstanceOf, PlainSerializer
+from pydantic import BeforeValidator, Field, PlainSerializer
 
 from faultpath.core.numbers import number_in
-from faultpath.faults.text import FaultText
 
 LARGEST = 2**63 - 1
 """The largest seed that the tables hold."""
@@ -61,20 +60,9 @@ def read_names(value: object) -> object:
     return names
 
 
-def read_fault(value: object) -> object:
-    """Return the fault that a text states; `UserError` where it has no form of one, `ValueError`
-    for what is no text."""
-    if isinstance(value, FaultText):
-        return value
-    if not isinstance(value, str):
-        raise ValueError(f"{value!r:.80} is no text, such as gain:scale=0.6")
-    return FaultText.read(value)
-
-
 _path = BeforeValidator(lambda place: Path(place) if isinstance(place, str) else place)
 _DRAWN = "Seeds of the noise, and of trained models where there are any."
 
-Fault = Annotated[InstanceOf[FaultText], BeforeValidator(read_fault), PlainSerializer(str)]
 Names = Annotated[tuple[str, ...], BeforeValidator(read_names)]
 Place = Annotated[Path | None, _path, PlainSerializer(lambda path: path and str(path))]
 Seeds = Annotated[tuple[int, ...], BeforeValidator(read_seeds), Field(description=_DRAWN)]
