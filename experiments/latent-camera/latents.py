@@ -79,7 +79,7 @@ def main() -> None:
         if not all(map(Path.is_file, names)):
             continue
         for name, text in design.faults.items():
-            fault = system.fault(text)
+            (fault,) = system.fault(text)
             change = getattr(fault.intervention, "factor", None) or fault.intervention.by
             told = {fault.channel: change}
             rows = []

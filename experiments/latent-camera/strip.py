@@ -18,7 +18,7 @@ from study import ROOT
 sys.path.insert(0, str(ROOT / "examples"))
 import latent_camera as camera
 
-from faultpath.faults import resolve
+from faultpath.faults import at_readers
 from faultpath.loop import Batch
 from faultpath.trials import Arm
 from faultpath.trials.attempt import taps_of
@@ -40,7 +40,7 @@ def flown(variant: str, where: str) -> list[tuple[np.ndarray, float]]:
     consumers = system.variants[variant].consumers
     if where:
         fault = system.fault(f"exposure:scale={ERROR}{where.removeprefix('shared')}")
-        faults = resolve(fault.resolved(system.interface, consumers), system.interface, consumers)
+        faults = at_readers(fault, consumers)
     taps = taps_of(system, Arm(variant=variant, faults=faults, seed=0), (SCENE,))
     loop = system.loop(variant, seed=0).execute(Batch((SCENE,), 0, system.control_dt_s), taps)
     states = [instant.state for instant in loop]

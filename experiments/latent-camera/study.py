@@ -16,7 +16,7 @@ import yaml
 from faultpath.decisions.compared import compared
 from faultpath.decisions.family import Family, decide_paths
 from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.faults import resolve
+from faultpath.faults import at_readers
 from faultpath.statistics.estimate import RULE
 from faultpath.trials import Arm, Group, Row, Status, Study, SystemSpec, Trials, load_system, pair
 from faultpath.trials.execution.runner import run_study
@@ -64,10 +64,9 @@ def study(design: Design, repair: str, library: str, scenes: tuple[str, ...]) ->
             for name, text in design.faults.items():
                 for path in PATHS:
                     fault = system.fault(text if path == SHARED else f"{text}@{path}")
-                    paths[f"{name}/{path}"] = tuple(fault.resolved(system.interface, consumers))
+                    paths[f"{name}/{path}"] = at_readers(fault, consumers)
             for path, faults in paths.items():
-                acting = resolve(faults, system.interface, consumers)
-                arm = Arm(variant=variant, faults=acting, seed=seed)
+                arm = Arm(variant=variant, faults=faults, seed=seed)
                 rows.append(Row(variant=variant, path=path, seed=seed, arm=arm))
     return Study(
         name="latent-camera",

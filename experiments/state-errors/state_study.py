@@ -26,7 +26,7 @@ from faultpath.core.errors import Stopped, UserError
 from faultpath.decisions.compared import compared
 from faultpath.decisions.family import decide_paths
 from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.faults import Address, encode_record, parse_fault, resolve
+from faultpath.faults import Address, at_readers, encode_record
 from faultpath.faults.recorded import decode_record
 from faultpath.trials import Arm, Row, Study, Trials, library_of, load_system
 from faultpath.trials.execution.provenance import run_provenance
@@ -48,7 +48,7 @@ def record(design: Design, fault: str, estimator: str, scenes: Sequence[str], fi
     library_of(system, design.library)
     own = estimator == design.options["estimator"]
     variant = design.baseline if own else f"{estimator}/{design.baseline}"
-    errors = state_errors(system, variant, scenes, design.seed, [fault_of(system, fault)])
+    errors = state_errors(system, variant, scenes, design.seed, system.fault(fault))
     write(file, encode_record(errors, TURNING), file.parent)
 
 
@@ -88,11 +88,6 @@ def joined(parts: Sequence[Path]) -> bytes:
     return encode_record(errors, TURNING)
 
 
-def fault_of(system, text: str):
-    """Return the fault that a text means."""
-    return parse_fault(text, system.interface, system.fault_presets, system.control_dt_s)
-
-
 def study_of(design: Design, system, scenes: Sequence[str], files: Files) -> Study:
     """Return all that flies: without a fault, with it shared, and with its errors at one module."""
     rows: dict[tuple[str, str], Row] = {}
@@ -103,14 +98,8 @@ def study_of(design: Design, system, scenes: Sequence[str], files: Files) -> Stu
             texts |= {f"{fault}/{name}": f"{errors}@{at}" for name, at in design.modules.items()}
             consumers = system.variants[variant].consumers
             for path, text in texts.items():
-                faults = (
-                    fault_of(system, text).resolved(system.interface, consumers) if text else ()
-                )
-                arm = Arm(
-                    variant=variant,
-                    faults=resolve(faults, system.interface, consumers),
-                    seed=design.seed,
-                )
+                faults = at_readers(system.fault(text), consumers) if text else ()
+                arm = Arm(variant=variant, faults=faults, seed=design.seed)
                 rows[variant, path] = Row(variant=variant, path=path, seed=design.seed, arm=arm)
     return Study(
         name="state-errors",

@@ -1,7 +1,7 @@
 """A system with three modules that only lays out arms and never runs."""
 
 from faultpath.decisions.planning import Audit, plan_audit
-from faultpath.faults import Coupled, Fault, Scale
+from faultpath.faults import Fault, FaultText, Scale
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.trials import Library, SceneRef, System, SystemSpec, Variant
 from faultpath.trials.question import AuditQuestion
@@ -30,10 +30,9 @@ READS = {
 }
 
 
-def halve(size: float) -> Coupled:
+def halve(size: float) -> tuple[Fault, ...]:
     scale = Scale(factor=size)
-    faults = tuple(Fault(channel=name, intervention=scale) for name in ("mass", "heat"))
-    return Coupled(name="both", faults=faults)
+    return tuple(Fault(channel=name, intervention=scale) for name in ("mass", "heat"))
 
 
 class Paper(System):
@@ -56,6 +55,6 @@ def planned(baseline: str, repair: str, text: str, **changes) -> Audit:
     return plan_audit(
         system,
         SystemSpec(name="paper"),
-        AuditQuestion(baseline=baseline, repair=repair, fault=text, **changes),
+        AuditQuestion(baseline=baseline, repair=repair, fault=FaultText.read(text), **changes),
         system.library("five"),
     )

@@ -5,7 +5,7 @@ from toy_audits import ARMS, TOY
 
 import faultpath
 from faultpath.core.errors import UserError
-from faultpath.faults import each_size
+from faultpath.faults import FaultText
 
 ASKED = {**ARMS, "scenes": 4, "workers": 0, "progress": False, "signals": False}
 
@@ -29,7 +29,7 @@ ASKED = {**ARMS, "scenes": 4, "workers": 0, "progress": False, "signals": False}
     ],
 )
 def test_a_text_for_each_size(text, each):
-    assert each_size(text) == each
+    assert tuple(map(str, FaultText.read(text).each())) == each
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,7 @@ def test_a_text_for_each_size(text, each):
 )
 def test_lists_that_are_none(text, said):
     with pytest.raises(UserError, match=said):
-        each_size(text)
+        FaultText.read(text)
 
 
 def test_each_size_is_an_audit_as_if_alone(tmp_path):

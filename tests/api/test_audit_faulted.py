@@ -5,6 +5,7 @@ from toy_audits import TOY
 
 from faultpath.decisions.model import DecisionRecord, FaultedTap
 from faultpath.decisions.planning import Audit, plan_audit
+from faultpath.faults import FaultText
 from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.execution.runner import run_study
 from faultpath.trials.question import AuditQuestion
@@ -15,7 +16,8 @@ STEPS = 100
 def asked(text: str) -> Audit:
     spec = SystemSpec(name=TOY)
     system = load_system(spec)
-    question = AuditQuestion(baseline="calibrated", repair="blind", fault=text, scenes=4)
+    fault = FaultText.read(text)
+    question = AuditQuestion(baseline="calibrated", repair="blind", fault=fault, scenes=4)
     return plan_audit(system, spec, question, system.library("carts"))
 
 

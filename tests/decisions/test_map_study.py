@@ -9,6 +9,7 @@ from faultpath.core.errors import UserError
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.study import MapPlan, plan_map
 from faultpath.decisions.planning import plan_audit
+from faultpath.faults import FaultText
 from faultpath.trials import SystemSpec, library_of, load_system
 from faultpath.trials.question import AuditQuestion, MapQuestion, ask
 
@@ -31,9 +32,8 @@ def plan(**given: Any) -> MapPlan:
 
 def test_the_paths_of_an_audit_are_points_of_the_map() -> None:
     """To the arm, so that both would be the same trials."""
-    question = AuditQuestion(
-        baseline="calibrated", repair="blind", fault="gain:scale=0.6", scenes=8
-    )
+    fault = FaultText.read("gain:scale=0.6")
+    question = AuditQuestion(baseline="calibrated", repair="blind", fault=fault, scenes=8)
     audit = plan_audit(TOY, SPEC, question, library_of(TOY, "carts"))
     points = [(0, 0), (-UNITS, 0), (0, -UNITS), (-UNITS, -UNITS)]
     names = dict(zip(("correct", "controller", "observer", "shared"), points, strict=True))
@@ -78,7 +78,7 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
         ({"points": 9 * 10**400}, "takes at most 10000"),
         ({"against": ("controller",)}, "--against needs two modules"),
         ({"against": ("controller", "controller.inverse")}, "share no place"),
-        ({"against": ("controller", "speedometer")}, "unknown consumer"),
+        ({"against": ("controller", "speedometer")}, "name two of controller, observer"),
         ({"against": ("controller", "observer"), "baseline": "blind"}, "two different variants"),
         ({"up_to": None}, "say how large errors may be"),
         ({"up_to": 1.0}, "less than 1"),

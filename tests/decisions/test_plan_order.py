@@ -9,7 +9,7 @@ import faultpath
 from faultpath.core.errors import UserError
 from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_modules
 from faultpath.decisions.sources import Candidate, candidates
-from faultpath.faults import Coupled, Fault, Scale
+from faultpath.faults import Fault, Scale
 from faultpath.interface import read_interface
 from faultpath.trials import Library, SceneRef, System, Variant
 
@@ -48,10 +48,9 @@ channels:
 """.replace("UNSURE: 0.1", "uncertainty: {half_range: 0.1, relative: true}")
 
 
-def calibration(size: float) -> Coupled:
+def calibration(size: float) -> tuple[Fault, ...]:
     scale = Scale(factor=1.0 + size)
-    faults = tuple(Fault(channel=name, intervention=scale) for name in ("mass", "thrust"))
-    return Coupled(name="calibration", faults=faults)
+    return tuple(Fault(channel=name, intervention=scale) for name in ("mass", "thrust"))
 
 
 READ = frozenset({"model.mass", "model.rate", "planner.mass", "planner.place"})

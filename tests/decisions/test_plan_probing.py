@@ -5,7 +5,7 @@ import pytest
 from declared_toy import Declared
 
 from faultpath.decisions.plan.probing import command_responses
-from faultpath.faults import parse_fault
+from faultpath.faults import at_readers
 from faultpath.loop import Batch, Taps
 
 SYSTEM = Declared()
@@ -14,12 +14,7 @@ SCENES = tuple(f"cart/{i:03d}" for i in range(5))
 
 def responses(variant: str, **texts: str) -> dict[str, float]:
     consumers = SYSTEM.variants[variant].consumers
-    arms = {
-        (name, ""): parse_fault(text, SYSTEM.interface, {}, 0.1).resolved(
-            SYSTEM.interface, consumers
-        )
-        for name, text in texts.items()
-    }
+    arms = {(name, ""): at_readers(SYSTEM.fault(text), consumers) for name, text in texts.items()}
     found = command_responses(SYSTEM, variant, arms, SCENES, 0)
     return {name: value for (name, _), value in found.items()}
 

@@ -1,7 +1,7 @@
 """A small interface with a reconstruction, for tests of faults."""
 
 from faultpath.core.errors import UserError
-from faultpath.faults import Coupled, Fault, Scale
+from faultpath.faults import Fault, Scale
 from faultpath.interface import Channel, Interface, Provenance, Source
 
 INTERFACE = Interface(
@@ -44,13 +44,10 @@ INTERFACE = Interface(
 )
 
 
-def calibration(error: float) -> Coupled:
+def calibration(error: float) -> tuple[Fault, ...]:
     if not -1 < error < 1:
         raise UserError(f"calibration={error:g} leaves no positive mass or thrust")
-    return Coupled(
-        name="calibration",
-        faults=(
-            Fault(channel="mass", intervention=Scale(factor=1 + error)),
-            Fault(channel="thrust", intervention=Scale(factor=1 - error)),
-        ),
+    return (
+        Fault(channel="mass", intervention=Scale(factor=1 + error)),
+        Fault(channel="thrust", intervention=Scale(factor=1 - error)),
     )

@@ -1,27 +1,31 @@
 """Faults as data: who gets them and when, and the sentence for one that cannot act."""
 
 import re
-from typing import Any
+from collections.abc import Iterable
 
 import pytest
 from fault_toys import INTERFACE, calibration
 
 from faultpath import faults as kinds
 from faultpath.core.errors import UserError
-from faultpath.faults import Coupled, Fault
+from faultpath.faults import Fault, at_readers, parse_fault, resolve
 
 SCALE = Fault(channel="mass", intervention=kinds.Scale(factor=1.1))
 
 
-def reached(fault: Fault | Coupled, present: Any = None) -> dict[str, tuple[str, ...]]:
-    return {f.channel: f.consumers for f in fault.resolved(INTERFACE, present)}
+def aimed(*names: str) -> tuple[Fault, ...]:
+    return tuple(fault.aimed_at(*names) for fault in calibration(0.1))
 
 
-def test_a_coupled_fault_reaches_whoever_reads_either_channel() -> None:
-    assert reached(calibration(0.1).aimed_at("observer.wind_map")) == {
+def reached(faults: Iterable[Fault]) -> dict[str, tuple[str, ...]]:
+    return {fault.channel: fault.consumers for fault in faults}
+
+
+def test_faults_that_act_together_reach_whoever_reads_either_channel() -> None:
+    assert reached(resolve(aimed("observer.wind_map"), INTERFACE)) == {
         "mass": ("observer.wind_map",)
     }
-    assert reached(calibration(0.1).aimed_at("observer")) == {
+    assert reached(resolve(aimed("observer"), INTERFACE)) == {
         "mass": ("observer.wind_map",),
         "thrust": ("observer.model",),
     }
@@ -29,38 +33,44 @@ def test_a_coupled_fault_reaches_whoever_reads_either_channel() -> None:
 
 def test_consumers_that_a_variant_lacks_are_left_out() -> None:
     plain = {"predictor.dynamics", "predictor.trim", "predictor.wind_map"}
-    assert reached(calibration(0.1), plain) == {
+    everywhere = resolve(calibration(0.1), INTERFACE)
+    assert reached(at_readers(everywhere, plain)) == {
         "mass": ("predictor.dynamics", "predictor.trim"),
         "thrust": ("predictor.dynamics",),
     }
-    assert reached(calibration(0.1).aimed_at("observer"), plain) == {}
+    assert resolve(calibration(0.1), INTERFACE, plain) == at_readers(everywhere, plain)
+    assert at_readers(everywhere, {"observer"}) == resolve(aimed("observer"), INTERFACE)
+    assert at_readers(at_readers(everywhere, {"observer"}), plain) == ()
+    with pytest.raises(UserError, match="reaches no reader: here are predictor"):
+        resolve(aimed("observer"), INTERFACE, plain)
 
 
 def test_faults_of_one_cause_share_it() -> None:
-    assert {f.drawn_from for f in calibration(0.1).resolved(INTERFACE)} == {"calibration"}
-    assert SCALE.resolved(INTERFACE)[0].drawn_from == "mass:scale"
+    together = parse_fault("calibration=0.1", INTERFACE, {"calibration": calibration}, 0.1)
+    assert {fault.drawn_from for fault in together} == {"calibration"}
+    assert resolve((SCALE,), INTERFACE)[0].drawn_from == "mass:scale"
     assert SCALE.aimed_at("observer").drawn_from == SCALE.drawn_from
 
 
 @pytest.mark.parametrize(
-    ("fault", "sentence"),
+    ("faults", "sentence"),
     [
         (
-            SCALE.model_copy(update={"channel": "mas"}),
+            [SCALE.model_copy(update={"channel": "mas"})],
             "unknown channel 'mas'; did you mean 'mass'?",
         ),
-        (SCALE.aimed_at("predicter"), "unknown consumer 'predicter'; did you mean 'predictor'?"),
-        (SCALE.aimed_at("observer.model"), "channel 'mass': 'observer.model' does not read it"),
-        (calibration(0.1).aimed_at("predictor.wind_map"), "channel 'mass' and channel 'thrust': "),
+        ([SCALE.aimed_at("predicter")], "unknown reader 'predicter'; did you mean 'predictor'?"),
+        ([SCALE.aimed_at("observer.model")], "channel 'mass': 'observer.model' does not read it"),
+        (aimed("predictor.wind_map"), "channel 'mass' and channel 'thrust': "),
         (
-            Fault(channel="wind", intervention=kinds.Offset(by=(1.0, 2.0))),
+            [Fault(channel="wind", intervention=kinds.Offset(by=(1.0, 2.0)))],
             "by has shape [2] and the",
         ),
     ],
 )
-def test_a_fault_that_cannot_act_is_a_users_mistake(fault: Fault | Coupled, sentence: str) -> None:
+def test_a_fault_that_cannot_act_is_a_users_mistake(faults: list[Fault], sentence: str) -> None:
     with pytest.raises(UserError, match=re.escape(sentence)):
-        fault.resolved(INTERFACE)
+        resolve(faults, INTERFACE)
 
 
 def test_a_window_begins_ends_and_recovers() -> None:

@@ -6,7 +6,6 @@ from fault_toys import INTERFACE, calibration
 from faultpath.core.errors import UserError
 from faultpath.faults import (
     Bias,
-    Coupled,
     Delay,
     Drift,
     Dropout,
@@ -20,10 +19,11 @@ from faultpath.faults import (
     Scale,
     UniformScale,
     parse_fault,
+    resolve,
 )
 
 
-def parse(text: str) -> Fault | Coupled:
+def parse(text: str) -> tuple[Fault, ...]:
     return parse_fault(text, INTERFACE, {"calibration": calibration}, 0.05)
 
 
@@ -53,17 +53,14 @@ def parse(text: str) -> Fault | Coupled:
 )
 def test_one_channel(text: str, intervention: object) -> None:
     channel = text.partition(":")[0]
-    assert parse(text) == Fault.model_validate({"channel": channel, "intervention": intervention})
+    fault = Fault.model_validate({"channel": channel, "intervention": intervention})
+    assert parse(text) == resolve((fault,), INTERFACE)
 
 
 def test_a_group_stands_for_its_channels() -> None:
-    assert parse("calibration:delay=3") == Coupled(
-        name="calibration:delay",
-        faults=(
-            Fault(channel="mass", intervention=Delay(steps=3)),
-            Fault(channel="thrust", intervention=Delay(steps=3)),
-        ),
-    )
+    late, cause = Delay(steps=3), "calibration:delay"
+    both = [Fault(channel=c, intervention=late, cause=cause) for c in ("mass", "thrust")]
+    assert parse("calibration:delay=3") == resolve(both, INTERFACE)
 
 
 @pytest.mark.parametrize(
@@ -75,14 +72,27 @@ def test_a_group_stands_for_its_channels() -> None:
     ],
 )
 def test_time_and_consumers(text: str) -> None:
-    assert parse(text) == Fault(
-        channel="mass",
-        intervention=Freeze(),
-        consumers=("observer", "predictor.trim"),
-        onset_step=20,
-        duration_steps=40,
-        recovery_steps=5,
+    assert parse(text) == (
+        Fault(
+            channel="mass",
+            intervention=Freeze(),
+            consumers=("predictor.trim", "observer.wind_map"),
+            onset_step=20,
+            duration_steps=40,
+            recovery_steps=5,
+            cause="mass:freeze",
+        ),
     )
+
+
+def test_joined_faults_have_one_cause_and_each_its_loading() -> None:
+    text = "mass:bias=0.1,relative,loading=-0.7,onset=3 & wind:bias=0.5 & calibration=0.2"
+    faults = parse(text)
+    assert {fault.cause for fault in faults} == {"mass:bias & wind:bias & calibration"}
+    assert [(fault.channel, fault.loading, fault.onset_step) for fault in faults] == [
+        *(("mass", -0.7, 3), ("wind", 1.0, 0)),
+        *(("mass", 1.0, 0), ("thrust", 1.0, 0)),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -122,11 +132,17 @@ def test_time_and_consumers(text: str) -> None:
         ("mass:scale=1,for_s=0.07", "for_s=0.07 is not a whole number of steps of 0.05 s each"),
         ("mass:scale=1,onset=1e300", "onset=1e300 is not a whole number of steps"),
         ("mass:scale=1,recover=3", "'recover' needs an end to recover from"),
-        ("mass:freeze@", "'@' needs a module or consumer after it"),
-        ("mass:freeze@a+", "'@' needs a module or consumer after it"),
+        ("mass:freeze@", "'@' needs a module or reader after it"),
+        ("mass:freeze@a+", "'@' needs a module or reader after it"),
         ("mass:freeze@a,onset=1@b", "'@' appears twice"),
         ("wind:freeze@observer", "'observer' does not read it; its readers: predictor"),
-        ("wind:freeze@predict", "unknown consumer 'predict'; did you mean 'predictor'?"),
+        ("wind:freeze@predict", "unknown reader 'predict'; did you mean 'predictor'?"),
+        ("mass:freeze & wind:freeze@predictor", "joined faults reach every reader; leave '@' out"),
+        ("mass:freeze &", "something is missing beside '&'"),
+        ("mass:bias=1,2 & wind:bias=1", "joined faults take one size each"),
+        ("mass:bias=1,loading=2 & wind:bias=1", "a loading is a number from -1 to 1"),
+        ("mass:scale=2,loading=1 & wind:bias=1", "and of errors that are drawn"),
+        ("mass:bias=1,loading=0.5", "unknown option 'loading'"),
         ("mass:offset=1/2", "by has shape [2] and the reading of one scene has []"),
     ],
 )
@@ -135,3 +151,9 @@ def test_a_mistake_is_one_sentence_that_quotes_the_text(text: str, said: str) ->
         parse(text)
     assert str(caught.value).startswith(f"fault '{text}': ")
     assert said in str(caught.value)
+
+
+def test_a_preset_that_returns_no_faults_is_a_mistake_of_the_system() -> None:
+    alone = Fault(channel="mass", intervention=Freeze())
+    with pytest.raises(UserError, match="'one=1': preset 'one' of the system has to return a tup"):
+        parse_fault("one=1", INTERFACE, {"one": lambda size: alone}, 0.05)  # pyright: ignore[reportArgumentType]

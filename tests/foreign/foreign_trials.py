@@ -5,7 +5,6 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
 
-from faultpath.faults import parse_fault
 from faultpath.trials import Arm, System
 from faultpath.trials.attempt import attempt
 
@@ -20,10 +19,7 @@ def loaded(path: Path) -> Any:
 
 
 def attempted(system: System, variant: str, scenes: Sequence[str], fault: str = "") -> Any:
-    faults = ()
-    if fault:
-        parsed = parse_fault(fault, system.interface, {}, system.control_dt_s)
-        faults = parsed.resolved(system.interface)
+    faults = system.fault(fault) if fault else ()
     return attempt(system, Arm(variant=variant, faults=faults), scenes)
 
 

@@ -63,7 +63,7 @@ def test_a_withheld_channel_is_not_read_and_its_neutral_value_arrives() -> None:
     fly(deployed, "variant_1")
     assert {float(value) for got in inner.got for value in got[Port("gain", "model")]} == {1.25}
     assert all(got[Port("gain", "model")].shape == (2,) for got in inner.got)
-    with pytest.raises(UserError, match="reaches no consumer in this variant"):
+    with pytest.raises(UserError, match="reaches no reader: here are"):
         fly(deployed, "variant_1", Fault(channel="gain", intervention=Scale(factor=2.0)))
 
 

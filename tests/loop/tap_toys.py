@@ -7,7 +7,7 @@ import numpy as np
 
 from faultpath import faults as kinds
 from faultpath.core.streams import generator
-from faultpath.faults import Coupled, Fault, resolve
+from faultpath.faults import Fault, resolve
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.loop import Reading, Taps
 
@@ -40,6 +40,7 @@ SOURCES = {"mass": "scale", "wind": "still"}
 INTERVENTIONS: tuple[kinds.Intervention, ...] = (
     kinds.Scale(factor=1.1),
     kinds.UniformScale(half_range=0.2),
+    kinds.Offset(by=0.1),
     kinds.Offset(by=(0.1, 0.0, -0.2)),
     kinds.Rotate(by=(0.1, 0.0, -0.2)),
     kinds.Quantise(step_size=0.25),
@@ -65,13 +66,13 @@ def series(scene: str, channel: str, steps: int) -> np.ndarray[Any, Any]:
     return generator("series", scene, 0).normal(size=(steps, *SHAPES[channel]))
 
 
-def make(faults: Iterable[Fault | Coupled] = (), scenes: Sequence[str] = "ab", **more: Any) -> Taps:
+def make(faults: Iterable[Fault] = (), scenes: Sequence[str] = "ab", **more: Any) -> Taps:
     found = resolve(faults, INTERFACE, more.get("consumers"))
     return Taps(INTERFACE, found, scenes=tuple(scenes), dt_s=DT_S, **more)
 
 
 def play(
-    faults: Iterable[Fault | Coupled],
+    faults: Iterable[Fault],
     scenes: Sequence[str],
     *,
     consumer: str = "predictor.wind",

@@ -32,7 +32,7 @@ def test_modules_run_in_the_order_of_what_they_read() -> None:
 
 
 def test_the_plant_moves_by_what_came_through_the_tap() -> None:
-    instants, _ = execute((Guess(), Planner()), [fault("action:scale=2")])
+    instants, _ = execute((Guess(), Planner()), fault("action:scale=2"))
     moved = np.diff([instant.state.x for instant in instants], axis=0)
     assert moved[:, 0].tolist() == [0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0]
     assert len(instants) == Line.steps + 1
@@ -62,7 +62,7 @@ def test_rate_and_latency_of_a_source_are_executed(place, seen) -> None:
 
 def test_every_answer_of_a_query_passes_the_tap() -> None:
     planner = Planner(asks=3)
-    _, taps = execute((Guess(), planner), [fault("clearance:offset=10")])
+    _, taps = execute((Guess(), planner), fault("clearance:offset=10"))
     receipt = taps.receipts().at("clearance", "planner.cost")
     assert (receipt.deliveries, receipt.asks) == (8, 24)
     assert receipt.steps_faulted.tolist() == receipt.steps_altered.tolist() == [8, 8]
@@ -72,7 +72,7 @@ def test_every_answer_of_a_query_passes_the_tap() -> None:
 def test_asks_of_a_step_draw_apart_and_the_first_as_a_signal_does() -> None:
     once, thrice, again = Planner(), Planner(asks=3), Planner(asks=3)
     for planner in (once, thrice, again):
-        execute((Guess(), planner), [fault("clearance:noise=1")])
+        execute((Guess(), planner), fault("clearance:noise=1"))
     for step in range(Line.steps):
         np.testing.assert_array_equal(once.answers[step][0], thrice.answers[step][0])
         np.testing.assert_array_equal(again.answers[step], thrice.answers[step])
@@ -87,7 +87,7 @@ def test_the_nth_ask_is_delayed_to_the_nth_ask_of_before() -> None:
             return {"order": np.ones(2)}, memory
 
     planner = Probing()
-    execute((Guess(), planner), [fault("clearance:delay=2")])
+    execute((Guess(), planner), fault("clearance:delay=2"))
     assert planner.answers[:4] == [[99, 199], [99, 199], [99, 199], [98, 198]]
 
 
@@ -222,7 +222,7 @@ def test_a_fault_reaches_the_readers_of_all_that_a_module_writes() -> None:
     assert interface.reconstructs == {"observer": ("speed", "guess")}
     reached = ("observer.seen", "planner.start", "planner.feedback")
     assert transitive_consumers(interface, "position") == reached
-    taps = Taps(interface, resolve([fault("position:scale=2")], interface), scenes=SCENES, dt_s=0.1)
+    taps = Taps(interface, resolve(fault("position:scale=2"), interface), scenes=SCENES, dt_s=0.1)
     parts = graph(interface, Line(), (observer, pilot))
     list(Loop(interface, parts).execute(_batch(), taps))
     assert pilot.answers == [[6.0, 12.0]] * Line.steps

@@ -7,12 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from libraries import to_torch
-from pydantic import TypeAdapter
 from tap_toys import INTERVENTIONS, make, play
 
 from faultpath.faults import (
-    AnyFault,
-    Coupled,
     Delay,
     Fault,
     Intervention,
@@ -41,10 +38,9 @@ def fault(intervention: Intervention, window: dict[str, Any], *consumers: str) -
 @WINDOWS
 def test_json_round_trip_is_exact(intervention: Intervention, window: dict[str, Any]) -> None:
     alone = fault(intervention, window, "predictor").model_copy(update={"cause": "storm"})
-    for faulted in (alone, Coupled(name="two", faults=(alone, fault(intervention, {})))):
-        again = TypeAdapter(AnyFault).validate_json(faulted.model_dump_json())
-        assert again == faulted
-        assert hash(again) == hash(faulted)
+    again = Fault.model_validate_json(alone.model_dump_json())
+    assert again == alone
+    assert hash(again) == hash(alone)
 
 
 @EACH
@@ -135,17 +131,16 @@ def test_recovery_is_a_straight_line_back() -> None:
     np.testing.assert_allclose(error, expected, atol=1e-15)
 
 
-def test_coupled_faults_draw_the_same_numbers() -> None:
+def test_faults_of_one_cause_draw_the_same_numbers() -> None:
     noise = Noise(std=1.0)
-    faults = tuple(Fault(channel=name, intervention=noise) for name in ("mass", "wind"))
-    coupled = Coupled(name="storm", faults=faults)
+    storm = [Fault(channel=c, intervention=noise, cause="storm") for c in ("mass", "wind")]
 
     def error(faults: list[Any], channel: str, consumer: str) -> np.ndarray[Any, Any]:
         tap = {"channel": channel, "consumer": consumer}
         return play(faults, "ab", **tap) - play([], "ab", **tap)
 
-    mass = error([coupled], "mass", "observer.model")
-    wind = error([coupled], "wind", "predictor.wind")
+    mass = error(storm, "mass", "observer.model")
+    wind = error(storm, "wind", "predictor.wind")
     np.testing.assert_allclose(wind[..., 0], mass, atol=1e-12)
-    alone = error([coupled.faults[0]], "mass", "observer.model")
+    alone = error([Fault(channel="mass", intervention=noise)], "mass", "observer.model")
     assert not np.any(np.isclose(alone, mass))

@@ -69,10 +69,10 @@ def test_steps_do_not_run_backwards() -> None:
         ({"bindings": {"wind": "scale"}}, "channel 'wind' cannot be bound: unknown source 'scale'"),
         ({"privileged": {"oracle"}}, "unknown source 'oracle'"),
         ({"consumers": {"pilot.x"}}, "this variant's consumers: unknown consumer 'pilot.x'"),
-        ({"faults": [SCALE.aimed_at("pilot")]}, "channel 'mass': unknown consumer 'pilot'"),
+        ({"faults": [SCALE.aimed_at("pilot")]}, "channel 'mass': unknown reader 'pilot'"),
         (
             {"faults": [SCALE], "consumers": {"predictor.dynamics"}},
-            "fault 'mass scaled by 2 at observer' reaches no consumer",
+            "fault 'mass scaled by 2 at observer.model' reaches no reader",
         ),
     ],
 )

@@ -14,7 +14,7 @@ from faultpath_quadrotor.training.recorded import Flights
 from faultpath_quadrotor.vehicle import VehicleParameters
 
 from faultpath.core.arrays import Array
-from faultpath.faults import AnyFault, parse_fault, resolve
+from faultpath.faults import Fault, resolve
 from faultpath.loop import DeliveryListener, Query, Reading, Tap, Taps
 from faultpath.trials import Outcome, SystemSpec, load_system
 
@@ -63,16 +63,15 @@ def quadrotor(**options: str) -> Quadrotor:
     return system
 
 
-def fault(text: str, system: Quadrotor | None = None) -> AnyFault:
-    system = quadrotor() if system is None else system
-    return parse_fault(text, system.interface, system.fault_presets, system.control_dt_s)
+def fault(text: str, system: Quadrotor | None = None) -> tuple[Fault, ...]:
+    return (system or quadrotor()).fault(text)
 
 
 def wire(
     system: Quadrotor,
     variant: str,
     scenes: Sequence[str],
-    faults: Sequence[AnyFault] = (),
+    faults: Sequence[Fault] = (),
     seed: int = 0,
     without: frozenset[str] = frozenset(),
 ) -> LoggingTaps:
@@ -94,7 +93,7 @@ def fly(
     system: Quadrotor,
     variant: str = "dob",
     scenes: Sequence[str] = HELD_OUT[:1],
-    faults: Sequence[AnyFault] = (),
+    faults: Sequence[Fault] = (),
     seed: int = 0,
 ) -> tuple[list[Outcome], LoggingTaps]:
     taps = wire(system, variant, scenes, faults, seed)

@@ -21,7 +21,7 @@ from simulated_gpu import GPU, SimulatedGPU, simulated_gpu
 
 from faultpath.core import arrays
 from faultpath.core.errors import UserError
-from faultpath.faults import resolve
+from faultpath.faults import at_readers
 from faultpath.loop import Batch, DeliveryListener, Query, Reading, Tap, Taps
 from faultpath.trials import Arm
 from faultpath.trials.attempt import taps_of
@@ -78,7 +78,7 @@ def _wired(
     observer: DeliveryListener | None = None,
 ) -> Taps:
     consumers = built.variants[variant].consumers
-    faults = resolve([fault(text, built) for text in texts], built.interface, consumers)
+    faults = at_readers([part for text in texts for part in fault(text, built)], consumers)
     return taps_of(built, Arm(variant=variant, faults=faults), scenes, observer=observer)
 
 
@@ -104,7 +104,7 @@ def test_learned_modules_fly_the_same_to_rounding_the_way_of_a_device(monkeypatc
     monkeypatch.setattr("faultpath_quadrotor.plant.module.LOOK_EVERY", 5)
     with native.using(native.PORTABLE):
         flyer = quadrotor(**LEARNED)
-        noise = [fault("attitude:noise=0.05", flyer)]
+        noise = fault("attitude:noise=0.05", flyer)
         usual, _ = fly(flyer, "gru", HELD_OUT[:2], noise)
         monkeypatch.setattr(devices, "HOST_READABLE", frozenset())
         _forget()

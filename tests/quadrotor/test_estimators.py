@@ -46,14 +46,14 @@ def test_a_filter_that_ships_flies_with_usual_sensors_and_beside_its_kin():
 def test_errors_of_one_flight_are_delivered_to_one_module_of_another(tmp_path):
     system = quadrotor(estimator="eskf-no-bias", wind="L1")
     turned = fault("mount=0.1", system)
-    record = state_errors(system, "dob", HELD_OUT[:2], 0, [turned])
+    record = state_errors(system, "dob", HELD_OUT[:2], 0, turned)
     again = state_errors(system, "dob", HELD_OUT[:2], 0, [])
     for key, each in again.items():
         assert np.abs(each - STILL.get(key.channel, 0.0)).max() < 1e-5
     path = tmp_path / "errors.parquet"
     path.write_bytes(encode_record(record, TURNING))
     alone = fault(f"state:recorded={path}@reconstruction", system)
-    _, taps = fly(system, "dob", HELD_OUT[:2], [alone])
+    _, taps = fly(system, "dob", HELD_OUT[:2], alone)
     channel, place = "velocity", "reconstruction.velocity_difference"
     for index, scene in enumerate(HELD_OUT[:2]):
         given, got = np.stack([[x[index] for x in pair] for pair in taps.log[channel, place]], 1)
@@ -71,7 +71,7 @@ def test_faults_reach_the_sensors_of_an_estimator_and_variants_may_differ_in_it(
     assert "estimator.filter" not in system.variants["dob"].consumers
     biased = fault("gyroscope:offset=0.2/0/0", system)
     plain, _ = fly(system, f"{FILTER}/dob")
-    faulted, _ = fly(system, f"{FILTER}/dob", faults=[biased])
+    faulted, _ = fly(system, f"{FILTER}/dob", faults=biased)
     assert bits(faulted[0]) != bits(plain[0])
     assert bits(fly(system)[0][0]) == bits(fly(quadrotor(wind="L1"))[0][0]), "nobody reads sensors"
 

@@ -131,7 +131,7 @@ def test_a_window_s_number_does_not_depend_on_those_beside_it(recorded, quantity
         ("velocity:noise=1", "do not deliver"),
         ("mass:delay=2", "acts in time"),
         ("mass:scale=2,onset=3", "acts in time"),
-        (AT_RECONSTRUCTION, "reaches no consumer"),
+        (AT_RECONSTRUCTION, "reaches no reader"),
     ],
 )
 def test_a_fault_that_windows_cannot_have_is_refused(recorded, fault, says):

@@ -3,6 +3,7 @@
 import numpy as np
 from flights import fault
 
+from faultpath.faults import at_readers
 from faultpath.systems.checks.blocks import BlockSpec, run_block
 from faultpath.trials import Arm, SystemSpec, load_system
 from faultpath.trials.attempt import Done, attempt
@@ -15,7 +16,7 @@ SCENE = ("selection/003",)
 def test_a_recorded_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
     system = load_system(SystemSpec(name="quadrotor", options={"clearance": "true", "wind": "L3"}))
     wrong = fault("calibration=+0.1", system)
-    faulted = wrong.resolved(system.interface, system.variants["dob"].consumers)
+    faulted = at_readers(wrong, system.variants["dob"].consumers)
     told: list[dict[str, np.ndarray]] = []
     for faults in ((), faulted):
         arm = Arm(variant="dob", faults=faults)

@@ -79,7 +79,7 @@ def corrupted(faults, consumers=(HEAD,), count=COUNT):
 
 
 def test_mass_and_thrust_scale_err_independently_within_the_half_range():
-    readings, delivered = corrupted([dcc([HEAD])], count=2000)
+    readings, delivered = corrupted(dcc([HEAD]), count=2000)
     mass, scale = (delivered[c, HEAD] / readings[c] - 1 for c in ("mass", "thrust_scale"))
     for factor in (mass, scale):
         assert factor.abs().max() <= 0.2 + 1e-6
@@ -89,10 +89,10 @@ def test_mass_and_thrust_scale_err_independently_within_the_half_range():
 
 def test_consumers_of_one_channel_share_the_draw_and_others_are_left_alone():
     places = ("predictor.dynamics", "predictor.trim", "predictor.wind_map")
-    readings, delivered = corrupted([dcc(places[:2])], consumers=places)
+    readings, delivered = corrupted(dcc(places[:2]), consumers=places)
     assert torch.equal(delivered["mass", places[0]], delivered["mass", places[1]])
     assert not torch.equal(delivered["mass", places[0]], readings["mass"])
     assert delivered["mass", places[2]] is readings["mass"]
     assert ("thrust_scale", places[2]) not in delivered  # the wind map reads the mass alone
-    with pytest.raises(UserError, match="reaches no consumer"):
-        corrupted([dcc(["predictor.trim"])])
+    with pytest.raises(UserError, match="reaches no reader"):
+        corrupted(dcc(["predictor.trim"]))

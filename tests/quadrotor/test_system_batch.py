@@ -40,7 +40,7 @@ def test_who_is_flown_beside_a_scene_and_in_which_order_changes_nothing(
     """Scenes are planned in eights, fours, twos and ones, and flown in groups of 32 lanes."""
     monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", steps)
     flyer = quadrotor(**{"wind": "L3"} | options)
-    faults = [fault(text, flyer) for text in texts]
+    faults = [part for text in texts for part in fault(text, flyer)]
     block = {o.scene: bits(o) for o in fly(flyer, variant, MANY, faults, seed=2)[0]}
     for chosen in (MANY[33:34], MANY[34:19:-1], MANY[::13]):
         outcomes, _ = fly(flyer, variant, chosen, faults, seed=2)
@@ -56,7 +56,7 @@ def test_neighbours_that_end_early_leave_the_others_alone(text, tmp_path):
     fast = hall(0, start=(0.0, 0.0, 1.5), goal=(0.0, 0.0, 0.995))
     low = hall(1, start=(0.0, 1.0, 0.3), goal=(4.0, 1.0, 1.5))
     near, under = with_halls(flyer, tmp_path, fast, low)
-    faults = [fault(text, flyer)]
+    faults = fault(text, flyer)
     alone, _ = fly(flyer, "dob", HELD_OUT, faults)
     mixed, _ = fly(flyer, "dob", [near, *HELD_OUT[:3], under, *HELD_OUT[3:]], faults)
     ends = {o.scene: o.time_s for o in mixed}

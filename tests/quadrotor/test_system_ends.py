@@ -20,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("short")
 def _end(tmp_path: Path, text: str, *args) -> Outcome:
     system = quadrotor()
     scenes = with_halls(system, tmp_path, hall(0, *args))
-    return fly(system, "zero-wind", scenes, [fault(text, system)])[0][0]
+    return fly(system, "zero-wind", scenes, fault(text, system))[0][0]
 
 
 def test_arrival_is_a_success_at_the_end_of_a_control_step(tmp_path):

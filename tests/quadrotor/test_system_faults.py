@@ -28,7 +28,7 @@ def test_an_identity_on_every_channel_is_no_fault_to_the_bit(identity, plain):
     system = quadrotor(wind="L2")
     present = system.variants["dob"].consumers
     channels = [c.name for c in system.interface.channels if present & set(c.consumers)]
-    faults = [fault(f"{channel}:{identity}", system) for channel in channels]
+    faults = [part for name in channels for part in fault(f"{name}:{identity}", system)]
     (faulted,), taps = fly(system, faults=faults)
     assert bits(faulted) == bits(plain)
     receipts = taps.receipts()
@@ -38,7 +38,7 @@ def test_an_identity_on_every_channel_is_no_fault_to_the_bit(identity, plain):
 
 def test_calibration_strikes_mass_and_thrust_scale_everywhere_and_nothing_else():
     system = quadrotor(wind="L2")
-    _, taps = fly(system, scenes=HELD_OUT[:2], faults=[fault("calibration=-0.2", system)])
+    _, taps = fly(system, scenes=HELD_OUT[:2], faults=fault("calibration=-0.2", system))
     assert _altered(taps.receipts()) == set(ALTERED_BY_CALIBRATION)
     for (channel, consumer), deliveries in taps.log.items():
         sign = ALTERED_BY_CALIBRATION.get((channel, consumer), 0)
@@ -48,7 +48,7 @@ def test_calibration_strikes_mass_and_thrust_scale_everywhere_and_nothing_else()
 
 def test_a_fault_at_the_observer_leaves_the_inputs_of_the_predictor_clean(plain):
     system = quadrotor(wind="L2")
-    (faulted,), taps = fly(system, faults=[fault("calibration=0.2@reconstruction", system)])
+    (faulted,), taps = fly(system, faults=fault("calibration=0.2@reconstruction", system))
     receipts = taps.receipts()
     observer = {key for key in ALTERED_BY_CALIBRATION if key[1].startswith("reconstruction.")}
     assert _altered(receipts) == observer
@@ -78,13 +78,12 @@ TEXTS = (
 @pytest.mark.parametrize("text", TEXTS)
 def test_a_fault_of_any_channel_flies_and_tells(text, plain):
     system = quadrotor(wind="L2")
-    declared = fault(text, system)
-    (faulted,), taps = fly(system, faults=[declared])
+    faults = fault(text, system)
+    (faulted,), taps = fly(system, faults=faults)
     ends = [faulted.metrics[name] for name in ("terminal_distance_m", "min_clearance_m")]
     assert np.isfinite([*ends, *trace(faulted).flat]).all()
     assert bits(faulted)[-1] != bits(plain)[-1]
-    reached = declared.resolved(system.interface)
-    named = {(each.channel, consumer) for each in reached for consumer in each.consumers}
+    named = {(part.channel, reader) for part in faults for reader in part.consumers}
     assert set() < _altered(taps.receipts()) <= named
     for hashes in ("initial_hash", "disturbance_hash", "planner_noise_hash"):
         assert getattr(faulted, hashes) == getattr(plain, hashes)

@@ -25,7 +25,7 @@ def test_an_arms_seed_chooses_the_training_of_what_its_variant_names():
 
 def test_a_noisy_state_is_late_and_the_same_for_everyone():
     system = quadrotor(**LEARNED)
-    _, taps = fly(system, "gru", faults=[fault("noisy_state=1", system)])
+    _, taps = fly(system, "gru", faults=fault("noisy_state=1", system))
     for channel in STATE_NOISE_STD:
         readers = [consumer for name, consumer in taps.log if name == channel]
         assert len(readers) > 1
@@ -43,7 +43,7 @@ def test_a_noisy_state_is_late_and_the_same_for_everyone():
 def test_calibration_errors_reach_the_predictor_s_history_but_not_the_hover_before_the_flight():
     """Whatever calibration is believed: the command of the past is not the one it would give."""
     system = quadrotor(**LEARNED)
-    _, taps = fly(system, "gru", faults=[fault("calibration=0.1@predictor", system)])
+    _, taps = fly(system, "gru", faults=fault("calibration=0.1@predictor", system))
     receipts = taps.receipts().taps
     places = {t.consumer for t in receipts if t.channel == "mass" and t.steps_altered.any()}
     readers = ("dynamics", "wind_map", "trim", "normalise_thrust", "history")

@@ -8,7 +8,7 @@ import pytest
 
 from faultpath.cli.main import main
 from faultpath.core.errors import UserError
-from faultpath.faults import parse_fault
+from faultpath.faults import FaultText
 from faultpath.interface import Provenance
 from faultpath.report.terminal import trace_table
 from faultpath.systems.checks.tracing import trace_system
@@ -24,9 +24,9 @@ TOY, DOCK = f"{ROOT / 'examples/toy.py'}:create", f"{ROOT / 'examples/dock.py'}:
 def trace(name, variant, fault=None, library="selection", **options):
     spec = SystemSpec(name=name, options=options)
     system = load_system(spec)
-    faulted = fault and parse_fault(fault, system.interface, {}, system.control_dt_s)
-    question = TraceQuestion(variant=variant, library=library)
-    return system, trace_system(system, spec, question, faulted)
+    text = fault and FaultText.read(fault)
+    question = TraceQuestion(variant=variant, library=library, fault=text)
+    return system, trace_system(system, spec, question)
 
 
 def test_it_says_who_read_what_and_when_and_stops_after_its_steps():

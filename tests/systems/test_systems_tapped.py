@@ -183,7 +183,7 @@ def test_parts_inside_one_module_are_consumers_of_their_own():
 
 def attempted(module, fault):
     made = system(only=module)
-    faults = parse_fault(fault, made.interface, {}, 0.1).resolved(made.interface)
+    faults = parse_fault(fault, made.interface, {}, 0.1)
     return attempt(made, Arm(variant="only", faults=faults), ("seed/1", "seed/2"))
 
 

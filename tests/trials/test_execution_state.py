@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.faults import parse_fault
+from faultpath.faults import at_readers
 from faultpath.trials import Arm, SystemSpec, load_system
 from faultpath.trials.attempt import Done, attempt
 from faultpath.trials.code import source_state, system_code
@@ -40,8 +40,7 @@ def test_whatever_runs_in_a_flight_counts(name, monkeypatch):
     spec = SystemSpec(name=place, options=options)
     system = load_system(spec)
     scenes = [scene.id for scene in system.library(library).scenes[:1]]
-    fault = parse_fault(text, system.interface, system.fault_presets, system.control_dt_s)
-    faults = fault.resolved(system.interface, system.variants[variant].consumers)
+    faults = at_readers(system.fault(text), system.variants[variant].consumers)
     code = system_code(system, spec)
 
     ran: set[str] = set()

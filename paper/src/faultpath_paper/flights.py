@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from faultpath.faults import at_readers
 from faultpath.trials import Arm, Row, Study, System, SystemSpec, Trials, load_system
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.work.executor import Progress
@@ -102,9 +103,7 @@ def fly(legs: Sequence[Leg], folder: Path, run: Run, show: Callable[[Progress], 
 def _row(system: System, cell: Cell, seed: int) -> Row:
     consumers = system.variants[cell.variant].consumers
     faults = tuple(
-        fault
-        for text in cell.faults
-        for fault in system.fault(text).resolved(system.interface, consumers)
+        fault for text in cell.faults for fault in at_readers(system.fault(text), consumers)
     )
     arm = Arm(variant=cell.variant, faults=faults, seed=seed)
     return Row(variant=cell.variant, path=cell.path, seed=seed, arm=arm)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from faultpath.faults import Coupled, Delay, Fault, Noise, Rotate, Scale, Sequence
+from faultpath.faults import Delay, Fault, Noise, Rotate, Scale, Sequence
 from faultpath.plugin.system import UserError
 from faultpath.trials import Offered
 
@@ -153,7 +153,7 @@ STATE_DELAY_STEPS = 1
 """50 ms, one control interval (derived)."""
 
 
-def calibration(error: float) -> Coupled:
+def calibration(error: float) -> tuple[Fault, ...]:
     """Return the fault m~ = m (1 + e), T~ = T (1 - e) (paper, Section IV-B).
 
     The implied thrust acceleration scales by (1 - e)/(1 + e). Raises `UserError` for an error that
@@ -164,27 +164,23 @@ def calibration(error: float) -> Coupled:
             f"calibration={error:g} leaves no positive mass or thrust scale: "
             "choose an error between -1 and 1."
         )
-    return Coupled(
-        name="calibration",
-        faults=(
-            Fault(channel="mass", intervention=Scale(factor=1 + error)),
-            Fault(channel="thrust_scale", intervention=Scale(factor=1 - error)),
-        ),
+    return (
+        Fault(channel="mass", intervention=Scale(factor=1 + error)),
+        Fault(channel="thrust_scale", intervention=Scale(factor=1 - error)),
     )
 
 
-def mount(angle: float) -> Coupled:
+def mount(angle: float) -> tuple[Fault, ...]:
     """Return an inertial unit that is mounted askew: turned by `angle` rad about the body's y axis.
 
     It acts on gyroscope and accelerometer alike.
     """
     turn = Rotate(by=(0.0, angle, 0.0))
     channels = ("gyroscope", "accelerometer")
-    faults = tuple(Fault(channel=channel, intervention=turn) for channel in channels)
-    return Coupled(name="mount", faults=faults)
+    return tuple(Fault(channel=channel, intervention=turn) for channel in channels)
 
 
-def noisy_state(size: float) -> Coupled:
+def noisy_state(size: float) -> tuple[Fault, ...]:
     """Return Gaussian noise of `size` times `STATE_NOISE_STD`, and a delay, on the whole state.
 
     Channels draw independently; all readers of a channel get the same noise, since it is the
@@ -193,16 +189,12 @@ def noisy_state(size: float) -> Coupled:
     """
     if size < 0:
         raise UserError(f"noisy_state={size:g}: choose a size of 0 or more; 1 is the standard.")
-    return Coupled(
-        name="noisy_state",
-        faults=tuple(
-            Fault(
-                channel=channel,
-                cause=f"noisy_state/{channel}",
-                intervention=Sequence(
-                    parts=(Noise(std=size * std), Delay(steps=STATE_DELAY_STEPS))
-                ),
-            )
-            for channel, std in STATE_NOISE_STD.items()
-        ),
+    late = Delay(steps=STATE_DELAY_STEPS)
+    return tuple(
+        Fault(
+            channel=channel,
+            cause=f"noisy_state/{channel}",
+            intervention=Sequence(parts=(Noise(std=size * std), late)),
+        )
+        for channel, std in STATE_NOISE_STD.items()
     )

@@ -7,7 +7,7 @@ import numpy as np
 import torch
 from typing_extensions import override
 
-from faultpath.faults import Address, AnyFault, Record, resolve
+from faultpath.faults import Address, Fault, Record, resolve
 from faultpath.loop import DeliveryListener, Reading, Tap
 from faultpath.plugin.recording import taps_of
 from faultpath.plugin.system import UserError
@@ -38,7 +38,7 @@ class _Seen(DeliveryListener):
 
 
 def state_errors(
-    system: Quadrotor, variant: str, scenes: Sequence[str], seed: int, faults: Sequence[AnyFault]
+    system: Quadrotor, variant: str, scenes: Sequence[str], seed: int, faults: Sequence[Fault]
 ) -> Record:
     """Fly scenes under faults of the sensors, and return the errors of the filter by channel.
 

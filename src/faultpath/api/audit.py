@@ -23,13 +23,12 @@ from faultpath.api.replaying import outcomes_at, run_again, shown_first
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
-from faultpath.decisions.fault_groups import JOINED
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.decisions.question import Question
 from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.stopping import after_looks
-from faultpath.faults import each_size
+from faultpath.faults import FaultText
 from faultpath.report.inputs import ReportInput
 from faultpath.trials import Deliveries, System, system_shown
 from faultpath.trials.execution.runner import RunResult
@@ -88,16 +87,16 @@ def audits(
         UserError: As `audit`, and for a size given twice.
     """
     fault = arguments.get("fault")
-    several = isinstance(fault, str) and JOINED.strip() not in fault
-    texts = each_size(arguments["fault"]) if several else ()
-    if len(texts) < 2:
-        return (audit(system, progress=progress, **arguments),)
+    if isinstance(fault, str):
+        fault = FaultText.read(fault)
+    if not isinstance(fault, FaultText) or len(fault.sizes) < 2:
+        return (audit(system, progress=progress, **{**arguments, "fault": fault}),)
     folder = arguments.pop("folder", None)
     runs: list[Run] = []
-    for number, text in enumerate(texts, 1):
+    for number, sized in enumerate(fault.each(), 1):
         place = None if folder is None else Path(folder) / f"size-{number}"
         runs.append(
-            audit(system, progress=progress, **{**arguments, "fault": text, "folder": place})
+            audit(system, progress=progress, **{**arguments, "fault": sized, "folder": place})
         )
     return tuple(runs)
 

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 from faultpath.api.display import Display
 from faultpath.api.job import asks, begin
 from faultpath.api.systems import Chosen
-from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.planning import faults_by_path
 from faultpath.faults import Fault
 from faultpath.trials import System
@@ -41,9 +40,8 @@ def check(
     question, chosen, _, display = begin("check", CheckQuestion, system, arguments, progress)
     conditions: dict[str, dict[str, tuple[Fault, ...]]] = {}
     if question.fault is not None:
-        fault = fault_of(chosen.system, question.fault)
         variants = chosen_variants(chosen.system, question.variants)
-        conditions = faults_by_path(chosen.system, fault, variants)
+        conditions = faults_by_path(chosen.system.fault(question.fault), variants)
     if chosen.own:
         question = question.model_copy(update={"workers": 0})
     with display.progress("Checking") as show:
@@ -79,5 +77,4 @@ def traced(question: TraceQuestion, chosen: Chosen) -> "TraceReport":
     """Return the trace of a system that is built; raises as `trace`."""
     from faultpath.systems.checks.tracing import trace_system
 
-    fault = None if question.fault is None else fault_of(chosen.system, question.fault)
-    return trace_system(chosen.system, chosen.spec, question, fault)
+    return trace_system(chosen.system, chosen.spec, question)

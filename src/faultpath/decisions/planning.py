@@ -9,12 +9,11 @@ from faultpath.core.streams import generator
 from faultpath.core.text import unknown
 from faultpath.decisions.analysis import Analysis, Round, Rounds
 from faultpath.decisions.decide import decide, primary_path
-from faultpath.decisions.fault_groups import fault_of
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, FaultedTap, Path
 from faultpath.decisions.question import Question, StopRule, resolve
 from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.stopping import stops
-from faultpath.faults import AnyFault, Fault
+from faultpath.faults import Fault, at_readers, describe
 from faultpath.interface import module_of
 from faultpath.loop import TapCount
 from faultpath.statistics.estimate import RULE
@@ -101,11 +100,13 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
     variants = two_variants(system, request)
     sequential = request.stop_when is not None
     chosen = scenes_of(library, request.scenes, in_order=not sequential)
-    fault = fault_of(system, request.fault)
-    faults = faults_by_path(system, fault, variants)
-    paths = [_path(name, of[request.repair], of[request.baseline]) for name, of in faults.items()]
+    faults = system.fault(request.fault)
+    conditions = faults_by_path(faults, variants)
+    paths = [
+        _path(name, of[request.repair], of[request.baseline]) for name, of in conditions.items()
+    ]
     # Where the fault cannot reach a variant, that is the arm under correct inputs: it runs once.
-    rows = [row for path, of in faults.items() for row in rows_of(path, of, request.seeds)]
+    rows = [row for path, of in conditions.items() for row in rows_of(path, of, request.seeds)]
     _check(system, request)
     study = Study(
         name=f"{spec.name}-{request.repair}-vs-{request.baseline}",
@@ -130,7 +131,8 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         request,
         spec,
         library,
-        faults=fault.resolved(system.interface),
+        fault=str(request.fault),
+        faults=faults,
         n_scenes=len(chosen),
         primary=primary_path(request.primary or "", paths),
         trained=system.trained,
@@ -140,7 +142,7 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         stop=stop,
         rule=RULE,
     )
-    named = [study.name, request.fault, PurePath(library.name).stem]
+    named = [study.name, str(request.fault), PurePath(library.name).stem]
     if request.stop_when is not None:
         small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
         named.append(f"until-{request.stop_when}{small}")
@@ -148,37 +150,32 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
 
 
 def faults_by_path(
-    system: System, fault: AnyFault, variants: Sequence[Variant]
+    faults: Sequence[Fault], variants: Sequence[Variant]
 ) -> dict[str, dict[str, tuple[Fault, ...]]]:
-    """Return the faults of each path in each variant; none under correct inputs. With a single
+    """Return the faults of each condition in each variant; none under correct inputs. With a single
     module there is nothing to share: the isolated fault is all of it.
 
-    `UserError` for a fault that reaches no variant, and a module named like a path.
+    `UserError` for faults that reach no variant, and a module named like a condition.
     """
-
-    def within(part: AnyFault) -> dict[str, tuple[Fault, ...]]:
-        return {v.name: part.resolved(system.interface, v.consumers) for v in variants}
-
-    by_module: dict[str, dict[str, None]] = {}
-    for consumer in (c for parts in within(fault).values() for p in parts for c in p.consumers):
-        by_module.setdefault(module_of(consumer), {})[consumer] = None
-    if not by_module:
+    shared = {variant.name: at_readers(faults, variant.consumers) for variant in variants}
+    reached = (reader for parts in shared.values() for part in parts for reader in part.consumers)
+    modules = sorted({module_of(reader) for reader in reached})
+    if not modules:
         names = " nor ".join(f"'{variant.name}'" for variant in variants)
         raise UserError(
-            f"the fault ({fault.describe()}) reaches neither {names}: neither reads it there."
+            f"the fault ({describe(faults)}) reaches neither {names}: neither reads it there."
         )
-    for reserved in {CORRECT, SHARED} & set(by_module):
+    for reserved in {CORRECT, SHARED} & set(modules):
         raise UserError(
             f"the interface calls a module '{reserved}', which is the name of a condition in every "
             "audit: rename the module."
         )
-    paths: dict[str, dict[str, tuple[Fault, ...]]] = {CORRECT: {v.name: () for v in variants}}
-    for module in sorted(by_module):
-        paths[module] = within(fault.aimed_at(*by_module[module]))
-    if len(by_module) > 1:
-        every = [consumer for name in sorted(by_module) for consumer in by_module[name]]
-        paths[SHARED] = within(fault.aimed_at(*every))
-    return paths
+    conditions: dict[str, dict[str, tuple[Fault, ...]]] = {CORRECT: dict.fromkeys(shared, ())}
+    for module in modules:
+        conditions[module] = {name: at_readers(parts, (module,)) for name, parts in shared.items()}
+    if len(modules) > 1:
+        conditions[SHARED] = shared
+    return conditions
 
 
 def rows_of(

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Sequence
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
-from faultpath.faults import FaultText
+from faultpath.faults import FaultText, at_readers
 from faultpath.interface import Interface, Provenance, Source
 from faultpath.trials import System, Variant
 
@@ -92,14 +92,12 @@ def channels_of(interface: Interface, variants: Sequence[Variant], source: str) 
 
 def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
     parsed = FaultText.read(text)
-    if len(parsed.sizes) > 1 or parsed.consumers:
+    if len(parsed.sizes) > 1 or parsed.readers:
         raise UserError(
             f"fault '{text}': a ranking takes one size, and faults every module by itself: leave "
             "further sizes and '@' out."
         )
-    fault = system.fault(text)
-    parts = fault.faults if fault.kind == "coupled" else (fault,)
-    channels = tuple(dict.fromkeys(part.channel for part in parts))
+    channels = tuple(dict.fromkeys(fault.channel for fault in system.fault(parsed)))
     sources = {bound(variant, system.interface, c): None for variant in variants for c in channels}
     candidate = _candidate(system, variants, parsed.name, tuple(sources), channels, text)
     if not candidate.consumers:
@@ -118,9 +116,13 @@ def _candidate(
 ) -> Candidate:
     interface, note = system.interface, ""
     if fault:
-        built = system.fault(fault)
-        parts = [p for variant in variants for p in built.resolved(interface, variant.consumers)]
-        reached = [consumer for part in parts for consumer in part.consumers]
+        parts = system.fault(fault)
+        reached = [
+            reader
+            for variant in variants
+            for part in at_readers(parts, variant.consumers)
+            for reader in part.consumers
+        ]
     else:
         read = [c for channel in channels for c in interface.channel(channel).consumers]
         reached = [c for c in read if any(c in variant.consumers for variant in variants)]

@@ -1,53 +1,21 @@
-"""Interventions on readings, and faults that say where and when they act."""
+"""Interventions on readings, and faults that say where and when they act.
 
-from faultpath.faults.base import Draws, Intervention, Moment
-from faultpath.faults.drawn import Bias, Drift, Dropout, Noise, Shuffle, UniformScale
-from faultpath.faults.fault import (
-    ALL,
-    INTERVENTIONS,
-    AnyFault,
-    AnyIntervention,
-    Coupled,
-    Fault,
-    Sequence,
-    resolve,
-)
-from faultpath.faults.parse import FaultPreset, FaultText, each_size, parse_fault
-from faultpath.faults.recorded import Address, Record, Recorded, encode_record
-from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Rotate, Scale
+The names of `faultpath.faults.public` load when one is first used: reading text needs none of them.
+"""
 
-__all__ = [
-    "ALL",
-    "INTERVENTIONS",
-    "Address",
-    "AnyFault",
-    "AnyIntervention",
-    "Bias",
-    "Coupled",
-    "Delay",
-    "Draws",
-    "Drift",
-    "Dropout",
-    "Erase",
-    "Fault",
-    "FaultPreset",
-    "FaultText",
-    "Freeze",
-    "Hold",
-    "Intervention",
-    "Moment",
-    "Noise",
-    "Offset",
-    "Quantise",
-    "Record",
-    "Recorded",
-    "Rotate",
-    "Scale",
-    "Sequence",
-    "Shuffle",
-    "UniformScale",
-    "each_size",
-    "encode_record",
-    "parse_fault",
-    "resolve",
-]
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from faultpath.faults.public import *  # noqa: F403 - for type checkers; `__all__` lists them
+
+
+def __getattr__(name: str) -> object:
+    import faultpath.faults.public as public
+
+    return getattr(public, name)
+
+
+def __dir__() -> list[str]:
+    import faultpath.faults.public as public
+
+    return public.__all__

@@ -107,7 +107,7 @@ class Intervention(BaseModel, ABC):
     the memory is written to. `apply` is called at every delivery until the fault is over, also
     before the onset, so that a delay has a past to draw on; the tap takes the value in the window.
 
-    A subclass has a literal `kind` and is one of `faultpath.faults.fault.Listed`.
+    A subclass has a literal `kind` and is one of `faultpath.faults.kinds.Listed`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)

@@ -1,90 +1,17 @@
-"""A fault: a channel, the consumers that get it, which of all interventions, and when."""
+"""A fault: a channel, who gets it, which of all interventions, and when."""
 
 from collections.abc import Collection, Iterable
-from dataclasses import replace
 from math import inf
-from typing import Annotated, Literal, Self, TypeAlias, get_args
+from typing import Literal, Self
 
-from pydantic import Discriminator, Field, model_validator
+from pydantic import Field, model_validator
 
-from faultpath.core.arrays import Array
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.text import listed, unknown
-from faultpath.faults.base import Draws, Intervention, Memory, Moment
-from faultpath.faults.drawn import Bias, Drift, Dropout, Noise, Shuffle, UniformScale
-from faultpath.faults.recorded import Recorded
-from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Rotate, Scale
+from faultpath.faults.base import Draws
+from faultpath.faults.kinds import AnyIntervention
 from faultpath.interface import Channel, Interface, module_of, modules
-
-
-class Sequence(Intervention):
-    """Apply interventions in turn: each acts on what the one before delivers.
-
-    Each part begins at the onset, so a delay after a scale still delivers what came unscaled
-    before it, just as two faults with one window do. Parts draw independently of each other.
-    Interventions that follow each other in time are several faults, each with its window.
-    """
-
-    kind: Literal["sequence"] = "sequence"
-    parts: "tuple[AnyIntervention, ...]" = Field(min_length=1)
-
-    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return the last part's value; the memory holds one entry a part."""
-        value, carried = reading, ()
-        for index, part in enumerate(self.parts):
-            here = replace(at, draws=at.draws.beside(f"/{index}"))
-            past = part.begin(value, here) if memory is None else memory[index]
-            changed, past = part.apply(value, past, here)
-            value = changed if at.elapsed >= 0 else value
-            carried = (*carried, past)
-        return value, carried
-
-    def is_random(self) -> bool:
-        """Return whether any part draws errors."""
-        return any(part.is_random() for part in self.parts)
-
-    def words(self) -> str:
-        """Return the parts' words in turn."""
-        return ", then ".join(part.words() for part in self.parts)
-
-    def resolved(self, channel: Channel) -> Self:
-        """Resolve every part."""
-        parts = tuple(part.resolved(channel) for part in self.parts)
-        return self.model_copy(update={"parts": parts})
-
-    def misfit(self, shape: tuple[int, ...]) -> str | None:
-        """Return what the first part that does not fit says."""
-        return next(filter(None, (part.misfit(shape) for part in self.parts)), None)
-
-
-Listed: TypeAlias = (
-    Scale
-    | UniformScale
-    | Offset
-    | Rotate
-    | Quantise
-    | Erase
-    | Noise
-    | Drift
-    | Bias
-    | Delay
-    | Hold
-    | Freeze
-    | Dropout
-    | Shuffle
-    | Recorded
-    | Sequence
-)
-AnyIntervention: TypeAlias = Annotated[Listed, Discriminator("kind")]
-"""Any intervention; its `kind` says in JSON which."""
-
-Sequence.model_rebuild()
-
-INTERVENTIONS: dict[str, type[Intervention]] = {
-    intervention.model_fields["kind"].default: intervention for intervention in get_args(Listed)
-}
-"""By kind."""
 
 ALL = "*"
 """Every consumer of the channel: the fault is shared."""
@@ -98,6 +25,7 @@ class Fault(Frozen):
     """
 
     kind: Literal["fault"] = "fault"
+    """Stored with trials, whose identity it is part of."""
     channel: str
     intervention: AnyIntervention
     consumers: tuple[str, ...] = Field(default=(ALL,), min_length=1)
@@ -138,17 +66,6 @@ class Fault(Frozen):
         """Return the same fault at other consumers: `module.place`, modules, or `*`."""
         return self.model_copy(update={"consumers": names or (ALL,)})
 
-    def resolved(
-        self, interface: Interface, present: Collection[str] | None = None
-    ) -> tuple["Fault", ...]:
-        """Return the fault with every consumer spelled out and defaults filled in.
-
-        Consumers that are not `present` in a variant are left out; the result is empty when none is
-        left, that is, when the fault cannot reach the variant. Raises `UserError` where the fault
-        cannot act on `interface`.
-        """
-        return _resolved((self,), interface, present)
-
     @property
     def _end(self) -> float:
         return inf if self.duration_steps is None else self.onset_step + self.duration_steps
@@ -180,92 +97,75 @@ class Fault(Frozen):
         return words
 
 
-class Coupled(Frozen):
-    """Faults on several channels with one cause, for instance a calibration error.
-
-    They draw the same random numbers. A name in `consumers` needs to read only one of the channels.
-    """
-
-    kind: Literal["coupled"] = "coupled"
-    name: str
-    faults: tuple[Fault, ...] = Field(min_length=1)
-
-    def aimed_at(self, *names: str) -> Self:
-        """Return the same faults at other consumers: `module.place`, modules, or `*`."""
-        return self.model_copy(update={"faults": tuple(f.aimed_at(*names) for f in self.faults)})
-
-    def resolved(
-        self, interface: Interface, present: Collection[str] | None = None
-    ) -> tuple[Fault, ...]:
-        """Return the faults as `Fault.resolved` does, without those that reach no consumer."""
-        shared = (f.model_copy(update={"cause": f.cause or self.name}) for f in self.faults)
-        return _resolved(tuple(shared), interface, present)
-
-    def describe(self) -> str:
-        """Return the faults in a few words."""
-        return f"{self.name}: " + "; ".join(fault.describe() for fault in self.faults)
+def describe(faults: Iterable[Fault]) -> str:
+    """Return faults in a few words each."""
+    return "; ".join(fault.describe() for fault in faults)
 
 
-AnyFault: TypeAlias = Annotated[Fault | Coupled, Field(discriminator="kind")]
-"""A fault as it is declared; its `kind` says in JSON which."""
+def at_readers(faults: Iterable[Fault], names: Collection[str]) -> tuple[Fault, ...]:
+    """Return resolved faults at those of their readers that are named, as places or by modules;
+    without the faults that then reach nobody."""
+    narrowed: list[Fault] = []
+    for fault in faults:
+        readers = tuple(c for c in fault.consumers if c in names or module_of(c) in names)
+        if readers:
+            narrowed.append(fault.aimed_at(*readers))
+    return tuple(narrowed)
+
+
+def reaching(faults: Iterable[Fault], present: Collection[str]) -> tuple[Fault, ...]:
+    """Return resolved faults at the readers that are present; `UserError` where none of them is."""
+    faults = tuple(faults)
+    reached = at_readers(faults, present)
+    if faults and not reached:
+        raise UserError(
+            f"fault '{describe(faults)}' reaches no reader: here are {listed(present)}; leave the "
+            "fault out or name other readers"
+        )
+    return reached
 
 
 def resolve(
-    faults: Iterable[AnyFault], interface: Interface, present: Collection[str] | None = None
+    faults: Iterable[Fault], interface: Interface, present: Collection[str] | None = None
 ) -> tuple[Fault, ...]:
-    """Return faults as `Taps` takes them: `Fault.resolved` of each, in turn.
+    """Return faults that act together as `Taps` takes them: with every reader spelled out, and
+    defaults filled in.
 
-    Raises `UserError` for a fault that cannot act on `interface`, or reaches no consumer that is
-    `present`.
+    A reader that they name needs to read only one of their channels. Readers that are not `present`
+    in a variant are left out, see `reaching`. Raises `UserError` for a fault that cannot act on
+    `interface`.
     """
-    resolved: list[Fault] = []
-    for fault in faults:
-        parts = fault.resolved(interface, present)
-        if not parts:
-            names = {c for part in fault.resolved(interface) for c in part.consumers}
-            raise UserError(
-                f"fault '{fault.describe()}' reaches no consumer in this variant, "
-                f"which has no {listed(names)}; leave the fault out or name other consumers"
-            )
-        resolved += parts
-    return tuple(resolved)
-
-
-def _resolved(
-    faults: tuple[Fault, ...], interface: Interface, present: Collection[str] | None
-) -> tuple[Fault, ...]:
-    """Resolve faults that act together: a consumer needs to read only one of their channels."""
+    faults = tuple(faults)
     channels = [interface.channel(fault.channel) for fault in faults]
-    readers = {consumer for channel in channels for consumer in channel.consumers}
-    known = readers | {module_of(reader) for reader in readers}
     resolved: list[Fault] = []
     for fault, channel in zip(faults, channels, strict=True):
-        for name in fault.consumers:
-            if name == ALL or name in known:
-                continue
-            what = " and ".join(f"channel '{other.channel}'" for other in faults)
-            everyone = {c for other in interface.channels for c in other.consumers}
-            if name in everyone or name in modules(interface):
-                problem = f"'{name}' does not read it; its readers: {listed(known)}"
-            else:
-                problem = unknown("consumer", name, known)
-            raise UserError(f"{what}: {problem}")
+        _check_readers(fault.consumers, channels, interface)
         wrong = fault.intervention.misfit(interface.source(channel.sources[0]).shape)
         if wrong:
             raise UserError(
                 f"channel '{fault.channel}': {fault.intervention.kind} does not fit: {wrong}"
             )
-        reached = tuple(
-            consumer
-            for consumer in channel.consumers
-            if not {ALL, consumer, module_of(consumer)}.isdisjoint(fault.consumers)
-            and (present is None or consumer in present)
-        )
         update = {
-            "consumers": reached,
+            "consumers": channel.consumers,
             "intervention": fault.intervention.resolved(channel),
             "cause": fault.drawn_from,
         }
-        if reached:
-            resolved.append(fault.model_copy(update=update))
-    return tuple(resolved)
+        names = channel.consumers if ALL in fault.consumers else fault.consumers
+        resolved += at_readers((fault.model_copy(update=update),), names)
+    return tuple(resolved) if present is None else reaching(resolved, present)
+
+
+def _check_readers(names: Iterable[str], channels: Iterable[Channel], interface: Interface) -> None:
+    """Raise `UserError` for a name of nobody who reads one of the channels."""
+    readers = {reader for channel in channels for reader in channel.consumers}
+    known = readers | {module_of(reader) for reader in readers}
+    for name in names:
+        if name == ALL or name in known:
+            continue
+        what = " and ".join(f"channel '{channel.name}'" for channel in channels)
+        everyone = {reader for channel in interface.channels for reader in channel.consumers}
+        if name in everyone or name in modules(interface):
+            problem = f"'{name}' does not read it; its readers: {listed(known)}"
+        else:
+            problem = unknown("reader", name, known)
+        raise UserError(f"{what}: {problem}")

@@ -17,7 +17,7 @@ from typing_extensions import override
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import key
-from faultpath.faults import AnyFault, resolve
+from faultpath.faults import Fault, resolve
 from faultpath.learning.loop import FitTask, History, minibatches, run
 from faultpath.learning.model_card import (
     Architecture,
@@ -136,15 +136,18 @@ def evaluate(
     fitted: Fit,
     data: Windows,
     loss: LossFunction = mean_squared_error,
-    faults: Iterable[AnyFault | str] = (),
+    faults: Iterable[Fault | str] = (),
 ) -> float:
     """Return the mean loss of a fitted module over all windows, under faults as an audit has them.
 
     What it was fitted without stays withheld. Raises `UserError` as `fit`.
     """
     repairs = fitted.record.repairs
-    parsed = understood((*faults, *kept(repairs)), data.interface, data.dt_s)
-    resolved = resolve(parsed, data.interface, data.consumers)
+    resolved = [
+        fault
+        for parts in understood((*faults, *kept(repairs)), data.interface, data.dt_s)
+        for fault in resolve(parts, data.interface, data.consumers)
+    ]
     task = _WindowTask(
         fitted.module, data, loss, repairs, fitted.record.seed, Schedule(), validation=0.0
     )

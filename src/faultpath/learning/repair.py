@@ -1,6 +1,7 @@
 """Repairs of the inputs of a module: uncertainty training, withholding, reconstruction."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from itertools import groupby
 from math import sqrt
 from typing import Literal, TypeAlias
 
@@ -10,7 +11,7 @@ from faultpath.core.arrays import Constant
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.text import listed
-from faultpath.faults import ALL, AnyFault, Bias, Coupled, Erase, Fault, Noise, parse_fault
+from faultpath.faults import ALL, Bias, Erase, Fault, Noise, parse_fault, resolve
 from faultpath.interface import Interface
 
 Persistence: TypeAlias = Literal["window", "step"] | float
@@ -24,7 +25,7 @@ class Repair(Frozen):
     """
 
     kind: Literal["uncertainty_training", "withholding", "reconstruction"]
-    faults: tuple[AnyFault | str, ...] = ()
+    faults: tuple[Fault | str, ...] = ()
     """Faults that the taps apply to every window; text as an audit's `--fault` takes it."""
     channel: str | None = None
     """Channel that a reconstruction estimates."""
@@ -49,45 +50,50 @@ class Repair(Frozen):
         """
         if self.channel is not None:
             interface.channel(self.channel)
-        resolved: list[AnyFault] = []
-        for fault in understood(self.faults, interface, dt_s):
-            if isinstance(fault, Fault) and isinstance(fault.intervention, Erase):
-                # It would be laid along a reading, and nothing says its shape in a loop.
-                shape = interface.source(interface.channel(fault.channel).sources[0]).shape
-                value = fault.intervention.default
-                if self.kind == "withholding" and value is not None and np.shape(value) != shape:
-                    raise UserError(
-                        f"withholding '{fault.channel}': its reading has the shape {list(shape)}, "
-                        f"and the value {list(np.shape(value))}: give one number for each"
-                    )
-            faults = fault.resolved(interface, present)
-            if not faults:
-                raise UserError(
-                    f"{self.kind}: '{fault.describe()}' acts on none of {listed(present)}, which "
-                    "are fitted; name one of these, or another reader"
-                )
-            resolved += faults
-        return self.model_copy(update={"faults": tuple(resolved)})
+        if self.kind == "withholding":
+            for fault in self.faults:
+                _check_value(fault, interface)
+        reached: list[Fault] = []
+        for faults in understood(self.faults, interface, dt_s):
+            reached += resolve(faults, interface, present)
+        return self.model_copy(update={"faults": tuple(reached)})
+
+
+def _check_value(fault: Fault | str, interface: Interface) -> None:
+    """Raise `UserError` for a neutral value that has not the shape of the reading: it would be laid
+    along a reading, and nothing says its shape in a loop."""
+    if isinstance(fault, str) or not isinstance(fault.intervention, Erase):
+        return
+    shape = interface.source(interface.channel(fault.channel).sources[0]).shape
+    value = fault.intervention.default
+    if value is not None and np.shape(value) != shape:
+        raise UserError(
+            f"withholding '{fault.channel}': its reading has the shape {list(shape)}, "
+            f"and the value {list(np.shape(value))}: give one number for each"
+        )
 
 
 def understood(
-    faults: Iterable[AnyFault | str], interface: Interface, dt_s: float
-) -> tuple[AnyFault, ...]:
-    """Return faults with text parsed as `--fault` is; `UserError` for one that does not fit."""
-    return tuple(
-        parse_fault(fault, interface, {}, dt_s) if isinstance(fault, str) else fault
-        for fault in faults
-    )
+    faults: Iterable[Fault | str], interface: Interface, dt_s: float
+) -> Iterator[tuple[Fault, ...]]:
+    """Yield the faults of each text, parsed as `--fault` is, and those of one cause that follow
+    each other; `UserError` for one that does not fit."""
+    for cause, group in groupby(faults, lambda f: None if isinstance(f, str) else f.drawn_from):
+        if cause is None:
+            for text in group:
+                yield parse_fault(str(text), interface, {}, dt_s)
+        else:
+            yield tuple(fault for fault in group if isinstance(fault, Fault))
 
 
-def kept(repairs: Iterable[Repair]) -> tuple[AnyFault | str, ...]:
+def kept(repairs: Iterable[Repair]) -> tuple[Fault | str, ...]:
     """Return what stays at the taps after a fit: what is withheld."""
     return tuple(
         fault for repair in repairs if repair.kind == "withholding" for fault in repair.faults
     )
 
 
-def uncertainty_training(*q_eps: AnyFault | str) -> Repair:
+def uncertainty_training(*q_eps: Fault | str | tuple[Fault, ...]) -> Repair:
     """Return the repair that draws errors anew for each window and epoch of a fit.
 
     Samples and targets stay as they are (paper, Eq. 1). `q_eps` are the faults of an audit, as
@@ -97,7 +103,8 @@ def uncertainty_training(*q_eps: AnyFault | str) -> Repair:
     """
     if not q_eps:
         raise UserError("uncertainty_training: name at least one error, or leave the repair out")
-    return Repair(kind="uncertainty_training", faults=q_eps)
+    faults = (fault for q in q_eps for fault in (q if isinstance(q, tuple) else (q,)))
+    return Repair(kind="uncertainty_training", faults=tuple(faults))
 
 
 def errors(
@@ -105,7 +112,7 @@ def errors(
     persistence: Persistence = "window",
     dependence: float | Mapping[str, float] = 0.0,
     relative: bool = True,
-) -> Coupled:
+) -> tuple[Fault, ...]:
     """Return Gaussian errors of several channels, for a fit or for an audit.
 
     Args:
@@ -130,6 +137,7 @@ def errors(
             f"{listed(magnitude)}: name the same channels"
         )
     faults: list[Fault] = []
+    cause = f"q_eps of {listed(magnitude)}"
     for channel, std in magnitude.items():
         loading = loadings[channel]
         if not (std >= 0 and -1 <= loading <= 1):
@@ -148,10 +156,10 @@ def errors(
             )
         else:
             law = Bias(std=std, relative=relative, time_constant_s=persistence)
-        faults.append(Fault(channel=channel, intervention=law, loading=loading))
+        faults.append(Fault(channel=channel, intervention=law, cause=cause, loading=loading))
     if not faults:
         raise UserError("errors: magnitude names no channel")
-    return Coupled(name=f"q_eps of {listed(magnitude)}", faults=tuple(faults))
+    return tuple(faults)
 
 
 def withholding(

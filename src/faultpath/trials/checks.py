@@ -90,7 +90,7 @@ _PROMISED: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     ),
     "fault_presets": (
         _mapping(lambda key, preset: isinstance(key, str) and callable(preset)),
-        "map names to functions that return a fault",
+        "map names to functions that return a tuple of Faults",
     ),
     "variants": (
         _mapping(lambda key, variant: isinstance(variant, Variant) and variant.name == key, 1),

@@ -14,6 +14,7 @@ from pydantic import BeforeValidator, Field, ValidationError
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.validation_messages import misfit_of
+from faultpath.faults.text import FaultText
 from faultpath.trials.texts import LARGEST, Names, Place, Seeds, Sizes
 
 Generalise = Literal["scenes", "models"]
@@ -102,7 +103,7 @@ class TraceQuestion(Request):
     steps: int = Field(default=3, ge=1, description="Control steps to trace.")
     scene: str | None = Field(default=None, description="Scene by its id; default the first.")
     seed: int = Field(default=0, ge=0, le=LARGEST, description="Seed of the trial.")
-    fault: str | None = Field(
+    fault: FaultText | None = Field(
         default=None, description="A fault, as in `audit`, to see whom it reaches."
     )
 
@@ -117,7 +118,7 @@ class CheckQuestion(Request):
     scenes: int = Field(
         default=4, description="Run N scenes, one from each of N equal parts of the library."
     )
-    fault: str | None = Field(
+    fault: FaultText | None = Field(
         default=None, description="A fault, as in `audit`, under which whole trials run too."
     )
     seed: int = Field(default=0, ge=0, le=LARGEST, description="Seed of the trials.")
@@ -173,7 +174,7 @@ class AuditQuestion(Running):
 
     panel: ClassVar[str] = "How it is tested"
 
-    fault: Annotated[str, Flag(panel=RepairQuestion.panel)] = Field(
+    fault: Annotated[FaultText, Flag(panel=RepairQuestion.panel)] = Field(
         description="`gain:scale=0.6`, `gain:delay=5@observer`, `gain:scale=2,onset=20`, ...; "
         "one audit per size: `gain:scale=0.9,1.1` or `gain:offset=-0.2..0.2/9`."
     )
@@ -209,7 +210,7 @@ class MapQuestion(Running):
 
     panel: ClassVar[str] = "What is mapped"
 
-    fault: Annotated[str, Flag(panel=RepairQuestion.panel)] = Field(
+    fault: Annotated[FaultText, Flag(panel=RepairQuestion.panel)] = Field(
         description="Without its size: `gain`, `gain:offset`, `gain,onset=9`."
     )
     against: Names = Field(

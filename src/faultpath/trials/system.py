@@ -10,7 +10,7 @@ from typing import Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.faults import AnyFault, FaultPreset, parse_fault
+from faultpath.faults import Fault, FaultPreset, FaultText, parse_fault
 from faultpath.interface import Interface
 from faultpath.loop import Taps
 from faultpath.trials.declared import FloorPlan, Library, Variant
@@ -103,8 +103,8 @@ class System(ABC):
         """Named faults of the command line, such as `calibration`."""
         return {}
 
-    def fault(self, text: str) -> AnyFault:
-        """Return the fault that a text states; `UserError` for one that there is not."""
+    def fault(self, text: str | FaultText) -> tuple[Fault, ...]:
+        """Return the faults that a text states, one for each channel; see `parse_fault`."""
         return parse_fault(text, self.interface, self.fault_presets, self.control_dt_s)
 
     @abstractmethod

@@ -16,7 +16,7 @@ from torch import Tensor
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generators
-from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, Hold, resolve
+from faultpath.faults import Delay, Drift, Dropout, Fault, Freeze, Hold, resolve
 from faultpath.loop import Reading, Taps
 from faultpath.trials import Variant
 from faultpath_paper.evidence.playback import CODE, HELD, Present, at_present
@@ -78,13 +78,14 @@ class Subject:
             partial(self._exchanged, recording, by_recording),
         )
 
-    def _parse(self, texts: Sequence[str]) -> tuple[list[AnyFault], list[AnyFault]]:
+    def _parse(
+        self, texts: Sequence[str]
+    ) -> tuple[list[tuple[Fault, ...]], list[tuple[Fault, ...]]]:
         system = self.system
-        by_window: list[AnyFault] = []
-        by_recording: list[AnyFault] = []
+        by_window: list[tuple[Fault, ...]] = []
+        by_recording: list[tuple[Fault, ...]] = []
         for text in texts:
-            fault = system.fault(text)
-            parts = fault.faults if isinstance(fault, Coupled) else (fault,)
+            parts = system.fault(text)
             channels = {part.channel for part in parts}
             if any(
                 isinstance(part.intervention, _IN_TIME)
@@ -97,9 +98,9 @@ class Subject:
                     "times out, or fly it with `faultpath audit`"
                 )
             if channels <= _BY_WINDOW:
-                by_window.append(fault)
+                by_window.append(parts)
             elif channels <= _BY_RECORDING:
-                by_recording.append(fault)
+                by_recording.append(parts)
             else:
                 known = ", ".join(sorted(_BY_WINDOW | _BY_RECORDING))
                 raise UserError(
@@ -108,7 +109,9 @@ class Subject:
                 )
         return by_window, by_recording
 
-    def _exchanged(self, recording: str, faults: Sequence[AnyFault], codes: Tensor) -> Tensor:
+    def _exchanged(
+        self, recording: str, faults: Sequence[tuple[Fault, ...]], codes: Tensor
+    ) -> Tensor:
         """Return history codes `[W, 32]` as delivered.
 
         For this tap the whole recording is one scene. A shuffle permutes a scene's own reading,
@@ -119,7 +122,7 @@ class Subject:
         interface = self.system.interface.shaped({source: tuple(codes.shape)})
         taps = Taps(
             interface,
-            resolve(faults, interface, self.variant.consumers),
+            [f for parts in faults for f in resolve(parts, interface, self.variant.consumers)],
             scenes=(recording,),
             dt_s=self.system.control_dt_s,
             seed=self.seed,

@@ -23,7 +23,7 @@ from faultpath_quadrotor.vehicle import CONTROL_DT_S
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath.faults import AnyFault, resolve
+from faultpath.faults import Fault, resolve
 from faultpath.loop import (
     Batch,
     Inputs,
@@ -172,7 +172,7 @@ def at_present(
     predictor: Predictor,
     reconstruction: Reconstruction | None,
     bindings: Mapping[str, str],
-    faults: Iterable[AnyFault] = (),
+    faults: Iterable[tuple[Fault, ...]] = (),
     seed: int = 0,
     exchange: Exchange = lambda codes: codes,
 ) -> Present:
@@ -185,7 +185,7 @@ def at_present(
         predictor: Model whose rollouts `Present.positions` reads.
         reconstruction: Estimator of the wind, if there is one.
         bindings: Channel to source, where it is not the channel's first.
-        faults: Faults that act on windows one by one.
+        faults: Faults that act on windows one by one; those of a tuple act together.
         seed: Seed of the faults' random numbers.
         exchange: Change to the history codes of the whole recording, `[W, 32]`.
 
@@ -200,7 +200,7 @@ def at_present(
     present = consumers(parts.parts)
     taps = Taps(
         interface,
-        resolve(faults, interface, present),
+        [fault for parts in faults for fault in resolve(parts, interface, present)],
         scenes=wide.ids,
         dt_s=CONTROL_DT_S,
         seed=seed,

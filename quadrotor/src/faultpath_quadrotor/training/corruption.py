@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Mapping
 
 from torch import Tensor
 
-from faultpath.faults import AnyFault, Bias, Coupled, Fault, UniformScale, resolve
+from faultpath.faults import ALL, Bias, Fault, UniformScale, resolve
 from faultpath.loop import Reading
 from faultpath.plugin.training import window_taps
 from faultpath_quadrotor.interface import quadrotor_interface
@@ -15,7 +15,7 @@ CALIBRATION = ("mass", "thrust_scale")
 DCC_HALF_RANGE = 0.2  # paper, Section IV-B
 
 
-def dcc(consumers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> Coupled:
+def dcc(consumers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> tuple[Fault, ...]:
     """Return independent uniform noise on mass and thrust scale at `consumers`.
 
     Each channel has its own cause: the two factors are independent, and all consumers of a
@@ -24,12 +24,12 @@ def dcc(consumers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> Coupled
     """
     interface = quadrotor_interface()
     noise = UniformScale(half_range=half_range)
-    faults = tuple(
-        Fault(channel=channel, intervention=noise, cause=f"dcc/{channel}")
+    readers = {name for channel in CALIBRATION for name in interface.channel(channel).consumers}
+    aim = tuple(sorted(readers & set(consumers))) or (ALL,)
+    return tuple(
+        Fault(channel=channel, intervention=noise, cause=f"dcc/{channel}", consumers=aim)
         for channel in CALIBRATION
     )
-    readers = {name for channel in CALIBRATION for name in interface.channel(channel).consumers}
-    return Coupled(name="dcc", faults=faults).aimed_at(*sorted(readers & set(consumers)))
 
 
 STATE_STD = {"position": 0.012, "velocity": 0.026, "attitude": 0.005, "body_rate": 0.002}
@@ -37,20 +37,24 @@ STATE_STD = {"position": 0.012, "velocity": 0.026, "attitude": 0.005, "body_rate
 those that the error-state filter's own covariance gives after some seconds (derived)."""
 
 
-def state_noise(consumer: str) -> Coupled:
+def state_noise(consumer: str) -> tuple[Fault, ...]:
     """Return independent Gaussian errors of the whole state at a consumer, one draw a window.
 
     The law is that of `dcc`: each channel has its own cause, and an error stays for the window.
     """
-    faults = tuple(
-        Fault(channel=channel, intervention=Bias(std=std), cause=f"state/{channel}")
+    return tuple(
+        Fault(
+            channel=channel,
+            intervention=Bias(std=std),
+            cause=f"state/{channel}",
+            consumers=(consumer,),
+        )
         for channel, std in STATE_STD.items()
     )
-    return Coupled(name="state_noise", faults=faults).aimed_at(consumer)
 
 
 def corrupted(
-    faults: Iterable[AnyFault],
+    faults: Iterable[Fault],
     consumers: Collection[str],
     windows: tuple[str, ...],
     seed: int,
@@ -70,7 +74,7 @@ def corrupted(
         readings: Values by channel, `[W, ...]`.
 
     Raises:
-        UserError: A name is unknown, or a fault reaches none of these consumers.
+        UserError: A name is unknown, or the faults reach none of these consumers.
         NotDelivered: A fault missed a consumer that it names.
     """
     interface = quadrotor_interface()

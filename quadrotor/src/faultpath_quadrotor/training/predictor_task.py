@@ -85,7 +85,7 @@ class PredictorTask(ModelTask):
         self._train, self.count = training, len(training)
         self._scales = scales(training)
         consumers = self._blank().consumers()
-        faults = [dcc(consumers, self._half_range)] if self.is_dcc else []
+        faults = dcc(consumers, self._half_range) if self.is_dcc else ()
         self._delivered = corrupted(
             faults, consumers, training.ids, self.seed, training.calibration
         )

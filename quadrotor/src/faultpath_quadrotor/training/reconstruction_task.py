@@ -154,14 +154,14 @@ class ReconstructionTask(ModelTask):
             for part in (windows.position, windows.velocity, windows.rotation, windows.rate)
         )
         readings = dict(zip(STATE_STD, latest, strict=True))
-        noisy = corrupted([state_noise(PAST)], [PAST], windows.ids, self.seed, readings)
+        noisy = corrupted(state_noise(PAST), [PAST], windows.ids, self.seed, readings)
         errors = [(noisy[name, PAST] - value).flatten(1) for name, value in readings.items()]
         return torch.cat(errors, 1).T[:, None]
 
     def _calibration(self, windows: tuple[str, ...]) -> Tensor:
         """Return the calibration that the head gets, standardised, `[2, N]`."""
         half_range = self._model.half_range
-        faults = () if half_range is None else (dcc([HEAD], half_range),)
+        faults = () if half_range is None else dcc([HEAD], half_range)
         mass, scale = self._training.calibration
         readings = {"mass": mass, "thrust_scale": scale}
         delivered = corrupted(faults, [HEAD], windows, self.seed, readings)

@@ -1,13 +1,14 @@
 """Question and trials of a map: at each point two errors at two modules of one source."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 
 import numpy as np
 
 from faultpath.core.errors import UserError
+from faultpath.core.text import listed
 from faultpath.decisions.analysis import Analysis, Round, Rounds
 from faultpath.decisions.compared import compared
 from faultpath.decisions.map.decide import decided
@@ -17,7 +18,7 @@ from faultpath.decisions.map.surface import Differences, next_points
 from faultpath.decisions.model import CORRECT, Invalid
 from faultpath.decisions.planning import rows_of, scenes_of, two_variants
 from faultpath.decisions.question import resolve
-from faultpath.faults import AnyFault, FaultText
+from faultpath.faults import Fault, FaultText, at_readers, describe, reaching
 from faultpath.interface import module_of
 from faultpath.trials import (
     Deliveries,
@@ -104,14 +105,14 @@ class MapPlan(Analysis[list[Point]]):
                 if units:
                     by_size.setdefault(units, []).append(module)
             faults = [
-                _sized(self.system, self.fault, question.size(units)).aimed_at(*modules)
+                fault
                 for units, modules in by_size.items()
+                for fault in at_readers(
+                    _sized(self.system, self.fault, question.size(units)), modules
+                )
             ]
             for name in (question.baseline, question.repair):
-                consumers = self.system.variants[name].consumers
-                parts = [
-                    p for fault in faults for p in fault.resolved(self.system.interface, consumers)
-                ]
+                parts = at_readers(faults, self.system.variants[name].consumers)
                 rows += rows_of(self.path(point), {name: parts}, question.seeds)
         return Study(
             name=self.named[0],
@@ -149,13 +150,13 @@ def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Li
     variants, interface = two_variants(system, request), system.interface
     fault = _without_size(system, request.fault)
     relative = fault.kind != "offset"
-    parts = _sized(system, fault, 0.1 if relative else 1.0).resolved(interface)
+    parts = _sized(system, fault, 0.1 if relative else 1.0)
     sources = [interface.source(interface.channel(part.channel).sources[0]) for part in parts]
     errors = [source.uncertainty for source in sources if source.uncertainty]
     unsure = [error.expected_std for error in errors if error.relative is relative]
     largest = _largest(request, max(unsure, default=None), relative)
     ends = [_sized(system, fault, end) for end in (-largest, largest)]
-    modules, others = _places(system, ends[1], request.against, variants)
+    modules, others = _places(ends[1], request.against, variants)
     least = len(lattice(COARSE))
     if not least <= request.points <= _MOST_POINTS:
         raise UserError(
@@ -176,6 +177,7 @@ def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Li
         request,
         spec,
         library,
+        fault=str(request.fault),
         against=modules,
         others=others,
         up_to=largest,
@@ -187,33 +189,34 @@ def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Li
         trained=system.trained,
     )
     name = f"{spec.name}-map-{request.repair}-vs-{request.baseline}"
-    named = (name, request.fault, *modules, f"{largest:g}", PurePath(request.library).stem)
+    named = (name, str(request.fault), *modules, f"{largest:g}", PurePath(request.library).stem)
     return MapPlan(request, question, system, named, spec, fault, chosen)
 
 
-def _without_size(system: System, text: str) -> FaultText:
+def _without_size(system: System, fault: FaultText) -> FaultText:
     """Return a fault that takes sizes of both signs, with its kind unless it is a preset."""
-    fault = FaultText.read(text)
+    if fault.joined:
+        raise UserError(f"fault '{fault}': a map takes one fault; leave '&' out.")
     if fault.sizes:
         raise UserError(
-            f"fault '{text}': the map sets the size itself; leave '={fault.sizes[0]}' out and "
+            f"fault '{fault}': the map sets the size itself; leave '={fault.sizes[0]}' out and "
             "give the largest one with --up-to."
         )
-    if fault.consumers:
-        raise UserError(f"fault '{text}': name the modules with --against, without '@'.")
+    if fault.readers:
+        raise UserError(f"fault '{fault}': name the modules with --against, without '@'.")
     if fault.kind is None and fault.name not in system.fault_presets:
         return replace(fault, kind="scale")
     if fault.kind not in (None, "scale", "offset"):
         raise UserError(
-            f"fault '{text}': a map needs errors of both signs; use {fault.name}:scale (relative, "
+            f"fault '{fault}': a map needs errors of both signs; use {fault.name}:scale (relative, "
             f"the default) or {fault.name}:offset, not '{fault.kind}'."
         )
     return fault
 
 
-def _sized(system: System, fault: FaultText, size: float) -> AnyFault:
+def _sized(system: System, fault: FaultText, size: float) -> tuple[Fault, ...]:
     """Return a fault of a size at every reader; `UserError` where it takes no such size."""
-    return system.fault(str(fault.at(f"{1.0 + size if fault.kind == 'scale' else size:.12g}")))
+    return system.fault(fault.at(f"{1.0 + size if fault.kind == 'scale' else size:.12g}"))
 
 
 def _largest(request: MapQuestion, expected: float | None, relative: bool) -> float:
@@ -239,7 +242,7 @@ def _largest(request: MapQuestion, expected: float | None, relative: bool) -> fl
 
 
 def _places(
-    system: System, fault: AnyFault, against: tuple[str, ...], variants: Sequence[Variant]
+    faults: Sequence[Fault], against: tuple[str, ...], variants: Sequence[Variant]
 ) -> tuple[tuple[str, str], tuple[str, ...]]:
     """Return the two modules, and the other readers of what the fault acts on."""
     if len(against) != 2 or len(set(against)) < 2 or not all(against):
@@ -248,22 +251,22 @@ def _places(
             "--against reconstruction,predictor."
         )
     present = frozenset[str]().union(*(variant.consumers for variant in variants))
+    faults = reaching(faults, present)
 
-    def readers(of: AnyFault) -> set[str]:
-        parts = of.resolved(system.interface, present)
-        return {consumer for part in parts for consumer in part.consumers}
+    def readers(faults: Iterable[Fault]) -> set[str]:
+        return {place for fault in faults for place in fault.consumers}
 
-    reached = [readers(fault.aimed_at(name)) for name in against]
+    reached = [readers(at_readers(faults, (name,))) for name in against]
     for name, places in zip(against, reached, strict=True):
         if not places:
             both = " nor ".join(f"'{variant.name}'" for variant in variants)
             raise UserError(
-                f"--against: neither {both} has '{name}' read what the fault ({fault.describe()}) "
-                "acts on: name another module."
+                f"--against: neither {both} has '{name}' read what the fault ({describe(faults)}) "
+                f"acts on: name two of {listed({module_of(place) for place in readers(faults)})}."
             )
     if both := reached[0] & reached[1]:
         raise UserError(f"--against: both names hold {min(both)}: name two that share no place.")
-    others = sorted({module_of(c) for c in readers(fault) - reached[0] - reached[1]})
+    others = sorted({module_of(c) for c in readers(faults) - reached[0] - reached[1]})
     return (against[0], against[1]), tuple(others)
 
 

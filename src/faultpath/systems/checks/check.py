@@ -110,7 +110,7 @@ def check_system(
         scenes=scenes,
         of=len(ids),
         seed=question.seed,
-        fault=question.fault,
+        fault=question.fault and str(question.fault),
         checks=judged(seen),
     )
 

@@ -6,7 +6,7 @@ from typing import Literal
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
 from faultpath.core.text import unknown
-from faultpath.faults import AnyFault, resolve
+from faultpath.faults import describe, reaching
 from faultpath.interface import module_of
 from faultpath.systems.checks.blocks import BlockSpec, run_block
 from faultpath.systems.checks.check import chosen_variants
@@ -37,13 +37,11 @@ class TraceReport(Result):
     """Differences from what is declared, a sentence each."""
 
 
-def trace_system(
-    system: System, spec: SystemSpec, question: TraceQuestion, fault: AnyFault | None = None
-) -> TraceReport:
+def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> TraceReport:
     """Run a variant for a few steps and report what was read.
 
     Raises `UserError` for a variant, library or scene that there is not, a fault that
-    reaches no consumer there, and a run that fails.
+    reaches no reader there, and a run that fails.
     """
     variant, steps = question.variant or next(iter(system.variants)), question.steps
     consumers = chosen_variants(system, (variant,))[0].consumers
@@ -51,7 +49,8 @@ def trace_system(
     scene = known[0] if question.scene is None else question.scene
     if scene not in known:
         raise UserError(f"library '{question.library}': {unknown('scene', scene, known)}")
-    faults = resolve(() if fault is None else (fault,), system.interface, consumers)
+    faults = () if question.fault is None else system.fault(question.fault)
+    faults = reaching(faults, consumers)
     arm = Arm(variant=variant, faults=faults, seed=question.seed)
     run = run_block(system, BlockSpec(arm, (scene,), steps=steps))
     if run.error and not run.reads:
@@ -67,9 +66,9 @@ def trace_system(
     if run.error:
         findings = (f"The run ended early: {run.error}.",)
     words = {
-        (resolved.channel, consumer): resolved.intervention.words()
-        for resolved in faults
-        for consumer in resolved.consumers
+        (fault.channel, reader): fault.intervention.words()
+        for fault in faults
+        for reader in fault.consumers
     }
     return TraceReport(
         system=spec.name,
@@ -79,7 +78,7 @@ def trace_system(
         scene=scene,
         seed=question.seed,
         steps=steps,
-        fault="" if fault is None else fault.describe(),
+        fault=describe(faults),
         reads=tuple(
             read.model_copy(update={"altered_by": (words[read.tap],)}) if read.altered else read
             for read in run.reads
