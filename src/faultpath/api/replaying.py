@@ -22,12 +22,12 @@ from faultpath.trials.code import CodeState, named, system_code
 from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.execution.provenance import amend, processor
 from faultpath.trials.execution.recheck import difference
-from faultpath.trials.imports import packages
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import AuditQuestion, ask
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.trials.store.tables import TrialAddress, address_of
+from faultpath.trials.trees import release
 from faultpath.trials.trust import ReceivedCode
 from faultpath.trials.work.executor import Executor
 from faultpath.trials.work.processes import local
@@ -139,10 +139,9 @@ def changes(run: RunProvenance, system: System, state: CodeState) -> tuple[str, 
     names = sorted(
         name for name in {*files[0], *files[1]} if files[0].get(name) != files[1].get(name)
     )
-    installed = packages() | {name.replace("_", "-"): text for name, text in state.packages.items()}
     versions = {"Python": (run.python, python_version())}
     versions |= {
-        name: (text, installed[name]) for name, text in run.packages.items() if name in installed
+        name: (text, here) for name, text in run.packages.items() if (here := release(name))
     }
     changed = [f"files ({named(names)})"] * bool(names)
     changed += [f"{name} ({a}, here {b})" for name, (a, b) in versions.items() if a != b]

@@ -8,10 +8,10 @@ from pathlib import Path
 
 from faultpath.core.version import __version__
 from faultpath.trials.execution.runner import RunResult
-from faultpath.trials.imports import packages
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.atomic import write_text
 from faultpath.trials.store.folder import seal
+from faultpath.trials.trees import packages, release
 from faultpath.trials.work.executor import Executor
 
 PROVENANCE = "provenance.json"
@@ -34,13 +34,10 @@ def run_provenance(
     commit, dirty = checkout(package, [package.parent])
     system_commit, system_dirty = None, None
     if result.code and (main := result.code[0].main):
-        ran = (*result.code[0].sources.values(), *result.code[0].data.values())
+        ran = (*result.code[0].sources, *result.code[0].data.values())
         system_commit, system_dirty = checkout(main, ran)
-    imported = {
-        name.replace("_", "-"): release
-        for code in result.code
-        for name, release in code.state.packages.items()
-    }
+    used = {name for code in result.code for name in code.imports}
+    imported = {n.replace("_", "-"): version for n in sorted(used) if (version := release(n))}
     finished = datetime.now(UTC)
     provenance = RunProvenance(
         faultpath_version=__version__,
