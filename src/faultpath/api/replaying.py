@@ -28,7 +28,7 @@ from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.trials.store.tables import TrialAddress, address_of
 from faultpath.trials.trees import release
-from faultpath.trials.trust import ReceivedCode
+from faultpath.trials.trust import check_named
 from faultpath.trials.work.executor import Executor
 from faultpath.trials.work.processes import local
 
@@ -89,10 +89,12 @@ def replay(
     paths: Sequence[str] = (),
     say: Callable[[str], None] = lambda text: None,
     trust: bool = False,
+    code: Sequence[str] = (),
 ) -> Replay:
     """Run the trials of some scenes again, under all conditions or some, with both versions.
 
-    Without `trust` the system has to be an installed one, since the folder may be anybody's.
+    The folder may be anybody's: without `trust`, what it names beside installed systems has to
+    stand in `code` too.
     Raises `UserError` where the system cannot be built, or no longer has the scenes and variants
     of the run.
     """
@@ -106,9 +108,10 @@ def replay(
             f"the run is of a {question.system}, which only its own process had: put what builds "
             "the system into a file, and audit that."
         )
-    received = ReceivedCode(RECORD, trust, say, source.provenance.sources)
     arms = question.baseline, question.repair
-    chosen = choose(question.system, question.options, None, arms, received=received)
+    spec = SystemSpec(name=question.system, options=question.options)
+    check_named(RECORD, spec, arms, code, trust)
+    chosen = choose(spec.name, spec.options, None, arms)
     system = chosen.system
     library = library_of(system, question.library)
     if library.content_hash != question.library_hash:
