@@ -96,12 +96,15 @@ def test_a_project_may_move(files, tmp_path):
     assert before == _state(folder.rename(tmp_path / "elsewhere"))
 
 
-def test_another_release_of_any_package_changes_the_digest(files, monkeypatch):
-    folder = files("zz_start.py")
+@pytest.mark.parametrize("name", ["numpy", "packaging"])
+def test_another_release_of_a_package_or_of_what_it_requires_changes_the_digest(
+    name, files, monkeypatch
+):
+    folder = files(zz_start="import gymnasium, pytest")
     before = _state(folder)
-    versions = {**trees.installed(), "numpy": "0"}
-    monkeypatch.setattr("faultpath.trials.code.installed", lambda: versions)
-    assert _state(folder).changed(before) == ("numpy",)
+    release = trees.release
+    monkeypatch.setattr(trees, "release", lambda other: "0" if other == name else release(other))
+    assert _state(folder).changed(before) == (name,)
     assert _state(folder).digest != before.digest
 
 
@@ -129,10 +132,12 @@ def test_an_installed_system_counts_by_its_contents_and_what_it_uses_by_its_vers
     (place / "faultpath_yy").mkdir()  # may be edited where it lies, as `faultpath_quadrotor`
     (place / "faultpath_yy" / "__init__.py").touch()
     monkeypatch.setattr(sys, "path", [*sys.path, str(place)])
+    for name in ("_installed", "_holder", "release"):  # what is remembered for a whole process
+        monkeypatch.setattr(trees, name, getattr(trees, name).__wrapped__)
     code = read_code([Root("zz_mine.system")])
     assert set(code.state.files) == {"zz_mine", "faultpath_yy", "faultpath"}
-    assert code.imports >= {"zz_theirs", "numpy"}
-    assert trees.installed.__wrapped__()["zz_theirs"] == "1.5"
+    assert code.state.packages.items() >= {("zz_theirs", "1.5")}
+    assert "zz_mine" not in code.state.packages
 
 
 def test_a_loaded_module_counts_as_it_was_loaded(files):

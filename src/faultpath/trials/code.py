@@ -20,7 +20,7 @@ from faultpath.trials.checks import paths_of
 from faultpath.trials.declared import shown
 from faultpath.trials.registry import factory_root
 from faultpath.trials.system import System
-from faultpath.trials.trees import Root, installed, kind_of, loaded, trees_of
+from faultpath.trials.trees import Root, kind_of, loaded, releases, trees_of
 
 _NAMED = 3
 _ENGINE = Root("faultpath")
@@ -34,7 +34,7 @@ class CodeState(Frozen):
     data: dict[str, str] = Field(default_factory=dict[str, str])
     """SHA-256 of each data file."""
     packages: dict[str, str]
-    """Versions of all installed packages."""
+    """Versions of the installed packages that these import, and of all that those require."""
     python: str
     given: str = ""
     """Text of the system's `fingerprint()`, after its source where no file holds that."""
@@ -154,7 +154,7 @@ def read_code(
     state = CodeState(
         files=sources,
         data=digests,
-        packages=installed(),
+        packages=releases(imports),
         python=platform.python_version(),
         given=fingerprint,
     )

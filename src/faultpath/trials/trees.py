@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cache
 from hashlib import sha256
 from importlib.machinery import EXTENSION_SUFFIXES
-from importlib.metadata import packages_distributions
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import gettempdir
@@ -30,6 +29,8 @@ _MOST = 20_000
 _IMPORT = re.compile(
     r"(?:^|[;:])[ \t]*(?:from[ \t]+(\w+)[\w.]*[ \t]+import\b|import[ \t]+([\w., \t]+))", re.M
 )
+_REQUIRES = re.compile(r"^Requires-Dist: *([\w.-]+)(?!.*(?:extra|platform|os_name))", re.M)
+"""Distribution that another needs on every machine."""
 
 
 @dataclass(frozen=True)
@@ -206,37 +207,63 @@ def kind_of(path: Path) -> Literal["standard", "installed", "local"]:
 
 
 @cache
-def installed() -> dict[str, str]:
-    """Return the versions of all installed distributions, by name with `_` for `-` and `.`.
-
-    One that was installed from a folder or an archive of the user's own keeps its version while
-    its contents change; a digest of what was installed stands beside it.
-    """
-    versions: dict[str, str] = {}
-    for place in map(Path, sys.path):
-        for entry in sorted(place.glob("*.dist-info")) if _INSTALLED & {*place.parts} else ():
-            name, _, version = entry.stem.partition("-")
-            if (entry / "direct_url.json").exists():
-                lines = (entry / "RECORD").read_text("utf-8").splitlines()
-                records = sorted(line for line in lines if "sha256=" in line)
-                records = [line for line in records if "dist-info" not in line]
-                version += f" ({sha256(repr(records).encode()).hexdigest()[:16]})"
-            versions.setdefault(_distribution(name), version)
-    return versions
+def _installed() -> dict[str, Path]:
+    """Return where the metadata of each installed distribution are, by name, spelled with `_`."""
+    places = [Path(place) for place in sys.path if _INSTALLED & {*Path(place).parts}]
+    entries = [entry for place in places for entry in sorted(place.glob("*.dist-info"))]
+    return {_spelled(entry.name.partition("-")[0]): entry for entry in reversed(entries)}
 
 
-def _distribution(name: str) -> str:
+def _spelled(name: str) -> str:
     return re.sub(r"[-_.]+", "_", name).lower()
 
 
 @cache
+def _holder(package: str) -> str:
+    """Return the distribution that holds a top-level package; empty without one."""
+    if package in sys.stdlib_module_names:
+        return ""
+    if _spelled(package) in _installed():
+        return _spelled(package)
+    starts = tuple(f"\n{package}{end}" for end in ("/", ".py,"))
+    for name, entry in _installed().items():
+        records = f"\n{_text(entry / 'RECORD')}"
+        if any(start in records for start in starts):
+            return name
+    return ""
+
+
+def _text(file: Path) -> str:
+    return file.read_text("utf-8") if file.exists() else ""
+
+
+@cache
 def release(package: str) -> str | None:
-    """Return the version of the distribution that holds a top-level package, `None` without one."""
-    if package in sys.stdlib_module_names:  # no distribution has them, and looking takes seconds
+    """Return the version of the distribution that holds a top-level package, `None` without one.
+
+    One that was installed from a folder or an archive of the user's own keeps its version while
+    its contents change; a digest of what was installed stands beside it.
+    """
+    entry = _installed().get(_holder(package))
+    if entry is None:
         return None
-    if _distribution(package) not in installed():
-        package, *_ = packages_distributions().get(package) or [package]
-    return installed().get(_distribution(package))
+    version = entry.stem.partition("-")[2]
+    if not (entry / "direct_url.json").exists():
+        return version
+    lines = (line for line in _text(entry / "RECORD").splitlines() if "sha256=" in line)
+    records = sorted(line for line in lines if "dist-info" not in line)
+    return f"{version} ({sha256(repr(records).encode()).hexdigest()[:16]})"
+
+
+def releases(packages: Iterable[str]) -> dict[str, str]:
+    """Return the versions of installed packages and of all that they require, by distribution."""
+    names = [name for package in sorted(packages) if (name := _holder(package))]
+    for name in names:  # it grows on the way
+        for line in _REQUIRES.findall(_text(_installed()[name] / "METADATA")):
+            required = _spelled(line)
+            if required in _installed() and required not in names:
+                names.append(required)
+    return {name: version for name in names if (version := release(name))}
 
 
 def packages() -> dict[str, str]:
