@@ -6,6 +6,8 @@ from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
+from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.plain import model_of
 from faultpath.core.version import __version__
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.provenance import RunProvenance
@@ -28,8 +30,13 @@ def run_provenance(
 ) -> RunProvenance:
     """Describe the run that has just finished on `executor`, and write that into its folder.
 
-    `names` are the files there that its pages are made from; their digests stand beside it.
+    `names` are the files there that its pages are made from; their digests stand beside it. Of a
+    run that other code had finished, the provenance stays.
     """
+    if not result.code and (folder / PROVENANCE).exists():
+        earlier = model_of(contents(folder / PROVENANCE, LARGEST_TEXT), RunProvenance)
+        digests = {"outcomes_sha256": result.outcomes_sha256}
+        return amend(folder, earlier.model_copy(update=digests), names)
     package = Path(__file__).parents[2] / "__init__.py"
     commit, dirty = checkout(package, [package.parent])
     system_commit, system_dirty = None, None

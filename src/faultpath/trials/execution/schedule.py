@@ -7,7 +7,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from faultpath.core.version import __version__
 from faultpath.trials.arm import Arm
 from faultpath.trials.declared import Library, SceneRef
 
@@ -45,7 +44,6 @@ def plan(
     for block, ids in parts.items():
         for arm in arms:
             content = {
-                "faultpath": __version__,
                 "system": fingerprint,
                 "arm": arm.model_dump(mode="json"),
                 "scenes": ids,

@@ -132,6 +132,7 @@ class RunFolder:
         self.failures = path / "failures"
         self.manifest = path / "manifest.json"
         self.rechecks = path / "rechecks.json"
+        self.provenance = path / "provenance.json"
 
     @contextmanager
     def open(
@@ -157,6 +158,13 @@ class RunFolder:
                 self._write(self.manifest, manifest.encode())
             yield
 
+    def made_by_other_code(self, manifest: Manifest) -> Manifest | None:
+        """Return what the manifest would be if the code that the folder was run with ran it."""
+        previous = read_manifest(self.manifest) or manifest
+        made_by = {"code": previous.code, "faultpath_version": previous.faultpath_version}
+        earlier = manifest.model_copy(update=made_by)
+        return None if earlier == manifest else earlier
+
     def save_shard(self, key: str, shard: Done) -> None:
         """Store a finished block. The name carries a digest of the bytes, checked on reading."""
         data = encode_shard(key, shard)
@@ -176,22 +184,21 @@ class RunFolder:
         shards: list[Done] = []
         for path in self.files_of(key):
             try:
-                data = contents(path)
-            except OSError as error:
-                raise UserError(f"{path} cannot be read ({error.strerror}): remove it.") from error
-            try:
-                if path.stem != f"{key}-{_digest(data)[:32]}":
-                    raise Unreadable("its contents are not those that were written")
-                shard = decode_shard(data, key)
-                if [outcome.scene for outcome in shard.outcomes] != list(scenes):
-                    raise Unreadable("it holds other scenes")
+                shards.append(_read_shard(path, key, scenes))
             except Unreadable as error:
                 notice(f"{path} is damaged ({error}); removing it and running its trials again")
                 path.unlink()
-            else:
-                shards.append(shard)
         # A process killed between writing and tidying leaves two; the later one failed less often.
         return min(shards, key=lambda shard: sum(o.failed for o in shard.outcomes), default=None)
+
+    def finished(self, units: Iterable[tuple[str, Sequence[str]]]) -> dict[str, Done]:
+        """Return the blocks of a finished run; none where one is missing or has failures."""
+        try:
+            blocks = {k: _read_shard(self.files_of(k)[0], k, scenes) for k, scenes in units}
+        except (IndexError, Unreadable):
+            return {}
+        failed = any(trial.failed for block in blocks.values() for trial in block.outcomes)
+        return blocks if self.provenance.exists() and not failed else {}
 
     def save_failure(self, key: str, text: str) -> None:
         """Store what is known about the failed trials of a block; without any, forget the last."""
@@ -224,6 +231,19 @@ class RunFolder:
 
     def _write(self, path: Path, data: bytes) -> None:
         write_file(path, data, self.path)
+
+
+def _read_shard(path: Path, key: str, scenes: Sequence[str]) -> Done:
+    try:
+        data = contents(path)
+    except OSError as error:
+        raise UserError(f"{path} cannot be read ({error.strerror}): remove it.") from error
+    if path.stem != f"{key}-{_digest(data)[:32]}":
+        raise Unreadable("its contents are not those that were written")
+    shard = decode_shard(data, key)
+    if [outcome.scene for outcome in shard.outcomes] != list(scenes):
+        raise Unreadable("it holds other scenes")
+    return shard
 
 
 def read_outcomes(path: Path) -> OutcomeTable:
