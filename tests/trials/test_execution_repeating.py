@@ -65,14 +65,8 @@ def test_code_that_does_not_overwrites_nothing_and_names_a_trial(file, old, new,
     edited.write_text(edited.read_text().replace(old, new))
     with pytest.raises(UserError) as refused:
         _run(mine)
-    for part in (
-        f"changed since: {edited.name}",
-        "correct inputs",
-        "seed 0",
-        "'s0",
-        differs,
-        "a new one",
-    ):
+    where = "(correct inputs, seed 0, "
+    for part in (f"changed since: {edited.name}", where, "'s0", differs, "choose a new one"):
         assert part in str(refused.value)
     assert _contents(mine) == before
 
