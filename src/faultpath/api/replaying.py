@@ -140,7 +140,10 @@ def changes(run: RunProvenance, system: System, state: CodeState) -> tuple[str, 
     """Say what has changed since a run, of all that may decide a trial."""
     files = {**run.sources, **run.data}, {**state.files, **state.data}
     names = sorted(
-        name for name in {*files[0], *files[1]} if files[0].get(name) != files[1].get(name)
+        name
+        for name in {*files[0], *files[1]}
+        if files[0].get(name) != files[1].get(name)
+        and (name in files[1] or name.partition("/")[0] not in files[1])  # a package is one entry
     )
     versions = {"Python": (run.python, python_version())}
     versions |= {

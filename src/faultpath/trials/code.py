@@ -79,7 +79,7 @@ class Code:
 
 
 class Watch:
-    """What a process may still read: data files, and sources that it imports late.
+    """Files that a process may still read: data, and sources that it imports late.
 
     A glance costs one `stat` a file; contents are compared only where that shows another time,
     size or file.
