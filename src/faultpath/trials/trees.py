@@ -96,7 +96,9 @@ def _tree(place: Path, package: str) -> Tree:
     folder, files = place.parent, list[Path]()
     if folder not in (Path.home(), Path(folder.anchor), Path(os.path.realpath(gettempdir()))):
         files = _sources(folder)
-    files = files or sorted(path for path in folder.iterdir() if path.name.endswith(_SUFFIXES))
+    if not files:
+        beside = next(os.walk(folder), (None, (), ()))[2]
+        files = [folder / name for name in sorted(beside) if name.endswith(_SUFFIXES)]
     return Tree(folder, "", _digests((*files, place)))
 
 
@@ -130,9 +132,9 @@ def places(package: str) -> list[Path]:
         return []
     if spec is None or package in sys.stdlib_module_names:
         return []
-    if spec.submodule_search_locations is not None:
-        return list(map(Path, spec.submodule_search_locations))
-    return [Path(spec.origin)] if spec.has_location and spec.origin else []
+    origin = [spec.origin] if spec.has_location and spec.origin else []
+    found = origin if spec.submodule_search_locations is None else spec.submodule_search_locations
+    return [place for place in map(Path, found) if place.exists()]  # one may lie in an archive
 
 
 _loaded: WeakKeyDictionary[ModuleType, str] = WeakKeyDictionary()
