@@ -14,6 +14,7 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -44,7 +45,7 @@ def main() -> None:
     if unknown := sorted({*options.names} - {*runs}):
         parser.error(f"no reference run is called {unknown[0]}: there are {', '.join(runs)}")
     chosen = options.names or [
-        name for name, run in runs.items() if (result := show(run)) and not result.current
+        name for name, result in show(runs.values()).items() if result and not result.current
     ]
     if options.list:
         return
@@ -57,24 +58,33 @@ def main() -> None:
         sys.exit(documents.main(["--images"]))
 
 
-def show(run: Run) -> Repeats | None:
-    """Repeat a sample of a run, print what came of it, and keep that beside the run.
+def show(runs: Iterable[Run]) -> dict[str, Repeats | None]:
+    """Repeat a sample of each run, print what came of it, and keep that beside the run.
 
-    Returns `None` where the packages that its system needs are not installed.
+    Each environment has a process, beside this one, for all of its runs. `None` stands for a run
+    of which the environment is not here.
     """
-    python = ROOT / environment(run) / "bin" / "python"
-    result: Repeats | None = None
-    if environment(run) == ".venv":
-        result = repeats.write(run)
-    elif python.is_file():
-        code = "import sys, blocks, repeats; repeats.write(blocks.load(sys.argv[1]))"
-        variables = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, sources(ROOT)))}
-        subprocess.run((python, "-c", code, run.name), cwd=ROOT, env=variables, check=True)
-        result = run.repeats
-    text = str(result) if result else f"not asked: it needs {environment(run)}"
-    text += f" ({result.first})" if result and result.first else ""
-    print(f"{run.name:36s}{run.provenance.wall_s:6.0f} s  {text}", flush=True)
-    return result
+    runs = tuple(runs)
+    code = "import sys, blocks, repeats\nfor n in sys.argv[1:]: repeats.write(blocks.load(n))"
+    variables = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, sources(ROOT)))}
+    own = [run for run in runs if environment(run) == ".venv"]
+    others: list[tuple[list[Run], subprocess.Popen[bytes]]] = []
+    for place in sorted({environment(run) for run in runs} - {".venv"}):
+        if (python := ROOT / place / "bin" / "python").is_file():
+            there = [run for run in runs if environment(run) == place]
+            command = (str(python), "-c", code, *(run.name for run in there))
+            others.append((there, subprocess.Popen(command, cwd=ROOT, env=variables)))
+    results: dict[str, Repeats | None] = {run.name: repeats.write(run) for run in own}
+    for there, process in others:
+        if process.wait():
+            raise subprocess.CalledProcessError(process.returncode, process.args)
+        results.update({run.name: run.repeats for run in there})
+    for run in runs:
+        result = results.setdefault(run.name, None)
+        text = str(result) if result else f"not asked: it needs {environment(run)}"
+        text += f" ({result.first})" if result and result.first else ""
+        print(f"{run.name:36s}{run.provenance.wall_s:6.0f} s  {text}", flush=True)
+    return results
 
 
 def sources(tree: Path) -> list[Path]:
@@ -117,7 +127,7 @@ def fly(run: Run, commit: str) -> None:
     subprocess.run((python, "-m", "faultpath", *command), cwd=TREE, env=variables, check=True)
     documents.take(f"{run.name}={TREE / folder}")
     load.cache_clear()
-    show(load(run.name))
+    show([load(run.name)])
 
 
 def elsewhere(run: Run) -> str:

@@ -1,8 +1,8 @@
 """Code that a received folder or file names runs only where a person says so."""
 
-import hashlib
 import shutil
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -11,7 +11,7 @@ from odd_inputs import sign
 
 from faultpath.core.errors import UserError
 from faultpath.trials import SystemSpec
-from faultpath.trials.trust import ReceivedCode
+from faultpath.trials.trust import check_named
 
 MINE = f"""
 import sys
@@ -63,31 +63,28 @@ def test_a_function_that_builds_nothing_is_called_for_no_file(system, options, t
     assert ended.status == 2
     assert system.partition(":")[0] in ended.err
     assert ("nothing else is called" if trust else "give --trust") in ended.err
-    assert "it is the code of the run" not in ended.err
     assert not Path("ran").exists()
     assert not Path("runs").exists()
 
 
-def test_a_file_is_shown_and_imported_where_it_is_trusted() -> None:
+def test_a_file_is_imported_where_a_person_names_it_too_or_trusts_all() -> None:
     before = list(sys.path)
-    digest = hashlib.sha256(Path("mine.py").read_bytes()).hexdigest()[:16]
-    said = faultpath("replay", "run").refused(str(Path("mine.py").resolve()), digest)
-    assert "changed since" not in said
+    for code in ((), ("--code", "other.py"), ("--code", "mine.py:other")):
+        said = faultpath("replay", "run", *code).refused("record.json names mine.py:create")
+        assert "--code, or give --trust" in said
+        assert not Path("imported").exists()
     assert sys.path == before
-    assert not Path("imported").exists()
-    trusted = faultpath("replay", "run", "--trust")
-    assert trusted.status == 0, trusted.err
-    assert "Importing mine.py:create" in " ".join(trusted.out.split())
-    assert Path("imported").exists()
+    for code in (("--code", "mine.py"), ("--code", "mine.py:create"), ("--trust",)):
+        ended = faultpath("replay", "run", *code)
+        assert ended.status == 0, ended.err
+        assert Path("imported").exists()
 
 
-def test_that_the_code_is_another_is_said_before_it_is_imported() -> None:
-    code = "\nif not Path('said').exists():\n    raise SystemExit\n"
-    Path("mine.py").write_text(MINE + code)
-    faultpath("replay", "run").refused("not the code of the run (mine.py changed since)")
-    assert not Path("imported").exists()
-    ended = faultpath("replay", "run", "--trust")
-    assert "This is not the code of the run (mine.py changed since)." in ended.out
+def test_that_the_code_is_another_is_said_where_trials_differ() -> None:
+    Path("mine.py").write_text(f"{MINE}\nToy.control_dt_s = 2 * Toy.control_dt_s\n")
+    ended = faultpath("replay", "run", "--code", "mine.py")
+    assert ended.status == 1, ended.err
+    assert "mine.py" in ended.out.rpartition("have changed: ")[2]
 
 
 @pytest.mark.parametrize(
@@ -105,20 +102,8 @@ def test_that_the_code_is_another_is_said_before_it_is_imported() -> None:
 def test_a_part_that_a_file_brings_to_an_installed_system_is_asked_for_too(names) -> None:
     pytest.importorskip("faultpath_quadrotor")
     renamed(**{"system": "quadrotor"} | names)
-    digest = hashlib.sha256(Path("mine.py").read_bytes()).hexdigest()[:16]
-    faultpath("replay", "run").refused("give --trust", digest)
+    faultpath("replay", "run", "--code", "quadrotor").refused("mine.py", "give --trust")
     assert not Path("imported").exists()
-
-
-def test_the_file_that_is_shown_is_the_one_that_would_be_imported() -> None:
-    pytest.importorskip("faultpath_quadrotor")
-    Path("decoy.py").write_text("")
-    Path("decoy.py:create").mkdir()
-    shutil.copy("mine.py", "decoy.py:create/real.py")
-    options = {"planner": "decoy.py:create/real.py:run-it"}
-    renamed(system="quadrotor", options=options)
-    real = Path("decoy.py:create/real.py").resolve()
-    faultpath("replay", "run").refused(str(real))
 
 
 @pytest.mark.parametrize(
@@ -131,18 +116,21 @@ def test_a_name_with_a_zero_byte_is_refused_in_a_sentence(names, trust) -> None:
     assert faultpath("replay", "run", *trust).status == 2
 
 
-def test_an_installed_system_needs_no_word_and_a_changed_part_is_told() -> None:
+@pytest.mark.parametrize(
+    ("system", "options", "variants", "code", "refused"),
+    [
+        ("quadrotor", {"wind": "L3"}, ("gru", "gru+dcc"), (), ""),
+        ("quadrotor", {}, ("mine.py:create/gru", "gru"), (), "mine.py:create"),
+        ("quadrotor", {}, ("mine.py:create/gru", "gru"), ("mine.py",), ""),
+        ("quadrotor", {"bring": "a.py:x,b.py:y"}, (), ("a.py:x",), "b.py:y"),
+        ("quadrotor", {"planner": "a.py:x/b.py:run-it"}, (), ("a.py:x",), "a.py:x/b.py:run-it"),
+        ("sys:exit", {}, (), (), "sys:exit"),
+        ("sys:exit", {}, (), ("sys:exit",), ""),
+    ],
+)
+def test_each_name_of_code_has_to_be_named_too(system, options, variants, code, refused) -> None:
     pytest.importorskip("faultpath_quadrotor")
-    said: list[str] = []
-    spec = SystemSpec(name="quadrotor", options={"bring": "mine.py:create"})
-    ReceivedCode("record.json", True, said.append, {"mine": "0" * 64}).check(spec, ())
-    assert "mine.py:create" in said[-1]
-    assert "changed since" in said[-1]
-    said.clear()
-    file = ReceivedCode("record.json", False, said.append)
-    file.check(SystemSpec(name="quadrotor", options={"wind": "L3"}), ("gru", "gru+dcc"))
-    assert said == ["Importing quadrotor, which record.json names."]
-    with pytest.raises(UserError, match="give --trust"):
-        file.check(SystemSpec(name="quadrotor"), ("mine.py:create/gru", "gru"))
-    with pytest.raises(UserError, match="no file found"):
-        file.check(SystemSpec(name="sys:exit"), ())
+    spec = SystemSpec(name=system, options=options)
+    with pytest.raises(UserError, match=f"names {refused}, and") if refused else nullcontext():
+        check_named("record.json", spec, variants, code, trusted=False)
+    check_named("record.json", spec, variants, (), trusted=True)

@@ -88,6 +88,14 @@ def test_without_workers_data_that_change_under_way_end_the_run(mine, tmp_path):
     assert len(list((tmp_path / "run" / "shards").iterdir())) == 2
 
 
+def test_an_edit_under_way_of_what_nothing_loads_ends_no_run(mine, tmp_path):
+    other = mine.file.with_name("plots.py")
+    other.touch()
+    run_study(mine.study(), tmp_path / "run", workers=0, progress=lambda _: other.write_text("x"))
+    with pytest.raises(UserError, match=r"other code than this.*plots\.py"):
+        run_study(mine.study(), tmp_path / "run", workers=0)
+
+
 def test_data_that_are_not_there_are_named(mine, tmp_path):
     mine.data.unlink()
     with pytest.raises(UserError, match=r"push\.txt.*data_files"):

@@ -22,13 +22,13 @@ from faultpath.trials.code import CodeState, named, system_code
 from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.execution.provenance import amend, processor
 from faultpath.trials.execution.recheck import difference
-from faultpath.trials.imports import packages
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import AuditQuestion, ask
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.trials.store.tables import TrialAddress, address_of
-from faultpath.trials.trust import ReceivedCode
+from faultpath.trials.trees import release
+from faultpath.trials.trust import check_named
 from faultpath.trials.work.executor import Executor
 from faultpath.trials.work.processes import local
 
@@ -89,10 +89,12 @@ def replay(
     paths: Sequence[str] = (),
     say: Callable[[str], None] = lambda text: None,
     trust: bool = False,
+    code: Sequence[str] = (),
 ) -> Replay:
     """Run the trials of some scenes again, under all conditions or some, with both versions.
 
-    Without `trust` the system has to be an installed one, since the folder may be anybody's.
+    The folder may be anybody's: without `trust`, what it names beside installed systems has to
+    stand in `code` too.
     Raises `UserError` where the system cannot be built, or no longer has the scenes and variants
     of the run.
     """
@@ -106,9 +108,10 @@ def replay(
             f"the run is of a {question.system}, which only its own process had: put what builds "
             "the system into a file, and audit that."
         )
-    received = ReceivedCode(RECORD, trust, say, source.provenance.sources)
     arms = question.baseline, question.repair
-    chosen = choose(question.system, question.options, None, arms, received=received)
+    spec = SystemSpec(name=question.system, options=question.options)
+    check_named(RECORD, spec, arms, code, trust)
+    chosen = choose(spec.name, spec.options, None, arms)
     system = chosen.system
     library = library_of(system, question.library)
     if library.content_hash != question.library_hash:
@@ -137,12 +140,14 @@ def changes(run: RunProvenance, system: System, state: CodeState) -> tuple[str, 
     """Say what has changed since a run, of all that may decide a trial."""
     files = {**run.sources, **run.data}, {**state.files, **state.data}
     names = sorted(
-        name for name in {*files[0], *files[1]} if files[0].get(name) != files[1].get(name)
+        name
+        for name in {*files[0], *files[1]}
+        if files[0].get(name) != files[1].get(name)
+        and (name in files[1] or name.partition("/")[0] not in files[1])  # a package is one entry
     )
-    installed = packages() | {name.replace("_", "-"): text for name, text in state.packages.items()}
     versions = {"Python": (run.python, python_version())}
     versions |= {
-        name: (text, installed[name]) for name, text in run.packages.items() if name in installed
+        name: (text, here) for name, text in run.packages.items() if (here := release(name))
     }
     changed = [f"files ({named(names)})"] * bool(names)
     changed += [f"{name} ({a}, here {b})" for name, (a, b) in versions.items() if a != b]

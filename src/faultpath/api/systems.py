@@ -14,7 +14,7 @@ from faultpath.trials import System, SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import as_text
 from faultpath.trials.registry import factory_name
-from faultpath.trials.trust import PART, ReceivedCode
+from faultpath.trials.trust import PART
 from faultpath.trials.work.executor import Executor
 from faultpath.trials.work.processes import local
 
@@ -60,14 +60,12 @@ def choose(
     workers: int | None,
     variants: Sequence[str],
     executor: str = LOCAL,
-    received: ReceivedCode | None = None,
 ) -> Chosen:
     """Return the system to audit, with the parts that its variants name.
 
-    `received` is the file that names them, unless the caller does. What `load_system` gave is built
-    again from its name and options, unless somebody changed its attributes. Raises as
-    `load_system`, for what an object cannot do and an executor that there is not, and as
-    `Received.check`.
+    What `load_system` gave is built again from its name and options, unless somebody changed its
+    attributes. Raises as `load_system`, and for what an object cannot do and an executor that there
+    is not.
     """
     check_executor(executor)
     if not isinstance(system, System):
@@ -85,8 +83,6 @@ def choose(
         if not same or not all(isinstance(attribute, cached_property) for attribute in more):
             spec = None
     if spec is not None:
-        if received is not None:
-            received.check(spec, variants)
         spec = with_parts(spec, variants)
         return Chosen(trials.load_system(spec), spec)
     if workers or executor != LOCAL:

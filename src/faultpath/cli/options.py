@@ -34,7 +34,7 @@ SystemName = Annotated[
 ]
 Trust = Annotated[
     bool,
-    typer.Option("--trust", help="Import the code that the file names; look at it first."),
+    typer.Option("--trust", help="Import all code that the file names; look at it first."),
 ]
 Json = Annotated[
     bool,

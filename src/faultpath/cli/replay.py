@@ -25,11 +25,18 @@ def replay(
         bool,
         typer.Option("--signals", help="Keep the recorded signals, and make the report again."),
     ] = False,
+    code: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME",
+            help="Code that the run names, to import it; several times for several.",
+        ),
+    ] = None,
     trust: Trust = False,
 ) -> int:
     """Run trials of a finished run again and compare them with the run, to the bit. It runs the
-    system that the run names, which has to be installed or trusted. Exits with 1 where one
-    differs."""
+    system that the run names, which has to be installed, named with --code, or trusted. Exits with
+    1 where one differs."""
     from faultpath.api.display import SafeConsole
     from faultpath.api.folders import RECORD, read_provenance, read_run
     from faultpath.api.replaying import chosen_scenes, keep_signals, replay
@@ -42,7 +49,7 @@ def replay(
     scenes = chosen_scenes(source, scene or (), path or ())
     console = SafeConsole()
     say = partial(console.print, markup=False)
-    again = replay(source, scenes, path or (), say, trust)
+    again = replay(source, scenes, path or (), say, trust, code or ())
     replays = again.trials
     unlike = [trial for trial in replays if trial.differs]
     for trial in unlike:

@@ -1,8 +1,7 @@
 """For a package that makes files and keeps them: whole files, and the state of the code behind."""
 
 from faultpath.core.files.parquet import Unreadable, read_table
-from faultpath.trials.code import read_code, system_code
-from faultpath.trials.imports import Root, packages
+from faultpath.trials.code import system_code
 from faultpath.trials.store.atomic import (
     check_output,
     locked,
@@ -12,6 +11,7 @@ from faultpath.trials.store.atomic import (
     write_file,
     write_text,
 )
+from faultpath.trials.trees import Root, packages, trees_of
 
 __all__ = [
     "Root",
@@ -20,10 +20,10 @@ __all__ = [
     "locked",
     "make_folder",
     "packages",
-    "read_code",
     "read_table",
     "sweep",
     "system_code",
+    "trees_of",
     "write",
     "write_file",
     "write_text",

@@ -27,7 +27,7 @@ from faultpath.systems.episodes import (
 )
 from faultpath.systems.observed import hashed
 from faultpath.trials import Metric
-from faultpath.trials.imports import release
+from faultpath.trials.trees import release
 
 Setup = Callable[[Any, np.random.Generator], Mapping[str, Any] | None]
 OnStep = Callable[[Any, np.random.Generator, int], None]

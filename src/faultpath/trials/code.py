@@ -1,6 +1,5 @@
 """The state of the code behind a result: one digest, and what it is made of."""
 
-import gc
 import inspect
 import json
 import platform
@@ -19,24 +18,23 @@ from faultpath.core.results import Frozen
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import paths_of
 from faultpath.trials.declared import shown
-from faultpath.trials.imports import ImportGraph, Root
 from faultpath.trials.registry import factory_root
 from faultpath.trials.system import System
+from faultpath.trials.trees import Root, kind_of, loaded, releases, trees_of
 
 _NAMED = 3
-_ATTEMPT = Root("faultpath.trials.attempt")
-"""Module that runs a trial, whichever system it is."""
+_ENGINE = Root("faultpath")
 
 
 class CodeState(Frozen):
-    """Digests of everything outside installed packages that decides a result, and versions."""
+    """Digests of the sources and data that decide a result, and versions."""
 
     files: dict[str, str]
-    """SHA-256 of each source file, by module."""
+    """SHA-256 of each package, and of each file of a folder of the user's."""
     data: dict[str, str] = Field(default_factory=dict[str, str])
     """SHA-256 of each data file."""
     packages: dict[str, str]
-    """Versions of the installed packages that these files import."""
+    """Versions of the installed packages that these import, and of all that those require."""
     python: str
     given: str = ""
     """Text of the system's `fingerprint()`, after its source where no file holds that."""
@@ -45,11 +43,6 @@ class CodeState(Frozen):
     def digest(self) -> str:
         """Hash of all of it."""
         return _hash(self.model_dump(mode="json"))
-
-    @property
-    def contents(self) -> str:
-        """Hash of all but the versions of packages and Python."""
-        return _hash([self.files, self.data, self.given])
 
     def changed(self, other: "CodeState") -> tuple[str, ...]:
         """Say what `other` has otherwise: files, data files, packages, Python."""
@@ -76,33 +69,33 @@ class Code:
     """The state of some code, and where its files are."""
 
     state: CodeState
-    sources: Mapping[str, Path]
+    sources: Mapping[Path, str]
+    """SHA-256 of each source, as this process loaded it."""
     data: Mapping[str, Path]
+    imports: frozenset[str]
+    """Installed packages that the sources import, by their names there."""
     main: Path | None = None
-    """The file of the first module that it was followed from."""
-
-    def unread(self) -> "Watch":
-        """Watch what this process may still read: data files, and modules not imported yet."""
-        loaded = {getattr(module, "__file__", None) for module in tuple(sys.modules.values())}
-        late = {name: path for name, path in self.sources.items() if str(path) not in loaded}
-        return Watch({**late, **self.data}, {**self.state.files, **self.state.data})
+    """The file of the first module."""
 
 
 class Watch:
-    """Files that a process may still read, such as weights and modules imported late.
+    """Files that a process may still read: data, and sources that it imports late.
 
     A glance costs one `stat` a file; contents are compared only where that shows another time,
     size or file.
     """
 
-    def __init__(self, files: Mapping[str, Path], digests: Mapping[str, str]) -> None:
-        self._files, self._digests = files, digests
-        self._stamps = {name: _stamp(path) for name, path in files.items()}
+    def __init__(self, code: Code) -> None:
+        self._data, self._digests = code.data, code.state.data
+        self._stamps = {name: _stamp(path) for name, path in code.data.items()}
+        before = loaded()
+        self._late = {path: d for path, d in code.sources.items() if str(path) not in before}
+        self._modules = len(sys.modules)
 
     def changed(self) -> tuple[str, ...]:
-        """Return the names of the files whose contents are not what they were."""
+        """Return the names of the files whose contents are not what they were when read."""
         names: list[str] = []
-        for name, path in self._files.items():
+        for name, path in self._data.items():
             stamp = _stamp(path)
             if stamp is not None and stamp == self._stamps[name]:
                 continue
@@ -110,6 +103,11 @@ class Watch:
                 names.append(name)
             else:
                 self._stamps[name] = stamp
+        if len(sys.modules) != self._modules:
+            self._modules, modules = len(sys.modules), loaded()
+            for path in [path for path in self._late if str(path) in modules]:
+                digest = self._late.pop(path)
+                names += [path.name] * (_stamp(path) is None or _digest(path) != digest)
         return tuple(names)
 
 
@@ -126,54 +124,56 @@ def read_code(
     base: Path | None = None,
     fingerprint: str = "",
 ) -> Code:
-    """Return what `roots` import, with some data files and folders.
+    """Return the source trees of `roots` and of faultpath, with some data files and folders.
 
     Paths of data are taken from `base`. `UserError` for a file that cannot be read.
     """
-    graph, roots, base = ImportGraph(), tuple(roots), base or Path()
-    collects = gc.isenabled()
-    gc.disable()  # it would look through all of torch for the sake of syntax trees
-    try:
-        for root in roots:
-            graph.add(root)
-    finally:
-        if collects:
-            gc.enable()
-    files: dict[str, tuple[Path, str]] = {}
+    roots, base = (*roots, _ENGINE), base or Path()
+    trees, imports = trees_of(roots)
+    sources: dict[str, str] = {}
+    for tree in trees:
+        names = {path.relative_to(tree.folder).as_posix(): d for path, d in tree.digests.items()}
+        if tree.package:
+            names = {tree.package: sha256(repr(sorted(names.items())).encode()).hexdigest()}
+        elif not sources.keys().isdisjoint(names):
+            names = {f"{tree.folder.name}/{name}": digest for name, digest in names.items()}
+        sources.update(names)
+    files: dict[str, Path] = {}
+    digests: dict[str, str] = {}
     for place in (base / path for path in data):
         try:
-            paths = [p for p in place.rglob("*") if p.is_file()] if place.is_dir() else [place]
-            for file in paths:
+            paths = sorted(place.rglob("*")) if place.is_dir() else [place]
+            for file in (path for path in paths if not path.is_dir()):
                 name = file.relative_to(base) if file.is_relative_to(base) else file
-                files[name.as_posix()] = file, _digest(file)
+                files[name.as_posix()], digests[name.as_posix()] = file, _digest(file)
         except OSError as error:
             raise UserError(
                 f"cannot read {place} ({error.strerror}), which the system names among its data "
                 "files: put it there, or take it out of data_files"
             ) from error
-    sources, files = dict(sorted(graph.files.items())), dict(sorted(files.items()))
     state = CodeState(
-        files={name: digest for name, (_, digest) in sources.items()},
-        data={name: digest for name, (_, digest) in files.items()},
-        packages=dict(sorted(graph.packages.items())),
+        files=sources,
+        data=digests,
+        packages=releases(imports),
         python=platform.python_version(),
         given=fingerprint,
     )
     return Code(
         state,
-        {name: path for name, (path, _) in sources.items()},
-        {name: path for name, (path, _) in files.items()},
-        roots[0].path if roots else None,
+        {path: digest for tree in trees for path, digest in tree.digests.items()},
+        files,
+        frozenset(imports),
+        roots[0].path,
     )
 
 
 def system_code(system: System, spec: SystemSpec) -> Code:
     """Return the code and data that `system`, built from `spec`, runs with, in their state.
 
-    Its own modules and all that they import, faultpath's included, those of parts that the user
-    named, the data files that it names, and what its `fingerprint()` says. Of an object that
-    nothing can build again, that is the file of its class, or its source where it was typed into a
-    notebook. `UserError` for a data file that cannot be read.
+    The whole trees of its sources, of its classes', of parts that the user named and of faultpath,
+    the data files that it names, and what its `fingerprint()` says. Of an object that nothing can
+    build again, that is the file of its class, or its source where it was typed into a notebook.
+    `UserError` for a data file that cannot be read.
     """
     fingerprint, root = system.fingerprint(), None if spec.is_object else factory_root(spec)
     # A user's class may return anything, whatever the type says.
@@ -190,15 +190,15 @@ def system_code(system: System, spec: SystemSpec) -> Code:
             continue
         if kind is type(system) and spec.is_object:
             root = Root(name, Path(file))
-        elif root is None or name != root.module:
+        elif (root is None or name != root.module) and kind_of(Path(file)) == "local":
             findable = getattr(module, "__spec__", None) is not None
-            classes[name] = Root(name, None if findable else Path(file), of_system=False)
+            classes[name] = Root(name, None if findable else Path(file))
     if root is None:
         with suppress(OSError, TypeError):
             fingerprint = inspect.getsource(type(system)) + fingerprint
     parts = (factory_root(SystemSpec(name=str(name))) for name in paths_of(system, "parts"))
     code = read_code(
-        ((root,) if root else ()) + (*classes.values(), *parts, _ATTEMPT),
+        ((root,) if root else ()) + (*classes.values(), *parts),
         data=map(Path, paths_of(system, "data_files")),
         base=root.path.parent if root and root.path else None,
         fingerprint=fingerprint,
@@ -208,7 +208,7 @@ def system_code(system: System, spec: SystemSpec) -> Code:
 
 def source_state(spec: SystemSpec) -> CodeState:
     """Return the state of the code that building `spec` will load, without loading it."""
-    return read_code((factory_root(spec), _ATTEMPT)).state
+    return read_code([factory_root(spec)]).state
 
 
 def _digest(path: Path) -> str:

@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from faultpath.trials.imports import kind_of
+from faultpath.trials.trees import kind_of
 
 _OTHERS = (
     *("/dev/", "/etc/", "/proc/", "/run/", "/sys/", "/usr/", os.path.expanduser("~/.")),
@@ -74,7 +74,7 @@ def _note(event: str, arguments: tuple[Any, ...]) -> None:
 
 def _is_users(path: str) -> bool:
     if path.startswith(_OTHERS) or path.endswith((".py", ".pyc", ".so")):
-        return False  # imports are followed from the sources
+        return False  # sources count by their trees
     place = Path(path)
     if place.parent.suffix == ".dist-info":  # what is installed, wherever it is
         return False

@@ -60,13 +60,13 @@ class RunProvenance(Shown):
     blocks_computed: int
     blocks_kept: int
     system_fingerprint: str
-    """Hash of the sources, data files and packages that ran, and of what the system says."""
+    """Hash of the sources, data files and packages at the time, and of what the system says."""
     system_commit: str | None = None
     """Commit of the repository in which the system's file is tracked."""
     system_dirty: bool | None = None
     """Whether a file that ran differs from that commit."""
     sources: dict[str, str] = Field(default_factory=dict[str, str])
-    """SHA-256 of each source file that ran, by module."""
+    """SHA-256 of each package that ran, and of each source in a folder of the user's."""
     data: dict[str, str] = Field(default_factory=dict[str, str])
     """SHA-256 of each data file that the system names."""
     library_hash: str

@@ -27,10 +27,10 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
-from faultpath.trials.imports import ImportGraph, Root, file_of, kind_of, locate
 from faultpath.trials.opened import reads
 from faultpath.trials.options import Factory, Option, builds, call, options_of
 from faultpath.trials.system import System
+from faultpath.trials.trees import Root, imported, kind_of, places
 
 GROUP = "faultpath.systems"
 """Entry points of installed distributions: the name of a system to `module:factory`."""
@@ -154,13 +154,13 @@ def _module(place: str, name: str) -> ModuleType:
             loader.get_code(root.module)  # before anything of it runs
         except (ValueError, RecursionError, MemoryError) as error:
             raise UserError(f"{place} is not valid Python ({error}): correct it") from error
-        _check_own(root, root.path.parent)
+        _check_own(root.path, root.path.parent)
         sys.modules[root.module] = module  # dataclasses look their module up by name
         loader.exec_module(module)
     else:
         if not _installed(name):
             _look_in(os.getcwd())  # where a console script does not look
-            _check_own(Root(place), Path.cwd())
+            _check_own(place, Path.cwd())
         try:
             module = importlib.import_module(place)
         except ModuleNotFoundError as error:
@@ -241,22 +241,26 @@ class _FromSource(SourceFileLoader):
         return self.source_to_code(self.get_data(self.path), self.path)
 
 
-def _check_own(root: Root, folder: Path) -> None:
-    """Refuse a system that would run another system's module in place of its own."""
-    graph = ImportGraph()
-    graph.add(root)
-    for name in sorted(graph.seen):
-        place, origin = folder.joinpath(*name.split(".")), file_of(locate(name))
-        files = (place / "__init__.py", place.with_name(f"{place.name}.py"))
-        own = next((file for file in files if os.path.isfile(file)), None)
-        if own is None or origin is None or ours(name):
+def _check_own(start: Path | str, folder: Path) -> None:
+    """Refuse a system that would run another system's module in place of its own.
+
+    It begins with the file, or the module, at `start`; what it imports from `folder` is its own.
+    """
+    names = imported([start]) if isinstance(start, Path) else {start.partition(".")[0]}
+    seen = set[str]()
+    while waiting := sorted(names - seen):
+        seen.add(name := waiting[0])
+        files = (folder / name / "__init__.py", folder / f"{name}.py")
+        own = next((file for file in files if file.is_file()), None)
+        if own is None or ours(name) or not (found := places(name)):
             continue
+        origin = found[0] / own.name if found[0].is_dir() else found[0]
         if os.path.realpath(own) != os.path.realpath(origin) and kind_of(origin) == "local":
             raise UserError(
-                f"{root.file or root.module} imports {name!r}, which is {origin} in this process "
-                f"and not its own {own}: rename one of the two, or load them in processes of "
-                "their own"
+                f"{start} imports {name!r}, which is {origin} in this process and not its own "
+                f"{own}: rename one of the two, or load them in processes of their own"
             )
+        names |= imported(own.parent.rglob("*.py") if own.stem == "__init__" else [own])
 
 
 @contextmanager

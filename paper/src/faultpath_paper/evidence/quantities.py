@@ -177,7 +177,7 @@ def _measure(measurement: Measurement, flown: Blocks, folder: Path, path: Path) 
 
 def _path(measurement: Measurement, flown: Blocks, folder: Path) -> Path:
     stems = tuple(block.stem for block in flown)
-    content = repr((measurement.key(), stems, code_of("faultpath_paper.evidence.quantities")))
+    content = repr((measurement.key(), stems, code_of("faultpath_paper")))
     return folder / f"{hashlib.sha256(content.encode()).hexdigest()[:24]}.measured.parquet"
 
 

@@ -83,7 +83,7 @@ def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
         library.content_hash,
         recording.variant,
         recording.seed,
-        code_of("faultpath_quadrotor.training.trajectories", "faultpath_quadrotor.training.pool"),
+        code_of(),
     )
     library_blocks: list[Block] = []
     for first in range(0, len(scenes), BLOCK):

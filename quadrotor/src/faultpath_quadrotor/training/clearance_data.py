@@ -222,7 +222,7 @@ def _provenance(recipe: ClearanceRecipe, library: Library) -> dict:
     return {
         "recipe": recipe.model_dump(mode="json"),
         "library_sha": library.content_hash,
-        "code_sha256": code_of("faultpath_quadrotor.training.clearance_data"),
+        "code_sha256": code_of(),
     }
 
 

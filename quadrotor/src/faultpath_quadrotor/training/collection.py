@@ -81,8 +81,7 @@ def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> PoolRecipe:
     count = EPISODES[pool] if episodes is None else episodes
     if count < 1:
         raise UserError(f"pool '{pool}' cannot have {count} episodes: ask for at least one.")
-    code = code_of("faultpath_quadrotor.training.flight", "faultpath_quadrotor.training.pool")
-    return PoolRecipe(pool=pool, episodes=count, seed=seed, code_sha256=code)
+    return PoolRecipe(pool=pool, episodes=count, seed=seed, code_sha256=code_of())
 
 
 def is_there(path: Path, expected: PoolRecipe) -> bool:

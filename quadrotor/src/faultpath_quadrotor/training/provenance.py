@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from faultpath.plugin.data import Root, read_code
+from faultpath.plugin.data import Root, trees_of
 from faultpath.plugin.system import Frozen, Misread, UserError, contents, model_of
 
 FORMAT = 2
@@ -44,12 +45,20 @@ def provenance_path(path: Path) -> Path:
 
 
 @cache
-def code_of(*modules: str) -> str:
-    """Return a hash of some modules, by their full names, and of all that they import.
+def code_of(*packages: str) -> str:
+    """Return a hash of the Python sources of some packages, of the quadrotor and of faultpath.
 
     Data that they made are made again when one of these files changes.
     """
-    return read_code([Root(module) for module in modules]).state.contents
+    names = (*packages, "faultpath_quadrotor", "faultpath")
+    trees = [tree for tree in trees_of(map(Root, names))[0] if tree.package in names]
+    digests = {
+        (tree.package, path.relative_to(tree.folder).as_posix()): digest
+        for tree in trees
+        for path, digest in tree.digests.items()
+        if path.suffix == ".py"
+    }
+    return hashlib.sha256(repr(sorted(digests.items())).encode()).hexdigest()[:32]
 
 
 def rows_sha256(data: Path, pools: Iterable[str]) -> dict[str, str]:

@@ -93,9 +93,7 @@ def recipe() -> PoolRecipe:
     spec = SystemSpec(name=Quadrotor.name, options={"clearance": "true"})
     state = system_code(Quadrotor.parse(**spec.options), spec).state
     settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORM.hash)
-    content = repr(
-        (state.contents, code_of("faultpath_quadrotor.training.trajectories"), *settings)
-    )
+    content = repr((sorted(state.data.items()), state.given, code_of(), *settings))
     code = hashlib.sha256(content.encode()).hexdigest()
     return PoolRecipe(pool=POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code)
 

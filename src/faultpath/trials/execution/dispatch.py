@@ -61,7 +61,7 @@ class Built:
         """Take the state that `system`, which `spec` builds, and one of its libraries have now."""
         library, code = library_of(system, name), system_code(system, spec)
         job = BuildSpec(spec, name, code.state, library.content_hash)
-        return cls(job, system, library, code, code.unread())
+        return cls(job, system, library, code, Watch(code))
 
     def work(self, function: Callable[[System, Any], Any], task: Any) -> Any:
         """Return what a function of system and task returns.
@@ -85,7 +85,7 @@ class Built:
         name, code = self.job.system.name, self.code
         if self.job.system.is_object or not (files := {*opened, *opened_by(name)}):
             return
-        known = map(os.path.realpath, (*code.sources.values(), *code.data.values()))
+        known = map(os.path.realpath, code.data.values())
         if unknown := sorted(files.difference(known)):
             names = [os.path.relpath(path, (code.main or Path()).parent) for path in unknown]
             raise UndeclaredFile(

@@ -6,12 +6,14 @@ from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
+from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.plain import model_of
 from faultpath.core.version import __version__
 from faultpath.trials.execution.runner import RunResult
-from faultpath.trials.imports import packages
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.atomic import write_text
 from faultpath.trials.store.folder import seal
+from faultpath.trials.trees import packages, release
 from faultpath.trials.work.executor import Executor
 
 PROVENANCE = "provenance.json"
@@ -28,19 +30,21 @@ def run_provenance(
 ) -> RunProvenance:
     """Describe the run that has just finished on `executor`, and write that into its folder.
 
-    `names` are the files there that its pages are made from; their digests stand beside it.
+    `names` are the files there that its pages are made from; their digests stand beside it. Of a
+    run that other code had finished, the provenance stays.
     """
+    if not result.code and (folder / PROVENANCE).exists():
+        earlier = model_of(contents(folder / PROVENANCE, LARGEST_TEXT), RunProvenance)
+        digests = {"outcomes_sha256": result.outcomes_sha256}
+        return amend(folder, earlier.model_copy(update=digests), names)
     package = Path(__file__).parents[2] / "__init__.py"
     commit, dirty = checkout(package, [package.parent])
     system_commit, system_dirty = None, None
     if result.code and (main := result.code[0].main):
-        ran = (*result.code[0].sources.values(), *result.code[0].data.values())
+        ran = (*result.code[0].sources, *result.code[0].data.values())
         system_commit, system_dirty = checkout(main, ran)
-    imported = {
-        name.replace("_", "-"): release
-        for code in result.code
-        for name, release in code.state.packages.items()
-    }
+    used = {name for code in result.code for name in code.imports}
+    imported = {n.replace("_", "-"): version for n in sorted(used) if (version := release(n))}
     finished = datetime.now(UTC)
     provenance = RunProvenance(
         faultpath_version=__version__,

@@ -11,11 +11,12 @@ from faultpath.core.errors import Stopped, UserError
 from faultpath.core.version import __version__
 from faultpath.trials.arm import Arm, Study
 from faultpath.trials.attempt import Reply, Wrong, attempt
-from faultpath.trials.code import Code
+from faultpath.trials.code import Code, named
 from faultpath.trials.declared import SceneRef
 from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.execution.dispatch import Built, dispatch
 from faultpath.trials.execution.recheck import Rechecks
+from faultpath.trials.execution.repeating import repeat
 from faultpath.trials.execution.schedule import Task, TaskQueue, Unit, plan
 from faultpath.trials.execution.state import RunState, Stop
 from faultpath.trials.provenance import Recheck
@@ -54,7 +55,7 @@ class RunResult:
     system_fingerprint: str
     """Digest of `code`, shortened; for several runs together, of all of them."""
     code: tuple[Code, ...]
-    """Code that ran, of each run that this is made of."""
+    """Code that ran, of each run that this is made of; none where other code had finished it."""
     library_hash: str
     rechecks: tuple[Recheck, ...] = ()
     """Trials that ran a second time, to see whether results repeat."""
@@ -110,7 +111,6 @@ def run_study(
     built = Built.of(system, study.system, study.library)
     built.check_files()
     library, code = built.library, built.code
-    units = _units(study, built)
     manifest = Manifest(
         faultpath_version=__version__,
         code=code.state,
@@ -118,13 +118,19 @@ def run_study(
         study=study,
     )
     run = RunFolder(Path(folder))
-    state = RunState(study, library, units, run, stop)
+    units, earlier = _units(study, built, manifest), run.made_by_other_code(manifest)
     try:
-        with run.open(manifest, notice, shared):
-            schedule = TaskQueue(state.resume(notice), study.look > 0)
-            progress(state.progress())
-            with manager as workforce:
-                work = partial(dispatch, workforce, built, _attempted, limit_s=time_limit_s)
+        with manager as workforce:
+            work = partial(dispatch, workforce, built, _attempted, limit_s=time_limit_s)
+            of_it = _units(study, built, earlier) if earlier else ()
+            if earlier and (blocks := run.finished((unit.key, unit.scenes) for unit in of_it)):
+                manifest, units = earlier, of_it
+                changed = named(earlier.code.changed(code.state)) or "faultpath"
+                notice(repeat(blocks, units, run, work, changed))
+            state = RunState(study, library, units, run, stop)
+            with run.open(manifest, notice, shared):
+                schedule = TaskQueue(state.resume(notice), study.look > 0)
+                progress(state.progress())
                 work(
                     lambda worker: None if state.enough() else schedule.take(worker),
                     lambda task, reply: schedule.put(state.settle(task, reply)),
@@ -134,10 +140,10 @@ def run_study(
                 if recheck:
                     waiting = iter(again.tasks())
                     work(lambda worker: next(waiting, None), again.settle)
-            trials, findings = state.trials(), (*state.findings(), *again.findings())
-            repeats = not any(recheck.differs for recheck in again.flown())
-            deliveries = Deliveries.of(study, state.taps(), trials, findings, repeats)
-            digest = run.save_tables(trials, deliveries)
+                trials, findings = state.trials(), (*state.findings(), *again.findings())
+                repeats = not any(recheck.differs for recheck in again.flown())
+                deliveries = Deliveries.of(study, state.taps(), trials, findings, repeats)
+                digest = run.save_tables(trials, deliveries)
     except KeyboardInterrupt:
         # What is on disk counts: the run may have been stopped between storing and noting.
         done = len(run.list_shards().keys() & {unit.key for unit in units})
@@ -152,21 +158,24 @@ def run_study(
         blocks_kept=state.kept,
         failures=tuple(_failures(state, run)),
         outcomes_sha256=digest,
-        system_fingerprint=code.state.digest,
-        code=(code,),
+        system_fingerprint=manifest.code.digest,
+        code=(code,) if manifest.code == code.state else (),
         library_hash=library.content_hash,
         rechecks=again.flown(),
     )
 
 
-def _units(study: Study, built: Built) -> tuple[Unit, ...]:
-    """Return the blocks that a study takes; `UserError` for scenes or rows that cannot be run."""
+def _units(study: Study, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
+    """Return the blocks that a study takes, run by the code of `manifest`.
+
+    `UserError` for scenes or rows that cannot be run.
+    """
     library, system = built.library, built.system
     scenes: Sequence[SceneRef] = selected(study, library)
     if study.look:
         scenes = sorted(scenes, key=lambda scene: study.scenes.index(scene.id))
     check_rows(study.rows, system.variants)
-    fingerprint = built.code.state.digest
+    fingerprint = f"{manifest.faultpath_version} {manifest.code.digest}"
     size = system.scenes_a_block(len(library.scenes))
     return plan(study.arms(), scenes, size, library, fingerprint, study.look)
 

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from faultpath.core.version import __version__
 from faultpath.trials.arm import Arm
 from faultpath.trials.declared import Library, SceneRef
 
@@ -48,7 +47,6 @@ def plan(
     for block, ids in parts.items():
         for arm, arm_key, arm_content in dumped:
             content = {
-                "faultpath": __version__,
                 "system": fingerprint,
                 "arm": arm_content,
                 "scenes": ids,

@@ -135,6 +135,7 @@ class RunFolder:
         self.rechecks = path / "rechecks.json"
         self._shard_files: dict[str, list[Path]] | None = None
         """By key, as they were listed last: a list for each block would cost its square."""
+        self.provenance = path / "provenance.json"
 
     @contextmanager
     def open(
@@ -161,6 +162,13 @@ class RunFolder:
             self._shard_files = self.list_shards()
             yield
 
+    def made_by_other_code(self, manifest: Manifest) -> Manifest | None:
+        """Return what the manifest would be if the code that the folder was run with ran it."""
+        previous = read_manifest(self.manifest) or manifest
+        made_by = {"code": previous.code, "faultpath_version": previous.faultpath_version}
+        earlier = manifest.model_copy(update=made_by)
+        return None if earlier == manifest else earlier
+
     def save_shard(self, key: str, shard: Done) -> None:
         """Store a finished block. The name carries a digest of the bytes, checked on reading."""
         data = encode_shard(key, shard)
@@ -181,23 +189,23 @@ class RunFolder:
         shards: list[Done] = []
         for path in tuple(self._files_of(key)):
             try:
-                data = contents(path)
-            except OSError as error:
-                raise UserError(f"{path} cannot be read ({error.strerror}): remove it.") from error
-            try:
-                if path.stem != f"{key}-{_digest(data)[:32]}":
-                    raise Unreadable("its contents are not those that were written")
-                shard = decode_shard(data, key)
-                if [outcome.scene for outcome in shard.outcomes] != list(scenes):
-                    raise Unreadable("it holds other scenes")
+                shards.append(_read_shard(path, key, scenes))
             except Unreadable as error:
                 notice(f"{path} is damaged ({error}); removing it and running its trials again")
                 path.unlink()
                 self._files_of(key).remove(path)
-            else:
-                shards.append(shard)
         # A process killed between writing and tidying leaves two; the later one failed less often.
         return min(shards, key=lambda shard: sum(o.failed for o in shard.outcomes), default=None)
+
+    def finished(self, units: Iterable[tuple[str, Sequence[str]]]) -> dict[str, Done]:
+        """Return the blocks of a finished run; none where one is missing or has failures."""
+        files = self.list_shards()
+        try:
+            blocks = {key: _read_shard(files[key][0], key, scenes) for key, scenes in units}
+        except (KeyError, Unreadable):
+            return {}
+        failed = any(trial.failed for block in blocks.values() for trial in block.outcomes)
+        return blocks if self.provenance.exists() and not failed else {}
 
     def save_failure(self, key: str, text: str) -> None:
         """Store what is known about the failed trials of a block; without any, forget the last."""
@@ -238,6 +246,19 @@ class RunFolder:
 
     def _write(self, path: Path, data: bytes) -> None:
         write_file(path, data, self.path)
+
+
+def _read_shard(path: Path, key: str, scenes: Sequence[str]) -> Done:
+    try:
+        data = contents(path)
+    except OSError as error:
+        raise UserError(f"{path} cannot be read ({error.strerror}): remove it.") from error
+    if path.stem != f"{key}-{_digest(data)[:32]}":
+        raise Unreadable("its contents are not those that were written")
+    shard = decode_shard(data, key)
+    if [outcome.scene for outcome in shard.outcomes] != list(scenes):
+        raise Unreadable("it holds other scenes")
+    return shard
 
 
 def read_outcomes(path: Path) -> Trials:
