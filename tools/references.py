@@ -31,6 +31,7 @@ SYSTEMS = {
     "do_mpc": "do_mpc",
     "rotorpy": "rotorpy",
     "stable_worldmodel": "stable_worldmodel",
+    "wpilib": "wpimath",
 }
 """Packages that examples need, by how the names of these begin; `make test-foreign` has them."""
 

@@ -15,6 +15,7 @@ PACKAGES = {
     "do-mpc": "do_mpc",
     "rotorpy": "rotorpy",
     "motulator": "motulator",
+    "wpilib": "wpimath",
     "stable-worldmodel-augmented-moved": "stable_worldmodel",
     "stable-worldmodel-rectified-darker": "stable_worldmodel",
 }

@@ -23,6 +23,7 @@ ELSEWHERE = {
     "stable_worldmodel_camera.py": "tests/foreign/test_stable_worldmodel.py",
     "stable_worldmodel_model.py": "tests/foreign/test_stable_worldmodel.py",
     "stable_worldmodel_fit.py": "tests/foreign/test_stable_worldmodel.py",
+    "wpilib_wheels.py": "tests/foreign/test_wpilib.py",
 }
 """Examples that a test of their own runs."""
 EXAMPLES = sorted({*(ROOT / "examples").glob("*.py")} - {ROOT / "examples" / e for e in ELSEWHERE})
