@@ -13,6 +13,7 @@ from faultpath_paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
 
 from faultpath.api.folders import MAP, RECORD, as_text
+from faultpath.api.replaying import shown_first
 from faultpath.api.runs import open_run
 from faultpath.decisions.decide import decide
 from faultpath.decisions.map.lattice import UNITS
@@ -23,10 +24,11 @@ from faultpath.decisions.model import Path as FaultPath
 from faultpath.decisions.question import Question
 from faultpath.decisions.tables import Table
 from faultpath.report.map import table_markdown
-from faultpath.trials import Deliveries, SystemSpec, library_of, load_system
+from faultpath.trials import Deliveries, SystemSpec, Trials, library_of, load_system
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.question import MapQuestion
-from faultpath.trials.store.folder import OUTCOMES, read_outcomes, seal
+from faultpath.trials.store.folder import OUTCOMES, TRACES, read_outcomes, seal
+from faultpath.trials.store.tables import decode_outcomes, decode_traces, encode_traces
 
 
 def conclude_all(tell: Callable[[str], None]) -> None:
@@ -51,9 +53,20 @@ def audit(folder: Path) -> DecisionRecord:
     repeats = before.get("invalid") != "unrepeatable"
     record = decide(question, paths, outcomes, findings, repeats)
     (folder / RECORD).write_text(as_text(record), "utf-8")
+    _keep_examples(folder, record, outcomes)
     _reseal(folder)
     open_run(folder).report()
     return record
+
+
+def _keep_examples(folder: Path, record: DecisionRecord, trials: Trials) -> None:
+    """Leave out the traces of all trials but those of the scenes that the report begins with."""
+    shown = shown_first(record, trials)
+    traces = decode_traces((folder / TRACES).read_bytes())
+    kept = {at: trace for at, trace in traces.items() if (at.scene, at.seed) in shown}
+    if len(kept) < len(traces):
+        examples = decode_outcomes((folder / OUTCOMES).read_bytes(), kept)
+        (folder / TRACES).write_bytes(encode_traces(examples))
 
 
 def reversal_map(folder: Path) -> MapRecord:
