@@ -59,20 +59,20 @@ def contrast(name: str) -> str:
         for effect in run.record.effects
         if effect.significant
         and effect.path not in ("correct", "shared")
-        and effect.value * shared.success.value < 0
+        and effect.value * shared.value < 0
     ]
-    if not shared.detected or len(opposed) != 1:
+    if not shared.significant or len(opposed) != 1:
         raise Wrong(f"{run.name} has no single significant reversal: the block cannot be filled")
 
     minus = f"success of `{question.repair}` minus `{question.baseline}`, pp"
     places = {
-        f"the {opposed[0].path} alone, as in a test of one module": opposed[0].success,
-        "every module that reads the estimate, as in deployment": shared.success,
+        f"the {opposed[0].path} alone, as in a test of one module": opposed[0],
+        "every module that reads the estimate, as in deployment": shared,
     }
     rows = []
-    for place, success in places.items():
-        ahead = question.repair if success.value > 0 else question.baseline
-        rows.append((place, difference(success.value, *success.interval, bold=True), f"`{ahead}`"))
+    for place, effect in places.items():
+        ahead = question.repair if effect.value > 0 else question.baseline
+        rows.append((place, difference(effect.value, *effect.interval, bold=True), f"`{ahead}`"))
     return (
         f"{pipes(('The fault reaches', minus, 'ahead'), rows, words=(0, 2))}\n\n"
         f"{run.record.scenes} scenes, {wording.seeds(question.seeds)}; pp: percentage points; "
