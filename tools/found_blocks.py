@@ -13,6 +13,7 @@ from faultpath.decisions.sentences import wording
 
 WORLD_MODEL = "stable-worldmodel"
 PAGES = {
+    "quadrotor-L3-decision": ("Quadrotor, 400 scenes", "quadrotor-results"),
     "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor-results"),
     "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor-results"),
     "toy": ("Cart", "tutorial"),

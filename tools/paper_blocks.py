@@ -43,8 +43,8 @@ PAGES = ("reproduction.html", "tables.md", "ledger.md")
 """Files of a run that are copied to `docs/reference/paper`."""
 AGAIN = "quadrotor-L3"
 """The reference run that asks the question of Table IV, on the same scenes."""
-BESIDES = ("quadrotor-L3-confirmation",)
-"""Reference runs that ask the central question."""
+BESIDES = ("quadrotor-L3-confirmation", "quadrotor-L3-decision")
+"""Reference runs that ask the central question; the last one's answer leads."""
 _FAULT, _MODULE = "calibration=+0.1", "reconstruction"
 
 
@@ -106,11 +106,13 @@ def _case(run: Run) -> Case:
     isolated, shared = (
         PrintedEffect.of(wording.with_interval(effect), effect.significant) for effect in pair
     )
-    by_seed = zip(*(effect.per_seed or () for effect in pair), strict=True)
+    (moved,) = (change for change in record.changes if change.isolated == _MODULE)
+    by_seed = zip(*(effect.per_seed for effect in pair), strict=True)
     return Case(
         place=f"{record.scenes} scenes of {question.library}, {wording.seeds(question.seeds)}",
         isolated=isolated,
         shared=shared,
+        change=PrintedEffect.of(wording.with_interval(moved), moved.significant),
         reversal=(_MODULE, "reversal") in ((c.isolated, c.turn) for c in record.changes),
         reversing=sum(one > 0 > two for one, two in by_seed),
         trainings=len(question.seeds),

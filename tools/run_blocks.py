@@ -6,6 +6,7 @@ from pathlib import Path
 
 from blocks import ROOT, Picture, Run, Wrong, difference, fence, load, pipes, printed
 
+from faultpath.decisions.model import Difference
 from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.markdown import grid
@@ -50,35 +51,30 @@ def headline(name: str) -> str:
 
 
 def contrast(name: str) -> str:
-    """Return the two decided effects that point opposite ways: one module alone, and shared."""
+    """Return the effect at the module whose change to the shared fault is largest, that under the
+    shared fault, and the change."""
     run = load(name)
     question, effects = run.record.question, {e.path: e for e in run.record.effects}
-    shared = effects["shared"]
-    opposed = [
-        effect
-        for effect in run.record.effects
-        if effect.significant
-        and effect.path not in ("correct", "shared")
-        and effect.value * shared.value < 0
-    ]
-    if not shared.significant or len(opposed) != 1:
-        raise Wrong(f"{run.name} has no single significant reversal: the block cannot be filled")
-
-    minus = f"success of `{question.repair}` minus `{question.baseline}`, pp"
+    moved = max(run.record.changes, key=lambda change: abs(change.value))
+    if not moved.significant:
+        raise Wrong(f"{run.name} has no significant change: the block cannot be filled")
+    ahead = {1: f"`{question.repair}`", -1: f"`{question.baseline}`", 0: "neither significantly"}
     places = {
-        f"the {opposed[0].path} alone, as in a test of one module": opposed[0],
-        "every module that reads the estimate, as in deployment": shared,
+        f"the {moved.isolated} alone, as in a test of one module": effects[moved.isolated],
+        "every module that reads the estimate, as in deployment": effects["shared"],
     }
-    rows = []
-    for place, effect in places.items():
-        ahead = question.repair if effect.value > 0 else question.baseline
-        rows.append((place, difference(effect.value, *effect.interval, bold=True), f"`{ahead}`"))
+    rows = [(place, _pp(effect), ahead[effect.sign]) for place, effect in places.items()]
+    rows.append(("change from the one to the other", _pp(moved), ""))
+    minus = f"success of `{question.repair}` minus `{question.baseline}`, pp"
     return (
         f"{pipes(('The fault reaches', minus, 'ahead'), rows, words=(0, 2))}\n\n"
         f"{run.record.scenes} scenes, {wording.seeds(question.seeds)}; pp: percentage points; "
-        "bold: significant at 5 % after Holm's correction. "
-        f"Run at commit `{run.provenance.commit[:12]}`."
+        f"bold: significant at 5 % after Holm's correction. {run.flown}"
     )
+
+
+def _pp(of: Difference) -> str:
+    return difference(of.value, *(of.interval or ()), bold=of.significant)
 
 
 def terminal(name: str) -> str:

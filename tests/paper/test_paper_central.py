@@ -31,12 +31,16 @@ def test_the_answer_is_a_reversal_only_where_a_run_decides_one() -> None:
     for signs in ((0, 0), (1, 0), (0, -1), (1, -1), (-1, 1)):
         assert "did not reproduce" in central.answer([case(*signs)])
     one = case(1, -1, reversal=True)
-    assert "appeared" in central.answer([one, case(0, 0)])
+    assert "appeared" in central.answer([case(0, 0), one])
+    gone = case(1, 0).model_copy(update={"change": central.PrintedEffect(text="−9.0", sign=-1)})
+    assert "gain does not carry over" in central.answer([one, gone])
+    assert "the reversal was significant" in central.detail([one, gone])
+    assert "significant" not in central.answer([gone])
     assert "No run" in central.answer([])
     assert central.detail([]) == central.by_training(one) == ""
     for count, verb in ((0, "show"), (1, "shows"), (3, "show")):
         several = one.model_copy(update={"reversing": count, "trainings": 3})
-        sentence = central.detail([several, case(0, 0)])
+        sentence = central.detail([case(0, 0), several])
         assert f"{count} of 3 trained models {verb} the reversal" in sentence
         assert f"more often ({SIGNS[1]}" in sentence
         assert f"less often ({SIGNS[-1]}" in sentence
