@@ -15,7 +15,7 @@ from rich.console import Console, RenderableType
 
 from faultpath.api.folders import MADE_FROM, MAP, MAP_MADE_FROM, OUTCOMES, RECORD
 from faultpath.decisions.map.model import MapRecord
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Entry, Line, Table
 from faultpath.decisions.tables.markdown import grid

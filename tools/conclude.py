@@ -19,9 +19,9 @@ from faultpath.decisions.decide import decide
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.study import plan_map
-from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.model import Path as FaultPath
 from faultpath.decisions.question import Question
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.tables import Table
 from faultpath.report.map import table_markdown
 from faultpath.trials import Deliveries, SystemSpec, Trials, library_of, load_system

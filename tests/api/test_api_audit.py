@@ -85,8 +85,8 @@ def test_what_is_read_back_is_what_was_held(run):
     held, read = run.held, again.held
     assert read.system == held.system
     assert (run.folder / OUTCOMES).read_bytes() == encode_outcomes(held.trials)
-    assert encode_outcomes(read.outcomes) == encode_outcomes(held.trials)
-    assert encode_traces(read.outcomes) == encode_traces(held.trials)
+    assert encode_outcomes(read.trials) == encode_outcomes(held.trials)
+    assert encode_traces(read.trials) == encode_traces(held.trials)
     assert list(read.signals) == list(held.signals) != []
     assert encode_signals(read.signals) == encode_signals(held.signals)
     assert report_page(read) == report_page(held)

@@ -3,8 +3,9 @@
 import pytest
 from toy_audits import TOY
 
-from faultpath.decisions.model import DecisionRecord, FaultedTap
+from faultpath.decisions.model import FaultedTap
 from faultpath.decisions.planning import Audit, plan_audit
+from faultpath.decisions.record import DecisionRecord
 from faultpath.faults import FaultText
 from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.execution.runner import run_study

@@ -4,8 +4,9 @@ from collections.abc import Mapping, Sequence
 from math import comb
 
 from faultpath.decisions.decide import decide
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Path
+from faultpath.decisions.model import CORRECT, SHARED, Path
 from faultpath.decisions.question import Question
+from faultpath.decisions.record import DecisionRecord
 from faultpath.trials import Outcome, Status, Trial, Trials
 
 BASELINE, REPAIR = "old", "new"

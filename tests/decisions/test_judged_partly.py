@@ -5,7 +5,7 @@ import pytest
 
 from faultpath.decisions.decide import decide
 from faultpath.decisions.judging import lay_out
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.record import DecisionRecord
 from faultpath.trials.outcome import Status
 from faultpath.trials.received.question import JudgeQuestion
 from faultpath.trials.received.trial import Received

@@ -9,10 +9,11 @@ from outcome_tables import BASELINE, MOST_WORDS, REPAIR, Counts, arms, paths, qu
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.decisions.decide import decide
-from faultpath.decisions.model import CORRECT, SHARED, Change, DecisionRecord, Effect
+from faultpath.decisions.model import CORRECT, SHARED, Change, Effect
 from faultpath.decisions.question import StopRule
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording
-from faultpath.decisions.sentences.answers import answers, would_change
+from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.sentences.phrases import in_short
 from faultpath.trials import Status, Trials
 from faultpath.trials.question import StopWhen
@@ -99,7 +100,7 @@ def run(
 def sentences(made: DecisionRecord) -> Iterator[str]:
     yield made.headline
     yield from made.sentences
-    yield from would_change(made)
+    yield from made.would_change
     yield from answers(made).values()
 
 

@@ -6,8 +6,9 @@ from itertools import product
 
 from outcome_tables import BASELINE, MOST_WORDS, REPAIR, record
 
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
+from faultpath.decisions.model import CORRECT, SHARED, Effect
 from faultpath.decisions.question import StopRule
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.sentences.phrases import in_short, not_standing
 from faultpath.decisions.sentences.wording import where

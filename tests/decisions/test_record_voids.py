@@ -7,7 +7,8 @@ import pytest
 from outcome_tables import BASELINE, REPAIR, SCENES, paths, question, rows
 
 from faultpath.decisions.decide import decide
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
+from faultpath.decisions.model import CORRECT, SHARED
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.sentences.phrases import in_short
 from faultpath.trials import Status, Trials
@@ -253,7 +254,7 @@ def test_a_break_even_frequency_holds_whatever_failed_trials_would_have_been():
     for _ in range(5):
         made = mixed(stream)
         (found,) = (each for each in made.break_even if each.path == SHARED)
-        against = {each.path: each.failed.against_pp for each in made.effects}
+        against = {each.path: each.missing.against_pp for each in made.effects}
         even = -against[CORRECT] / (against[SHARED] - against[CORRECT])
         (region,) = (each for each in found.result.regions if each.sign > 0)
         assert region.low > even

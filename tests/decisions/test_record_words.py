@@ -7,7 +7,8 @@ from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows, seeded
 
 from faultpath.core.errors import UserError
 from faultpath.decisions.decide import decide
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord
+from faultpath.decisions.model import CORRECT, SHARED
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases
 from faultpath.decisions.sentences.phrases import in_short
 from faultpath.trials import Status, Trials

@@ -27,7 +27,7 @@ from faultpath_paper.results import decisive
 from faultpath.statistics.contrast import Contrast, change, weighted_sum
 from faultpath.statistics.decisions import with_test
 from faultpath.statistics.effects import mean_effect, success_effect
-from faultpath.statistics.estimate import Test
+from faultpath.statistics.estimate import PairedTest
 from faultpath.statistics.resamples import Resamples
 
 Interval = tuple[float, float] | None
@@ -45,7 +45,7 @@ def shown(value: float, interval: Interval, n_scenes=100, test=None, mde=None) -
 def found(interval: Interval, p_value: float | None = None, mde: float | None = 8.0) -> Contrast:
     """Return a difference at the middle of its interval, with a test that finds its side ahead."""
     value = 0.0 if interval is None else sum(interval) / 2
-    test = None if p_value is None else Test("sign", p_value, 1 if value > 0 else -1)
+    test = None if p_value is None else PairedTest("sign", p_value, 1 if value > 0 else -1)
     return shown(value, interval, test=test, mde=mde)
 
 

@@ -13,8 +13,8 @@ import pytest
 from faultpath_quadrotor.scenes.library import load_library
 
 from faultpath.decisions.decide import decide
-from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import Audit, plan_audit
+from faultpath.decisions.record import DecisionRecord
 from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.execution.runner import run_study
 from faultpath.trials.provenance import RunProvenance

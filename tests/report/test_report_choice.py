@@ -7,8 +7,8 @@ import pytest
 from page_reader import unpack
 
 from faultpath.decisions.examples import captions, choose
-from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.pairs import Pair, read_pairs
+from faultpath.decisions.record import DecisionRecord
 from faultpath.report.inputs import ReportInput
 from faultpath.report.viewer import viewer_data
 from faultpath.trials import Status

@@ -113,7 +113,7 @@ def test_long_names_leave_numbers_whole_on_a_terminal(one_seed: ReportInput, wid
 
 def test_decided_in_opposite_directions(two: Given) -> None:
     first, second = two
-    turned = (first, signed(second, "shared", 1, extreme="ceiling"))
+    turned = (first, signed(second, "shared", 1, rates=(95.0, 96.0)))
     assert headline(turned) == (
         "2 audits side by side: significant in opposite directions on Shared fault (primary)"
     )

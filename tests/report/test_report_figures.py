@@ -3,8 +3,9 @@
 import re
 from xml.etree import ElementTree
 
-from faultpath.decisions.model import DecisionRecord, PathBreakEven
+from faultpath.decisions.model import PathBreakEven
 from faultpath.decisions.pairs import read_pairs
+from faultpath.decisions.record import DecisionRecord
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, panel, shared_axis
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pair_grid import pair_grid, pair_key
@@ -26,8 +27,8 @@ def test_all_figures_are_xml(one_seed: ReportInput) -> None:
         *(row.picture for row in effect_rows(record)),
         effect_axis(record),
         _forest(record),
-        pair_grid('"<title>"', pairs, {"timeout": "<late>"}),
-        pair_grid("nothing", (), {}),
+        pair_grid('"<title>"', pairs, {}, {"timeout": "<late>"}),
+        pair_grid("nothing", (), {}, {}),
         *(sign for sign, _ in pair_key(pairs)),
         *(picture for picture, _ in frequency_panels(record)),
         *map(fork_panel, forks(one_seed)),
@@ -47,7 +48,7 @@ def test_only_what_is_decided_is_bold_and_filled(one_seed: ReportInput) -> None:
         drawn = _forest(one_seed.record, sign=sign)
         assert re.findall(r'class="(dot[^"]*)"', drawn) == [look]
         assert ('class="bold"' in drawn) == (sign != 0)
-    assert "floor" in _forest(one_seed.record, extreme="floor")
+    assert "floor" in _forest(one_seed.record, rates=(5.0, 6.0))
 
 
 def _panel(

@@ -75,7 +75,7 @@ def test_all_cells_of_a_grid_lie_in_its_picture(
         Pair("shared", seed, f"{group}-{index}", index, group, trial, trial)
         for group, index, seed in itertools.product(groups, range(scenes), range(seeds))
     ]
-    page = shown(browser, pictures(pair_grid("Shared fault", pairs, {})))
+    page = shown(browser, pictures(pair_grid("Shared fault", pairs, {}, {})))
     cells = page.locator(".pair rect")
     assert cells.count() == len(pairs)
     assert page.evaluate(OUTSIDE) == []

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import wording
 from faultpath.report.html import _finding, write_report
 from faultpath.report.inputs import ReportInput
@@ -20,13 +20,11 @@ def _expected(record: DecisionRecord) -> dict[str, list[str]]:
     effects = record.effects
     breaks = {b.path: wording.break_even(b.result) for b in record.break_even}
     return {
-        "gru (baseline)": [f"{e.baseline_percent:.1f}" for e in effects],
-        "gru-dcc (repair)": [f"{e.repair_percent:.1f}" for e in effects],
+        "gru (baseline)": [f"{e.rates[0]:.1f}" for e in effects],
+        "gru-dcc (repair)": [f"{e.rates[1]:.1f}" for e in effects],
         "Difference, pp": [f"{e.value:+.1f}" for e in effects],
         "95 % interval": [f"[{e.low:.1f}, {e.high:.1f}]" for e in effects],
-        "Won:lost": [
-            "/".join(f"{w}:{n}" for w, n in zip(e.wins, e.losses, strict=True)) for e in effects
-        ],
+        "Won:lost": ["/".join(f"{won}:{lost}" for won, lost in e.won) for e in effects],
         "p, alone": [_p(e.p_value) for e in effects],
         "p, Holm": [_p(e.corrected_p) for e in effects],
         "Ahead": [{1: "gru-dcc", -1: "gru", 0: "not shown"}[e.sign] for e in effects],

@@ -12,7 +12,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.decisions.decide import decide
 from faultpath.decisions.judging import lay_out
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.record import DecisionRecord
 from faultpath.statistics.estimate import BreakEven
 from faultpath.trials.outcome import Status
 from faultpath.trials.received.question import JudgeQuestion
@@ -68,7 +68,7 @@ def judged(
     with ExitStack() as stack:
         for name, value in unread.items():
             stack.enter_context(patch(f"faultpath.decisions.decide.{name}", return_value=value))
-        return decide(laid.question, laid.paths, laid.table, laid.findings)
+        return decide(laid.question, laid.paths, laid.trials, laid.findings)
 
 
 def drawn(

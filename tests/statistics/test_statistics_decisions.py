@@ -13,7 +13,7 @@ from statsmodels.stats.multitest import multipletests
 from faultpath.statistics.contrast import Contrast, change
 from faultpath.statistics.decisions import decide_family, turn, with_test
 from faultpath.statistics.effects import mean_effect, success_effect, success_rate
-from faultpath.statistics.estimate import Test
+from faultpath.statistics.estimate import PairedTest
 from faultpath.statistics.power import fewest_scenes
 from faultpath.statistics.resamples import Resamples
 
@@ -24,7 +24,7 @@ RESAMPLES = Resamples.draw("decisions", N, n_resamples=400)
 def contrast(p_value, low=1.0, high=2.0, leans=1):
     """Return a contrast with these ends of its interval and this test."""
     draws = np.repeat([low, high], 50)
-    return Contrast((low + high) / 2, "pp", 9, draws=draws, test=Test("t", p_value, leans))
+    return Contrast((low + high) / 2, "pp", 9, draws=draws, test=PairedTest("t", p_value, leans))
 
 
 def test_effects_and_changes_are_tested_by_the_signs_of_scenes():
@@ -107,7 +107,7 @@ def test_weighted_holm_is_the_closed_test_of_weighted_bonferroni(p_values, data)
 
 
 def decided(sign):
-    return Contrast(0.0, "pp", 9, test=Test("t", 0.5, sign, sign, 0.5, 0.05))
+    return Contrast(0.0, "pp", 9, test=PairedTest("t", 0.5, sign, sign, 0.5, 0.05))
 
 
 @pytest.mark.parametrize(

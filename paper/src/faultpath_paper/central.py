@@ -188,8 +188,8 @@ def shipped() -> str:
     """Return what audits of more scenes found, as the main job shows it below its own result."""
     cases = elsewhere()
     return (
-        "\nThe same question with more scenes and trainings, as the package ships it (make decision "
-        f"runs it again):\n{answer(cases)}. {detail(cases)}"
+        "\nThe same question with more scenes and trainings, as the package ships it (make "
+        f"decision runs it again):\n{answer(cases)}. {detail(cases)}"
     )
 
 

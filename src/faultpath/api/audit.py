@@ -23,9 +23,9 @@ from faultpath.api.replaying import outcomes_at, run_again, shown_first
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
-from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.decisions.question import Question
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.stopping import after_looks
 from faultpath.faults import FaultText

@@ -9,8 +9,7 @@ from pathlib import Path
 from faultpath.api.folders import as_text
 from faultpath.api.runs import Run, open_run
 from faultpath.core.errors import UserError
-from faultpath.decisions.model import DecisionRecord
-from faultpath.decisions.sentences.answers import would_change
+from faultpath.decisions.record import DecisionRecord
 from faultpath.report.compared import Compared, differing, together
 from faultpath.report.comparison import headline, page, sentences
 from faultpath.report.frame import PAGE
@@ -66,7 +65,7 @@ def in_json(folder: str | Path, record: DecisionRecord) -> dict[str, object]:
         "folder": str(folder),
         "headline": record.headline,
         "sentences": record.sentences,
-        "would_change": tuple(would_change(record)),
+        "would_change": record.would_change,
         "record": json.loads(as_text(record)),
     }
 

@@ -13,8 +13,9 @@ from pydantic import BaseModel
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, model_of
-from faultpath.decisions.model import SHARED, DecisionRecord
+from faultpath.decisions.model import SHARED
 from faultpath.decisions.planning import faulted_taps
+from faultpath.decisions.record import DecisionRecord
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
 from faultpath.trials import Deliveries, Status, SystemShown, Trials

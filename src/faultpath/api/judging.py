@@ -17,8 +17,8 @@ from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
 from faultpath.decisions.decide import decide
 from faultpath.decisions.judging import LaidOut, lay_out
-from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.question import Question
+from faultpath.decisions.record import DecisionRecord
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
 from faultpath.trials.deliveries import Deliveries, RowDeliveries

@@ -10,9 +10,9 @@ from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
 from faultpath.decisions.examples import choose as picked
-from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.pairs import by_scene, read_pairs
 from faultpath.decisions.planning import plan_audit
+from faultpath.decisions.record import DecisionRecord
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.systems.checks.blocks import BlockSpec, RecordedBlock, run_blocks

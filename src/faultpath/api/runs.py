@@ -19,7 +19,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import read_table
 from faultpath.decisions.gate import Answer, Ask, found, holds_when_shared
 from faultpath.decisions.map.model import MapRecord
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.record import DecisionRecord
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.map import write_map

@@ -15,7 +15,6 @@ from faultpath.decisions.model import (
     CORRECT,
     SHARED,
     Change,
-    DecisionRecord,
     Effect,
     Invalid,
     Missing,
@@ -23,6 +22,7 @@ from faultpath.decisions.model import (
     PathBreakEven,
 )
 from faultpath.decisions.question import Question
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.sentences.phrases import BETA, FREQUENCY
 from faultpath.decisions.stopping import stopped

@@ -11,8 +11,9 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from faultpath.decisions.model import SHARED, DecisionRecord
+from faultpath.decisions.model import SHARED
 from faultpath.decisions.pairs import Pair, PairKind, by_scene
+from faultpath.decisions.record import DecisionRecord
 
 At: TypeAlias = tuple[str, int]
 """A scene and a seed."""
@@ -48,13 +49,14 @@ def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
     return tuple(at for at in ranked if at in chosen)
 
 
-def captions(pairs: Sequence[Pair]) -> dict[At, str]:
+def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[At, str]:
     """Say of each scene and seed in how many the same versions succeed under every condition."""
     patterns = _patterns(pairs)
     scenes, seeds = (
         (len(set(values)) for values in zip(*patterns, strict=True)) if patterns else (0, 0)
     )
-    of = f"{scenes} scenes" if seeds < 2 else f"{len(patterns)} ({scenes} scenes, {seeds} seeds)"
+    noun = "sampled scenes" if sampled else "scenes"
+    of = f"{scenes} {noun}" if seeds < 2 else f"{len(patterns)} ({scenes} {noun}, {seeds} seeds)"
     like = Counter(patterns.values())
     return {
         at: f"{like[pattern]} of {of} {'goes' if like[pattern] == 1 else 'go'} like this one: "

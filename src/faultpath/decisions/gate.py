@@ -6,7 +6,8 @@ from typing import Literal, get_args
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
-from faultpath.decisions.model import SHARED, DecisionRecord
+from faultpath.decisions.model import SHARED
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases
 from faultpath.decisions.sentences.phrases import NO_RESULT, in_short, places
 from faultpath.decisions.sentences.wording import capital, counted, sentence, where

@@ -11,7 +11,7 @@ from faultpath.decisions.contrasts import Measure
 from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.decisions import with_test
 from faultpath.statistics.distributions import sign_p_value
-from faultpath.statistics.estimate import ALPHA, Test
+from faultpath.statistics.estimate import ALPHA, PairedTest
 from faultpath.trials.pairing import Bools
 
 Decide: TypeAlias = Callable[[Mapping[str, Contrast]], dict[str, Contrast]]
@@ -53,7 +53,7 @@ def nearest_to_nothing(
         assert one.test is not None
         assert two.test is not None
         if one.test.leans <= 0:
-            nothing = replace(one, test=Test(one.test.name, 1.0, 0))
+            nothing = replace(one, test=PairedTest(one.test.name, 1.0, 0))
             one = two if two.test.leans < 0 else nothing
         least[name] = one
     return least

@@ -244,8 +244,8 @@ class StoppedAudit(Result):
     """Paths on which the difference was shown to be smaller than the margin."""
 
 
-class DecisionRecord(Result):
-    """Everything that tables, pictures and the report show; written as `record.json`."""
+class AuditResult(Result):
+    """The numbers that tables, pictures and the report show; written as `record.json`."""
 
     format: Literal[4] = 4
     question: Question
@@ -276,21 +276,6 @@ class DecisionRecord(Result):
     """State at which a sequential audit ended."""
     earlier: tuple[EarlierLook, ...] = ()
     """Concluded before, from the same trials and otherwise."""
-
-    # Words are made from the numbers where they are shown, by modules that need this one.
-    @property
-    def headline(self) -> str:
-        """The result in one sentence."""
-        from faultpath.decisions.sentences.headline import headline
-
-        return headline(self)
-
-    @property
-    def sentences(self) -> tuple[str, ...]:
-        """All that it says: changes, what follows, how sure it is and what stays open."""
-        from faultpath.decisions.sentences.answers import sentences
-
-        return sentences(self)
 
     @property
     def few(self) -> bool:

@@ -3,10 +3,16 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 
-from faultpath.decisions.model import DecisionRecord
-from faultpath.trials import Outcome, Status, Trial, Trials
+import numpy as np
+
+from faultpath.decisions.record import DecisionRecord
+from faultpath.trials import Group, Outcome, Status, Trials, pair
 from faultpath.trials.pairing import unlike
+
+MOST_SCENES = 1000
+"""So many scenes a page shows one by one; of more it shows these and counts all."""
 
 
 class PairKind(StrEnum):
@@ -45,7 +51,7 @@ class Pair:
     baseline: Outcome | None
     repair: Outcome | None
 
-    @property
+    @cached_property
     def void_reason(self) -> str | None:
         """Why the pair says nothing, or `None` for a pair that counts."""
         for arm, trial in (("baseline", self.baseline), ("repair", self.repair)):
@@ -57,7 +63,7 @@ class Pair:
             return "the two trials differ in initial state, disturbance or planner noise"
         return None
 
-    @property
+    @cached_property
     def kind(self) -> PairKind:
         """Kind of the pair."""
         if self.void_reason is not None or self.baseline is None or self.repair is None:
@@ -73,36 +79,56 @@ class Pair:
         return {PairKind.REPAIR_ONLY: 1, PairKind.BASELINE_ONLY: -1}.get(self.kind, 0)
 
 
-def read_pairs(outcomes: Trials, record: DecisionRecord) -> tuple[Pair, ...]:
-    """Return every pair of the record's arms, ordered by path, topology, scene index and seed."""
+def read_pairs(trials: Trials, record: DecisionRecord) -> tuple[Pair, ...]:
+    """Return the pairs that a page shows, ordered by condition, topology, scene index and seed.
+
+    These are all pairs of the record's versions, or those of `MOST_SCENES` scenes that lie evenly
+    among more.
+    """
     question = record.question
-    named = {path.name for path in record.paths}
-    trials: dict[tuple[str, str, int, str], Outcome] = {}
-    places: dict[tuple[str, int, str], Trial] = {}
-    for trial in outcomes:
-        if trial.variant in (question.baseline, question.repair) and trial.condition in named:
-            place = (trial.condition, trial.seed, trial.outcome.scene)
-            trials[trial.variant, *place] = trial.outcome
-            places.setdefault(place, trial)
-    paths = list(dict.fromkeys(path for path, _, _ in places))
-    pairs = [
-        Pair(
-            path=trial.condition,
-            seed=trial.seed,
-            scene=trial.outcome.scene,
-            index=trial.scene_index,
-            topology=trial.topology,
-            baseline=trials.get((question.baseline, *place)),
-            repair=trials.get((question.repair, *place)),
-        )
-        for place, trial in places.items()
-    ]
-    return tuple(sorted(pairs, key=lambda p: (paths.index(p.path), p.topology, p.index, p.seed)))
+    places = range(len(trials.scenes))
+    if is_sample(trials):
+        places = np.linspace(0, len(trials.scenes) - 1, MOST_SCENES).astype(int).tolist()
+    pairs: list[Pair] = []
+    for path in record.paths:
+        sides = [trials.planned(name, path.name) for name in (question.baseline, question.repair)]
+        for scene in places:
+            ref = trials.scenes[scene]
+            for at, seed in enumerate(trials.seeds):
+                rows: list[int] = [int(side[at, scene]) for side in sides]
+                if max(rows) < 0:
+                    continue
+                baseline, repair = (trials.outcome(r, ref.id) if r >= 0 else None for r in rows)
+                about = (path.name, seed, ref.id, ref.index, ref.topology)
+                pairs.append(Pair(*about, baseline, repair))
+    order = {path.name: place for place, path in enumerate(record.paths)}
+    return tuple(sorted(pairs, key=lambda p: (order[p.path], p.topology, p.index, p.seed)))
+
+
+def is_sample(trials: Trials) -> bool:
+    """Return whether pages show some of the scenes for all of them."""
+    return len(trials.scenes) > MOST_SCENES
+
+
+def counts(trials: Trials, record: DecisionRecord, condition: str) -> dict[PairKind, int]:
+    """Return how many of all pairs under a condition ended in each way."""
+    question = record.question
+    baseline, repair = (Group(name, condition) for name in (question.baseline, question.repair))
+    pairs = pair(trials, baseline, repair)
+    old, new = (success.T == 1.0 for success in pairs.success)
+    of = {
+        PairKind.BOTH: old & new,
+        PairKind.REPAIR_ONLY: ~old & new,
+        PairKind.BASELINE_ONLY: old & ~new,
+        PairKind.NEITHER: ~old & ~new,
+    }
+    ended = {kind: int((where & ~pairs.void).sum()) for kind, where in of.items()}
+    return {**ended, PairKind.VOID: int(pairs.void.sum())}
 
 
 def by_scene(pairs: Iterable[Pair]) -> dict[tuple[str, int], dict[str, Pair]]:
     """Return the pairs by scene and seed, in each by path."""
     groups: dict[tuple[str, int], dict[str, Pair]] = {}
-    for pair in pairs:
-        groups.setdefault((pair.scene, pair.seed), {})[pair.path] = pair
+    for member in pairs:
+        groups.setdefault((member.scene, member.seed), {})[member.path] = member
     return groups

@@ -9,8 +9,9 @@ from faultpath.core.streams import generator
 from faultpath.core.text import unknown
 from faultpath.decisions.analysis import Analysis, Round, Rounds
 from faultpath.decisions.decide import decide, primary_path
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, FaultedTap, Path
+from faultpath.decisions.model import CORRECT, SHARED, FaultedTap, Path
 from faultpath.decisions.question import Question, StopRule, resolve
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.stopping import stops
 from faultpath.faults import Fault, at_readers, describe

@@ -5,8 +5,9 @@ from collections.abc import Iterable, Sequence
 from faultpath.core.errors import UserError
 from faultpath.decisions.descriptive import cells_of, untested_paths
 from faultpath.decisions.family import Family, family_of
-from faultpath.decisions.model import DecisionRecord, Path, StoppedAudit
+from faultpath.decisions.model import Path, StoppedAudit
 from faultpath.decisions.question import EarlierLook, Question
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases
 from faultpath.trials.trials import Trials
 

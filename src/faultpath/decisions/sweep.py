@@ -3,7 +3,7 @@
 from collections.abc import Collection, Sequence
 
 from faultpath.decisions.contrasts import alpha_shares, change_name, effect_name
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.record import DecisionRecord
 from faultpath.statistics.decisions import holm
 from faultpath.statistics.estimate import ALPHA, RULES, Sign
 

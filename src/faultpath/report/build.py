@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from xml.etree import ElementTree
 
 from faultpath.decisions.gate import found
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.tables.escapes import markdown, visible
 from faultpath.report.tables import markdown_table

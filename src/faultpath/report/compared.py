@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from faultpath.decisions.contrasts import effect_name
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
+from faultpath.decisions.model import CORRECT, SHARED, Effect
 from faultpath.decisions.question import Question
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.sweep import decide_sizes
 from faultpath.report.inputs import ReportInput

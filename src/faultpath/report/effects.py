@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from faultpath.decisions.model import DecisionRecord, Effect
+from faultpath.decisions.model import Effect
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.phrases import in_short
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, shortened, text_width, tick_label

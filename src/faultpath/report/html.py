@@ -4,10 +4,11 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.decisions.model import SHARED, DecisionRecord, Effect
-from faultpath.decisions.pairs import PairKind, read_pairs
+from faultpath.decisions.model import SHARED, Effect
+from faultpath.decisions.pairs import MOST_SCENES, PairKind, counts, is_sample, read_pairs
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording
-from faultpath.decisions.sentences.answers import answers, would_change
+from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.tables.html import html
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels
@@ -22,7 +23,8 @@ from faultpath.report.viewer import viewer_data
 def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
     record, question = source.record, source.record.question
-    pairs = read_pairs(source.trials, record)
+    pairs, sampled = read_pairs(source.trials, record), is_sample(source.trials)
+    ended_as = {path.name: counts(source.trials, record, path.name) for path in record.paths}
     viewer = viewer_data(source, pairs)
     shown = viewer.shown if viewer else ()
     titles = {path.name: path.title for path in record.paths}
@@ -35,7 +37,6 @@ def report_page(source: ReportInput) -> str:
         ("cells.js", "viewer.js"),
         record=record,
         headline=record.headline,
-        would_change=would_change(record),
         estimand=phrases.estimand(question),
         asked=question,
         provenance=source.provenance,
@@ -49,7 +50,10 @@ def report_page(source: ReportInput) -> str:
         adding=why,
         adding_panels=list(map(Markup, adding_panels(why))) if why else (),
         void=[pair for pair in pairs if pair.kind is PairKind.VOID],
-        pairs=pairs,
+        n_void=sum(of[PairKind.VOID] for of in ended_as.values()),
+        n_pairs=sum(sum(of.values()) for of in ended_as.values()),
+        sampled=MOST_SCENES if sampled else 0,
+        n_scenes=len(source.trials.scenes),
         effects=effect_rows(record),
         axis=effect_axis(record),
         numbers=Markup(html(by_path(record, SHOWN, "Effects; bold is significant"))),
@@ -62,7 +66,13 @@ def report_page(source: ReportInput) -> str:
             (
                 name,
                 Markup(
-                    pair_grid(title, [p for p in pairs if p.path == name], question.ends, shown)
+                    pair_grid(
+                        title,
+                        [] if sampled else [p for p in pairs if p.path == name],
+                        ended_as[name],
+                        question.ends,
+                        shown,
+                    )
                 ),
             )
             for name, title in titles.items()

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.record import DecisionRecord
 from faultpath.trials import SystemShown, Trials
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.signals import Signal, Signals

@@ -16,10 +16,13 @@ _ALWAYS = (PairKind.BOTH, PairKind.REPAIR_ONLY, PairKind.BASELINE_ONLY, PairKind
 def pair_grid(
     title: str,
     pairs: Sequence[Pair],
+    counts: Mapping[PairKind, int],
     names: Mapping[str, str],
     shown: Collection[tuple[str, int]] = (),
 ) -> str:
-    """Return the grid of one path: a block for each topology, a column for each scene.
+    """Return the grid of one condition: a block for each topology, a column for each scene.
+
+    `counts` are of all pairs; without `pairs` they stand alone.
 
     With several seeds a scene is a stack of cells, one a seed. Triangles that point up are scenes
     that only the repair solved, pointing down only the baseline; a large disc is both, a small ring
@@ -27,7 +30,6 @@ def pair_grid(
     what the system calls its ends. A cell whose scene and seed are among `shown` is a link to them
     in the viewer.
     """
-    counts = {kind: sum(p.kind is kind for p in pairs) for kind in PairKind}
     summary = ", ".join(f"{k.short} {n}" for k, n in counts.items() if n or k in _ALWAYS)
     ordered = sorted(pairs, key=lambda p: (p.topology, p.index, p.scene, p.seed))
     blocks = [

@@ -7,9 +7,9 @@ from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.decisions.map.model import MapRecord
-from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.answers import answers, would_change
+from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.sentences.phrases import (
     for_trainings,
     in_trials_that_ran,
@@ -62,7 +62,7 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
         if any(effect.mcnemar_p is not None for effect in record.effects):
             parts += [Text(""), Parted(by_path(record, ("p", "mcnemar", "holm")))]
         parts += [Text(""), *map(Text, record.sentences)]
-        parts += _list("What would change this", tuple(would_change(record)), "bold")
+        parts += _list("What would change this", record.would_change, "bold")
     return Group(*parts)
 
 

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.decisions.examples import captions, choose
-from faultpath.decisions.model import SHARED, DecisionRecord
-from faultpath.decisions.pairs import Pair, by_scene
+from faultpath.decisions.model import SHARED
+from faultpath.decisions.pairs import Pair, by_scene, is_sample
+from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import wording
 from faultpath.report.inputs import ReportInput
 from faultpath.report.plots import Plot, first_plot, plots_of
@@ -65,7 +66,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     if tracked and flat:
         signals = _with_positions(signals, tracks)
     trials, space = _Trials(source, signals, plots_of(signals)), _space(source, flat, bool(tracked))
-    scenes = _scenes(trials, groups, captions(pairs))
+    scenes = _scenes(trials, groups, captions(pairs, is_sample(source.trials)))
     drawn = {scene: asdict(plans[scene]) for scene, _ in groups if scene in plans}
     for prism in (prism for plan in drawn.values() for prism in plan["prisms"]):
         prism["corners"] = [[round(v, 3) for v in corner] for corner in prism["corners"]]

@@ -15,8 +15,8 @@ from faultpath.statistics.estimate import (
     SCENES,
     SCENES_AND_SEEDS,
     Estimate,
+    PairedTest,
     Sign,
-    Test,
 )
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.power import detectable, fewest_scenes
@@ -55,7 +55,7 @@ class Contrast:
     scenes: SceneValues | None = field(default=None, repr=False)
     against_zero: bool = True
     """Whether 0 is no difference; not so for rates, ratios and what is counted."""
-    test: Test | None = None
+    test: PairedTest | None = None
     """See `with_test`; without one the interval decides."""
     notable: float | None = None
     """Where a greater difference than this could have been missed, detecting none says nothing."""

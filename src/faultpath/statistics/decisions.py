@@ -15,8 +15,8 @@ from faultpath.statistics.estimate import (
     EM,
     FLIPS,
     SCENES_AND_SEEDS,
+    PairedTest,
     RuleName,
-    Test,
 )
 
 Turn: TypeAlias = Literal["reversal", "interaction", "none"]
@@ -57,7 +57,7 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
             name = "sign test on scene differences" if contrast.pairs is None else name
             p = sign_p_value(first, second)
     leans = 1 if ahead > 0 else -1 if ahead < 0 else 0
-    return replace(contrast, test=Test(name, p, leans))
+    return replace(contrast, test=PairedTest(name, p, leans))
 
 
 def decide_family(

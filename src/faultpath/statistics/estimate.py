@@ -51,7 +51,7 @@ class Estimate(Frozen, allow_inf_nan=False):
         return None if self.low is None or self.high is None else (self.low, self.high)
 
 
-class Test(NamedTuple):
+class PairedTest(NamedTuple):
     """A two-sided test of no difference, and its place in the family that is decided together."""
 
     name: str

@@ -173,10 +173,7 @@ class Trials:
 
     def seeds_of(self, variant: str, condition: str) -> tuple[int, ...]:
         """Return the seeds of a variant under a condition, in the order of the plan."""
-        if variant not in self.variants or condition not in self.conditions:
-            return ()
-        at = self.variants.index(variant), self.conditions.index(condition)
-        planned = (self.index[at] >= 0).any(axis=1)
+        planned: list[bool] = np.any(self.planned(variant, condition) >= 0, axis=1).tolist()
         return tuple(seed for seed, there in zip(self.seeds, planned, strict=True) if there)
 
     def rows(self, variant: str, condition: str, seeds: Sequence[int] | None = None) -> Rows:
@@ -189,10 +186,13 @@ class Trials:
         for seed in chosen:
             if seed not in there:
                 raise KeyError(seed)
-        if not there:
-            return np.empty((0, len(self.scenes)), np.int64)
-        planned = self.index[self.variants.index(variant), self.conditions.index(condition)]
-        return planned[[self.seeds.index(seed) for seed in chosen]]
+        return self.planned(variant, condition)[[self.seeds.index(seed) for seed in chosen]]
+
+    def planned(self, variant: str, condition: str) -> Rows:
+        """Return the rows of a variant under a condition with all seeds of the plan."""
+        if variant not in self.variants or condition not in self.conditions:
+            return np.full((len(self.seeds), len(self.scenes)), -1, np.int64)
+        return self.index[self.variants.index(variant), self.conditions.index(condition)]
 
 
 def selected(study: Study, library: Library) -> tuple[SceneRef, ...]:

@@ -5,7 +5,7 @@ Whoever reads nothing else reads these, so what qualifies a decision is said her
 
 from collections.abc import Iterator
 
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Invalid
+from faultpath.decisions.model import CORRECT, SHARED, AuditResult, Invalid
 from faultpath.decisions.sentences import phrases
 from faultpath.decisions.sentences.headline import reversed_at
 from faultpath.decisions.sentences.phrases import margin, places
@@ -33,13 +33,13 @@ _PAIRED = {
 }
 
 
-def sentences(record: DecisionRecord) -> tuple[str, ...]:
+def sentences(record: AuditResult) -> tuple[str, ...]:
     """Return all that a record says, a sentence or two each: changes first, then the answers."""
     changes = [phrases.change(record, change) for change in record.changes if not record.invalid]
     return (*changes, *sum(_answers(record).values(), list[str]()))
 
 
-def answers(record: DecisionRecord) -> dict[str, str]:
+def answers(record: AuditResult) -> dict[str, str]:
     """Return `What follows`, `How sure` and `Left open`, each with a sentence or a few.
 
     With too few scenes nothing follows, and only the other two are there.
@@ -47,7 +47,7 @@ def answers(record: DecisionRecord) -> dict[str, str]:
     return {label: " ".join(sentences) for label, sentences in _answers(record).items()}
 
 
-def _answers(record: DecisionRecord) -> dict[str, list[str]]:
+def _answers(record: AuditResult) -> dict[str, list[str]]:
     question, significant = record.question, any(effect.sign for effect in record.effects)
     if record.invalid:
         return {"Left open": [_WHY_NO_RESULT[record.invalid]]}
@@ -71,7 +71,7 @@ def _answers(record: DecisionRecord) -> dict[str, list[str]]:
     return {**follows, **left_open} if significant else {**left_open, **follows}
 
 
-def _follows(record: DecisionRecord) -> Iterator[str]:
+def _follows(record: AuditResult) -> Iterator[str]:
     tested = [effect for effect in record.effects if effect.acted]
     leading = [effect for effect in tested if effect.leads]
     disagree = {effect.sign for effect in leading} == {1, -1}
@@ -115,7 +115,7 @@ def _follows(record: DecisionRecord) -> Iterator[str]:
             yield f"Depending on how often the fault occurs, {where(result.path)}: {result.words}."
 
 
-def _unknown(record: DecisionRecord) -> str:
+def _unknown(record: AuditResult) -> str:
     """Say that no choice follows, and which differences the primary contrast leaves possible."""
     main = next((e for e in record.effects if e.path == record.question.primary), None)
     text = "Not enough is known to prefer either"
@@ -127,7 +127,7 @@ def _unknown(record: DecisionRecord) -> str:
     return f"{text}: {where(main.path)}, any difference from {low} to {high} pp is possible."
 
 
-def reach(record: DecisionRecord) -> Iterator[str]:
+def reach(record: AuditResult) -> Iterator[str]:
     """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
     question = record.question
     holds = "The intervals hold" if record.few else "What is significant holds"
@@ -149,7 +149,7 @@ def reach(record: DecisionRecord) -> Iterator[str]:
     yield from _stopped(record)
 
 
-def _stopped(record: DecisionRecord) -> Iterator[str]:
+def _stopped(record: AuditResult) -> Iterator[str]:
     """Say when a sequential audit stopped, why, and what that means for its numbers."""
     stopped, rule, most = record.stopped, record.question.stop, record.question.n_scenes
     if stopped is None or rule is None:
@@ -176,7 +176,7 @@ def _stopped(record: DecisionRecord) -> Iterator[str]:
         yield "A difference with which an audit stops is on average further from 0 than the truth."
 
 
-def _left_open(record: DecisionRecord) -> Iterator[str]:
+def _left_open(record: AuditResult) -> Iterator[str]:
     if idle := [where(effect.path) for effect in record.effects if not effect.acted]:
         yield f"The fault never acted {series(idle)}: nothing was tested there."
     yield from phrases.in_trials_that_ran(record)
@@ -193,7 +193,7 @@ def _left_open(record: DecisionRecord) -> Iterator[str]:
         )
 
 
-def _insignificant(record: DecisionRecord) -> Iterator[str]:
+def _insignificant(record: AuditResult) -> Iterator[str]:
     """Say where no difference is significant, and how large a one 8 of 10 audits would find."""
     sizes: dict[str, str] = {}
     extreme: dict[str, list[str]] = {}
@@ -216,7 +216,7 @@ def _insignificant(record: DecisionRecord) -> Iterator[str]:
     yield f"No difference is significant {series(list(sizes))}{would}."
 
 
-def would_change(record: DecisionRecord) -> Iterator[str]:
+def would_change(record: AuditResult) -> Iterator[str]:
     """Say what would change the result."""
     if record.invalid:
         yield "Trials that repeat and are pairs: see the remarks on what differed."

@@ -5,7 +5,7 @@ Names of modules and variants count as one word each.
 
 from collections.abc import Sequence
 
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
+from faultpath.decisions.model import CORRECT, SHARED, AuditResult, Effect
 from faultpath.decisions.sentences.phrases import (
     NO_RESULT,
     failed_more,
@@ -17,7 +17,7 @@ from faultpath.decisions.sentences.phrases import (
 from faultpath.decisions.sentences.wording import capital, where
 
 
-def headline(record: DecisionRecord) -> str:
+def headline(record: AuditResult) -> str:
     """Return a sentence that rests on significant effects, led by the primary contrast, and in how
     many scenes they show where these are few."""
     if record.invalid:
@@ -48,7 +48,7 @@ def headline(record: DecisionRecord) -> str:
     return f"{text[:-1]}{_few_scenes(record)}." if " is ahead" in text else text
 
 
-def _few_scenes(record: DecisionRecord) -> str:
+def _few_scenes(record: AuditResult) -> str:
     """Return in how few scenes the versions differ, of the effects that lead; else nothing."""
     leading = [effect for effect in record.effects if effect.leads]
     few = [effect for effect in leading if effect.few_differ]
@@ -59,7 +59,7 @@ def _few_scenes(record: DecisionRecord) -> str:
     return f" ({at}{in_few_scenes(least)})"
 
 
-def reversed_at(record: DecisionRecord) -> list[Effect]:
+def reversed_at(record: AuditResult) -> list[Effect]:
     """Return the isolated effects that sharing reverses, where advice may rest on both."""
     of = {effect.path: effect for effect in record.effects if effect.leads}
     return [
@@ -69,7 +69,7 @@ def reversed_at(record: DecisionRecord) -> list[Effect]:
     ]
 
 
-def _reversal(record: DecisionRecord, main: Effect, turned: Sequence[Effect]) -> str:
+def _reversal(record: AuditResult, main: Effect, turned: Sequence[Effect]) -> str:
     """Advise against the isolated fault, unless correct inputs rank the versions as it does: then
     a test with it shows no more than one without."""
     one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
@@ -86,7 +86,7 @@ def _reversal(record: DecisionRecord, main: Effect, turned: Sequence[Effect]) ->
     return f"{advice} {one} is ahead there, {other} with it shared."
 
 
-def _ranking(record: DecisionRecord, main: Effect, others: Sequence[Effect]) -> str:
+def _ranking(record: AuditResult, main: Effect, others: Sequence[Effect]) -> str:
     """Say who is ahead in the primary contrast, and one thing more.
 
     That is the shared fault where it shows something else, so that no gain in isolation stands
@@ -115,7 +115,7 @@ def _ranking(record: DecisionRecord, main: Effect, others: Sequence[Effect]) -> 
 
 
 def _sentence(
-    record: DecisionRecord,
+    record: AuditResult,
     first: Sequence[Effect],
     second: Sequence[Effect] = (),
     *,
@@ -140,7 +140,7 @@ def _sentence(
 _OPEN = "no difference is significant"
 
 
-def _state(record: DecisionRecord, effect: Effect) -> str:
+def _state(record: AuditResult, effect: Effect) -> str:
     """Return the result under one condition, as a clause that does not name the condition."""
     if effect.leads:
         return f"{record.winner(effect.sign)} is ahead"

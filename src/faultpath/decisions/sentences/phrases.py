@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from faultpath.decisions.model import CORRECT, SHARED, Change, DecisionRecord, Effect, Invalid
+from faultpath.decisions.model import CORRECT, SHARED, AuditResult, Change, Effect, Invalid
 from faultpath.decisions.question import Question
 from faultpath.decisions.sentences.wording import (
     capital,
@@ -36,12 +36,12 @@ def estimand(question: Question) -> str:
     return "new scenes like these" + (", for these trained models" if question.trained else "")
 
 
-def margin(record: DecisionRecord) -> str:
+def margin(record: AuditResult) -> str:
     """Return the margin below which a sequential audit counts a difference as small."""
     return f"{(record.question.stop and record.question.stop.margin_pp) or 0.0:g} pp"
 
 
-def adjusted(record: DecisionRecord, of: Effect | Change) -> str:
+def adjusted(record: AuditResult, of: Effect | Change) -> str:
     """Return `p = 0.250 after Holm`; nothing where nothing was tested."""
     if of.corrected_p is None:
         return ""
@@ -63,7 +63,7 @@ def in_few_scenes(effect: Effect) -> str:
     return f"in {counted(more, 'scene')}, {never}"
 
 
-def trainings(record: DecisionRecord, effect: Effect) -> str:
+def trainings(record: AuditResult, effect: Effect) -> str:
     """Return in how many trainings which version is ahead, with a sign test's p-value: it holds
     whatever the distribution of trainings."""
     values = effect.per_seed
@@ -78,7 +78,7 @@ def trainings(record: DecisionRecord, effect: Effect) -> str:
     )
 
 
-def for_trainings(record: DecisionRecord) -> Iterator[str]:
+def for_trainings(record: AuditResult) -> Iterator[str]:
     """Say on what a result for newly trained models rests."""
     if record.question.generalise != "models" or record.invalid:
         return
@@ -91,19 +91,19 @@ def for_trainings(record: DecisionRecord) -> Iterator[str]:
         yield f"{trainings(record, effect)} (sign test, whatever their distribution)."
 
 
-def failed_more(record: DecisionRecord, effect: Effect) -> str:
+def failed_more(record: AuditResult, effect: Effect) -> str:
     """Say which version's trials failed more often than chance explains."""
     missing, question = effect.missing, record.question
     more = missing is not None and missing.repair > missing.baseline
     return f"trials of {question.repair if more else question.baseline} failed more often"
 
 
-def in_trials_that_ran(record: DecisionRecord) -> Iterator[str]:
+def in_trials_that_ran(record: AuditResult) -> Iterator[str]:
     """Say what the trials that ran show where only those that failed stand in the way."""
     yield from (_ran(record, effect) for effect in record.effects if effect.unsettled)
 
 
-def _ran(record: DecisionRecord, effect: Effect) -> str:
+def _ran(record: AuditResult, effect: Effect) -> str:
     missing, question = effect.missing, record.question
     assert missing is not None
     ahead = record.winner(1 if effect.value > 0 else -1)
@@ -135,7 +135,7 @@ def places(effects: Sequence[Effect]) -> str:
     return series(list(dict.fromkeys(named)))
 
 
-def in_short(record: DecisionRecord, effect: Effect | None) -> str:
+def in_short(record: AuditResult, effect: Effect | None) -> str:
     """Say in a few words what an audit found under one condition."""
     if effect is None:
         return "no pair of trials to compare"
@@ -157,7 +157,7 @@ def in_short(record: DecisionRecord, effect: Effect | None) -> str:
     return f"no significant difference{p}"
 
 
-def change(record: DecisionRecord, of: Change) -> str:
+def change(record: AuditResult, of: Change) -> str:
     """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
     effects = {effect.path: effect for effect in record.effects}
     if record.invalid:
@@ -245,7 +245,7 @@ def no_pair(path: str) -> str:
     return f"{capital(where(path))}, no pair of trials is left to compare"
 
 
-def not_standing(record: DecisionRecord) -> Iterator[str]:
+def not_standing(record: AuditResult) -> Iterator[str]:
     """Say of each interval that excludes 0 without a significant difference why it is not one."""
     for effect in () if record.invalid else filter(only_alone, record.effects):
         yield (
@@ -255,7 +255,7 @@ def not_standing(record: DecisionRecord) -> Iterator[str]:
         )
 
 
-def hardly_acted(record: DecisionRecord) -> Iterator[str]:
+def hardly_acted(record: AuditResult) -> Iterator[str]:
     """Name the versions in which the fault changed nothing in most of the trials."""
     acted = {effect.path for effect in record.effects if effect.acted}
     faulted = {path.name: (path.baseline_consumers, path.consumers) for path in record.paths}
@@ -268,7 +268,7 @@ def hardly_acted(record: DecisionRecord) -> Iterator[str]:
             )
 
 
-def partly_measured(record: DecisionRecord) -> Iterator[str]:
+def partly_measured(record: AuditResult) -> Iterator[str]:
     """Say of which metrics not every trial has a value."""
     for effect, secondary in zip(record.effects, record.secondary, strict=True):
         for name in record.question.metrics:
@@ -281,7 +281,7 @@ def partly_measured(record: DecisionRecord) -> Iterator[str]:
                 )
 
 
-def failed_trials(record: DecisionRecord) -> Iterator[str]:
+def failed_trials(record: AuditResult) -> Iterator[str]:
     """Say by version and condition how many trials failed, and how far that could matter."""
     question = record.question
     for effect in record.effects:
@@ -299,7 +299,7 @@ def failed_trials(record: DecisionRecord) -> Iterator[str]:
         )
 
 
-def looks(record: DecisionRecord) -> str:
+def looks(record: AuditResult) -> str:
     """Say what was concluded before, and what that does to what is significant now."""
     counts = sorted({look.scenes for look in record.earlier if look.scenes is not None})
     with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
