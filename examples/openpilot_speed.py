@@ -5,7 +5,7 @@ messages, has limits of its own, and blocks what exceeds them. No file of theirs
 firmware limits by `speed` and checks it against `speed_2`; where these come from differs by car.
 
     faultpath audit examples/openpilot_speed.py:create --car ford --baseline shipped \
-        --repair recovers --fault speed:scale=1.05 --fault speed_2:scale=1.05 --scenes 200
+        --repair recovers --fault tyre:scale=1.05 --scenes 150
 """
 
 from functools import cache, partial
@@ -76,9 +76,7 @@ def controller(o, speed, speed_2, yaw, angle, plan, sent, version):
     if version == "filtered":
         state.vEgoRaw = state.vEgo
     elif version == "two-messages":
-        state.vEgo = state.vEgoRaw = (
-            o.car.can_parsers["party"].vl["ESP_B"]["ESP_vehicleSpeed"] / 3.6
-        )
+        state.vEgo = state.vEgoRaw = round(float(speed_2) * 7.2) / 7.2  # as ESP_B: 0.5 km/h
     elif version == "recovers" and sent[0] < 0:  # blocked: begin anew where the firmware does
         o.car.CC.apply_angle_last, o.car.CC.apply_curvature_last = state.steeringAngleDeg, 0.0
     most, change = 3.0 / max(state.vEgo, 1.0) ** 2, 5.0 / max(state.vEgo, 1.0) ** 2 * DT_S
@@ -93,12 +91,15 @@ def controller(o, speed, speed_2, yaw, angle, plan, sent, version):
     return [len(data), *data.ljust(8, b"\0")]
 
 
-def firmware(o, speed, speed_2, yaw, angle, message, wider):
-    """Let their firmware pass or block a message; return 1 or -1 and the order, 0 without one."""
+def firmware(o, speed, speed_2, yaw, angle, message, less):
+    """Let their firmware pass or block a message; return 1 or -1 and the order, 0 without one.
+
+    With `less` it tolerates so much less of a wrong speed, m/s, than the 1 m/s in its code.
+    """
     o.panda.set_timer((o.i + 1) * 10**4)
-    for address, data, at in arrived(o, speed - wider, speed_2 - wider, yaw, angle):
+    for address, data, at in arrived(o, speed + less, speed_2 + less, yaw, angle):
         o.panda.safety_rx_hook(make_CANPacket(address, at, data))
-    if o.i % 100 == 99:  # their firmware looks for late messages once a second
+    if o.i % 100 == 99:
         o.panda.safety_tick_current_safety_config()
     if not message[0]:
         return 0.0, 0.0
@@ -108,11 +109,13 @@ def firmware(o, speed, speed_2, yaw, angle, message, wider):
     return 2.0 * passes - 1.0, o.left * order
 
 
+SEEDS = {"training": range(100), "held-out": range(1000, 1200)}
 VERSIONS = {
     "shipped": "Controller and firmware as they are.",
     "filtered": "The controller limits by its filtered speed.",
+    "two-messages": "The controller reads speed_2, the firmware speed.",
     "recovers": "After a blocked message the controller begins anew.",
-    "wide": "The firmware allows a difference of 2 m/s in place of 1.",
+    "narrow": "The firmware tolerates a difference of 0.25 m/s in place of 1.",
 }
 
 
@@ -123,7 +126,8 @@ def blocked(episode):
 def create(
     car: Annotated[Literal["tesla", "nissan", "ford"], "Whose car it is."] = "ford",
 ) -> ComposedSystem:
-    units = {"speed": "m/s", "speed_2": "m/s", "yaw": "rad/s", "angle": "deg", "plan": "1/m"}
+    speed = {"unit": "m/s", "correlation_group": "tyre"}
+    units = {"speed": speed, "speed_2": speed, "yaw": "rad/s", "angle": "deg", "plan": "1/m"}
     units |= {"offset": "m", "blocked": "1", "orders": "1"}
     off_m = Measure(Metric(unit="m", better="less"), lambda e: abs(e["offset"]).max())
     plant = FunctionPlant(
@@ -140,10 +144,11 @@ def create(
     # --- glue ---
     limits = writes("message", of=partial(objects, car), past="sent")(controller)
     checks = writes("sent", of=partial(objects, car), before=(0.0, 0.0))(firmware)
-    older = {"two-messages": "The controller reads speed_2."} if car == "tesla" else {}
     variants = {
-        name: Parts(said, [limits.given(version=name), checks.given(wider=float(name == "wide"))])
-        for name, said in (VERSIONS | older).items()
+        name: Parts(
+            said, [limits.given(version=name), checks.given(less=0.75 * (name == "narrow"))]
+        )
+        for name, said in VERSIONS.items()
     }
     units |= dict.fromkeys(("message", "sent"), "1")
-    return ComposedSystem(f"openpilot_{car}", plant, variants, units)
+    return ComposedSystem(f"openpilot_{car}", plant, variants, units, scenes=SEEDS)
