@@ -91,11 +91,9 @@ def controller(o, speed, speed_2, yaw, angle, plan, sent, version):
     return [len(data), *data.ljust(8, b"\0")]
 
 
-def firmware(o, speed, speed_2, yaw, angle, message, less):
-    """Let their firmware pass or block a message; return 1 or -1 and the order, 0 without one.
-
-    With `less` it tolerates so much less of a wrong speed, m/s, than the 1 m/s in its code.
-    """
+def firmware(o, speed, speed_2, yaw, angle, message, version):
+    """Let their firmware pass or block a message; return 1 or -1 and the order, 0 without one."""
+    less = 0.75 if version == "narrow" else 0.0  # m/s, of the 1 m/s in its code
     o.panda.set_timer((o.i + 1) * 10**4)
     for address, data, at in arrived(o, speed + less, speed_2 + less, yaw, angle):
         o.panda.safety_rx_hook(make_CANPacket(address, at, data))
@@ -145,9 +143,7 @@ def create(
     limits = writes("message", of=partial(objects, car), past="sent")(controller)
     checks = writes("sent", of=partial(objects, car), before=(0.0, 0.0))(firmware)
     variants = {
-        name: Parts(
-            said, [limits.given(version=name), checks.given(less=0.75 * (name == "narrow"))]
-        )
+        name: Parts(said, [limits.given(version=name), checks.given(version=name)])
         for name, said in VERSIONS.items()
     }
     units |= dict.fromkeys(("message", "sent"), "1")
