@@ -216,7 +216,7 @@ $(BENCH_JAX)/ready: benchmarks/requirements-jax.txt
 	@echo "Installing the packages that examples audit into .venv-foreign"
 	@rm -rf .venv-foreign && $(PYTHON) -m venv .venv-foreign
 	@.venv-foreign/bin/python -m pip install --disable-pip-version-check --quiet \
-	  -e '.[rotorpy,do-mpc,basilisk,wpilib,gymnasium,inspect,policies,stable-worldmodel]' "$$(grep '^torch==' constraints.txt)" \
+	  -e '.[rotorpy,do-mpc,basilisk,wpilib,opendbc,gymnasium,inspect,policies,stable-worldmodel]' "$$(grep '^torch==' constraints.txt)" \
 	  hypothesis pytest pytest-xdist
 	@touch $@
 

@@ -25,6 +25,8 @@ PAGES = {
     "motulator": ("motulator", "motulator"),
     "basilisk": ("Basilisk", "basilisk"),
     "wpilib": ("WPILib", "wpilib"),
+    "openpilot-ford": ("openpilot on a Ford", "openpilot"),
+    "openpilot-tesla": ("openpilot on a Tesla", "openpilot"),
     "stable-worldmodel-rectified-moved": ("stable-worldmodel, shifted by 2 px", WORLD_MODEL),
     "stable-worldmodel-rectified-darker": ("stable-worldmodel, 30 % darker", WORLD_MODEL),
     "stable-worldmodel-augmented-moved": ("stable-worldmodel, shifted by 2 px", WORLD_MODEL),

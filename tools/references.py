@@ -29,6 +29,7 @@ APART = ("carry-over", "state-errors", "paper")
 SYSTEMS = {
     "basilisk": "Basilisk",
     "do_mpc": "do_mpc",
+    "openpilot": "opendbc",
     "rotorpy": "rotorpy",
     "stable_worldmodel": "stable_worldmodel",
     "wpilib": "wpimath",

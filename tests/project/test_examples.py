@@ -19,6 +19,8 @@ ELSEWHERE = {
     "lerobot_relative_actions.py": "tests/foreign/test_lerobot.py",
     "lerobot_steps.py": "tests/foreign/test_lerobot.py",
     "motulator_drive.py": "tests/foreign/test_motulator.py",
+    "openpilot_car.py": "tests/foreign/test_openpilot.py",
+    "openpilot_speed.py": "tests/foreign/test_openpilot.py",
     "rotorpy_wind.py": "tests/foreign/test_rotorpy.py",
     "stable_worldmodel_camera.py": "tests/foreign/test_stable_worldmodel.py",
     "stable_worldmodel_model.py": "tests/foreign/test_stable_worldmodel.py",

@@ -14,7 +14,8 @@ PROGRAMS = sorted(
 )
 PACKAGES = {
     *("Basilisk", "do_mpc", "gymnasium", "jax", "lerobot", "motulator", "mujoco", "pytorch_mppi"),
-    *("rotorpy", "stable_worldmodel", "tensordict", "torch", "torchrl", "torchvision", "wpimath"),
+    *("opendbc", "rotorpy", "stable_worldmodel", "tensordict", "torch", "torchrl", "torchvision"),
+    "wpimath",
 }
 """Packages of others that a program may need and an environment may lack."""
 CODE = """

@@ -35,6 +35,9 @@ QUESTION = (
     "mass and thrust flies better than the original while only the estimator gets wrong values, "
     "and worse once the predictor gets the same ones."
 )
+NOT_CARRIED = (
+    "The gain does not carry over to the shared error; a loss, as in the paper, is not shown"
+)
 QUICK_RUN = "This quick run is too small to answer the question."
 
 
@@ -112,7 +115,7 @@ def answer(cases: Sequence[Case]) -> str:
     if lead.reversal:
         return "The paper's reversal appeared here too"
     if lead.isolated.sign > 0 and lead.change is not None and lead.change.sign < 0:
-        return "The gain does not carry over to the shared error; a loss, as in the paper, is not shown"
+        return NOT_CARRIED
     return "We did not reproduce the paper's reversal"
 
 
