@@ -16,6 +16,8 @@ PACKAGES = {
     "rotorpy": "rotorpy",
     "motulator": "motulator",
     "wpilib": "wpimath",
+    "openpilot-ford": "opendbc",
+    "openpilot-tesla": "opendbc",
     "stable-worldmodel-augmented-moved": "stable_worldmodel",
     "stable-worldmodel-rectified-darker": "stable_worldmodel",
 }
