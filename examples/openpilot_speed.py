@@ -143,8 +143,8 @@ def create(
     limits = writes("message", of=partial(objects, car), past="sent")(controller)
     checks = writes("sent", of=partial(objects, car), before=(0.0, 0.0))(firmware)
     variants = {
-        name: Parts(said, [limits.given(version=name), checks.given(version=name)])
-        for name, said in VERSIONS.items()
+        name: Parts(text, [limits.given(version=name), checks.given(version=name)])
+        for name, text in VERSIONS.items()
     }
     units |= dict.fromkeys(("message", "sent"), "1")
     return ComposedSystem(f"openpilot_{car}", plant, variants, units, scenes=SEEDS)

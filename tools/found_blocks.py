@@ -8,7 +8,7 @@ from latent_blocks import FAULTS
 from latent_blocks import audits_of as audits_of_rooms
 from state_blocks import audits_of
 
-from faultpath.decisions import model
+from faultpath.decisions import effects
 from faultpath.decisions.sentences import wording
 
 WORLD_MODEL = "stable-worldmodel"
@@ -139,7 +139,7 @@ def _of_references() -> Iterator[Audit]:
         yield Audit(title, page, "", f"`{record.question.repair}`", effects, turns)
 
 
-def _effect(effect: model.Effect) -> Effect:
+def _effect(effect: effects.Effect) -> Effect:
     value, ends = effect.value, effect.interval
     if ends is None:
         raise Wrong(f"{effect.path} has no interval: the table of all audits cannot show it")
@@ -199,6 +199,6 @@ def audits(page: str) -> str:
     return f"{pipes(('repair, fault', *titles), rows)}\n\n{runs[0].flown}"
 
 
-def _success(effect: model.Effect) -> str:
+def _success(effect: effects.Effect) -> str:
     rates = (wording.plain(rate, 1) for rate in effect.rates)
     return f"{' → '.join(rates)}, {_shown([_effect(effect)])}"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from blocks import ROOT, Picture, Run, Wrong, difference, fence, load, pipes, printed
 
-from faultpath.decisions.model import Difference
+from faultpath.decisions.effects import Difference
 from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.markdown import grid

@@ -17,7 +17,8 @@ from faultpath.core.files.plain import Misread, read_json, read_yaml, yaml_text
 from faultpath.interface import read_interface
 from faultpath.learning.model_card import FitRecord, read_card
 from faultpath.trials.store.atomic import locked
-from faultpath.trials.store.folder import RunFolder, read_manifest, read_outcomes, read_regular
+from faultpath.trials.store.folder import RunFolder, read_outcomes, read_regular
+from faultpath.trials.store.manifest import read_manifest
 
 Read = Callable[[Path], object]
 

@@ -9,7 +9,8 @@ from outcome_tables import BASELINE, MOST_WORDS, REPAIR, Counts, arms, paths, qu
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.decisions.decide import decide
-from faultpath.decisions.model import CORRECT, SHARED, Change, Effect
+from faultpath.decisions.effects import Change, Effect
+from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.question import StopRule
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording

@@ -6,7 +6,8 @@ from itertools import product
 
 from outcome_tables import BASELINE, MOST_WORDS, REPAIR, record
 
-from faultpath.decisions.model import CORRECT, SHARED, Effect
+from faultpath.decisions.effects import Effect
+from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.question import StopRule
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences.answers import answers

@@ -134,8 +134,8 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("studies", "at least # control steps", "faultpath_paper.evidence.recording:STRIDE"),
     ("systems", "faulted for # steps", "faultpath.systems.checks.check:_AFTER"),
     ("systems", "matters # times as much", "faultpath.systems.checks.judging:_SEVERAL"),
-    ("verdict", "succeed below # %", "faultpath.decisions.model:FLOOR_PERCENT"),
-    ("verdict", "or above # %, the", "faultpath.decisions.model:CEILING_PERCENT"),
+    ("verdict", "succeed below # %", "faultpath.decisions.effects:FLOOR_PERCENT"),
+    ("verdict", "or above # %, the", "faultpath.decisions.effects:CEILING_PERCENT"),
 ]
 """Page, words around a number (`#`), and the constant or function that gives it."""
 

@@ -13,7 +13,8 @@ from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.attempt import Done
 from faultpath.trials.code import CodeState
 from faultpath.trials.outcome import Outcome, Status
-from faultpath.trials.store.folder import FORMAT, Manifest, RunFolder, read_outcomes
+from faultpath.trials.store.folder import RunFolder, read_outcomes
+from faultpath.trials.store.manifest import FORMAT, Manifest
 from faultpath.trials.store.tables import encode_shard
 
 

@@ -69,7 +69,7 @@ class Run(FinishedRun):
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What follows, how sure it is and what stays open, a sentence or two each."""
+        """Answers: what follows, how sure it is and what stays open, a sentence or two each."""
         return self.record.sentences
 
     @property

@@ -9,22 +9,13 @@ from faultpath.core.errors import UserError
 from faultpath.decisions.compared import ComparedTrials
 from faultpath.decisions.contrasts import change_name, effect_name, led
 from faultpath.decisions.descriptive import cells_of, percent, secondary, untested_paths
+from faultpath.decisions.effects import Change, Effect, Missing
 from faultpath.decisions.family import Family, family_of
-from faultpath.decisions.model import (
-    AS_RUN,
-    CORRECT,
-    SHARED,
-    Change,
-    Effect,
-    Invalid,
-    Missing,
-    Path,
-    PathBreakEven,
-)
+from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Invalid, Path, PathBreakEven
 from faultpath.decisions.question import Question
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording
-from faultpath.decisions.sentences.phrases import BETA, FREQUENCY
+from faultpath.decisions.sentences.shares import BETA, FREQUENCY, Shares, shares
 from faultpath.decisions.stopping import stopped
 from faultpath.statistics.breakeven import break_even, mixture_curve, only
 from faultpath.statistics.contrast import Contrast
@@ -62,12 +53,12 @@ def decide(
         family = family.without_claims()
     effects = {path: _effect(question, path, comparison, family) for path in comparison.success}
 
-    def between(pairs: Sequence[tuple[str, str]], words: phrases.Shares) -> list[PathBreakEven]:
-        shares = (
+    def between(pairs: Sequence[tuple[str, str]], words: Shares) -> list[PathBreakEven]:
+        results = (
             _break_even(question, comparison, family, (effects[none], effects[every]), words)
             for none, every in pairs
         )
-        return [share for share in shares if share]
+        return [result for result in results if result]
 
     faulted = [path for path in effects if path not in (CORRECT, AS_RUN, *untested)]
     from_none = [(CORRECT, path) for path in faulted] if CORRECT in effects else []
@@ -186,7 +177,7 @@ def _break_even(
     comparison: ComparedTrials,
     family: Family,
     ends: tuple[Effect, Effect],
-    shares: phrases.Shares,
+    words: Shares,
 ) -> PathBreakEven | None:
     """Return where baseline and repair are even between the effects at two ends of a share, over
     the scenes that both have, as a result of the condition with the fault, or of the one module."""
@@ -212,8 +203,8 @@ def _break_even(
         if low and high and shown and not inner:
             kept.append(region)
     return PathBreakEven(
-        path=at_all.path if shares is FREQUENCY else at_none.path,
+        path=at_all.path if words is FREQUENCY else at_none.path,
         result=only(result, kept),
         curve=mixture_curve(*tested, level=level, fills=fills),
-        words=phrases.shares(question, result.regions, at_none, at_all, shares),
+        words=shares(question, result.regions, at_none, at_all, words),
     )

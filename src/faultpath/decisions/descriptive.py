@@ -5,7 +5,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from faultpath.decisions.model import CORRECT, ArmCounts, AtThreshold, Path, Secondary
+from faultpath.decisions.effects import AtThreshold, Secondary
+from faultpath.decisions.model import CORRECT, ArmCounts, Path
 from faultpath.decisions.question import Question
 from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.statistics.effects import mean_effect, median_effect, seed_sums, success_effect

@@ -20,5 +20,5 @@ class DecisionRecord(AuditResult):
 
     @property
     def would_change(self) -> tuple[str, ...]:
-        """What would change the result, a sentence each."""
+        """Changes that could change the result, a sentence each."""
         return tuple(answers.would_change(self))

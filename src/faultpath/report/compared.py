@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from faultpath.decisions.contrasts import effect_name
-from faultpath.decisions.model import CORRECT, SHARED, Effect
+from faultpath.decisions.effects import Effect
+from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.question import Question
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from faultpath.decisions.model import Effect
+from faultpath.decisions.effects import Effect
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.phrases import in_short

@@ -4,7 +4,8 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.decisions.model import SHARED, Effect
+from faultpath.decisions.effects import Effect
+from faultpath.decisions.model import SHARED
 from faultpath.decisions.pairs import MOST_SCENES, PairKind, counts, is_sample, read_pairs
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording

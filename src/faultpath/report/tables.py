@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from faultpath.decisions.model import Effect
+from faultpath.decisions.effects import Effect
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.sentences.phrases import adjusted, not_standing, only_alone

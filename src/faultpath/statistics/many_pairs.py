@@ -149,8 +149,10 @@ class ManyPairs:
         grows = np.diff(edge)
         taken = edge[:-1] + grows
         total = np.arange(_SUMMED + 1, last - 1)
-        held = np.maximum(taken, 0)
-        chance = self.logs[total] - self.logs[held] - self.logs[total - held] - total * np.log(2.0)
+        lower = np.maximum(taken, 0)
+        chance = (
+            self.logs[total] - self.logs[lower] - self.logs[total - lower] - total * np.log(2.0)
+        )
         step = np.where(taken < 0, 0.0, np.exp(chance)) * (2 * grows - 1)
         start = 2.0 * binomial_cdf(edge[:1], total[:1], 0.5)
         ends = np.arange(last, self.n_pairs + 1)

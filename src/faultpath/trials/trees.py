@@ -133,8 +133,8 @@ def places(package: str) -> list[Path]:
     if spec is None or package in sys.stdlib_module_names:
         return []
     origin = [spec.origin] if spec.has_location and spec.origin else []
-    found = origin if spec.submodule_search_locations is None else spec.submodule_search_locations
-    return [place for place in map(Path, found) if place.exists()]  # one may lie in an archive
+    places = origin if spec.submodule_search_locations is None else spec.submodule_search_locations
+    return [place for place in map(Path, places) if place.exists()]  # one may lie in an archive
 
 
 _loaded: WeakKeyDictionary[ModuleType, str] = WeakKeyDictionary()

@@ -5,7 +5,8 @@ Names of modules and variants count as one word each.
 
 from collections.abc import Sequence
 
-from faultpath.decisions.model import CORRECT, SHARED, AuditResult, Effect
+from faultpath.decisions.effects import Effect
+from faultpath.decisions.model import CORRECT, SHARED, AuditResult
 from faultpath.decisions.sentences.phrases import (
     NO_RESULT,
     failed_more,

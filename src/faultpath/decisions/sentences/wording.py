@@ -4,7 +4,8 @@ import math
 import re
 from collections.abc import Sequence
 
-from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Difference, Effect
+from faultpath.decisions.effects import Difference, Effect
+from faultpath.decisions.model import AS_RUN, CORRECT, SHARED
 from faultpath.decisions.question import Question
 from faultpath.statistics.estimate import BreakEven, Estimate
 

@@ -21,7 +21,8 @@ from faultpath.trials.execution.schedule import Task, TaskQueue, Unit, plan
 from faultpath.trials.execution.state import RunState, Stop
 from faultpath.trials.provenance import Recheck
 from faultpath.trials.registry import load_system
-from faultpath.trials.store.folder import Manifest, RunFolder
+from faultpath.trials.store.folder import RunFolder
+from faultpath.trials.store.manifest import Manifest
 from faultpath.trials.system import System
 from faultpath.trials.trials import Trials, check_rows, selected
 from faultpath.trials.work.executor import Executor, Progress
