@@ -27,6 +27,8 @@ PAGES = {
     "wpilib": ("WPILib", "wpilib"),
     "openpilot-ford": ("openpilot on a Ford", "openpilot"),
     "openpilot-tesla": ("openpilot on a Tesla", "openpilot"),
+    "openpilot-nissan": ("openpilot on a Nissan", "openpilot"),
+    "openpilot-nissan-tolerance": ("openpilot on a Nissan", "openpilot"),
     "stable-worldmodel-rectified-moved": ("stable-worldmodel, shifted by 2 px", WORLD_MODEL),
     "stable-worldmodel-rectified-darker": ("stable-worldmodel, 30 % darker", WORLD_MODEL),
     "stable-worldmodel-augmented-moved": ("stable-worldmodel, shifted by 2 px", WORLD_MODEL),

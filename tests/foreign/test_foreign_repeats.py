@@ -18,6 +18,8 @@ PACKAGES = {
     "wpilib": "wpimath",
     "openpilot-ford": "opendbc",
     "openpilot-tesla": "opendbc",
+    "openpilot-nissan": "opendbc",
+    "openpilot-nissan-tolerance": "opendbc",
     "stable-worldmodel-augmented-moved": "stable_worldmodel",
     "stable-worldmodel-rectified-darker": "stable_worldmodel",
 }
