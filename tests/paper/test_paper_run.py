@@ -44,7 +44,7 @@ def run(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None, shor
     job = Job(folder, Here(), SILENT)
     flown = flights.fly(reproduction.legs(), folder, job.run, lambda now: None)
     evidence = measure_all(reproduction, folder, 0, lambda done, total: None)
-    results = reproduction.results(flown.outcomes, evidence)
+    results = reproduction.results(flown.trials, evidence)
     save(folder, flown, results, conclude(reproduction, results))
     return folder
 

@@ -63,7 +63,7 @@ def test_the_code_that_is_here_gives_the_whole_of_a_quick_reference(name: str, t
     done = run_study(audit.study, tmp_path, workers=0)
     reference = read_outcomes(REFERENCE / name / "outcomes.parquet")
     assert (tmp_path / "outcomes.parquet").read_bytes() == encode_outcomes(reference)
-    again = audit.conclude(done.outcomes, done.deliveries)
+    again = audit.conclude(done.trials, done.deliveries)
     assert numbers(again) == numbers(record_of(name))
 
 
@@ -101,7 +101,7 @@ def test_the_main_reference_is_what_make_audit_runs(name: str, scenes: int | Non
 
 
 @pytest.mark.parametrize(
-    ("target", "name"), [("audit", "quadrotor-L3"), ("confirm", "quadrotor-L3-confirmation")]
+    ("target", "name"), [("audit", "quadrotor-L3"), ("decision", "quadrotor-L3-decision")]
 )
 def test_the_page_of_the_quadrotor_shows_the_command_of_make(target: str, name: str) -> None:
     page = (ROOT / "docs" / "quadrotor.md").read_text("utf-8")
