@@ -8,6 +8,8 @@ from itertools import pairwise
 import pytest
 from page_reader import Page, unpack
 
+import faultpath.decisions.pairs as page_pairs
+from faultpath.decisions.examples import captions
 from faultpath.decisions.pairs import PairKind, read_pairs
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
@@ -86,3 +88,23 @@ def test_viewer_data_cannot_close_its_element(html: str) -> None:
 
 def test_page_without_void_pairs(make: Callable[..., ReportInput]) -> None:
     assert "A void pair" not in Page(report_page(make(void=False, n_scenes=20))).text
+
+
+def test_many_scenes_are_counted_and_some_are_listed(
+    source: ReportInput, page: Page, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(page_pairs, "MOST_SCENES", 10)
+    many = Page(report_page(source))
+    scenes = len(source.trials.scenes)
+    assert f"The list has 10 of the {scenes} scenes, evenly chosen" in many.text
+    assert "Every scene" in page.text
+    assert "Every scene" not in many.text
+    assert not [tag for tag, a in many.tags if tag == "a" and a.get("class") == "pair"]
+    seeds = len(source.record.question.seeds)
+    kinds = ("both", "repair only", "baseline only", "neither")
+    counts = re.findall(", ".join(rf"{kind} (\d+)" for kind in kinds), many.text)
+    assert len(counts) == len(source.record.effects)
+    for of, effect in zip(counts, source.record.effects, strict=True):
+        assert sum(map(int, of)) == scenes * seeds - effect.void
+    shown = captions(read_pairs(source.trials, source.record), sampled=True)
+    assert all("sampled scenes" in caption for caption in shown.values())

@@ -6,7 +6,7 @@ from markupsafe import Markup
 
 from faultpath.decisions.effects import Effect
 from faultpath.decisions.model import SHARED
-from faultpath.decisions.pairs import MOST_SCENES, PairKind, counts, is_sample, read_pairs
+from faultpath.decisions.pairs import PairKind, counts, is_sample, read_pairs
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.sentences.answers import answers
@@ -53,7 +53,7 @@ def report_page(source: ReportInput) -> str:
         void=[pair for pair in pairs if pair.kind is PairKind.VOID],
         n_void=sum(of[PairKind.VOID] for of in ended_as.values()),
         n_pairs=sum(sum(of.values()) for of in ended_as.values()),
-        sampled=MOST_SCENES if sampled else 0,
+        sampled=len({pair.scene for pair in pairs}) if sampled else 0,
         n_scenes=len(source.trials.scenes),
         effects=effect_rows(record),
         axis=effect_axis(record),
