@@ -83,12 +83,12 @@ def sample(
 ) -> Sequence[tuple[TrialAddress, Arm]]:
     """Return the trials to repeat, always the same of the same run."""
     arms = {(row.variant, row.path, row.seed): row.arm for row in study.rows}
-    conditions = sorted({path for _, path, _ in arms}, key=_lot)
+    conditions = sorted({path for _, path, _ in arms}, key=_hash_order)
     conditions = conditions[:_CONDITIONS] if isinstance(run.record, MapRecord) else conditions
     seeds = {seed for _, _, seed in arms}
     places = sorted(
         {(at.scene, at.seed) for at in before if at.seed in seeds},
-        key=lambda place: _lot(*map(str, place)),
+        key=lambda place: _hash_order(*map(str, place)),
     )
     origin = run.provenance
     cost = origin.wall_s * max(origin.workers, 1) / len(before)
@@ -101,7 +101,7 @@ def sample(
     ]
 
 
-def _lot(*parts: str) -> str:
+def _hash_order(*parts: str) -> str:
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 

@@ -57,7 +57,7 @@ def _verbs(command: Any, *names: str) -> Iterator[tuple[str, list[str]]]:
 OPTIONS = dict(_verbs(typer.main.get_command(build())))
 
 
-def misended(line: list[object], ended: Ended) -> str:
+def exit_problem(line: list[object], ended: Ended) -> str:
     """Return what is wrong with how a command ended, if anything is."""
     text = ended.out + ended.err
     if "Traceback" in text or ended.status not in (0, 1, 2):
@@ -98,4 +98,4 @@ def test_junk_in_the_place_of_a_word(verb: str, fuzz_seed: int) -> None:
                 line[line.index(option) + 1] = junk
             else:
                 line += [option, junk]
-        assert not misended(line, faultpath(*line)), line
+        assert not exit_problem(line, faultpath(*line)), line

@@ -17,7 +17,7 @@ from traceback import format_exception
 import pytest
 from cli_runs import Ended, faultpath
 from odd_commands import CASES, bases
-from test_cli_fuzz import misended
+from test_cli_fuzz import exit_problem
 
 pytestmark = pytest.mark.fuzz
 
@@ -67,7 +67,7 @@ def held(folder: Path) -> dict[str, str]:
 
 def wrong(line: list[str], ended: Ended, before: dict[str, str], here: Path) -> str:
     """Return what is wrong with how a command ended and with what it left, if anything is."""
-    if fault := misended(line, ended):
+    if fault := exit_problem(line, ended):
         return fault
     last = ended.err.splitlines()[-1:] or [""]
     if ended.status == 2 and (len(last[0]) < 30 or INNER.search(last[0])):

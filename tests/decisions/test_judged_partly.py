@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from faultpath.decisions.decide import decide
-from faultpath.decisions.judging import lay_out
+from faultpath.decisions.judging import pair_results
 from faultpath.decisions.record import DecisionRecord
 from faultpath.trials.outcome import Status
 from faultpath.trials.received.question import JudgeQuestion
@@ -29,7 +29,7 @@ def judged(trials: list[tuple[str, str, str]], blank: int | None = None, **asked
         for place, trial in enumerate(trials)
     ]
     question = JudgeQuestion.model_validate({"baseline": "old", "repair": "new", **asked})
-    laid = lay_out(rows, question)
+    laid = pair_results(rows, question)
     return decide(laid.question, laid.paths, laid.trials, laid.findings)
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.decisions.decide import decide
-from faultpath.decisions.judging import lay_out
+from faultpath.decisions.judging import pair_results
 from faultpath.decisions.record import DecisionRecord
 from faultpath.statistics.estimate import BreakEven
 from faultpath.trials.outcome import Status
@@ -60,7 +60,7 @@ def judged(
         where = ("old", "new")[arm], CONDITIONS[condition], *named
         rows.append(Received("line", *where, status, "", float("nan")))
     asked = JudgeQuestion.model_validate({"baseline": "old", "repair": "new", "cluster": cluster})
-    laid = lay_out(rows, asked)
+    laid = pair_results(rows, asked)
     # What decides nothing here takes most of the time: what could have been detected, and curves.
     unread: dict[str, Any] = {"detectable": None, "mixture_curve": ()}
     if not shares:

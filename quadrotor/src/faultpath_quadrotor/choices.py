@@ -126,7 +126,7 @@ class QuadrotorChoices(BaseModel):
     device: Annotated[DeviceName, "What computes worlds and planners."] = DeviceName.CPU
     bring: Annotated[
         str,
-        "Parts of your own, file.py:factory, parted by commas; those that baseline and repair name "
+        "Parts of your own, file.py:factory, comma-separated; those that baseline and repair name "
         "are added.",
     ] = ""
 

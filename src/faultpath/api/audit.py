@@ -18,7 +18,7 @@ from faultpath.api.folders import (
     parsed,
     read_provenance,
 )
-from faultpath.api.job import Job, asks, run
+from faultpath.api.job import Job, run, with_question_signature
 from faultpath.api.replaying import outcomes_at, run_again, shown_first
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
@@ -27,7 +27,7 @@ from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.decisions.question import Question
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences.wording import counted
-from faultpath.decisions.stopping import after_looks
+from faultpath.decisions.stopping import with_earlier_analyses
 from faultpath.faults import FaultText
 from faultpath.report.inputs import ReportInput
 from faultpath.trials import Deliveries, System, system_shown
@@ -42,7 +42,7 @@ _SCENES_FOR_ONE = 20
 """So many scenes of an audit, and one more is recorded: at most about a twentieth more trials."""
 
 
-@asks(AuditQuestion)
+@with_question_signature(AuditQuestion)
 def audit(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> Run:
@@ -65,7 +65,7 @@ def audit(
     return run("audit", AuditQuestion, plan_audit, carry_out, system, arguments, progress)
 
 
-@asks(AuditQuestion)
+@with_question_signature(AuditQuestion)
 def audits(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> tuple[Run, ...]:
@@ -139,7 +139,7 @@ def concluded(
     folder: Path, question: Question, conclude: Callable[[Question], DecisionRecord]
 ) -> DecisionRecord:
     """Return what is concluded of a question, by the rule of the record that the folder holds of
-    these trials, if any, which stands in the new one: see `after_looks`.
+    these trials, if any, which stands in the new one: see `with_earlier_analyses`.
 
     `UserError` for a record that cannot be read: taken for none, earlier analyses would be lost.
     """
@@ -148,7 +148,7 @@ def concluded(
     before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
     if before.question.library_hash != question.library_hash:  # other results
         return conclude(question)
-    return after_looks(conclude(question.by_the_rule_of(before.question)), (before,))
+    return with_earlier_analyses(conclude(question.by_the_rule_of(before.question)), (before,))
 
 
 def _kept_signals(folder: Path, result: RunResult) -> Signals:

@@ -4,7 +4,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from faultpath.api.display import Display
-from faultpath.api.job import asks, begin
+from faultpath.api.job import begin, with_question_signature
 from faultpath.api.systems import Chosen
 from faultpath.decisions.planning import faults_by_path
 from faultpath.faults import Fault
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from faultpath.systems.checks.tracing import TraceReport
 
 
-@asks(CheckQuestion)
+@with_question_signature(CheckQuestion)
 def check(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> "Report":
@@ -52,7 +52,7 @@ def check(
         return check_system(chosen.system, chosen.spec, question, note, conditions)
 
 
-@asks(TraceQuestion)
+@with_question_signature(TraceQuestion)
 def trace(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> "TraceReport":

@@ -5,7 +5,7 @@ from typing import Any
 
 from faultpath.api.display import Display
 from faultpath.api.folders import MAP, MAP_MADE_FROM
-from faultpath.api.job import Job, asks, run
+from faultpath.api.job import Job, run, with_question_signature
 from faultpath.api.runs import MapRun
 from faultpath.decisions.map.study import MapPlan, plan_map
 from faultpath.trials import System
@@ -13,7 +13,7 @@ from faultpath.trials.question import MapQuestion
 from faultpath.trials.store.atomic import write_text
 
 
-@asks(MapQuestion)
+@with_question_signature(MapQuestion)
 def map(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> MapRun:

@@ -37,7 +37,7 @@ _LONGEST_NAME = 180
 """Longest name of a run folder; file systems take 255 bytes."""
 
 
-def asks(model: type[Asked]) -> Callable[[_Call], _Call]:
+def with_question_signature(model: type[Asked]) -> Callable[[_Call], _Call]:
     """Give a function whose last parameter is `**arguments` signature and help of a model."""
 
     def described(function: _Call) -> _Call:

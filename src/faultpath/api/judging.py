@@ -12,11 +12,11 @@ from typing import Any
 from faultpath.api.audit import concluded
 from faultpath.api.display import Display, display
 from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text
-from faultpath.api.job import asks
+from faultpath.api.job import with_question_signature
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
 from faultpath.decisions.decide import decide
-from faultpath.decisions.judging import LaidOut, lay_out
+from faultpath.decisions.judging import LaidOut, pair_results
 from faultpath.decisions.question import Question
 from faultpath.decisions.record import DecisionRecord
 from faultpath.interface import Interface
@@ -35,7 +35,7 @@ from faultpath.trials.trials import Trials
 from faultpath.trials.work.processes import local
 
 
-@asks(JudgeQuestion)
+@with_question_signature(JudgeQuestion)
 def judge(
     results: str | PathLike[str] | Sequence[str | PathLike[str]],
     *,
@@ -62,7 +62,7 @@ def judge(
     shown = display(progress, "judge", fields)
     started = datetime.now(UTC)
     rows, sources = read_results(named, question)
-    laid = lay_out(rows, question)
+    laid = pair_results(rows, question)
     folder = question.folder or _folder(laid, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")

@@ -20,7 +20,7 @@ USER_ERROR = 2
 INTERRUPTED = 130
 """Exit status that shells report for a program that Ctrl-C ended."""
 
-UNREAD = 141
+EXIT_BROKEN_PIPE = 141
 """Exit status that shells report for a program that nobody reads any more."""
 
 _TRACEBACK = "--traceback"
@@ -52,7 +52,7 @@ def main() -> NoReturn:
         # Whoever reads our output has seen enough; rich ends the program at that.
         if BrokenPipeError in (type(error), type(error.__context__)) and not theirs:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            sys.exit(UNREAD)
+            sys.exit(EXIT_BROKEN_PIPE)
         interrupted = isinstance(error, KeyboardInterrupt) and not theirs
         if ctrl_c.pressed or interrupted or isinstance(error, Stopped):
             sentence = str(error) if isinstance(error, Stopped) else _AGAIN

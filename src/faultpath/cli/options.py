@@ -12,7 +12,7 @@ from typer.core import TyperCommand, TyperOption
 
 from faultpath.core.errors import UserError
 from faultpath.core.numbers import number_in, whole_in
-from faultpath.core.text import one_line, steers
+from faultpath.core.text import has_control_characters, one_line
 
 if TYPE_CHECKING:
     from faultpath.api.display import Display
@@ -57,7 +57,7 @@ def check_arguments(arguments: Sequence[str]) -> None:
         if (flag and not argument) or re.fullmatch(r"--[\w-]+=", argument):
             label = argument or f"{flag}''"
             raise UserError(f"the argument {label} is empty: give a value, or leave it out.")
-        if steers(argument):
+        if has_control_characters(argument):
             raise UserError(
                 f"the argument '{one_line(argument)}' holds control characters or is not UTF-8 "
                 "text: write it without them."

@@ -18,7 +18,7 @@ _NUMPY = re.compile(
 )
 
 
-def steers(text: str) -> bool:
+def has_control_characters(text: str) -> bool:
     """Return whether text holds what no name needs: control characters, line separators, or lone
     surrogates, which are no text at all."""
     return any(unicodedata.category(c) in ("Cc", "Cs", "Zl", "Zp") for c in text)

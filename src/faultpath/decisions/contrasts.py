@@ -65,7 +65,7 @@ class Measure:
         return {name: with_test(contrast, self.rule) for name, contrast in contrasts}
 
 
-def led(primary: str, paths: Collection[str]) -> str:
+def default_primary(primary: str, paths: Collection[str]) -> str:
     """Return the primary path: as named, else the shared one, else the isolated."""
     alone = [name for name in paths if name not in (CORRECT, SHARED)]
     return primary or (SHARED if SHARED in paths else (alone or list(paths))[0])

@@ -7,7 +7,7 @@ import numpy as np
 
 from faultpath.core.errors import UserError
 from faultpath.decisions.compared import ComparedTrials
-from faultpath.decisions.contrasts import change_name, effect_name, led
+from faultpath.decisions.contrasts import change_name, default_primary, effect_name
 from faultpath.decisions.descriptive import cells_of, percent, secondary, untested_paths
 from faultpath.decisions.effects import Change, Effect, Missing
 from faultpath.decisions.family import Family, family_of
@@ -102,7 +102,7 @@ def primary_path(named: str, paths: Sequence[Path]) -> str:
             f"the audit has no condition '{named}' for its primary contrast: it has "
             f"{', '.join(names)}."
         )
-    return led(named, names)
+    return default_primary(named, names)
 
 
 def _effect(question: Question, path: str, comparison: ComparedTrials, family: Family) -> Effect:

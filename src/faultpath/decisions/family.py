@@ -12,9 +12,9 @@ from faultpath.decisions.contrasts import (
     Measure,
     alpha_shares,
     change_name,
+    default_primary,
     effect_name,
     isolated,
-    led,
 )
 from faultpath.decisions.missing import (
     Decide,
@@ -135,7 +135,7 @@ def decide_paths(
     measure = Measure(rule, models, shares is not None)
     tested = [path for path in success if path not in untested]
     family = measure.tested(measure.contrasts(success, success, tested))
-    parts = alpha_shares(tested, led(primary, success))
+    parts = alpha_shares(tested, default_primary(primary, success))
     weights = {name: parts[name] for name in family} if RULES[rule].weighted else None
     decide: Decide = partial(decide_family, alpha=alpha, shares=shares, weights=weights)
     decided = decide(family)

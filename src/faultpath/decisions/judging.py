@@ -39,7 +39,7 @@ class LaidOut:
     findings: tuple[str, ...]
 
 
-def lay_out(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
+def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
     """Pair the trials of two arms by what names them: task, scene, seed and condition.
 
     What one arm has and the other lacks is a failed trial, so that its pair is void, and is named.

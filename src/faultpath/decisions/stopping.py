@@ -49,7 +49,9 @@ def stopped(question: Question, family: Family, trials: Trials) -> StoppedAudit 
     return StoppedAudit(scenes=scenes, reached=required <= settled, small=tuple(small))
 
 
-def after_looks(record: DecisionRecord, earlier: Iterable[DecisionRecord]) -> DecisionRecord:
+def with_earlier_analyses(
+    record: DecisionRecord, earlier: Iterable[DecisionRecord]
+) -> DecisionRecord:
     """Return a record that tells of other conclusions from its trials, and what they cost.
 
     `earlier` are records of the same arms by the same code, with the looks that they tell of. The

@@ -20,7 +20,7 @@ from pydantic import (
 
 from faultpath.core.arrays import Constant
 from faultpath.core.results import Frozen
-from faultpath.core.text import steers
+from faultpath.core.text import has_control_characters
 
 Name = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]
 Consumer = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*$")]
@@ -29,7 +29,7 @@ Consumer = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*\.[a-z][a-
 def _readable(text: str) -> str:
     """Refuse what files would not give back and terminals would act upon."""
     for character in text:
-        if character != "\n" and steers(character):
+        if character != "\n" and has_control_characters(character):
             raise ValueError(f"holds the control character U+{ord(character):04X}")
     return text
 

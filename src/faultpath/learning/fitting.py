@@ -59,7 +59,7 @@ def mean_squared_error(output: Tensor, target: Tensor) -> Tensor:
     if output.shape != target.shape:
         raise UserError(
             f"mean_squared_error: the module returns the shape {list(output.shape)} and the target "
-            f"has {list(target.shape)}: mend one of the two"
+            f"has {list(target.shape)}: correct one of the two"
         )
     return functional.mse_loss(output, target)
 

@@ -66,7 +66,9 @@ class Windows:
         parts |= {"ids": ids, "episodes": self.episodes}
         for what, value in parts.items():
             if len(value) != n:
-                raise UserError(f"windows: {what} has {len(value)} rows for {n} windows: mend it")
+                raise UserError(
+                    f"windows: {what} has {len(value)} rows for {n} windows: correct it"
+                )
         if len(set(ids)) < n:
             raise UserError(
                 "windows: two have the same id, and would get the same errors: rename one"
@@ -78,7 +80,7 @@ class Windows:
                 expected = " or ".join(str([n, *sizes]) for sizes in dict.fromkeys(fits))
                 raise UserError(
                     f"windows: readings of '{name}' have the shape {list(value.shape)}, and the "
-                    f"interface says {expected}: mend one of the two"
+                    f"interface says {expected}: correct one of the two"
                 )
         missing = {port.channel for port in self.ports} - set(readings)
         if missing:

@@ -6,7 +6,7 @@ from numbers import Integral
 from typing import Any, cast
 
 from faultpath.core.errors import SystemMistake
-from faultpath.core.text import one_line, represented, steers
+from faultpath.core.text import has_control_characters, one_line, represented
 
 _LONGEST_NAME = 200
 _LARGEST_INDEX = 2**63 - 1
@@ -23,7 +23,7 @@ def check_name(what: str, name: Any) -> None:
         raise SystemMistake(
             f"{what} has {len(name)} characters: a name has at most {_LONGEST_NAME}"
         )
-    if steers(name):
+    if has_control_characters(name):
         raise SystemMistake(f"{what} is {shown(name)}: a name holds no control characters")
 
 

@@ -212,7 +212,7 @@ def _readings(name: str, seen: Seen) -> Check:
             failures[f"{source.name} far"] = (
                 f"Source '{source.name}' declares a typical magnitude of {source.scale:g} "
                 f"{source.unit}, but its largest reading is {most:.3g}; give it in {source.unit}, "
-                "or mend the declared unit or scale."
+                "or correct the declared unit or scale."
             )
     wrong, says = tuple(failures.values()), ", ".join(shown)
     return Check(name=name, says=says, failures=wrong, remarks=diverged(spans))

@@ -166,7 +166,7 @@ def dispatch(
             elif not ended.started:
                 false_starts += 1
                 if false_starts > _FALSE_STARTS:
-                    raise WorkerLost(f"worker processes do not come up: {end.how}")
+                    raise WorkerLost(f"worker processes failed to start: {end.how}")
                 again.append((ended.task, ended.tried))
             elif not ended.tried:
                 again.append((ended.task, True))

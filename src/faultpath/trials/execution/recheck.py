@@ -115,17 +115,20 @@ class Rechecks:
         follow = [unit for unit in sound if unit.key != first[unit.block]]
         unit = min(
             follow or sound,
-            key=lambda candidate: (len(candidate.scenes) <= SAMPLE, _lot(candidate.key)),
+            key=lambda candidate: (len(candidate.scenes) <= SAMPLE, _hash_order(candidate.key)),
         )
         scenes = unit.scenes
         if len(scenes) > SAMPLE:
-            by_lot = sorted(scenes[1:], key=lambda scene: _lot(unit.key, scene))[:SAMPLE]
+            by_lot = sorted(scenes[1:], key=lambda scene: _hash_order(unit.key, scene))[:SAMPLE]
             scenes = tuple(scene for scene in scenes if scene in by_lot)
         others = [candidate for candidate in sound if candidate is not unit] or [unit]
         other = min(
-            others, key=lambda candidate: (len(candidate.scenes) == 1, _lot("guard", candidate.key))
+            others,
+            key=lambda candidate: (len(candidate.scenes) == 1, _hash_order("guard", candidate.key)),
         )
-        alone = min(other.scenes[1:] or other.scenes, key=lambda scene: _lot(other.key, scene))
+        alone = min(
+            other.scenes[1:] or other.scenes, key=lambda scene: _hash_order(other.key, scene)
+        )
         tasks = (Task(unit, scenes, recheck="sample"), Task(other, (alone,), recheck="guarded"))
         return tuple(t for t in tasks if (t.unit.key, t.recheck, t.scenes) not in self._kept)
 
@@ -189,5 +192,5 @@ class Rechecks:
                 )
 
 
-def _lot(*parts: str) -> str:
+def _hash_order(*parts: str) -> str:
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()

@@ -137,7 +137,7 @@ class RunState:
             last = next(o for o in reversed(partial.outcomes.values()) if o.failed)
             raise NothingRuns(
                 f"all of the first {self._failed} trials failed, and none ran to its end; in scene "
-                f"{last.scene!r}: {' '.join((last.error or '').split())[:300]}. Mend the system "
+                f"{last.scene!r}: {' '.join((last.error or '').split())[:300]}. Fix the system "
                 "and run the same again; the tracebacks are in "
                 f"{self._folder.failures / unit.key}.txt"
             )
@@ -163,7 +163,7 @@ class RunState:
             yield (
                 f"{len(errors)} of {len(units)} blocks raised an error when their scenes ran "
                 f"together, and none when each ran alone: {errors[0]}. A reading holds a value for "
-                "each scene of its block: `faultpath check` says what to mend."
+                "each scene of its block: `faultpath check` says what to fix."
             )
 
     def _outcomes_of(self, unit: Unit) -> list[Outcome]:

@@ -100,7 +100,7 @@ class Processes(Executor):
             try:
                 message: tuple[Any] | End = process.channel.recv()
             except (EOFError, OSError):
-                message = Lost(process.obituary())
+                message = Lost(process.exit_reason())
             if isinstance(message, tuple):
                 passed_on(message, self._busy[worker])
                 continue
@@ -146,7 +146,7 @@ class _Process:
             os.close(lifeline)
         self.channel: connections.Connection[Any, Any] = connections.Connection(ours.detach())
 
-    def obituary(self) -> str:
+    def exit_reason(self) -> str:
         """Say how it ended."""
         try:
             code = self.popen.wait(timeout=10)
