@@ -30,7 +30,7 @@ BROKEN = {
         "abstract method",
     ),
     "variant of text": ("Variant('a', 'words', 'abc')  # here", "'abc'"),
-    "name that has_control_characters": ("SceneRef('a\\x1b[31m', 0)  # here", "control characters"),
+    "name with control characters": ("SceneRef('a\\x1b[31m', 0)  # here", "control characters"),
     "index above 2^63": ("SceneRef('a', 2 ** 63)  # here", "2^63 - 1"),
     "scene twice": ("Library('l', (SceneRef('a', 0), SceneRef('a', 1)), 'h')  # here", "'a' twice"),
     "no hash": ("Library('l', (), '')  # here", "content hash"),
