@@ -105,7 +105,7 @@ def test_it_is_audited(example, tmp_path) -> None:
         "firmware",
         "shared",
     ]
-    assert sum(effect.void_pairs for effect in run.record.effects) == 0
+    assert sum(effect.void for effect in run.record.effects) == 0
 
 
 def test_their_code_needs_few_lines_of_glue() -> None:

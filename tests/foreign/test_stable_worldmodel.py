@@ -73,7 +73,7 @@ def test_an_error_at_one_picture_reaches_that_picture_alone(example, fault):
     for struck in ("observation", "goal"):
         result = attempted(system, "plain", SCENES, f"{fault}@{struck}")
         assert set(faulted(result)) == {f"{struck}.{channel}"}
-        assert result.trials != clean
+        assert result.outcomes != clean
 
 
 @pytest.mark.filterwarnings("ignore")  # theirs, of Gymnasium

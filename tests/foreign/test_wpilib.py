@@ -121,7 +121,7 @@ def test_it_is_audited_at_odometry_and_wheel_command(wheels):
         "odometry",
         "shared",
     ]
-    assert sum(effect.void_pairs for effect in run.record.effects) == 0
+    assert sum(effect.void for effect in run.record.effects) == 0
 
 
 def test_ten_parameters_say_how_wrong_they_may_be(wheels):
