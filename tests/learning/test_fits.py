@@ -160,7 +160,7 @@ def test_damaged_files_are_refused(tmp_path, damage, said) -> None:
         (lambda: fit(torch.nn.Identity, windows()), "no parameters"),
         (lambda: fit(Net, windows(), validation=1.0), "no window is left"),
         (lambda: fit(Net, windows(), lambda out, target: out - target), "one number"),
-        (lambda: fit(Net, windows(targets=np.zeros((60, 1)))), "mend one of the two"),
+        (lambda: fit(Net, windows(targets=np.zeros((60, 1)))), "correct one of the two"),
         (lambda: fit(Net, windows(), repair=reconstruction("gain")), "leave that place out"),
         (lambda: fit(Net, windows(), repair=reconstruction("slope")), "no readings of 'slope'"),
         (lambda: fit(Net, windows(), repair=reconstruction("wind")), "unknown channel 'wind'"),
