@@ -34,6 +34,8 @@ def test_the_answer_is_a_reversal_only_where_a_run_decides_one() -> None:
     assert "appeared" in central.answer([case(0, 0), one])
     gone = case(1, 0).model_copy(update={"change": central.PrintedEffect(text="−9.0", sign=-1)})
     assert "gain does not carry over" in central.answer([one, gone])
+    smaller = case(1, 1).model_copy(update={"change": gone.change})
+    assert "carry over" not in central.answer([smaller])
     assert "the reversal was significant" in central.detail([one, gone])
     assert "significant" not in central.answer([gone])
     assert "No run" in central.answer([])

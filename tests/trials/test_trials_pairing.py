@@ -155,3 +155,13 @@ def test_what_was_run_once_is_paired_with_every_seed_of_the_other_side():
     assert pair(_altering("repair", "a", 5, initial_hash="x"), ONE, once).void.sum() == 1
     with pytest.raises(PairingRefused, match="with seed 4"):
         pair(_table(), ONE, Group("baseline", "shared", once=4), SEEDS)
+
+
+def test_trials_that_share_nothing_do_not_take_all_memory():
+    trials = [
+        Trial(f"v{n}", f"c{n}", n, n, "", _outcome(f"s{n}", n, success=True)) for n in range(100)
+    ]
+    with pytest.raises(ValueError, match="hardly any variant"):
+        Trials.of(trials)
+    with pytest.raises(ValueError, match="two trials have the same"):
+        Trials.of([trials[0], trials[0]])

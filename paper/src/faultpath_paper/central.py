@@ -114,7 +114,8 @@ def answer(cases: Sequence[Case]) -> str:
     lead = cases[-1]
     if lead.reversal:
         return "The paper's reversal appeared here too"
-    if lead.isolated.sign > 0 and lead.change is not None and lead.change.sign < 0:
+    fell = lead.change is not None and lead.change.sign < 0
+    if lead.isolated.sign > 0 and lead.shared.sign == 0 and fell:
         return NOT_CARRIED
     return "We did not reproduce the paper's reversal"
 

@@ -1,5 +1,6 @@
 """All trials of a run as arrays, one row a trial, and an index of what was planned into them."""
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,6 +23,9 @@ STATUSES = tuple(Status)
 HASHES: tuple[str, ...] = ("initial_hash", "disturbance_hash", "planner_noise_hash")
 """Two trials are a pair only where these agree."""
 TEXTS = (*HASHES, "trajectory_hash")
+_MOST_CELLS, _MOST_EMPTY = 10_000_000, 50
+"""Cells of an index, and cells for each trial in a larger one: no plan is as sparse as that, and a
+file of few trials cannot ask for all memory."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +68,10 @@ class Trials:
 
     @classmethod
     def of(cls, trials: Iterable[Trial]) -> Self:
-        """Return the arrays of some trials; `ValueError` where two stand in one place."""
+        """Return the arrays of some trials.
+
+        `ValueError` where two stand in one place, and for a plan that is almost all empty.
+        """
         every = tuple(trials)
         outcomes = [trial.outcome for trial in every]
         refs: dict[str, SceneRef] = {}
@@ -81,7 +88,10 @@ class Trials:
         at = np.array(
             [[axis[key] for axis, key in zip(places, of, strict=True)] for of in keys], np.int64
         ).reshape(-1, 4)
-        index = np.full([len(axis) for axis in labels], -1, np.int64)
+        shape = [len(axis) for axis in labels]
+        if math.prod(shape) > max(_MOST_CELLS, len(every) * _MOST_EMPTY):
+            raise ValueError("hardly any variant has a trial under the same condition and seed")
+        index = np.full(shape, -1, np.int64)
         index[tuple(at.T)] = np.arange(len(every))
         if int((index >= 0).sum()) != len(every):
             raise ValueError("two trials have the same variant, condition, seed and scene")
