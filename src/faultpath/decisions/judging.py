@@ -23,9 +23,6 @@ from faultpath.trials.store.tables import FIXED
 
 _ONE = "one module"
 """The path of a condition that is called isolated, and says no module."""
-_MOST = 15_000
-"""Scenes that the rule takes, since the memory of its test grows with their square; more are tested
-exactly."""
 _FIRST = {CORRECT: 0, SHARED: 2}
 
 
@@ -81,7 +78,7 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
         trained=request.generalise == "models",
         ends={Status.TIMEOUT.value: "no success"} if dull else {},
         metrics=_metrics(request),
-        rule=RULE if len(units.labels) <= _MOST else "exact",
+        rule=RULE,
         judged=JudgedTrials(pairing="hashes" if hashed else "keys", unit=request.cluster),
     )
     longer = [unit for unit, members in units.labels.items() if len(members) > len(units.seeds)]
