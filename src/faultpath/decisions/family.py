@@ -27,7 +27,7 @@ from faultpath.decisions.missing import (
 from faultpath.decisions.model import SHARED, Path
 from faultpath.decisions.question import Question
 from faultpath.statistics import betting
-from faultpath.statistics.contrast import Contrast
+from faultpath.statistics.contrast import Contrast, ordered_sum
 from faultpath.statistics.decisions import Turn, decide_family, turn, with_test
 from faultpath.statistics.estimate import ALPHA, RULES, RuleName
 from faultpath.statistics.power import fewest_scenes
@@ -164,7 +164,9 @@ def decide_paths(
         if change_name(path) in decided
     }
     lopsided = [path for path, pair in success.items() if uneven(pair)]
-    largest = max(weights.values()) / sum(weights.values()) if weights else 1.0 / len(family)
+    largest = (
+        max(weights.values()) / ordered_sum(weights.values()) if weights else 1.0 / len(family)
+    )
     needed = fewest_scenes(alpha * largest)
     if shares is not None:
         needed = betting.fewest_scenes(alpha * max(shares.values()))

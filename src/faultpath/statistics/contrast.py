@@ -4,9 +4,10 @@ A ``Contrast`` keeps what it was made from scene by scene, so that contrasts on 
 be subtracted, weighted and turned into a break-even frequency jointly.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, reduce
+from operator import add
 
 import numpy as np
 
@@ -221,7 +222,13 @@ def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Con
 
 
 def _dot(weights: Sequence[float], values: Sequence[float]) -> float:
-    return round(sum(w * v for w, v in zip(weights, values, strict=True)), _DIGITS) + 0.0
+    products = (w * v for w, v in zip(weights, values, strict=True))
+    return round(ordered_sum(products), _DIGITS) + 0.0
+
+
+def ordered_sum(values: Iterable[float]) -> float:
+    """Add from left to right: from Python 3.12 on `sum` compensates, with other last bits."""
+    return reduce(add, values, 0.0)
 
 
 def change(before: Contrast, after: Contrast) -> Contrast:

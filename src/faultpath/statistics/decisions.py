@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from faultpath.statistics import betting, score, signflip, unconditional
-from faultpath.statistics.contrast import Contrast
+from faultpath.statistics.contrast import Contrast, ordered_sum
 from faultpath.statistics.distributions import sign_p_value, t_p_value
 from faultpath.statistics.estimate import (
     ALPHA,
@@ -94,10 +94,10 @@ def decide_family(
             for other in ordered:
                 if other == name:
                     continue
-                if p_values[other] > alpha * weighs[other] / sum(left.values()):
+                if p_values[other] > alpha * weighs[other] / ordered_sum(left.values()):
                     break
                 del left[other]
-            critical = alpha * weighs[name] / sum(left.values())
+            critical = alpha * weighs[name] / ordered_sum(left.values())
         test = tests[name]._replace(sign=sign, corrected_p=adjusted[name], critical_p=critical)
         decided[name] = replace(contrast, test=test)
     return decided
@@ -109,7 +109,7 @@ def holm(p_values: Mapping[str, float], weights: Mapping[str, float]) -> dict[st
     adjusted: dict[str, float] = {}
     largest = 0.0
     for place, name in enumerate(ordered):
-        left = sum(weights[other] for other in ordered[place:])
+        left = ordered_sum(weights[other] for other in ordered[place:])
         largest = max(largest, min(1.0, left / weights[name] * p_values[name]))
         adjusted[name] = largest
     return adjusted
