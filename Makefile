@@ -106,7 +106,6 @@ docs: $(STAMPS)/dev ## Write what follows from numbers, and build/site; ARGS="--
 lint: $(STAMPS)/dev ## Check format, style, types and layers
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
-	$(BIN)/python tools/words.py
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 

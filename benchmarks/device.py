@@ -35,7 +35,7 @@ from torch.profiler import ProfilerActivity, profile
 from benchmarks.results import DEVICE
 from faultpath import open_run
 from faultpath.loop import Batch
-from faultpath.trials import Arm, SystemSpec, load_system
+from faultpath.trials import SystemSpec, Treatment, load_system
 from faultpath.trials.attempt import taps_of
 
 FLOWN = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
@@ -118,7 +118,7 @@ def _flying(device: str, size: int) -> Iterator[Any]:
     assert isinstance(built, Quadrotor)
     every = (scene.id for name in LIBRARIES for scene in built.library(name).scenes)
     scenes = tuple(islice(every, size))
-    taps = taps_of(built, Arm(variant=VARIANT, faults=()), scenes)
+    taps = taps_of(built, Treatment(variant=VARIANT, faults=()), scenes)
     return built.loop(VARIANT, seed=0).execute(Batch(scenes, 0, built.control_dt_s), taps)
 
 
@@ -144,7 +144,10 @@ def compared(*folders: Path) -> dict[str, Any]:
     """Return how many trials and decisions of an audit are alike on both devices."""
     runs = [open_run(folder) for folder in folders]
     ends = [
-        {(row["variant"], row["path"], row["seed"], row["scene"]): row["status"] for row in rows}
+        {
+            (row["variant"], row["condition"], row["seed"], row["scene"]): row["status"]
+            for row in rows
+        }
         for rows in (run.table().to_pylist() for run in runs)
     ]
     assert ends[0].keys() == ends[1].keys(), "the runs do not hold the same trials"
@@ -154,7 +157,7 @@ def compared(*folders: Path) -> dict[str, Any]:
         "trials": len(ends[0]),
         "alike": sum(ends[0][trial] == ends[1][trial] for trial in ends[0]),
         "successes": [sum(end == "success" for end in ended.values()) for ended in ends],
-        "paths": len(signs[0]),
+        "conditions": len(signs[0]),
         "decided_alike": sum(one == other for one, other in zip(*signs, strict=True)),
     }
 

@@ -4,7 +4,7 @@ from itertools import count
 
 from benchmarks.side import Side
 from faultpath.core.streams import generator
-from faultpath.decisions.family import decide_paths
+from faultpath.decisions.family import decide_conditions
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.statistics.breakeven import break_even
 from faultpath.statistics.estimate import RULE
@@ -40,7 +40,7 @@ def _tests(scenes: int) -> Side:
             condition: (repair[kept, None] * 1.0, baseline[kept, None] * 1.0)
             for condition, (repair, baseline) in outcomes.items()
         }
-        family = decide_paths(success, rule=RULE)
+        family = decide_conditions(success, rule=RULE)
         for effect in family.effects.values():
             assert effect.pairs is not None
             detectable(effect.pairs, rule=RULE, on_top=True)

@@ -136,7 +136,7 @@ def _gpu(name: str, figures: dict[str, Any]) -> str:
             f"Of {audits['trials']} trials of `make audit` on that machine, {audits['alike']} end "
             f"alike on both; {here} succeed on the processor and {there} on the GPU. The audit "
             f"finds the same on both, significant or not, on {audits['decided_alike']} of "
-            f"{audits['paths']} paths (`{audits['command']}`)."
+            f"{audits['conditions']} conditions (`{audits['command']}`)."
         )
     if paper := figures.get("paper"):
         origin = paper.get("by_hand") or f"`{paper['command']}`"

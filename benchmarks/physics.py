@@ -70,16 +70,16 @@ def rendering() -> Side:
 
 
 def outcomes() -> tuple[np.ndarray, np.ndarray]:
-    """Return successes of two arms, 100 scenes and 3 seeds."""
+    """Return successes of two treatments, 100 scenes and 3 seeds."""
     draws = generator("benchmark-outcomes", "all", 0)
     return draws.random((100, 3)) < 0.6, draws.random((100, 3)) < 0.7
 
 
 def interval() -> tuple[float | None, float | None]:
     """Return the ends of our interval of the effect, percentage points."""
-    arms = outcomes()
-    resamples = Resamples.draw("benchmark", len(arms[0]), n_resamples=RESAMPLES)
-    effect = success_effect(*arms, resamples).estimate()
+    treatments = outcomes()
+    resamples = Resamples.draw("benchmark", len(treatments[0]), n_resamples=RESAMPLES)
+    effect = success_effect(*treatments, resamples).estimate()
     return effect.low, effect.high
 
 

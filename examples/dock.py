@@ -29,22 +29,22 @@ sources:
 channels:
 - name: range
   sources: [rangefinder]
-  consumers: [approach.profile, speedometer.difference]
+  readers: [approach.profile, speedometer.difference]
   gap: fidelity
 - name: speed
   sources: [wheel_odometry, range_rate]
-  consumers: [approach.feedback]
+  readers: [approach.feedback]
   gap: availability
 reconstructs: {speedometer: range_rate}
 """)
 
 # --- declarations ---
 APPROACH = frozenset({"approach.profile", "approach.feedback"})
-WHEELS = Variant("wheels", "The wheels give the speed.", consumers=APPROACH)
+WHEELS = Variant("wheels", "The wheels give the speed.", readers=APPROACH)
 RANGES = Variant(
     "ranges",
     "Successive ranges give the speed.",
-    consumers=APPROACH | {"speedometer.difference"},
+    readers=APPROACH | {"speedometer.difference"},
     bindings={"speed": "range_rate"},
 )
 

@@ -21,7 +21,8 @@ def verdicts(name: str) -> str:
 
 
 def matrix(name: str) -> str:
-    """Return a table per question and path: planner, estimator and plant down, the rest across."""
+    """Return a table per question and condition: planner, estimator and plant down, the rest
+    across."""
     flown = load(name).record
     parts: list[str] = []
     means = {(q.repair, q.baseline, reach): mean for q, reach, mean in overall(flown)}

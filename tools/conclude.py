@@ -19,7 +19,7 @@ from faultpath.decisions.decide import decide
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.study import plan_map
-from faultpath.decisions.model import Path as FaultPath
+from faultpath.decisions.model import Condition
 from faultpath.decisions.question import Question
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.tables import Table
@@ -47,11 +47,11 @@ def audit(folder: Path) -> DecisionRecord:
     """Decide a stored audit anew and write its record and pages."""
     before = json.loads((folder / RECORD).read_bytes())
     question = Question.model_validate(before["question"])
-    paths = [FaultPath.model_validate(path) for path in before["paths"]]
+    conditions = [Condition.model_validate(condition) for condition in before["conditions"]]
     outcomes = read_outcomes(folder / OUTCOMES)
     findings = tuple(before.get("findings", ()))
     repeats = before.get("invalid") != "unrepeatable"
-    record = decide(question, paths, outcomes, findings, repeats)
+    record = decide(question, conditions, outcomes, findings, repeats)
     (folder / RECORD).write_text(as_text(record), "utf-8")
     _keep_examples(folder, record, outcomes)
     _reseal(folder)

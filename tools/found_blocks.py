@@ -136,7 +136,7 @@ def grouped() -> list[list[Audit]]:
 def _of_references() -> Iterator[Audit]:
     for name, (title, page) in PAGES.items():
         record = load(name).record
-        effects = {effect.path: _effect(effect) for effect in record.effects}
+        effects = {effect.condition: _effect(effect) for effect in record.effects}
         turns = {change.isolated: change.turn for change in record.changes}
         yield Audit(title, page, "", f"`{record.question.repair}`", effects, turns)
 
@@ -144,7 +144,7 @@ def _of_references() -> Iterator[Audit]:
 def _effect(effect: effects.Effect) -> Effect:
     value, ends = effect.value, effect.interval
     if ends is None:
-        raise Wrong(f"{effect.path} has no interval: the table of all audits cannot show it")
+        raise Wrong(f"{effect.condition} has no interval: the table of all audits cannot show it")
     return Effect(value, *ends, 0 if effect.extreme else effect.sign)
 
 
@@ -193,7 +193,7 @@ def _shown(effects: Sequence[Effect]) -> str:
 def audits(page: str) -> str:
     """Return success of baseline and repair, and their difference, for each audit of a page."""
     runs = [load(name) for name, (_, place) in PAGES.items() if place == page]
-    titles = [effect.title for effect in runs[0].record.paths]
+    titles = [effect.title for effect in runs[0].record.conditions]
     rows = []
     for run in runs:
         question, cells = run.record.question, map(_success, run.record.effects)

@@ -10,7 +10,7 @@ from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.tables import MISSING, Line, line
 
 SHARED, ALONE = "shared", "observation"
-PATHS = {
+CONDITIONS = {
     "correct": "no fault",
     ALONE: "live picture alone",
     "goal": "picture of the goal alone",
@@ -54,17 +54,23 @@ def audits_of(rooms: str) -> list[dict[str, Any]]:
 
 
 def success(rooms: str) -> str:
-    """Return success of every variant in percent, fault by fault and path by path."""
+    """Return success of every variant in percent, fault by fault and condition by condition."""
     audits = audits_of(rooms)
     repairs = list(dict.fromkeys(audit["repair"] for audit in audits))
     rates: dict[tuple[str, str], dict[str, float]] = {}
     for audit in audits:
-        for path, (repair, baseline) in audit["success"].items():
-            row = rates.setdefault((audit["fault"] if path != "correct" else "", path), {})
+        for condition, (repair, baseline) in audit["success"].items():
+            row = rates.setdefault(
+                (audit["fault"] if condition != "correct" else "", condition), {}
+            )
             row |= {"plain": baseline, audit["repair"]: repair}
     lines = [
-        line(FAULTS.get(fault, ""), PATHS[path], *(_percent(row[n]) for n in ("plain", *repairs)))
-        for (fault, path), row in rates.items()
+        line(
+            FAULTS.get(fault, ""),
+            CONDITIONS[condition],
+            *(_percent(row[n]) for n in ("plain", *repairs)),
+        )
+        for (fault, condition), row in rates.items()
     ]
     return words_grid("error of the camera", ("in", "plain", *repairs), lines)
 
@@ -75,17 +81,17 @@ def cancelled(rooms: str) -> str:
     for row in _read(f"{rooms}-held-out")["baseline"]:
         rates = map(_percent, reversed(row["success"]))
         lines.append(line(FAULTS[row["fault"]], *rates, effect_entry(row["effect"])))
-    columns = (f"{PATHS[ALONE]}, %", f"{PATHS[SHARED]}, %", "difference, pp")
+    columns = (f"{CONDITIONS[ALONE]}, %", f"{CONDITIONS[SHARED]}, %", "difference, pp")
     return words_grid("error of the camera", columns, lines)
 
 
 def effects(rooms: str) -> str:
-    """Return repair minus baseline, audit by audit and path by path."""
+    """Return repair minus baseline, audit by audit and condition by condition."""
     lines: list[Line] = []
     for audit in audits_of(rooms):
-        differences = (effect_entry(audit["effects"][path]) for path in PATHS)
+        differences = (effect_entry(audit["effects"][condition]) for condition in CONDITIONS)
         lines.append(line(audit["repair"], FAULTS[audit["fault"]], *differences))
-    return words_grid("repair", ("error of the camera", *PATHS.values()), lines)
+    return words_grid("repair", ("error of the camera", *CONDITIONS.values()), lines)
 
 
 def answer(*names: str) -> str:
@@ -145,7 +151,7 @@ def said(rooms: str) -> str:
 
 def _sentence(audit: Mapping[str, Any]) -> str:
     """Return what an audit shows, with braces where its fault is to stand."""
-    sides = {path: SIDES[effect[3]] for path, effect in audit["effects"].items()}
+    sides = {condition: SIDES[effect[3]] for condition, effect in audit["effects"].items()}
     text = f"`{audit['repair']}`, {{}}: {sides[SHARED]} with the error in both"
     text += f" pictures, {sides[ALONE]} with it in the live one alone."
     turn = audit["turns"].get(ALONE, "none")
@@ -165,7 +171,9 @@ def stops(library: str) -> str:
     for repair, until in rows.items():
         every, first = until["all-decided"], until["decided"]
         counts = (str(row["scenes"]) if row["reached"] else MISSING for row in (first, every))
-        shares = (every["break_even"][path] or "not significant" for path in (ALONE, SHARED))
+        shares = (
+            every["break_even"][condition] or "not significant" for condition in (ALONE, SHARED)
+        )
         lines.append(line(repair, *counts, *shares))
     columns = (
         "scenes until it is significant with both pictures wrong",

@@ -101,7 +101,7 @@ def _besides() -> tuple[Case, ...]:
 
 def _case(run: Run) -> Case:
     record, question = run.record, run.record.question
-    effects = {effect.path: effect for effect in record.effects}
+    effects = {effect.condition: effect for effect in record.effects}
     pair = effects[_MODULE], effects[SHARED]
     isolated, shared = (
         PrintedEffect.of(wording.with_interval(effect), effect.significant) for effect in pair
@@ -189,17 +189,17 @@ def origin() -> str:
 
 def _flown_again() -> str:
     """Return how many trials a reference run has repeated, and how many came out alike."""
-    paths = {CORRECT: CORRECT, SHARED: _FAULT, _MODULE: f"{_FAULT}@{_MODULE}"}
+    conditions = {CORRECT: CORRECT, SHARED: _FAULT, _MODULE: f"{_FAULT}@{_MODULE}"}
     setting = Setting(wind="L3")
     here = {
         (
             row.variant,
-            f"{setting}: {paths[row.condition]}",
+            f"{setting}: {conditions[row.condition]}",
             row.seed,
             row.outcome.scene,
         ): row.outcome
         for row in read_outcomes(REFERENCE / AGAIN / FILES[2])
-        if row.condition in paths
+        if row.condition in conditions
     }
     there = {
         (row.variant, row.condition, row.seed, row.outcome.scene): row.outcome

@@ -18,7 +18,7 @@ from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.study import plan_map
 from faultpath.decisions.planning import plan_audit
-from faultpath.trials import Arm, Outcome, Study, System, SystemSpec, library_of, load_system
+from faultpath.trials import Outcome, Study, System, SystemSpec, Treatment, library_of, load_system
 from faultpath.trials.attempt import Done, attempt
 from faultpath.trials.question import AuditQuestion, MapQuestion
 from faultpath.trials.store.folder import read_outcomes
@@ -38,23 +38,23 @@ def repeat(run: Run) -> Repeats:
     before = outcomes_at(trials)
     with chdir(ROOT):
         system, study = planned(run)
-        arms: dict[str, Arm] = {}
+        treatments: dict[str, Treatment] = {}
         at: dict[str, list[TrialAddress]] = {}
-        for address, arm in sample(run, study, before):
-            arms[arm.key()] = arm
-            at.setdefault(arm.key(), []).append(address)
+        for address, treatment in sample(run, study, before):
+            treatments[treatment.key()] = treatment
+            at.setdefault(treatment.key(), []).append(address)
         tolerant = run.record.question.system != "quadrotor"
         repeated, near, first = 0, 0, ""
         for key, addresses in at.items():
             scenes = tuple(dict.fromkeys(address.scene for address in addresses))
-            reply = attempt(system, arms[key], scenes)
+            reply = attempt(system, treatments[key], scenes)
             again = {o.scene: o for o in reply.outcomes} if isinstance(reply, Done) else {}
             for address in addresses:
                 differs = _differences(before[address], again.get(address.scene))
                 repeated += not differs
                 alike = tolerant and _alike(before[address], again.get(address.scene))
                 near += not differs or alike
-                place = ", ".join((address.variant, address.path, address.scene))
+                place = ", ".join((address.variant, address.condition, address.scene))
                 first = first or (differs and f"{place}, seed {address.seed}: {differs}")
     count = sum(map(len, at.values()))
     return Repeats(trials=len(trials), sampled=count, repeated=repeated, near=near, first=first)
@@ -80,24 +80,24 @@ def planned(run: Run) -> tuple[System, Study]:
 
 def sample(
     run: Run, study: Study, before: dict[TrialAddress, Outcome]
-) -> Sequence[tuple[TrialAddress, Arm]]:
+) -> Sequence[tuple[TrialAddress, Treatment]]:
     """Return the trials to repeat, always the same of the same run."""
-    arms = {(row.variant, row.path, row.seed): row.arm for row in study.rows}
-    conditions = sorted({path for _, path, _ in arms}, key=_hash_order)
+    treatments = {(row.variant, row.condition, row.seed): row.treatment for row in study.rows}
+    conditions = sorted({condition for _, condition, _ in treatments}, key=_hash_order)
     conditions = conditions[:_CONDITIONS] if isinstance(run.record, MapRecord) else conditions
-    seeds = {seed for _, _, seed in arms}
+    seeds = {seed for _, _, seed in treatments}
     places = sorted(
         {(at.scene, at.seed) for at in before if at.seed in seeds},
         key=lambda place: _hash_order(*map(str, place)),
     )
     origin = run.provenance
     cost = origin.wall_s * max(origin.workers, 1) / len(before)
-    trials = len(conditions) * len({variant for variant, _, _ in arms})
+    trials = len(conditions) * len({variant for variant, _, _ in treatments})
     places = places[: min(8, max(1, int(SECONDS / (cost * trials))))]
     return [
-        (at, arms[at[:3]])
+        (at, treatments[at[:3]])
         for at in sorted(before)
-        if at[:3] in arms and at.path in conditions and (at.scene, at.seed) in places
+        if at[:3] in treatments and at.condition in conditions and (at.scene, at.seed) in places
     ]
 
 

@@ -26,7 +26,7 @@ PARTS: dict[str, tuple[str, str]] = {
 
 
 def table(name: str) -> str:
-    """Return success of both variants and their difference, one path a column."""
+    """Return success of both variants and their difference, one condition a column."""
     run = load(name)
     record, question = run.record, run.record.question
     table = by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm", "break-even"))
@@ -54,7 +54,7 @@ def contrast(name: str) -> str:
     """Return the effect at the module whose change to the shared fault is largest, that under the
     shared fault, and the change."""
     run = load(name)
-    question, effects = run.record.question, {e.path: e for e in run.record.effects}
+    question, effects = run.record.question, {e.condition: e for e in run.record.effects}
     moved = max(run.record.changes, key=lambda change: abs(change.value))
     if not moved.significant:
         raise Wrong(f"{run.name} has no significant change: the block cannot be filled")
@@ -119,11 +119,12 @@ def times(*names: str) -> str:
 
 
 def trials(run: Run) -> int:
-    """Return the trials flown: an arm that a fault cannot reach is that under correct inputs."""
-    paths, question = run.record.paths, run.record.question
-    arms = {("repair", path.consumers) for path in paths}
-    arms |= {("baseline", path.baseline_consumers) for path in paths}
-    return len(arms) * question.n_scenes * len(question.seeds)
+    """Return the trials flown: a treatment that a fault cannot reach is that under correct
+    inputs."""
+    conditions, question = run.record.conditions, run.record.question
+    treatments = {("repair", condition.readers) for condition in conditions}
+    treatments |= {("baseline", condition.baseline_readers) for condition in conditions}
+    return len(treatments) * question.n_scenes * len(question.seeds)
 
 
 def duration(run: Run) -> str:

@@ -37,10 +37,10 @@ EDGE, GAP, TOP, LEFT = 64, 6, 24, 170  # px
 def flown(variant: str, where: str) -> list[tuple[np.ndarray, float]]:
     """Return the pictures of a trial and their exposure; the goal's picture first."""
     system, faults = camera.create(), ()
-    consumers = system.variants[variant].consumers
+    readers = system.variants[variant].readers
     if where:
         fault = system.fault(f"exposure:scale={ERROR}{where.removeprefix('shared')}")
-        faults = at_readers(fault, consumers)
+        faults = at_readers(fault, readers)
     taps = taps_of(system, Arm(variant=variant, faults=faults, seed=0), (SCENE,))
     loop = system.loop(variant, seed=0).execute(Batch((SCENE,), 0, system.control_dt_s), taps)
     states = [instant.state for instant in loop]

@@ -59,12 +59,12 @@ def study(design: Design, repair: str, library: str, scenes: tuple[str, ...]) ->
     system, rows = load_system(design.spec), []
     for seed in design.seeds:
         for variant in (design.baseline, repair):
-            consumers = system.variants[variant].consumers
+            readers = system.variants[variant].readers
             paths: dict[str, tuple] = {CORRECT: ()}
             for name, text in design.faults.items():
                 for path in PATHS:
                     fault = system.fault(text if path == SHARED else f"{text}@{path}")
-                    paths[f"{name}/{path}"] = at_readers(fault, consumers)
+                    paths[f"{name}/{path}"] = at_readers(fault, readers)
             for path, faults in paths.items():
                 arm = Arm(variant=variant, faults=faults, seed=seed)
                 rows.append(Row(variant=variant, path=path, seed=seed, arm=arm))

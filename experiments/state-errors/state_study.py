@@ -96,9 +96,9 @@ def study_of(design: Design, system, scenes: Sequence[str], files: Files) -> Stu
             errors = f"state:recorded={files[fault, estimator]}"
             texts = {CORRECT: "", f"{fault}/{SHARED}": design.faults[fault]}
             texts |= {f"{fault}/{name}": f"{errors}@{at}" for name, at in design.modules.items()}
-            consumers = system.variants[variant].consumers
+            readers = system.variants[variant].readers
             for path, text in texts.items():
-                faults = at_readers(system.fault(text), consumers) if text else ()
+                faults = at_readers(system.fault(text), readers) if text else ()
                 arm = Arm(variant=variant, faults=faults, seed=design.seed)
                 rows[variant, path] = Row(variant=variant, path=path, seed=design.seed, arm=arm)
     return Study(

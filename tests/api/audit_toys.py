@@ -1,4 +1,4 @@
-"""A system with three modules that only lays out arms and never runs."""
+"""A system with three modules that only lays out variants and never runs."""
 
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.faults import Fault, FaultText, Scale
@@ -16,9 +16,9 @@ INTERFACE = Interface(
         Channel(
             name="mass",
             sources=("scale_reading",),
-            consumers=("planner.cost", "planner.limit", "observer.model", "logger.file"),
+            readers=("planner.cost", "planner.limit", "observer.model", "logger.file"),
         ),
-        Channel(name="heat", sources=("thermometer",), consumers=("logger.file",)),
+        Channel(name="heat", sources=("thermometer",), readers=("logger.file",)),
     ),
 )
 READS = {

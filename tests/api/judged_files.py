@@ -6,16 +6,16 @@ from pathlib import Path
 from typing import Any
 
 Successes = Mapping[str, Sequence[bool]]
-"""By arm, scene by scene."""
-HEADER = "arm,scene,seed,condition,success,initial\n"
+"""By variant, scene by scene."""
+HEADER = "variant,scene,seed,condition,success,initial\n"
 
 
 def table(path: Path, found: Mapping[str, Successes]) -> Path:
     """Write the successes of each condition as CSV, with a hash for each scene."""
     lines = [
-        f"{arm},s{n},0,{condition},{int(won)},h{n}"
-        for condition, arms in found.items()
-        for arm, each in arms.items()
+        f"{variant},s{n},0,{condition},{int(won)},h{n}"
+        for condition, variants in found.items()
+        for variant, each in variants.items()
         for n, won in enumerate(each)
     ]
     path.write_text(HEADER + "\n".join(lines) + "\n")

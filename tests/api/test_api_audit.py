@@ -192,8 +192,8 @@ def test_what_is_typed_in_flies_and_needs_no_guard(tmp_path):
 
 def test_the_command_line_leaves_the_same_record(run):
     options = ["--no-signals", "--fault", "gain:scale=0.6", "--library", "carts", "--scenes", 12]
-    arms = ["--baseline", "calibrated", "--repair", "blind", "--workers", 0]
-    assert command("audit", TOY, *arms, *options, "--out", "cli").status == 0
+    variants = ["--baseline", "calibrated", "--repair", "blind", "--workers", 0]
+    assert command("audit", TOY, *variants, *options, "--out", "cli").status == 0
     record = Path("cli/record.json").read_text()
     assert record == (run.folder / "record.json").read_text()
 

@@ -24,8 +24,8 @@ def test_signals_of_the_first_scene_are_there_without_being_asked_for(run) -> No
     recorded = read_run(run.folder).signals
     assert len({at.scene for at in recorded}) == 1
     paths = ("correct", "controller", "observer", "shared")
-    arms = {(variant, path) for variant in ("calibrated", "blind") for path in paths}
-    assert {(at.variant, at.path) for at in recorded} == arms
+    variants = {(variant, path) for variant in ("calibrated", "blind") for path in paths}
+    assert {(at.variant, at.path) for at in recorded} == variants
 
 
 def test_two_errors_add_up_to_what_the_acceleration_differs_by(run) -> None:
@@ -68,7 +68,8 @@ def test_a_stop_while_signals_are_recorded_leaves_a_finished_audit(tmp_path, mon
 
 @pytest.mark.parametrize("second", ["raises", "ends", "differs"])
 def test_a_system_that_does_not_fly_again_is_a_finding(tmp_path, second) -> None:
-    """It flies each arm twice at most as the run asks; with listening taps it is another one."""
+    """It flies each variant twice at most as the run asks; with listening taps it is another
+    one."""
     what = {
         "raises": "raise RuntimeError('not again')",
         "ends": "import sys; sys.exit(3)",

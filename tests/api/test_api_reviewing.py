@@ -31,7 +31,7 @@ def test_a_check_of_a_name_and_of_an_object_is_that_of_the_command():
 
 def test_a_trace_tells_whom_a_fault_reaches():
     report = trace(FILE, variant="calibrated", library="carts", steps=2, fault="gain:scale=0.6")
-    faulted = {read.consumer for read in report.reads if read.altered_by}
+    faulted = {read.reader for read in report.reads if read.altered_by}
     assert faulted == {"controller.inverse", "observer.model"}
     assert {read.step for read in report.reads} == {0, 1}
     assert trace(faultpath.load_system(FILE), library="carts").variant == "calibrated"

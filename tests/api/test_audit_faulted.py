@@ -26,9 +26,9 @@ def faulted(record: DecisionRecord) -> dict[str, tuple[tuple[FaultedTap, ...], .
     return {path.name: (path.faulted, path.baseline_faulted) for path in record.paths}
 
 
-def tap(consumer: str, faulted_steps: int, altered_steps: int) -> FaultedTap:
+def tap(reader: str, faulted_steps: int, altered_steps: int) -> FaultedTap:
     return FaultedTap(
-        channel="gain", consumer=consumer, faulted_steps=faulted_steps, altered_steps=altered_steps
+        channel="gain", reader=reader, faulted_steps=faulted_steps, altered_steps=altered_steps
     )
 
 

@@ -1,4 +1,4 @@
-"""Which arms a question needs, and which of them are one and the same."""
+"""Which treatments a question needs, and which of them are one and the same."""
 
 import pytest
 from audit_toys import INTERFACE, Paper, planned
@@ -48,7 +48,7 @@ LAID_OUT = {
 
 def _faulted(audit: Audit, variant: str, path: str) -> set[tuple[str, str]]:
     (row,) = (r for r in audit.study.rows if (r.variant, r.path) == (variant, path))
-    return {(fault.channel, c) for fault in row.arm.faults for c in fault.consumers}
+    return {(fault.channel, c) for fault in row.treatment.faults for c in fault.readers}
 
 
 @pytest.mark.parametrize(("question", "paths"), LAID_OUT.values(), ids=LAID_OUT)
@@ -59,21 +59,21 @@ def test_each_path_strikes_the_places_that_it_names_in_either_variant(question, 
         repair, baseline = paths[path.name]
         assert _faulted(audit, audit.question.repair, path.name) == repair
         assert _faulted(audit, audit.question.baseline, path.name) == baseline
-        assert set(path.consumers) == {consumer for _, consumer in repair}
-        assert set(path.baseline_consumers) == {consumer for _, consumer in baseline}
+        assert set(path.readers) == {reader for _, reader in repair}
+        assert set(path.baseline_readers) == {reader for _, reader in baseline}
 
 
-def test_every_cell_has_a_row_and_arms_that_are_the_same_run_once():
+def test_every_cell_has_a_row_and_treatments_that_are_the_same_run_once():
     audit = planned("plain", "observed", "mass:scale=2", seeds=(0, 7))
-    rows = {(row.variant, row.path, row.seed): row.arm for row in audit.study.rows}
+    rows = {(row.variant, row.path, row.seed): row.treatment for row in audit.study.rows}
     assert len(rows) == len(audit.study.rows) == 2 * 4 * 2
     for seed in (0, 7):
         # Without an observer there is nobody to strike: its trials under correct inputs stand in.
         assert rows["plain", "observer", seed] == rows["plain", "correct", seed]
         assert rows["plain", "planner", seed] == rows["plain", "shared", seed]
         assert all(rows[key].seed == seed for key in rows if key[2] == seed)
-    keys = {arm.key() for arm in rows.values()}
-    assert len(audit.study.arms()) == len(keys) == 2 * (2 + 4)
+    keys = {treatment.key() for treatment in rows.values()}
+    assert len(audit.study.treatments()) == len(keys) == 2 * (2 + 4)
 
 
 def test_the_question_says_what_was_asked():
@@ -84,7 +84,7 @@ def test_the_question_says_what_was_asked():
     assert (question.library, question.library_hash) == ("five", "five-1")
     assert (question.n_scenes, question.seeds) == (2, (4,))
     assert audit.study.scenes == ("s0", "s1")
-    faults = [fault for row in audit.study.rows for fault in row.arm.faults]
+    faults = [fault for row in audit.study.rows for fault in row.treatment.faults]
     assert faults
     assert all(fault.onset_step == 3 for fault in faults)
 

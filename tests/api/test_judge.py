@@ -32,7 +32,7 @@ def judged(results: object, folder: Path, **more: Any) -> Run:
 def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None:
     more = {"scenes": 40, "signals": False, "folder": tmp_path / "run"}
     run = faultpath.audit(TOY, **AUDIT | more)
-    columns = {"arm": "variant", "condition": "path", "success": "status"}
+    columns = {"variant": "variant", "condition": "path", "success": "status"}
     named = {"columns": columns | {"initial": "initial_hash"}}
     named["metrics"] = ["terminal_distance_m:less"]
     results, folder = tmp_path / "run" / "outcomes.parquet", tmp_path / "judged"
@@ -64,11 +64,15 @@ def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None
 
 
 KINDS: dict[str, tuple[Callable[[Path, str, Any], str], str, dict[str, Any]]] = {
-    "lerobot": (lambda p, arm, won: arm + lerobot(p / arm, won), "keys", {}),
-    "lerobot, one task": (lambda p, arm, won: arm + lerobot(p / arm, won, True), "keys", {}),
-    "inspect": (lambda p, arm, won: inspect_log(p / arm, arm, won), "hashes", {}),
+    "lerobot": (lambda p, variant, won: variant + lerobot(p / variant, won), "keys", {}),
+    "lerobot, one task": (
+        lambda p, variant, won: variant + lerobot(p / variant, won, True),
+        "keys",
+        {},
+    ),
+    "inspect": (lambda p, variant, won: inspect_log(p / variant, variant, won), "hashes", {}),
     "lm-eval": (
-        lambda p, arm, won: arm + lm_eval(p / arm, won),
+        lambda p, variant, won: variant + lm_eval(p / variant, won),
         "hashes",
         {"columns": ["success=exact_match,strict-match"]},
     ),
@@ -128,9 +132,9 @@ def test_trials_that_began_otherwise_are_no_pair(tmp_path: Path) -> None:
 
 def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
     lines = [
-        f"{arm},{task}/{n},,,{int(won and task != 't1')},h,{task}"
+        f"{variant},{task}/{n},,,{int(won and task != 't1')},h,{task}"
         for task in ("t0", "t1", "t2")
-        for arm, each in WON.items()
+        for variant, each in WON.items()
         for n, won in enumerate(each)
     ]
     header = HEADER.replace("\n", ",task\n")
@@ -147,30 +151,34 @@ def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
 @pytest.mark.parametrize("n", [1, 2, 4])
 @pytest.mark.parametrize("won", [(True, False), (True, True)])
 def test_few_scenes_and_ties_claim_nothing(n: int, won: tuple[bool, bool], tmp_path: Path) -> None:
-    arms = {"old": [won[0]] * n, "new": [won[1]] * n}
-    run = judged(table(tmp_path / "few.csv", {"": arms}), tmp_path / "run")
+    variants = {"old": [won[0]] * n, "new": [won[1]] * n}
+    run = judged(table(tmp_path / "few.csv", {"": variants}), tmp_path / "run")
     assert run.headline.startswith("Too few scenes")
     assert not any("more often" in said for said in run.record.sentences)
 
 
 ROW = "old,s0,0,,1,h\nnew,s0,0,,1,h\n"
 REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
-    "arm": (HEADER + ROW, {"repair": "newer"}, "unknown version 'newer'; did you mean 'new'?"),
+    "variant": (HEADER + ROW, {"repair": "newer"}, "unknown version 'newer'; did you mean 'new'?"),
     "twice": (HEADER + ROW + ROW, {}, "all.csv, line 4 and .*all.csv, line 2 are the same trial"),
     "unpaired": (HEADER + ROW.replace("new,s0", "new,s1"), {}, "no trial of 'old' has its pair"),
     "condition": (HEADER + ROW.replace(",0,,", ",0,fog,"), {}, r"no condition is nominal \(fog\)"),
     "nominal": (HEADER + ROW, {"nominal": "fog"}, "no such condition: unknown condition 'fog'"),
-    "one arm": (HEADER + ROW + "new,s0,0,shared,1,h\n", {}, "'old' has no trial under the shared"),
+    "one variant": (
+        HEADER + ROW + "new,s0,0,shared,1,h\n",
+        {},
+        "'old' has no trial under the shared",
+    ),
     "score": (HEADER + ROW.replace(",,1,", ",,0.5,"), {}, "line 2: success is 0.5: give 0 or 1"),
     "lost": (HEADER + ROW.replace(",,1,", ",,1e-400,"), {}, "line 2: success is '1e-400'"),
     "script": (HEADER + ROW.replace(",,1,", ",,١,"), {}, "line 2: success is '١': give true or"),
     "too large": (
-        "arm,scene,success,seconds\nold,s0,1,1e308\n",
+        "variant,scene,success,seconds\nold,s0,1,1e308\n",
         {"columns": {"time_s": "seconds"}},
         r"line 2: seconds is '1e308': give a number from -1e\+300 to 1e\+300",
     ),
     "too large a metric": (
-        "arm,scene,success,reward\nold,s0,1,2\nnew,s0,1,-1e308\n",
+        "variant,scene,success,reward\nold,s0,1,2\nnew,s0,1,-1e308\n",
         {"metrics": "reward"},
         "line 3: reward is '-1e308': give a number from",
     ),
@@ -178,7 +186,7 @@ REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
     "hashes": (HEADER + ROW.replace("h\nnew", "\nnew"), {}, "line 2 has no hash of its initial"),
     "cells": (HEADER + "old,s0\n", {}, "all.csv, line 2: has 2 cells where the first line names 6"),
     "column": (HEADER + ROW, {"columns": {"scene": "sccene"}}, "unknown column 'sccene'; did you"),
-    "no success": ("arm,scene\nold,s0\n", {}, "line 2 has no success: name the column"),
+    "no success": ("variant,scene\nold,s0\n", {}, "line 2 has no success: name the column"),
     "metric": (HEADER + ROW, {"metrics": "reward"}, "line 2: unknown metric 'reward'"),
     "task": (HEADER + ROW, {"cluster": "task"}, "not every trial names its task"),
     "models": (HEADER + ROW, {"generalise": "models"}, "newly trained models need 5 seeds"),
@@ -196,9 +204,13 @@ def test_what_cannot_be_judged_is_refused(
 
 
 def test_the_largest_numbers_that_are_read_can_be_added_up(tmp_path: Path) -> None:
-    trials = [(arm, n, won) for arm, each in WON.items() for n, won in enumerate(each)]
-    rows = [f"{arm},{n},{won},1e300,{'-' * (arm == 'old')}1e300\n" for arm, n, won in trials]
-    (file := tmp_path / "all.csv").write_text("arm,scene,success,time_s,reward\n" + "".join(rows))
+    trials = [(variant, n, won) for variant, each in WON.items() for n, won in enumerate(each)]
+    rows = [
+        f"{variant},{n},{won},1e300,{'-' * (variant == 'old')}1e300\n" for variant, n, won in trials
+    ]
+    (file := tmp_path / "all.csv").write_text(
+        "variant,scene,success,time_s,reward\n" + "".join(rows)
+    )
     judged(file, tmp_path / "run", metrics="reward")
     assert "Infinity" not in (tmp_path / "run" / "record.json").read_text()
 
@@ -215,7 +227,7 @@ DAMAGED: dict[str, tuple[str, bytes, str]] = {
     "kind": ("a.txt", b"", "is of no kind that is read"),
     "json": ("a.json", b'{"per_task": [{"task_id": 1}]}', r"per_task\[0\].task_group: is missing"),
     "neither": ("a.json", b"{}", "is neither LeRobot's eval_info.json"),
-    "line": ("a.jsonl", b'{"arm": 1}\n{', "a.jsonl, line 2: is not JSON"),
+    "line": ("a.jsonl", b'{"variant": 1}\n{', "a.jsonl, line 2: is not JSON"),
     "parquet": ("a.parquet", b"PAR1", "a.parquet: cannot be read"),
 }
 
@@ -229,13 +241,13 @@ def test_a_damaged_file_is_one_sentence(name: str, data: bytes, says: str, tmp_p
 
 def test_the_same_results_keep_their_tests_and_others_take_todays(tmp_path: Path) -> None:
     folder = tmp_path / "run"
-    fewer = {arm: won[:9] for arm, won in WON.items()}
+    fewer = {variant: won[:9] for variant, won in WON.items()}
     judged(table(tmp_path / "all.csv", {"nominal": WON}), folder)
     record = json.loads((folder / "record.json").read_text("utf-8"))
     record["question"]["rule"] = "exact"
-    for arms, rule in ((WON, "exact"), (fewer, "graded")):
+    for variants, rule in ((WON, "exact"), (fewer, "graded")):
         (folder / "record.json").write_text(json.dumps(record), "utf-8")
-        results = table(tmp_path / "all.csv", {"nominal": arms})
+        results = table(tmp_path / "all.csv", {"nominal": variants})
         assert judged(results, folder).record.question.rule == rule
 
 

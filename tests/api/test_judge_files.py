@@ -37,14 +37,14 @@ def refused(results: object, tmp_path: Path, **more: Any) -> str:
 
 def written(path: Path, cell: object) -> Path:
     """Write one trial with `cell` as its success, in the format that the name says."""
-    row = {"arm": "old", "scene": "s0", "success": cell}
+    row = {"variant": "old", "scene": "s0", "success": cell}
     match path.name:
         case "a.parquet":
             pq.write_table(pa.Table.from_pylist([row]), path)
         case "a.jsonl":
             path.write_text(json.dumps(row) + "\n")
         case "a.csv":
-            path.write_text(f'arm,scene,success\nold,s0,"{str(cell).replace(chr(34), "")}"\n')
+            path.write_text(f'variant,scene,success\nold,s0,"{str(cell).replace(chr(34), "")}"\n')
         case "eval_info.json":
             episode = {"episode_ix": 0, "seed": None, "success": cell}
             path.write_text(json.dumps({"per_episode": [episode]}))
@@ -86,8 +86,12 @@ SUCCESSES = "per_task[0].metrics.successes: is "
 @pytest.mark.parametrize(
     ("name", "content", "says"),
     [
-        ("a.jsonl", {"arm": "old", "scene": ["x"], "success": 1}, "line 1: the scene is"),
-        ("a.jsonl", {"arm": "old", "scene": "x", "success": 1, "initial": []}, "the initial is"),
+        ("a.jsonl", {"variant": "old", "scene": ["x"], "success": 1}, "line 1: the scene is"),
+        (
+            "a.jsonl",
+            {"variant": "old", "scene": "x", "success": 1, "initial": []},
+            "the initial is",
+        ),
         # Keys of a group and letters of a text could be gone through as a list's items are.
         ("eval_info.json", task({"0": True, "1": False}), SUCCESSES),
         ("eval_info.json", task("0101"), SUCCESSES),
@@ -118,10 +122,11 @@ def test_lists_groups_and_names_are_what_they_should_be(
 
 @pytest.mark.parametrize("separator", ["\u2028", "\x85", "\x1e"])
 def test_lines_of_json_end_at_line_feeds_alone(separator: str, tmp_path: Path) -> None:
-    trials = [(arm, n, won) for arm in ("old", "new") for n, won in enumerate(WON)]
+    trials = [(variant, n, won) for variant in ("old", "new") for n, won in enumerate(WON)]
     lines = [
-        f'{{"arm": "{arm}", "scene": "s{n}", "success": {int(won)}, "note": "a{separator}b"}}'
-        for arm, n, won in trials
+        f'{{"variant": "{variant}", "scene": "s{n}", "success": {int(won)}, '
+        f'"note": "a{separator}b"}}'
+        for variant, n, won in trials
     ]
     if separator < " ":  # JSON wants these escaped
         lines = [line.replace(separator, f"\\u{ord(separator):04x}") for line in lines]
@@ -130,24 +135,24 @@ def test_lines_of_json_end_at_line_feeds_alone(separator: str, tmp_path: Path) -
 
 
 def test_a_label_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
-    for arm, won in (("old", 0), ("new", 1)):
-        rows = "".join(f"{arm},s{n},0,nominal,{won},h\n" for n in range(20))
-        (tmp_path / f"{arm}.csv").write_text(HEADER + rows)
+    for variant, won in (("old", 0), ("new", 1)):
+        rows = "".join(f"{variant},s{n},0,nominal,{won},h\n" for n in range(20))
+        (tmp_path / f"{variant}.csv").write_text(HEADER + rows)
     old, new = tmp_path / "old.csv", tmp_path / "new.csv"
     said = refused([f"new={old}", f"old={new}"], tmp_path)
-    assert "line 2: the file says arm 'old' and the command line 'new'" in said
+    assert "line 2: the file says variant 'old' and the command line 'new'" in said
     said = refused([f"old@shared={old}", f"new@shared={new}"], tmp_path)
     assert "the file says condition 'nominal' and the command line 'shared'" in said
     assert judged([f"old={old}", f"new@nominal={new}"], tmp_path).record.effects[0].sign == 1
 
 
-def test_a_label_names_the_arm_of_a_model_that_is_no_arm(tmp_path: Path) -> None:
-    logs = [inspect_log(tmp_path / arm, "gpt", WON) for arm in ("a", "b")]
+def test_a_label_names_the_variant_of_a_model_that_is_no_variant(tmp_path: Path) -> None:
+    logs = [inspect_log(tmp_path / variant, "gpt", WON) for variant in ("a", "b")]
     labelled = [f"old={logs[0]}", f"new={logs[1]}"]
     assert judged(labelled, tmp_path).record.question.repair == "new"
-    logs = [inspect_log(tmp_path / f"{arm}-named", arm, WON) for arm in ("old", "new")]
+    logs = [inspect_log(tmp_path / f"{variant}-named", variant, WON) for variant in ("old", "new")]
     said = refused([f"new={logs[0]}", f"old={logs[1]}"], tmp_path / "other")
-    assert "the file says arm 'old' and the command line 'new'" in said
+    assert "the file says variant 'old' and the command line 'new'" in said
 
 
 class Sample(SimpleNamespace):
@@ -180,7 +185,7 @@ def test_packed_logs_are_read_by_their_package(
         return SimpleNamespace(eval=about, samples=[Sample(**each) for each in samples(WON)])
 
     reading(monkeypatch, read)
-    run = judged([packed(tmp_path / f"{arm}.eval") for arm in ("old", "new")], tmp_path)
+    run = judged([packed(tmp_path / f"{variant}.eval") for variant in ("old", "new")], tmp_path)
     assert run.record.scenes == len(WON)
     assert run.record.question.judged is not None
     assert run.record.question.judged.pairing == "hashes"
@@ -225,7 +230,9 @@ def test_a_small_table_does_not_fill_the_memory(
 ) -> None:
     which, path = np.zeros(rows, np.int32), tmp_path / "a.parquet"
     column = pa.DictionaryArray.from_arrays(which, pa.array(["x" * letters]))
-    pq.write_table(pa.table({"arm": column}), path, compression="zstd", store_schema=store_schema)
+    pq.write_table(
+        pa.table({"variant": column}), path, compression="zstd", store_schema=store_schema
+    )
     data = path.read_bytes()
     assert len(data) < 2**20
     with pytest.raises(Unreadable, match="it unpacks to more than 256 MiB"):
@@ -240,5 +247,7 @@ def test_names_that_are_no_text_are_a_damaged_table(tmp_path: Path) -> None:
     data = pa.Array.from_buffers(
         pa.string(), 1, [None, pa.py_buffer(b"\0\0\0\0\2\0\0\0"), pa.py_buffer(b"\xff\xfe")]
     )
-    pq.write_table(pa.table({"arm": data, "scene": ["s"], "success": [1]}), tmp_path / "a.parquet")
+    pq.write_table(
+        pa.table({"variant": data, "scene": ["s"], "success": [1]}), tmp_path / "a.parquet"
+    )
     assert "a.parquet: cannot be read" in refused(tmp_path / "a.parquet", tmp_path)

@@ -38,8 +38,15 @@ RUN = [TOY, *ARMS, "--workers", 0]
 JUDGE = ["--baseline", "old", "--repair", "new", "--out", "judged"]
 WON = {"old": [n % 3 > 0 for n in range(8)], "new": [n % 4 > 0 for n in range(8)]}
 ROWS: list[dict[str, Any]] = [
-    {"arm": arm, "scene": f"s{n}", "seed": 0, "condition": at, "success": int(won), "reward": 0.5}
-    for arm, each in WON.items()
+    {
+        "variant": variant,
+        "scene": f"s{n}",
+        "seed": 0,
+        "condition": at,
+        "success": int(won),
+        "reward": 0.5,
+    }
+    for variant, each in WON.items()
     for at in ("nominal", "shared")
     for n, won in enumerate(each)
 ]
@@ -85,12 +92,12 @@ def judge_table(suffix: str, base: Path, here: Path, rng: Random) -> list[object
 def judge_tool(kind: str, base: Path, here: Path, rng: Random) -> list[object]:
     """Judge what LeRobot, Inspect or lm-eval wrote, one of the two files altered."""
     write: Callable[[str, list[bool]], str] = {
-        "inspect": lambda arm, won: inspect_log(here / arm, arm, won),
-        "lm-eval": lambda arm, won: arm + lm_eval(here / arm, won),
-        "tasks": lambda arm, won: arm + lerobot(here / arm, won),
-        "episodes": lambda arm, won: arm + lerobot(here / arm, won, single=True),
+        "inspect": lambda variant, won: inspect_log(here / variant, variant, won),
+        "lm-eval": lambda variant, won: variant + lm_eval(here / variant, won),
+        "tasks": lambda variant, won: variant + lerobot(here / variant, won),
+        "episodes": lambda variant, won: variant + lerobot(here / variant, won, single=True),
     }[kind]
-    names = [write(arm, won) for arm, won in WON.items()]
+    names = [write(variant, won) for variant, won in WON.items()]
     (path,) = (file for file in (here / rng.choice(("old", "new"))).rglob("*") if file.is_file())
     data = path.read_bytes()
     if kind == "lm-eval":

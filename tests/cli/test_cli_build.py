@@ -14,7 +14,12 @@ from faultpath import open_run
 from faultpath.core.errors import UserError
 from faultpath.decisions.gate import ASKS
 
-COLUMNS = {"arm": "variant", "condition": "path", "success": "status", "initial": "initial_hash"}
+COLUMNS = {
+    "variant": "variant",
+    "condition": "path",
+    "success": "status",
+    "initial": "initial_hash",
+}
 
 
 @pytest.fixture(scope="module")
@@ -71,8 +76,8 @@ def test_trials_that_do_not_repeat_give_no_result_and_fail_a_build(tmp_path: Pat
 
 def judged(folder: Path, *arguments: object) -> Ended:
     named = [part for name, column in COLUMNS.items() for part in ("--column", f"{name}={column}")]
-    results, arms = folder / "run" / "outcomes.parquet", ("--baseline", "blind", "--repair")
-    return faultpath("judge", results, *arms, "calibrated", *named, *arguments)
+    results, variants = folder / "run" / "outcomes.parquet", ("--baseline", "blind", "--repair")
+    return faultpath("judge", results, *variants, "calibrated", *named, *arguments)
 
 
 def test_judged_trials_end_a_build_likewise(folder: Path) -> None:

@@ -75,7 +75,7 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "folder").mkdir()
     (tmp_path / "text.txt").write_text("text\n")
     (tmp_path / "loop").symlink_to("loop")
-    (tmp_path / "results.csv").write_text("arm,scene,success\nold,s,0\nnew,s,1\n")
+    (tmp_path / "results.csv").write_text("variant,scene,success\nold,s,0\nnew,s,1\n")
     monkeypatch.chdir(tmp_path)
 
 

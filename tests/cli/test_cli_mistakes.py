@@ -28,7 +28,7 @@ TOY_MISTAKES = {
     "setting without a key": ({"set": "=3"}, ["'=3'", "key=value"]),
     "unknown setting": ({"set": "gate=3"}, ["'gate'", "none"]),
     "unknown option": ({"colour": "red"}, ["--colour", "audit --help"]),
-    "page of no arm": ({"fail-if": "reversed"}, ["--fail-if", "'reversed'", "'reversal'"]),
+    "page of no variant": ({"fail-if": "reversed"}, ["--fail-if", "'reversed'", "'reversal'"]),
     "empty": ({"metric": ""}, ["--metric", "empty"]),
     "empty list": ({"thresholds": ""}, ["--thresholds", "empty"]),
 }
@@ -53,15 +53,15 @@ QUADROTOR_MISTAKES = {
     "device that is not there": ({"device": "cuda"}, ["GPU", "--device"]),
     "calibration -1": ({"fault": "calibration=-1"}, ["between -1 and 1"]),
     "calibration without size": ({"fault": "calibration"}, ["size", "calibration=+0.1"]),
-    "consumer": ({"fault": "wind:scale=2@reconstruction"}, ["predictor.wind_map"]),
+    "reader": ({"fault": "wind:scale=2@reconstruction"}, ["predictor.wind_map"]),
 }
 
 
 @pytest.mark.parametrize(("options", "names"), QUADROTOR_MISTAKES.values(), ids=QUADROTOR_MISTAKES)
 def test_a_mistake_about_the_quadrotor(options, names, tmp_path, monkeypatch):
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "")
-    arms = {"baseline": "zero-wind", "repair": "dob", "fault": "calibration=0.1"}
-    audit(**{"system": "quadrotor", "library": "held-out", **arms, **options}).refused(*names)
+    variants = {"baseline": "zero-wind", "repair": "dob", "fault": "calibration=0.1"}
+    audit(**{"system": "quadrotor", "library": "held-out", **variants, **options}).refused(*names)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -39,9 +39,9 @@ BROKEN = {
 DECLARED = {
     "no step": ("control_dt_s = 0.0", "`control_dt_s` is 0.0"),
     "variant under another name": ("variants = {'b': Toy().variants['blind']}", "the name of each"),
-    "unknown consumer": (
+    "unknown reader": (
         "variants = {'v': Variant('v', '', frozenset({'nobody.there'}))}",
-        "unknown consumer 'nobody.there'",
+        "unknown reader 'nobody.there'",
     ),
     "fingerprint that fails": ("def fingerprint(self):\n        return 1 / 0  # here", "Zero"),
 }

@@ -108,7 +108,7 @@ def test_a_run_does_not_begin_among_files_of_somebody_else(
 
 
 def results() -> None:
-    Path("all.csv").write_text("arm,scene,success\nold,s,0\nnew,s,1\n")
+    Path("all.csv").write_text("variant,scene,success\nold,s,0\nnew,s,1\n")
 
 
 @pytest.fixture(scope="module")
@@ -132,7 +132,7 @@ def test_a_file_of_somebody_else_is_not_replaced(option: str, tmp_path: Path) ->
 
 @pytest.mark.parametrize(("first", "second"), [("audit", "map"), ("map", "audit")])
 def test_a_run_does_not_go_on_in_one_of_another_kind(first: str, second: str) -> None:
-    """The arms of a map may be others from round to round, but a map is no audit."""
+    """The variants of a map may be others from round to round, but a map is no audit."""
     assert faultpath(*COMMANDS[first], "--out", "run").status == 0
     before = {path: path.read_bytes() for path in Path("run").iterdir() if path.is_file()}
     faultpath(*COMMANDS[second], "--out", "run").refused("run of another study")

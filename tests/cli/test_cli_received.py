@@ -115,7 +115,7 @@ system, record, receipts = (
 )
 PLAN = {"low": [0, 0, 0], "high": [1, 1, 1], "start": [0, 0, 0], "goal": [1, 1, float("nan")]}
 PLAN |= {"prisms": [], "pillars": [], "title": "a"}
-TAP = {"channel": "x", "consumer": "y.z", "faulted_steps": 1, "altered_steps": 1}
+TAP = {"channel": "x", "reader": "y.z", "faulted_steps": 1, "altered_steps": 1}
 FORGED: dict[str, tuple[str, Change]] = {
     "a step of no time": ("system.json", system(lambda c: c.update(control_dt_s=0))),
     "a further field": ("system.json", system(lambda c: c.update(code="import os"))),

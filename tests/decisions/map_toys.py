@@ -23,8 +23,10 @@ def question(**given: object) -> ResolvedMap:
 
 
 def differences(seen: Seen, points: tuple[Point, ...], seeds: int = 1) -> Differences:
-    arms = [seen(x / UNITS, y / UNITS) for x, y in points]
-    repair, baseline = (np.array(each, dtype=float)[..., None] for each in zip(*arms, strict=True))
+    variants = [seen(x / UNITS, y / UNITS) for x, y in points]
+    repair, baseline = (
+        np.array(each, dtype=float)[..., None] for each in zip(*variants, strict=True)
+    )
     return Differences(points, np.repeat(repair, seeds, 2), np.repeat(baseline, seeds, 2))
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from math import comb
 
 from faultpath.decisions.decide import decide
-from faultpath.decisions.model import CORRECT, SHARED, Path
+from faultpath.decisions.model import CORRECT, SHARED, Condition
 from faultpath.decisions.question import Question
 from faultpath.decisions.record import DecisionRecord
 from faultpath.trials import Outcome, Status, Trial, Trials
@@ -32,19 +32,19 @@ def question(n_scenes: int = SCENES, seeds: Sequence[int] = (0,)) -> Question:
     )
 
 
-def paths(*names: str) -> tuple[Path, ...]:
+def conditions(*names: str) -> tuple[Condition, ...]:
     return tuple(
-        Path(
+        Condition(
             name=name,
             title=name,
-            consumers=() if name == CORRECT else (f"{name}.tap",),
-            baseline_consumers=(),
+            readers=() if name == CORRECT else (f"{name}.tap",),
+            baseline_readers=(),
         )
         for name in names
     )
 
 
-def arms(counts: Counts, n: int = SCENES) -> dict[str, list[Status]]:
+def variants(counts: Counts, n: int = SCENES) -> dict[str, list[Status]]:
     """Return the repair's and the baseline's trials with these counts, the rest lost by both."""
     both, wins, losses = counts
     lost = n - both - wins - losses
@@ -58,7 +58,7 @@ def arms(counts: Counts, n: int = SCENES) -> dict[str, list[Status]]:
 
 def rows(
     variant: str,
-    path: str,
+    condition: str,
     statuses: Sequence[Status],
     seed: int = 0,
     slower_s: float = 0.0,
@@ -68,7 +68,7 @@ def rows(
     return [
         Trial(
             variant=variant,
-            condition=path,
+            condition=condition,
             seed=seed,
             scene_index=i,
             topology="",
@@ -82,9 +82,9 @@ def rows(
                 initial_hash=f"i{i}",
                 disturbance_hash=f"d{i}",
                 planner_noise_hash=f"n{i}-{seed}",
-                faulted_steps=3 if path != CORRECT else 0,
+                faulted_steps=3 if condition != CORRECT else 0,
                 altered_steps=2
-                if path != CORRECT
+                if condition != CORRECT
                 and variant == REPAIR
                 and i < (len(statuses) if altered is None else altered)
                 else 0,
@@ -96,15 +96,15 @@ def rows(
 
 def table(cells: Mapping[str, Counts], n: int = SCENES, slower_s: float = 0.0) -> Trials:
     out: list[Trial] = []
-    for path, counts in cells.items():
-        for variant, statuses in arms(counts, n).items():
+    for condition, counts in cells.items():
+        for variant, statuses in variants(counts, n).items():
             late = slower_s if variant == REPAIR else 0.0
-            out += rows(variant, path, statuses, slower_s=late)
+            out += rows(variant, condition, statuses, slower_s=late)
     return Trials.of(out)
 
 
 def record(cells: Mapping[str, Counts], n: int = SCENES, **changes: float) -> DecisionRecord:
-    return decide(question(n), paths(*cells), table(cells, n, **changes))
+    return decide(question(n), conditions(*cells), table(cells, n, **changes))
 
 
 def seeded(
@@ -113,14 +113,14 @@ def seeded(
     """Return the record of several seeds, counts seed by seed; `asked` changes the question."""
     out = [
         row
-        for path, by_seed in cells.items()
+        for condition, by_seed in cells.items()
         for seed, counts in enumerate(by_seed)
-        for variant, statuses in arms(counts, n).items()
-        for row in rows(variant, path, statuses, seed=seed)
+        for variant, statuses in variants(counts, n).items()
+        for row in rows(variant, condition, statuses, seed=seed)
     ]
     seeds = range(len(next(iter(cells.values()))))
     about = question(n, tuple(seeds)).model_copy(update=asked)
-    return decide(about, paths(*cells), Trials.of(out))
+    return decide(about, conditions(*cells), Trials.of(out))
 
 
 def three(correct: Counts, isolated: Counts, shared: Counts) -> DecisionRecord:

@@ -1,4 +1,4 @@
-"""Results of which not everything is there: what both arms have is compared, and it is said."""
+"""Results of which not everything is there: what both variants have is compared, and it is said."""
 
 import numpy as np
 import pytest
@@ -12,25 +12,25 @@ from faultpath.trials.received.trial import Received
 
 
 def judged(trials: list[tuple[str, str, str]], blank: int | None = None, **asked) -> DecisionRecord:
-    """Return the record of two arms over `trials` (task, scene, seed), the repair ahead in each
+    """Return the record of two variants over `trials` (task, scene, seed), the repair ahead in each
     third of them; the repair's trial number `blank` has no metric."""
     rows = [
         Received(
             f"line {place}",
-            arm,
+            variant,
             "",
             *trial,
-            Status.SUCCESS if arm == "new" or place % 3 else Status.CRASH,
+            Status.SUCCESS if variant == "new" or place % 3 else Status.CRASH,
             "",
             float("nan"),
-            {} if (arm, place) == ("new", blank) else {"metres": place + (arm == "new")},
+            {} if (variant, place) == ("new", blank) else {"metres": place + (variant == "new")},
         )
-        for arm in ("old", "new")
+        for variant in ("old", "new")
         for place, trial in enumerate(trials)
     ]
     question = JudgeQuestion.model_validate({"baseline": "old", "repair": "new", **asked})
     laid = pair_results(rows, question)
-    return decide(laid.question, laid.paths, laid.trials, laid.findings)
+    return decide(laid.question, laid.conditions, laid.trials, laid.findings)
 
 
 def test_two_scenes_with_an_extra_seed_leave_the_other_28():

@@ -45,7 +45,7 @@ def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
     assert "correlation" not in made.headline
 
 
-def test_swapping_the_arms_swaps_the_record() -> None:
+def test_swapping_the_variants_swaps_the_record() -> None:
     found = grown(reversal(60))
     one = decided(question(), found)
     two = decided(question(), Differences(found.points, found.baseline, found.repair))
@@ -118,10 +118,10 @@ def test_a_surface_has_a_row_and_a_column_for_each_size(name: str) -> None:
             MapRecord.model_validate(held)
 
 
-def test_every_claim_of_a_path_is_one_of_its_points() -> None:
+def test_every_claim_of_a_condition_is_one_of_its_points() -> None:
     made = record(reversal(100))
     of = {point.errors: point for point in made.points}
-    observer = next(f for f in made.flips if (f.path, f.direction) == ("observer", 1))
+    observer = next(f for f in made.flips if (f.condition, f.direction) == ("observer", 1))
     assert (observer.start, observer.turned) == (-1, 1)
     assert observer.until is not None
     assert observer.first is not None
@@ -133,7 +133,7 @@ def test_every_claim_of_a_path_is_one_of_its_points() -> None:
             assert point.sign == -1
         if y == 0 and observer.first <= x <= (observer.last or 0):
             assert point.sign == 1
-    shared = next(f for f in made.flips if (f.path, f.direction) == ("shared", -1))
+    shared = next(f for f in made.flips if (f.condition, f.direction) == ("shared", -1))
     assert (shared.until, shared.estimate, shared.first) == (-0.4, None, None)
     said = " ".join(made.sentences)
     assert "With both wrong alike, error below 0: old is ahead at every size run." in said

@@ -13,10 +13,10 @@ from faultpath.trials.question import MapQuestion
 from faultpath.trials.store.folder import read_outcomes
 
 ROOT = Path(__file__).resolve().parents[2]
-MAPS = sorted(path.parent for path in (ROOT / "docs" / "reference").glob("*/map.json"))
+MAPS = sorted(condition.parent for condition in (ROOT / "docs" / "reference").glob("*/map.json"))
 
 
-@pytest.mark.parametrize("folder", MAPS, ids=lambda path: path.name)
+@pytest.mark.parametrize("folder", MAPS, ids=lambda condition: condition.name)
 def test_a_reference_map_follows_from_its_outcomes(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -30,25 +30,25 @@ def plan(**given: Any) -> MapPlan:
     return plan_map(TOY, SPEC, ask(MapQuestion, ASKED | given), library_of(TOY, "carts"))
 
 
-def test_the_paths_of_an_audit_are_points_of_the_map() -> None:
-    """To the arm, so that both would be the same trials."""
+def test_the_conditions_of_an_audit_are_points_of_the_map() -> None:
+    """To the treatment, so that both would be the same trials."""
     fault = FaultText.read("gain:scale=0.6")
     question = AuditQuestion(baseline="calibrated", repair="blind", fault=fault, scenes=8)
     audit = plan_audit(TOY, SPEC, question, library_of(TOY, "carts"))
     points = [(0, 0), (-UNITS, 0), (0, -UNITS), (-UNITS, -UNITS)]
     names = dict(zip(("correct", "controller", "observer", "shared"), points, strict=True))
     made = plan()
-    arms = {(row.variant, row.path): row.arm for row in made.study(points).rows}
+    treatments = {(row.variant, row.condition): row.treatment for row in made.study(points).rows}
     for row in audit.study.rows:
-        assert arms[row.variant, made.path(names[row.path])] == row.arm
+        assert treatments[row.variant, made.condition(names[row.condition])] == row.treatment
 
 
 def test_errors_of_unequal_size_strike_each_its_own_module() -> None:
     rows = plan().study([(8, -16)]).rows
     faulted = {
-        (row.variant, fault.consumers, fault.intervention.factor)  # type: ignore[union-attr] - a scale
+        (row.variant, fault.readers, fault.intervention.factor)  # type: ignore[union-attr] - a scale
         for row in rows
-        for fault in row.arm.faults
+        for fault in row.treatment.faults
     }
     assert faulted == {
         ("calibrated", ("controller.inverse",), 1.1),
@@ -65,7 +65,7 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
     planned = plan_map(system, dock, ask(MapQuestion, question), library_of(system, "floors"))
     assert not planned.question.relative
     assert planned.question.said(-0.25) == "−0.25 m"
-    (fault,) = planned.study([(0, 16)]).rows[1].arm.faults
+    (fault,) = planned.study([(0, 16)]).rows[1].treatment.faults
     assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr] - a bias
 
 

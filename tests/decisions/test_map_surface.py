@@ -65,19 +65,19 @@ def test_cells_are_cut_where_the_sign_is_not_decided_and_nowhere_else() -> None:
     weights = np.eye(len(found.points))
     signs = Combined.of(weights, found).signs(simultaneous(weights, found, "toy"))
     of = dict(zip(found.points, signs, strict=True))
-    on_paths = {along(way, size) for way in rays(MODULES).values() for size in range(UNITS)}
+    on_conditions = {along(way, size) for way in rays(MODULES).values() for size in range(UNITS)}
     settled = 0
     for cell in [(x, y) for x, y in lattice(COARSE) if max(x, y) < UNITS]:
         finer = set(cut(cell, COARSE)) & of.keys()
         if {of[corner] for corner in corners(cell, COARSE)} in ({1}, {-1}):
             settled += 1
-            assert (cell[0] + COARSE // 2, cell[1] + COARSE // 2) not in of.keys() - on_paths
+            assert (cell[0] + COARSE // 2, cell[1] + COARSE // 2) not in of.keys() - on_conditions
         else:
             assert len(finer) == 5
     assert settled
 
 
-def test_the_first_turn_of_a_path_is_bisected_to_one_unit() -> None:
+def test_the_first_turn_of_a_condition_is_bisected_to_one_unit() -> None:
     def seen(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
         # Ahead at 0; behind where the first error is above 0.3 of the largest.
         return np.full(30, x <= 0.3), np.full(30, x > 0.3)

@@ -33,18 +33,18 @@ sources:
 - {name: goal, unit: m, provenance: commanded}
 - {name: truth, unit: m, provenance: privileged}
 channels:
-- {name: mass, sources: [mass], consumers: [model.mass, planner.mass]}
-- {name: thrust, sources: [thrust], consumers: [model.mass]}
-- {name: rate, sources: [gyro], consumers: [model.rate]}
-- {name: place, sources: [odometer, truth], consumers: [planner.place]}
-- {name: exact, sources: [exact], consumers: [planner.place]}
-- {name: one, sources: [twice], consumers: [planner.place]}
-- {name: two, sources: [twice], consumers: [model.rate]}
-- {name: a, sources: [a], consumers: [model.rate]}
-- {name: b, sources: [b], consumers: [model.rate]}
-- {name: silent, sources: [silent], consumers: [model.rate, planner.place]}
-- {name: unread, sources: [unread], consumers: [logger.file]}
-- {name: goal, sources: [goal], consumers: [planner.place]}
+- {name: mass, sources: [mass], readers: [model.mass, planner.mass]}
+- {name: thrust, sources: [thrust], readers: [model.mass]}
+- {name: rate, sources: [gyro], readers: [model.rate]}
+- {name: place, sources: [odometer, truth], readers: [planner.place]}
+- {name: exact, sources: [exact], readers: [planner.place]}
+- {name: one, sources: [twice], readers: [planner.place]}
+- {name: two, sources: [twice], readers: [model.rate]}
+- {name: a, sources: [a], readers: [model.rate]}
+- {name: b, sources: [b], readers: [model.rate]}
+- {name: silent, sources: [silent], readers: [model.rate, planner.place]}
+- {name: unread, sources: [unread], readers: [logger.file]}
+- {name: goal, sources: [goal], readers: [planner.place]}
 """.replace("UNSURE: 0.1", "uncertainty: {half_range: 0.1, relative: true}")
 
 
@@ -121,13 +121,13 @@ UNSIZED = {"fault": "", "unsized": "declares none"}
 
 
 def candidate(name: str, readers: int, response: float | None = None, **more) -> Candidate:
-    consumers = tuple(f"m{i}.x" for i in range(readers))
+    readers = tuple(f"m{i}.x" for i in range(readers))
     given = {"fault": f"{name}:scale=2"} | more
-    same = {"sources": (name,), "channels": (name,), "consumers": consumers}
+    same = {"sources": (name,), "channels": (name,), "readers": readers}
     return Candidate(name=name, response=response, **(same | given))
 
 
-def test_consumers_come_first_then_the_probe():
+def test_readers_come_first_then_the_probe():
     order = ranked(
         [
             candidate("few", 1, 9.0),
@@ -149,13 +149,13 @@ def test_the_repaired_module_is_told_from_what_differs():
     toy, dock = Declared(), faultpath.load_system(DOCK)
     pair = (toy.variants["calibrated"], toy.variants["blind"])
     wheels = (dock.variants["wheels"], dock.variants["ranges"])
-    for system, arms, named, modules in (
+    for system, variants, named, modules in (
         (toy, pair, (), ("observer",)),
         (toy, pair, ("controller",), ("controller",)),
         (toy, (pair[0], pair[0]), (), ()),
         (dock, wheels, (), ("speedometer",)),
     ):
-        assert repaired_modules(system, *arms, named) == modules
+        assert repaired_modules(system, *variants, named) == modules
     with pytest.raises(UserError, match="did you mean 'observer'"):
         repaired_modules(toy, *pair, ("obsever",))
 
@@ -170,7 +170,7 @@ def test_the_recursion_takes_outputs_and_inputs_and_what_makes_them():
         "imu": ("filter.imu", "planner.imu"),
         "goal": ("planner.goal",),
     }
-    every = [candidate(name, 0, consumers=consumers) for name, consumers in readers.items()]
+    every = [candidate(name, 0, readers=readers) for name, readers in readers.items()]
     made_by = {"reconstruction": ("wind",), "filter": ("drift",), "other": ("nothing",)}
     assert recursion(every, made_by, ("planner", "reconstruction")) == {
         "wind": "output of reconstruction",

@@ -13,17 +13,15 @@ SCENES = tuple(f"cart/{i:03d}" for i in range(5))
 
 
 def responses(variant: str, **texts: str) -> dict[str, float]:
-    consumers = SYSTEM.variants[variant].consumers
-    arms = {(name, ""): at_readers(SYSTEM.fault(text), consumers) for name, text in texts.items()}
-    found = command_responses(SYSTEM, variant, arms, SCENES, 0)
+    readers = SYSTEM.variants[variant].readers
+    variants = {(name, ""): at_readers(SYSTEM.fault(text), readers) for name, text in texts.items()}
+    found = command_responses(SYSTEM, variant, variants, SCENES, 0)
     return {name: value for (name, _), value in found.items()}
 
 
 def flight(variant: str) -> tuple[np.ndarray, np.ndarray]:
     """Return commands and gains under correct inputs, `[T, B]` and `[B]`."""
-    taps = Taps(
-        SYSTEM.interface, scenes=SCENES, dt_s=0.1, consumers=SYSTEM.variants[variant].consumers
-    )
+    taps = Taps(SYSTEM.interface, scenes=SCENES, dt_s=0.1, readers=SYSTEM.variants[variant].readers)
     loop = SYSTEM.loop(variant, 0)
     commands, gain = [], None
     for instant in loop.execute(Batch(SCENES, 0, 0.1), taps):

@@ -4,7 +4,16 @@ import re
 from collections.abc import Callable, Iterator
 
 import pytest
-from outcome_tables import BASELINE, MOST_WORDS, REPAIR, Counts, arms, paths, question, rows
+from outcome_tables import (
+    BASELINE,
+    MOST_WORDS,
+    REPAIR,
+    Counts,
+    conditions,
+    question,
+    rows,
+    variants,
+)
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
@@ -21,8 +30,8 @@ from faultpath.trials.question import StopWhen
 
 SIDES = ((REPAIR, 1), (BASELINE, -1))
 Statuses = dict[str, list[Status]]
-PATHS = {
-    "one path": (CORRECT,),
+CONDITIONS = {
+    "one condition": (CORRECT,),
     "one module": (CORRECT, "a"),
     "shared": (CORRECT, "a", "b", SHARED),
 }
@@ -30,27 +39,29 @@ YES, NO = Status.SUCCESS, Status.TIMEOUT
 
 
 COUNTS: dict[str, Callable[[str, int], Counts]] = {
-    "always": lambda path, n: (n, 0, 0),
-    "never": lambda path, n: (0, 0, 0),
-    "no discordance": lambda path, n: (n // 2, 0, 0),
-    "ties": lambda path, n: (0, n // 2, n // 2),
-    "for the repair": lambda path, n: (0, n, 0),
-    "against it when shared": lambda path, n: (0, 0, n) if path == SHARED else (0, n, 0),
-    "against it without a fault": lambda path, n: (0, 0, n) if path == CORRECT else (0, n, 0),
-    "near the floor": lambda path, n: (0, n // 12, 0),
-    "near the ceiling": lambda path, n: (n - n // 12, 0, n // 12),
+    "always": lambda condition, n: (n, 0, 0),
+    "never": lambda condition, n: (0, 0, 0),
+    "no discordance": lambda condition, n: (n // 2, 0, 0),
+    "ties": lambda condition, n: (0, n // 2, n // 2),
+    "for the repair": lambda condition, n: (0, n, 0),
+    "against it when shared": lambda condition, n: (0, 0, n) if condition == SHARED else (0, n, 0),
+    "against it without a fault": lambda condition, n: (
+        (0, 0, n) if condition == CORRECT else (0, n, 0)
+    ),
+    "near the floor": lambda condition, n: (0, n // 12, 0),
+    "near the ceiling": lambda condition, n: (n - n // 12, 0, n // 12),
 }
 
 
-def by_chance(path: str, seed: int, n: int) -> Statuses:
-    stream = generator("test/words", path, seed)
+def by_chance(condition: str, seed: int, n: int) -> Statuses:
+    stream = generator("test/words", condition, seed)
     return {v: [YES if x else NO for x in stream.random(n) < 0.5] for v in (REPAIR, BASELINE)}
 
 
-def leaning(path: str, seed: int, n: int) -> Statuses:
-    """Return effects of different size and side on every path, some of them detected."""
-    stream = generator("test/words", path, seed)
-    lean = {CORRECT: -0.1, "a": 0.25, "b": 0.0, SHARED: -0.3}[path]
+def leaning(condition: str, seed: int, n: int) -> Statuses:
+    """Return effects of different size and side under every condition, some of them detected."""
+    stream = generator("test/words", condition, seed)
+    lean = {CORRECT: -0.1, "a": 0.25, "b": 0.0, SHARED: -0.3}[condition]
     chances = {REPAIR: 0.5 + lean, BASELINE: 0.5 - lean}
     return {v: [YES if x else NO for x in stream.random(n) < p] for v, p in chances.items()}
 
@@ -59,11 +70,15 @@ CHANCES = {"by chance": by_chance, "leaning": leaning}
 SHAPES = (*COUNTS, *CHANCES)
 
 
-def ends_of(shape: str, path: str, seed: int, n: int) -> Statuses:
-    return arms(COUNTS[shape](path, n), n) if shape in COUNTS else CHANCES[shape](path, seed, n)
+def ends_of(shape: str, condition: str, seed: int, n: int) -> Statuses:
+    return (
+        variants(COUNTS[shape](condition, n), n)
+        if shape in COUNTS
+        else CHANCES[shape](condition, seed, n)
+    )
 
 
-RUNS = ("one seed", "three seeds", "identical seeds", "void", "never acted", "one path idle")
+RUNS = ("one seed", "three seeds", "identical seeds", "void", "never acted", "one condition idle")
 RULES: dict[str, tuple[StopWhen, float | None, int]] = {
     "as soon as decided": ("decided", None, 100),
     "to the last scene": ("decided", 99.0, 0),
@@ -80,14 +95,14 @@ def run(
     seeds = (0, 1, 2) if "seeds" in how else (0,)
     out = []
     for seed in seeds:
-        for path in over:
-            drawn = ends_of(shape, path, 0 if how == "identical seeds" else seed, n)
-            idle = how == "never acted" or (how == "one path idle" and path == over[-1])
+        for condition in over:
+            drawn = ends_of(shape, condition, 0 if how == "identical seeds" else seed, n)
+            idle = how == "never acted" or (how == "one condition idle" and condition == over[-1])
             for variant, statuses in drawn.items():
                 ends = list(statuses)
-                if how == "void" and variant == REPAIR and path == over[-1]:
+                if how == "void" and variant == REPAIR and condition == over[-1]:
                     ends[0] = Status.FAILED
-                out += rows(variant, path, ends, seed=seed, altered=0 if idle else None)
+                out += rows(variant, condition, ends, seed=seed, altered=0 if idle else None)
     decided_by = "exact" if trained else "graded"
     asked = question(n, seeds).model_copy(update={"trained": trained, "rule": decided_by})
     if rule:
@@ -95,7 +110,7 @@ def run(
         stop = StopRule(when=when, margin_pp=margin, order=(), order_seed=0, look=5, trials=8)
         update = {"stop": stop, "n_scenes": most or n}
         asked = asked.model_copy(update=update)
-    return decide(asked, paths(*over), Trials.of(out))
+    return decide(asked, conditions(*over), Trials.of(out))
 
 
 def sentences(made: DecisionRecord) -> Iterator[str]:
@@ -107,7 +122,7 @@ def sentences(made: DecisionRecord) -> Iterator[str]:
 
 def holm(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
     """Return p-values by Holm's procedure, weighted where the rule is."""
-    primary = [isinstance(e, Effect) and e.path == made.question.primary for e in tested]
+    primary = [isinstance(e, Effect) and e.condition == made.question.primary for e in tested]
     weighted = made.question.rule != "exact" and any(primary)
     weights = [max(1, len(tested) - 1) if weighted and it else 1 for it in primary]
     order = sorted(range(len(tested)), key=lambda i: tested[i].p_value / weights[i])
@@ -121,11 +136,11 @@ def holm(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
 
 def shared_out(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
     """Return p-values by the shares of all that a sequential audit could have announced."""
-    named = {path.name for path in made.paths}
+    named = {condition.name for condition in made.conditions}
     others = len(named) - 1 + (len(named - {CORRECT, SHARED}) if SHARED in named else 0)
     adjusted: list[float] = []
     for each in tested:
-        primary = isinstance(each, Effect) and each.path == made.question.primary
+        primary = isinstance(each, Effect) and each.condition == made.question.primary
         factor = 1 if not others else 2 if primary else 2 * others
         adjusted.append(min(1.0, factor * each.p_value))
     return adjusted
@@ -143,13 +158,13 @@ def may_be_said(made: DecisionRecord) -> tuple[dict[str, int], dict[str, int]]:
         low, high = shown.low or 0.0, shown.high or 0.0
         signs.append((low > 0) - (high < 0) if p <= 0.05 and not each.unsettled else 0)
         assert not each.unsettled or any(effect.missing for effect in made.effects)
-    of = {e.path: s for e, s in zip(tested, signs, strict=False) if isinstance(e, Effect)}
+    of = {e.condition: s for e, s in zip(tested, signs, strict=False) if isinstance(e, Effect)}
     turned = dict(zip([c.isolated for c in made.changes], signs[len(of) :], strict=True))
     return of, turned
 
 
 def claimed(text: str, who: str) -> bool:
-    """Return whether a text says of an arm that it is ahead, anywhere."""
+    """Return whether a text says of a variant that it is ahead, anywhere."""
     return bool(re.search(rf"\b{who} (is ahead|succeeds more often|does \(|is(\.| \(for))", text))
 
 
@@ -157,9 +172,11 @@ def check(made: DecisionRecord) -> None:
     effects, changes = may_be_said(made)
     whole = " ".join(sentences(made))
     for who, sign in SIDES:
-        leading = {effects.get(e.path) for e in made.effects if e.leads}
+        leading = {effects.get(e.condition) for e in made.effects if e.leads}
         assert (sign in leading) <= claimed(whole, who) <= (sign in effects.values()), whole
-        headed = {e.path for e in made.effects if effects.get(e.path) == sign and not e.extreme}
+        headed = {
+            e.condition for e in made.effects if effects.get(e.condition) == sign and not e.extreme
+        }
         assert not claimed(made.headline, who) or headed
     for change in made.changes:
         opposite = effects[change.isolated] * effects[SHARED] < 0
@@ -169,9 +186,9 @@ def check(made: DecisionRecord) -> None:
             not opposite and changes[change.isolated] != 0
         )
     turned = {c.isolated for c in made.changes if effects[c.isolated] * effects[SHARED] < 0}
-    extreme = {e.path for e in made.effects if e.extreme}
+    extreme = {e.condition for e in made.effects if e.extreme}
     correct = 0 if CORRECT in extreme else effects[CORRECT]
-    misleading = {path for path in turned - extreme if effects[path] != correct}
+    misleading = {condition for condition in turned - extreme if effects[condition] != correct}
     assert ("Do not" in whole) == bool(misleading and SHARED not in extreme)
     plain = answers(made)
     advised = "Ask which" in " ".join(plain.values())
@@ -182,7 +199,7 @@ def check(made: DecisionRecord) -> None:
     else:
         assert advised == bool(turned - extreme and SHARED not in extreme)
         follows = plain["What follows"]
-        told = {sign for path, sign in effects.items() if sign and path not in extreme}
+        told = {sign for condition, sign in effects.items() if sign and condition not in extreme}
         assert not claimed(follows, REPAIR) or 1 in told
         assert not claimed(follows, BASELINE) or -1 in told
         alone = any(each.turn == "interaction" for each in made.changes)
@@ -193,20 +210,20 @@ def check(made: DecisionRecord) -> None:
         low, high = effect.low or 0.0, effect.high or 0.0
         if effect.unsettled:
             assert "failed" in short
-        elif (low > 0 or high < 0) and effect.acted and not effects.get(effect.path):
+        elif (low > 0 or high < 0) and effect.acted and not effects.get(effect.condition):
             assert made.scenes < made.scenes_needed or f"{effect.corrected_p:.3f}" in short
         for who, side in SIDES:
-            assert claimed(short, who) == (effects.get(effect.path, 0) == side)
-    frequencies = [(item, CORRECT, item.path) for item in made.break_even]
-    for item, *at in (*frequencies, *((b, b.path, SHARED) for b in made.break_even_beta)):
-        ends = {effects.get(path, 0) for path in at} - {0}
+            assert claimed(short, who) == (effects.get(effect.condition, 0) == side)
+    frequencies = [(item, CORRECT, item.condition) for item in made.break_even]
+    for item, *at in (*frequencies, *((b, b.condition, SHARED) for b in made.break_even_beta)):
+        ends = {effects.get(condition, 0) for condition in at} - {0}
         for who, sign in SIDES:
             assert not claimed(item.words, who) or sign in ends
         shown = wording.break_even(item.result)
         part = " is ahead where " in item.words
         assert (shown == "any") == (not item.words or part), (shown, item.words)
         assert item.result.level >= 0.95 - 1e-12
-    if made.question.primary not in {e.path for e in made.effects}:
+    if made.question.primary not in {e.condition for e in made.effects}:
         assert "no pair of trials is left" in made.headline
     elif made.scenes < made.scenes_needed:
         assert made.headline.startswith("Too few scenes")
@@ -224,14 +241,14 @@ def reads_well(made: DecisionRecord) -> None:
 
 @pytest.mark.parametrize("n", [1, 2, 4, 8, 40])
 @pytest.mark.parametrize("how", RUNS)
-@pytest.mark.parametrize("over", PATHS)
+@pytest.mark.parametrize("over", CONDITIONS)
 def test_no_sentence_claims_what_was_not_decided(n: int, how: str, over: str) -> None:
     for shape in SHAPES:
-        if how == "void" and n == 1 and len(PATHS[over]) == 1:
+        if how == "void" and n == 1 and len(CONDITIONS[over]) == 1:
             with pytest.raises(UserError, match="no scene is left"):
-                run(shape, PATHS[over], n, how, trained=False)
+                run(shape, CONDITIONS[over], n, how, trained=False)
             continue
-        made = run(shape, PATHS[over], n, how, trained=n % 3 == 0)
+        made = run(shape, CONDITIONS[over], n, how, trained=n % 3 == 0)
         check(made)
         reads_well(made)
 
@@ -244,15 +261,17 @@ def says_how_it_stopped(made: DecisionRecord) -> None:
     told = next(s for s in made.sentences if s.startswith("This audit was sequential"))
     most = asked.n_scenes
     signs = may_be_said(made)[0]
-    settled = {path for path, sign in signs.items() if sign} | set(held.small)
-    wanted = {e.path for e in made.effects} if asked.stop.when == "all-decided" else {asked.primary}
+    settled = {condition for condition, sign in signs.items() if sign} | set(held.small)
+    wanted = (
+        {e.condition for e in made.effects} if asked.stop.when == "all-decided" else {asked.primary}
+    )
     assert held.reached == (wanted <= settled)
     assert ("it stopped after" in told) == (held.reached and held.scenes < most)
     assert ("all that it was allowed" in told) == (held.scenes == most)
     assert ("not significant" in told or "not every" in told) == (not held.reached)
     assert held.scenes == 1 or "1 scenes" not in told
     for effect, secondary in zip(made.effects, made.secondary, strict=True):
-        small = effect.path in held.small
+        small = effect.condition in held.small
         assert not small or asked.stop.margin_pp
         low, high = effect.low or 0.0, effect.high or 0.0
         assert not small or max(-low, high) < (asked.stop.margin_pp or 0.0)
@@ -266,16 +285,16 @@ def says_how_it_stopped(made: DecisionRecord) -> None:
 
 
 @pytest.mark.parametrize("n", [1, 2, 4, 40])
-@pytest.mark.parametrize("how", ["one seed", "three seeds", "void", "one path idle"])
-@pytest.mark.parametrize("over", ["one path", "shared"])
+@pytest.mark.parametrize("how", ["one seed", "three seeds", "void", "one condition idle"])
+@pytest.mark.parametrize("over", ["one condition", "shared"])
 def test_no_sentence_of_a_sequential_audit_claims_what_was_not_decided(
     n: int, how: str, over: str
 ) -> None:
     for shape in SHAPES:
         for rule in RULES if how == "one seed" and n > 2 else ("to the last scene",):
-            if how == "void" and n == 1 and len(PATHS[over]) == 1:
+            if how == "void" and n == 1 and len(CONDITIONS[over]) == 1:
                 continue
-            made = run(shape, PATHS[over], n, how, trained=n % 3 == 0, rule=rule)
+            made = run(shape, CONDITIONS[over], n, how, trained=n % 3 == 0, rule=rule)
             check(made)
             reads_well(made)
             says_how_it_stopped(made)

@@ -27,8 +27,8 @@ def made(states: dict[str, State], primary: str, turned: str = "") -> DecisionRe
     """Return a record with these decisions; at the module `turned` an interaction is detected."""
     effects: list[Effect] = []
     for effect in FOUR.effects:
-        if effect.path in states:
-            sign, special = states[effect.path]
+        if effect.condition in states:
+            sign, special = states[effect.condition]
             rates = (5.0, 6.0) if special == "floor" else (55.0, 55.0 + 20.0 * sign)
             corrected = None if special == "idle" else effect.corrected_p
             update = {"sign": sign, "corrected_p": corrected, "rates": rates}
@@ -41,7 +41,7 @@ def made(states: dict[str, State], primary: str, turned: str = "") -> DecisionRe
         and IDLE not in (states[change.isolated], states[SHARED])
     ]
     question = FOUR.question.model_copy(update={"primary": primary, "trained": True})
-    small = tuple(path for path, state in states.items() if state == SMALL)
+    small = tuple(condition for condition, state in states.items() if state == SMALL)
     if small:
         rule = StopRule(when="decided", margin_pp=5.0, order=(), order_seed=0, look=5, trials=8)
         question = question.model_copy(update={"stop": rule})
@@ -60,7 +60,7 @@ def turn(states: dict[str, State], isolated: str, turned: str) -> str:
 
 
 def combinations() -> Iterator[DecisionRecord]:
-    """Yield all that three or four paths can be decided to be, with every primary contrast."""
+    """Yield all that three or four conditions can be decided to be, with every primary contrast."""
     special = (*PLAIN, FLOOR, WON_AT_THE_FLOOR, IDLE, SMALL)
     for correct, a, shared in product((*PLAIN, FLOOR), special, special):
         for primary in (CORRECT, "a", SHARED):
@@ -75,18 +75,18 @@ def combinations() -> Iterator[DecisionRecord]:
 
 def holds(said: str, it: DecisionRecord) -> None:
     """Check each clause of a headline against the decisions."""
-    of = {effect.path: effect for effect in it.effects}
-    leads = {path: effect.sign for path, effect in of.items() if effect.leads}
+    of = {effect.condition: effect for effect in it.effects}
+    leads = {condition: effect.sign for condition, effect in of.items() if effect.leads}
     for who, sign in SIDES.items():
-        others = [path for path, side in leads.items() if side == sign]
+        others = [condition for condition, side in leads.items() if side == sign]
         for found in re.finditer(rf"(?<!of )\b{who} ((?:is ahead|with)[^;,.]*)[;,.]", said):
             clause = found[1]
-            for path in places(clause, list(of)):
-                assert leads.get(path) == sign, said
+            for condition in places(clause, list(of)):
+                assert leads.get(condition) == sign, said
             if "under every condition" in clause and "is ahead" in found[0]:
                 assert len(others) == len(of), said
     for found in re.finditer(r"[Nn]o difference([^.;]*)", said):
-        assert all(not of[path].significant for path in places(found[1], list(of))), said
+        assert all(not of[condition].significant for condition in places(found[1], list(of))), said
     if "significant under any condition" in said:
         assert not any(effect.significant for effect in of.values())
     shared = of.get(SHARED)
@@ -94,14 +94,18 @@ def holds(said: str, it: DecisionRecord) -> None:
     if open_ and f"{REPAIR} is ahead" in said and set(leads.values()) == {1}:
         assert "under the shared fault" in said.lower(), said
     if "Do not choose" in said:
-        alone = {sign for path, sign in leads.items() if path not in (CORRECT, SHARED)}
+        alone = {sign for condition, sign in leads.items() if condition not in (CORRECT, SHARED)}
         assert -leads[SHARED] in alone
 
 
-def places(clause: str, paths: list[str]) -> Iterator[str]:
+def places(clause: str, conditions: list[str]) -> Iterator[str]:
     alone = re.search(r"with only the ((?:\w+)(?: or the \w+)*) faulted", clause)
     yield from alone[1].split(" or the ") if alone else ()
-    yield from (path for path in (CORRECT, SHARED) if path in paths and where(path) in clause)
+    yield from (
+        condition
+        for condition in (CORRECT, SHARED)
+        if condition in conditions and where(condition) in clause
+    )
     if "with it shared" in clause:
         yield SHARED
 

@@ -5,15 +5,15 @@ import pytest
 from outcome_tables import (
     BASELINE,
     REPAIR,
-    arms,
+    conditions,
     exact_p,
-    paths,
     question,
     record,
     rows,
     seeded,
     table,
     three,
+    variants,
 )
 
 from faultpath.core.errors import UserError
@@ -39,7 +39,7 @@ def test_counts_make_the_effect_and_the_p_value(counts):
 
 def test_cells_count_every_trial():
     made = record({CORRECT: (40, 20, 5), "observer": (10, 0, 30)})
-    cells = {(cell.variant, cell.path): cell for cell in made.cells}
+    cells = {(cell.variant, cell.condition): cell for cell in made.cells}
     assert {at: cell.success for at, cell in cells.items()} == {
         (REPAIR, CORRECT): 60,
         (BASELINE, CORRECT): 45,
@@ -48,8 +48,8 @@ def test_cells_count_every_trial():
     }
     for cell in made.cells:
         assert cell.success + cell.crash == cell.trials == 100
-        assert cell.faulted_trials == (0 if cell.path == CORRECT else 100)
-        altered = cell.path != CORRECT and cell.variant == REPAIR
+        assert cell.faulted_trials == (0 if cell.condition == CORRECT else 100)
+        altered = cell.condition != CORRECT and cell.variant == REPAIR
         assert cell.altered_trials == (100 if altered else 0)
     assert cells[REPAIR, CORRECT].median_time_s == pytest.approx(5 + 0.01 * 29.5)
 
@@ -67,7 +67,7 @@ def test_cells_count_every_trial():
 def test_break_even_follows_from_the_two_effects(correct, fault, p_star, signs):
     made = record({CORRECT: correct, "observer": fault})
     (item,) = made.break_even
-    assert item.path == "observer"
+    assert item.condition == "observer"
     assert item.result.p_star == (None if p_star is None else pytest.approx(p_star))
     assert [region.sign for region in item.result.regions] == signs
     curve = np.array(item.curve)
@@ -95,20 +95,22 @@ def test_too_few_scenes_decide_nothing_and_the_number_that_would_is_known(n, eno
 
 
 def _with_failures(*failed: tuple[str, str, int]) -> Trials:
-    """Return trials on two paths of which some failed: variant, path, scene."""
+    """Return trials under two conditions of which some failed: variant, condition, scene."""
     out = []
-    for path, counts in {CORRECT: (40, 20, 10), "observer": (20, 10, 30)}.items():
-        for variant, statuses in arms(counts).items():
+    for condition, counts in {CORRECT: (40, 20, 10), "observer": (20, 10, 30)}.items():
+        for variant, statuses in variants(counts).items():
             for v, p, i in failed:
-                if (v, p) == (variant, path):
+                if (v, p) == (variant, condition):
                     statuses[i] = Status.FAILED
-            out += rows(variant, path, statuses)
+            out += rows(variant, condition, statuses)
     return Trials.of(out)
 
 
-def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_paths_nothing():
+def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_conditions_nothing():
     # Scene 45 is won by the repair alone under correct inputs, and lost to the baseline otherwise.
-    made = decide(question(), paths(CORRECT, "observer"), _with_failures((REPAIR, "observer", 45)))
+    made = decide(
+        question(), conditions(CORRECT, "observer"), _with_failures((REPAIR, "observer", 45))
+    )
     correct, observer = made.effects
     assert (correct.void, observer.void) == (0, 1)
     assert (correct.scenes, observer.scenes, made.scenes) == (100, 99, 100)
@@ -116,24 +118,24 @@ def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_paths_nothing()
     assert observer.won[0][1] == 29
     assert observer.value == pytest.approx(100 * (10 - 29) / 99)
     assert correct.p_value == pytest.approx(exact_p(20, 10))
-    cells = {(cell.variant, cell.path): cell for cell in made.cells}
+    cells = {(cell.variant, cell.condition): cell for cell in made.cells}
     assert cells[REPAIR, "observer"].failed == 1
     assert cells[REPAIR, "observer"].trials == 100
     assert cells[REPAIR, "observer"].success_percent == pytest.approx(100 * 30 / 99)
 
 
-def test_a_path_without_any_pair_costs_the_others_nothing_and_is_named():
+def test_a_condition_without_any_pair_costs_the_others_nothing_and_is_named():
     every = tuple((REPAIR, "observer", i) for i in range(100))
-    made = decide(question(), paths(CORRECT, "observer"), _with_failures(*every))
+    made = decide(question(), conditions(CORRECT, "observer"), _with_failures(*every))
     (correct,) = made.effects
-    assert (correct.path, correct.scenes, correct.void) == (CORRECT, 100, 0)
+    assert (correct.condition, correct.scenes, correct.void) == (CORRECT, 100, 0)
     assert not made.break_even
     said = "With the fault at the observer alone, no pair of trials is left to compare"
     assert made.headline.startswith(said)
     assert made.findings[0].startswith(said)
     every += tuple((REPAIR, CORRECT, i) for i in range(100))
     with pytest.raises(UserError, match="no scene is left"):
-        decide(question(), paths(CORRECT, "observer"), _with_failures(*every))
+        decide(question(), conditions(CORRECT, "observer"), _with_failures(*every))
 
 
 def test_several_seeds_are_averaged_within_each_scene():
@@ -159,31 +161,31 @@ def test_seeds_that_change_nothing_are_counted_once():
     ("counts", "extreme"),
     [((0, 7, 0), "floor"), ((92, 4, 4), "ceiling"), ((5, 5, 0), None), ((90, 0, 8), None)],
 )
-def test_floor_and_ceiling_are_both_arms_below_10_or_above_90(counts, extreme):
+def test_floor_and_ceiling_are_both_variants_below_10_or_above_90(counts, extreme):
     assert record({CORRECT: counts}).effects[0].extreme == extreme
 
 
-def test_a_path_on_which_the_fault_never_acted_is_no_part_of_the_family():
+def test_a_condition_on_which_the_fault_never_acted_is_no_part_of_the_family():
     out = []
-    for path, counts in ((CORRECT, (50, 9, 1)), ("a", (40, 20, 2)), (SHARED, (40, 2, 20))):
-        for variant, statuses in arms(counts).items():
-            out += rows(variant, path, statuses, altered=0 if path == "a" else None)
-    made = decide(question(), paths(CORRECT, "a", SHARED), Trials.of(out))
+    for condition, counts in ((CORRECT, (50, 9, 1)), ("a", (40, 20, 2)), (SHARED, (40, 2, 20))):
+        for variant, statuses in variants(counts).items():
+            out += rows(variant, condition, statuses, altered=0 if condition == "a" else None)
+    made = decide(question(), conditions(CORRECT, "a", SHARED), Trials.of(out))
     idle = made.effects[1]
     assert not idle.acted
     assert not idle.significant
     assert idle.corrected_p is None
     assert made.hypotheses == 2
     assert made.changes == ()
-    assert [each.path for each in made.break_even] == [SHARED]
+    assert [each.condition for each in made.break_even] == [SHARED]
 
 
-def test_the_primary_contrast_is_the_shared_path_or_the_only_isolated_one_or_the_one_named():
+def test_the_primary_contrast_is_the_shared_condition_or_the_only_isolated_one_or_the_one_named():
     level = (50, 5, 5)
     assert three(level, level, level).question.primary == SHARED
     assert record({CORRECT: level, "observer": level}).question.primary == "observer"
     named = question().model_copy(update={"primary": "observer"})
     cells = {CORRECT: level, "observer": level, SHARED: level}
-    assert decide(named, paths(*cells), table(cells)).question.primary == "observer"
+    assert decide(named, conditions(*cells), table(cells)).question.primary == "observer"
     with pytest.raises(UserError, match=r"no condition 'obs'.*has correct, observer, shared"):
-        decide(named.model_copy(update={"primary": "obs"}), paths(*cells), table(cells))
+        decide(named.model_copy(update={"primary": "obs"}), conditions(*cells), table(cells))

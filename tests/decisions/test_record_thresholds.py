@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from outcome_tables import paths, question, record, table
+from outcome_tables import conditions, question, record, table
 
 from faultpath.core.errors import UserError
 from faultpath.decisions.decide import decide
@@ -23,7 +23,7 @@ def told(better: str, values: dict[str, float], *thresholds: float):
         rows.append(replace(row, outcome=replace(row.outcome, metrics=error)))
     metrics = {"error": Metric(unit="rad", better=better)}
     update = {"metrics": metrics, "metric": "error", "thresholds": thresholds}
-    return decide(question().model_copy(update=update), paths(*CELLS), Trials.of(rows))
+    return decide(question().model_copy(update=update), conditions(*CELLS), Trials.of(rows))
 
 
 @pytest.mark.parametrize("better", ["less", "more"])
@@ -65,6 +65,6 @@ def test_nothing_that_is_decided_depends_on_it():
 def test_what_the_system_does_not_measure_is_refused(asked, said, monkeypatch, request):
     monkeypatch.chdir(request.config.rootpath)
     system = load_system(TOY)
-    arms = {"baseline": "calibrated", "repair": "blind", "fault": "gain:scale=0.6"}
+    variants = {"baseline": "calibrated", "repair": "blind", "fault": "gain:scale=0.6"}
     with pytest.raises(UserError, match=said):
-        plan_audit(system, TOY, ask(AuditQuestion, arms | asked), system.library("carts"))
+        plan_audit(system, TOY, ask(AuditQuestion, variants | asked), system.library("carts"))

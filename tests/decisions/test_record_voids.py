@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from outcome_tables import BASELINE, REPAIR, SCENES, paths, question, rows
+from outcome_tables import BASELINE, REPAIR, SCENES, conditions, question, rows
 
 from faultpath.decisions.decide import decide
 from faultpath.decisions.model import CORRECT, SHARED
@@ -27,13 +27,13 @@ def audit(
         over += [("observer", 0, correct), (SHARED, 0, shared)]
     out = [
         row
-        for path, seed, ends in over
+        for condition, seed, ends in over
         for variant, statuses in zip((REPAIR, BASELINE), ends, strict=True)
-        for row in rows(variant, path, statuses, seed)
+        for row in rows(variant, condition, statuses, seed)
     ]
     graded = question(len(correct[0]), range(1 + len(seeds))).model_copy(update={"rule": "graded"})
-    names = dict.fromkeys(path for path, _, _ in over)
-    return decide(graded, paths(*names), Trials.of(out))
+    names = dict.fromkeys(condition for condition, _, _ in over)
+    return decide(graded, conditions(*names), Trials.of(out))
 
 
 def ends(success: np.ndarray, failed: np.ndarray | None = None) -> Ends:
@@ -49,13 +49,13 @@ def dies_in_hard_scenes(stream: np.random.Generator) -> tuple[Ends, Ends]:
 
 
 def raises_on_its_failures(stream: np.random.Generator) -> tuple[Ends, Ends]:
-    """Equal arms, of which the repair's raises in half of the trials that it does not solve."""
+    """Equal variants, of which the repair's raises in half of the trials that it does not solve."""
     repair, baseline = stream.random((2, SCENES)) < 0.5
     return ends(repair, ~repair & (stream.random(SCENES) < 0.5)), ends(baseline)
 
 
 @pytest.mark.parametrize("case", [dies_in_hard_scenes, raises_on_its_failures])
-def test_an_arm_whose_bad_trials_fail_is_not_announced(case):
+def test_an_variant_whose_bad_trials_fail_is_not_announced(case):
     stream = np.random.default_rng(11)
     made = [audit(case(stream)) for _ in range(20)]
     assert sum("new is ahead" in each.headline for each in made) == 0
@@ -96,14 +96,16 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     assert "new is ahead" in safe.headline
 
 
-def test_a_failure_on_one_path_costs_the_others_nothing():
+def test_a_failure_on_one_condition_costs_the_others_nothing():
     scene = np.arange(SCENES)
     correct = ends(scene < 90), ends((scene >= 20) & (scene < 95))
     shared = ends(scene >= 0), ends(scene >= 50)
     whole = audit(correct, shared)
     failing = audit(correct, (ends(scene >= 0, scene < 30), ends(scene >= 50)))
-    for path in (CORRECT, "observer"):
-        one, two = (next(e for e in made.effects if e.path == path) for made in (whole, failing))
+    for condition in (CORRECT, "observer"):
+        one, two = (
+            next(e for e in made.effects if e.condition == condition) for made in (whole, failing)
+        )
         assert (one.value, one.interval, one.p_value, one.scenes) == (
             two.value,
             two.interval,
@@ -114,12 +116,12 @@ def test_a_failure_on_one_path_costs_the_others_nothing():
     assert (shared_effect.scenes, shared_effect.void) == (70, 30)
 
 
-def test_no_reversal_rests_on_a_path_where_one_arm_fails_more_often():
+def test_no_reversal_rests_on_a_condition_where_one_variant_fails_more_often():
     """Decided even with all that is open against it: who is ahead stands, but carries nothing."""
     stands = ends(np.arange(SCENES) < 90), ends(np.arange(SCENES) < 30)
     fails = ends(np.arange(SCENES) < 20, np.arange(SCENES) >= 92), ends(np.arange(SCENES) < 80)
     made = audit(stands, fails)
-    shared = next(effect for effect in made.effects if effect.path == SHARED)
+    shared = next(effect for effect in made.effects if effect.condition == SHARED)
     assert shared.sign == -1
     assert (shared.uneven, shared.leads) == (True, False)
     assert made.changes[0].turn != "reversal"
@@ -219,7 +221,7 @@ def test_trials_that_do_not_repeat_or_are_no_pairs_support_nothing(invalid):
         last = trials[-1]
         trials[-1] = replace(last, outcome=replace(last.outcome, initial_hash="another"))
     graded = question().model_copy(update={"rule": "graded"})
-    table, over = Trials.of(trials), paths(CORRECT, "observer", SHARED)
+    table, over = Trials.of(trials), conditions(CORRECT, "observer", SHARED)
     made = decide(graded, over, table, repeats=invalid == "unpaired")
     assert made.invalid == invalid
     assert made.headline.startswith("No result: ")
@@ -253,8 +255,8 @@ def test_a_break_even_frequency_holds_whatever_failed_trials_would_have_been():
     stream = np.random.default_rng(2)
     for _ in range(5):
         made = mixed(stream)
-        (found,) = (each for each in made.break_even if each.path == SHARED)
-        against = {each.path: each.missing.against_pp for each in made.effects}
+        (found,) = (each for each in made.break_even if each.condition == SHARED)
+        against = {each.condition: each.missing.against_pp for each in made.effects}
         even = -against[CORRECT] / (against[SHARED] - against[CORRECT])
         (region,) = (each for each in found.result.regions if each.sign > 0)
         assert region.low > even

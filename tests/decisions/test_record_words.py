@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows, seeded, three
+from outcome_tables import BASELINE, REPAIR, conditions, question, rows, seeded, three, variants
 
 from faultpath.core.errors import UserError
 from faultpath.decisions.decide import decide
@@ -67,7 +67,7 @@ def test_the_headline_of_each_case(cells, said):
 def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
     made = three(LEVEL, GAIN, GAIN)
     words = " ".join(made.sentences)
-    (effect,) = (e for e in made.effects if e.path == CORRECT)
+    (effect,) = (e for e in made.effects if e.condition == CORRECT)
     least = re.search(
         r"significant under correct inputs; a true one of (\d+) pp would be found in 8 of 10", words
     )
@@ -86,17 +86,17 @@ def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
 )
 def test_the_fault_frequency_is_said_where_it_is_decided(correct, fault, said):
     made = three(correct, fault, fault)
-    assert [each.path for each in made.break_even] == ["observer", SHARED]
+    assert [each.condition for each in made.break_even] == ["observer", SHARED]
     assert all(re.search(said, each.words) for each in made.break_even)
 
 
 def test_a_fault_that_never_acted_was_not_tested():
     def made(altered: dict[str, int | None]) -> DecisionRecord:
         out = []
-        for path in (CORRECT, "observer", SHARED):
-            for variant, statuses in arms(GAIN).items():
-                out += rows(variant, path, statuses, altered=altered.get(path))
-        return decide(question(), paths(CORRECT, "observer", SHARED), Trials.of(out))
+        for condition in (CORRECT, "observer", SHARED):
+            for variant, statuses in variants(GAIN).items():
+                out += rows(variant, condition, statuses, altered=altered.get(condition))
+        return decide(question(), conditions(CORRECT, "observer", SHARED), Trials.of(out))
 
     never = made({"observer": 0, SHARED: 0})
     assert never.headline == "The fault never changed a reading: no effect of it was tested."
@@ -151,17 +151,17 @@ def test_a_training_that_failed_throughout_under_one_condition_is_left_out_there
     cells = {CORRECT: by_seed, "observer": by_seed, SHARED: by_seed}
     trials = [
         row
-        for path, counts in cells.items()
+        for condition, counts in cells.items()
         for seed, count in enumerate(counts)
-        for variant, statuses in arms(count).items()
+        for variant, statuses in variants(count).items()
         for row in rows(
             variant,
-            path,
-            [Status.FAILED] * 100 if (path, seed) == (SHARED, lost) else statuses,
+            condition,
+            [Status.FAILED] * 100 if (condition, seed) == (SHARED, lost) else statuses,
             seed=seed,
         )
     ]
     about = question(100, range(6)).model_copy(update={"trained": True, "generalise": "models"})
-    made = decide(about, paths(*cells), Trials.of(trials))
+    made = decide(about, conditions(*cells), Trials.of(trials))
     assert [len(effect.per_seed) for effect in made.effects] == [6, 6, 5]
     assert len(made.changes[0].per_seed) == 5

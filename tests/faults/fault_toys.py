@@ -25,18 +25,18 @@ INTERFACE = Interface(
         Channel(
             name="mass",
             sources=("mass_estimate",),
-            consumers=("predictor.dynamics", "predictor.trim", "observer.wind_map"),
+            readers=("predictor.dynamics", "predictor.trim", "observer.wind_map"),
             erasure_default=1.0,
         ),
         Channel(
             name="thrust",
             sources=("thrust_estimate",),
-            consumers=("predictor.dynamics", "observer.model"),
+            readers=("predictor.dynamics", "observer.model"),
         ),
         Channel(
             name="wind",
             sources=("seen_wind",),
-            consumers=("predictor.wind_map",),
+            readers=("predictor.wind_map",),
             erasure_default=(0.0, 0.0, 1.0),
         ),
     ),

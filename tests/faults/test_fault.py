@@ -18,7 +18,7 @@ def aimed(*names: str) -> tuple[Fault, ...]:
 
 
 def reached(faults: Iterable[Fault]) -> dict[str, tuple[str, ...]]:
-    return {fault.channel: fault.consumers for fault in faults}
+    return {fault.channel: fault.readers for fault in faults}
 
 
 def test_faults_that_act_together_reach_whoever_reads_either_channel() -> None:
@@ -31,7 +31,7 @@ def test_faults_that_act_together_reach_whoever_reads_either_channel() -> None:
     }
 
 
-def test_consumers_that_a_variant_lacks_are_left_out() -> None:
+def test_readers_that_a_variant_lacks_are_left_out() -> None:
     plain = {"predictor.dynamics", "predictor.trim", "predictor.wind_map"}
     everywhere = resolve(calibration(0.1), INTERFACE)
     assert reached(at_readers(everywhere, plain)) == {

@@ -83,7 +83,7 @@ def test_values(to: Any, intervention: Intervention, expected: list[list[float]]
 
 def test_a_default_is_taken_from_the_channel() -> None:
     channel = Channel(
-        name="wind", sources=("zero",), consumers=("a.b",), erasure_default=(1.0, 2.0, 3.0)
+        name="wind", sources=("zero",), readers=("a.b",), erasure_default=(1.0, 2.0, 3.0)
     )
     assert Erase().resolved(channel) == Erase(default=(1.0, 2.0, 3.0))
     assert Erase(default=0.0).resolved(channel) == Erase(default=0.0)

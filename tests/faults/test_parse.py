@@ -71,12 +71,12 @@ def test_a_group_stands_for_its_channels() -> None:
         " mass:freeze @ observer + predictor.trim + observer, onset=20, for=40, recover=5",
     ],
 )
-def test_time_and_consumers(text: str) -> None:
+def test_time_and_readers(text: str) -> None:
     assert parse(text) == (
         Fault(
             channel="mass",
             intervention=Freeze(),
-            consumers=("predictor.trim", "observer.wind_map"),
+            readers=("predictor.trim", "observer.wind_map"),
             onset_step=20,
             duration_steps=40,
             recovery_steps=5,

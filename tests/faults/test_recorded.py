@@ -41,7 +41,7 @@ def at(step: int, seed: int = 0) -> Moment:
 
 def resolved(file: Path, channel: str) -> Recorded:
     return Recorded(file=str(file)).resolved(
-        Channel(name=channel, sources=("it",), consumers=("planner.start",))
+        Channel(name=channel, sources=("it",), readers=("planner.start",))
     )
 
 

@@ -5,7 +5,7 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
 
-from faultpath.trials import Arm, System
+from faultpath.trials import System, Treatment
 from faultpath.trials.attempt import attempt
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -20,9 +20,9 @@ def loaded(path: Path) -> Any:
 
 def attempted(system: System, variant: str, scenes: Sequence[str], fault: str = "") -> Any:
     faults = system.fault(fault) if fault else ()
-    return attempt(system, Arm(variant=variant, faults=faults), scenes)
+    return attempt(system, Treatment(variant=variant, faults=faults), scenes)
 
 
 def faulted(trial: Any) -> dict[str, int]:
-    """Return in how many steps the fault acted, by the consumers in which it did."""
-    return {tap.consumer: tap.faulted_steps for tap in trial.taps if tap.faulted_steps}
+    """Return in how many steps the fault acted, by the readers in which it did."""
+    return {tap.reader: tap.faulted_steps for tap in trial.taps if tap.faulted_steps}

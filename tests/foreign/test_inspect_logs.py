@@ -36,7 +36,7 @@ def written(path: Path, model: str) -> str:
 
 @pytest.mark.parametrize("kind", ["eval", "json"])
 def test_a_log_of_the_package_is_decided(kind: str, tmp_path: Path) -> None:
-    logs = [written(tmp_path / f"{arm}.{kind}", arm) for arm in WON]
+    logs = [written(tmp_path / f"{variant}.{kind}", variant) for variant in WON]
     run = faultpath.judge(
         logs, baseline="old", repair="new", folder=tmp_path / "run", progress=False
     )

@@ -117,7 +117,7 @@ def test_it_flies_in_our_loop_as_in_its_own(example, variant, fed):
 def test_a_fault_at_one_object_reaches_its_reads_alone(example):
     system = example.create()
     readers = {"controller.mass", "feedforward.mass", "filter.mass"}
-    assert set(system.interface.channel("mass").consumers) == readers
+    assert set(system.interface.channel("mass").readers) == readers
     exact = attempted(system, "fed-forward", (SCENE,))
     for struck in ("controller", "feedforward", "filter"):
         trial = attempted(system, "fed-forward", (SCENE,), f"mass:scale=0.8@{struck}")

@@ -129,7 +129,7 @@ def test_ten_parameters_say_how_wrong_they_may_be(wheels):
     said = {s.name for s in interface.sources if s.expected_uncertainty}
     assert said == set(wheels.KNOWN)
     assert len(said) == 10
-    readers = {name: set(interface.channel(name).consumers) for name in ("diameter", "track")}
+    readers = {name: set(interface.channel(name).readers) for name in ("diameter", "track")}
     assert readers == {n: {f"drive.{n}", f"odometry.{n}"} for n in ("diameter", "track")}
 
 

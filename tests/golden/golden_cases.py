@@ -32,7 +32,7 @@ PAPER = find_spec("faultpath_paper") is not None
 HERE = Path(__file__).resolve().parent
 NUMBERS = HERE / "numbers.json"
 SYSTEM = f"{HERE / 'golden_system.py'}:create"
-HEADER = "arm,scene,seed,task,condition,success,initial\n"
+HEADER = "variant,scene,seed,task,condition,success,initial\n"
 
 FAILED = "once/s003/0,twice/s004/1,twice/s003/1,once/s010/0,once/s010/1"
 MASS = {"baseline": "once", "repair": "twice", "fault": "mass:scale=0.9"}
@@ -138,13 +138,13 @@ def results_of(
     lines = [",".join(columns)]
     hardness = draw.uniform(size=scenes)
     for condition in conditions:
-        for arm in ("old", "new"):
+        for variant in ("old", "new"):
             for seed in range(seeds):
                 for scene in range(scenes):
                     chance, fails, misses = draw.uniform(size=3)
-                    won = 0.5 * hardness[scene] + 0.5 * chance < RATES[arm, condition]
+                    won = 0.5 * hardness[scene] + 0.5 * chance < RATES[variant, condition]
                     cells = {
-                        "arm": arm,
+                        "variant": variant,
                         "scene": f"s{scene}",
                         "seed": seed,
                         "task": f"t{scene % 12}",
@@ -152,11 +152,11 @@ def results_of(
                         "success": int(won),
                         "initial": f"h{scene}",
                     }
-                    if fails < (failed or {}).get(arm, 0.0):
+                    if fails < (failed or {}).get(variant, 0.0):
                         cells["success"] = "failed"
-                    if unlike and scene == 7 and arm == "new":
+                    if unlike and scene == 7 and variant == "new":
                         cells["initial"] = "other"
-                    if misses >= (missing or {}).get(arm, 0.0):
+                    if misses >= (missing or {}).get(variant, 0.0):
                         lines.append(",".join(str(cells[name]) for name in columns))
     file.write_text("\n".join(lines) + "\n")
 
@@ -200,7 +200,7 @@ def of_record(record: Any) -> dict[str, Any]:
     """Return the numbers and decisions of an audit, without its words."""
     result = record.model_dump(mode="json")
     effects = {
-        effect.path: {
+        effect.condition: {
             "success": of_difference(effect),
             "sign": effect.sign,
             "test": effect.test,
@@ -242,7 +242,7 @@ def of_record(record: Any) -> dict[str, Any]:
     }
     even = {
         name: {
-            entry["path"]: {
+            entry["condition"]: {
                 **{key: entry["result"][key] for key in ("p_star", "pieces", "kind", "regions")},
                 "curve": digest(entry["curve"]),
             }
@@ -251,7 +251,7 @@ def of_record(record: Any) -> dict[str, Any]:
         for name in ("break_even", "break_even_beta")
     }
     cells = {
-        f"{cell['variant']}, {cell['path']}": [cell[name] for name in _OF_A_CELL]
+        f"{cell['variant']}, {cell['condition']}": [cell[name] for name in _OF_A_CELL]
         for cell in result["cells"]
     }
     whole = {name: result[name] for name in ("scenes", "invalid", "scenes_needed", "stopped")}

@@ -24,7 +24,7 @@ class Golden(System):
     interface = Interface(
         name="golden",
         sources=(Source(name="mass", unit="kg", provenance=Provenance.ESTIMATED),),
-        channels=(Channel(name="mass", sources=("mass",), consumers=(PLANNER, OBSERVER, LIMIT)),),
+        channels=(Channel(name="mass", sources=("mass",), readers=(PLANNER, OBSERVER, LIMIT)),),
     )
 
     def __init__(self, fails: str = "") -> None:

@@ -8,7 +8,7 @@ from faultpath.interface import (
     Uncertainty,
     groups,
     rank,
-    transitive_consumers,
+    transitive_readers,
 )
 
 
@@ -32,10 +32,10 @@ INTERFACE = Interface(
         source("risk"),
     ),
     channels=(
-        Channel(name="mass", sources=("mass_estimate",), consumers=("observer.a", "predictor.b")),
-        Channel(name="thrust", sources=("thrust_estimate",), consumers=("observer.c", "pilot.d")),
-        Channel(name="wind", sources=("still", "seen"), consumers=("predictor.e", "guard.f")),
-        Channel(name="alarm", sources=("risk",), consumers=("pilot.g",)),
+        Channel(name="mass", sources=("mass_estimate",), readers=("observer.a", "predictor.b")),
+        Channel(name="thrust", sources=("thrust_estimate",), readers=("observer.c", "pilot.d")),
+        Channel(name="wind", sources=("still", "seen"), readers=("predictor.e", "guard.f")),
+        Channel(name="alarm", sources=("risk",), readers=("pilot.g",)),
     ),
     reconstructs={"observer": "seen", "guard": "risk"},
 )
@@ -43,12 +43,12 @@ INTERFACE = Interface(
 
 def test_a_fault_reaches_through_reconstructions_of_reconstructions() -> None:
     reached = ("observer.a", "predictor.b", "predictor.e", "guard.f", "pilot.g")
-    assert transitive_consumers(INTERFACE, "mass") == reached
-    assert transitive_consumers(INTERFACE, "alarm") == ("pilot.g",)
+    assert transitive_readers(INTERFACE, "mass") == reached
+    assert transitive_readers(INTERFACE, "alarm") == ("pilot.g",)
     both = {"observer": ["seen", "risk"]}
     filtering = Interface.model_validate(INTERFACE.model_dump() | {"reconstructs": both})
     assert filtering.reconstructions == (("observer", "seen"), ("observer", "risk"))
-    assert transitive_consumers(filtering, "mass") == reached
+    assert transitive_readers(filtering, "mass") == reached
 
 
 def test_rank_is_by_reach_then_expected_uncertainty() -> None:

@@ -15,7 +15,7 @@ ZERO = Source(name="zero_wind", unit="m/s", shape=(3,), provenance="constant")
 
 
 def channel(name: str = "mass", **fields: object) -> Channel:
-    given = {"sources": ("mass_estimate",), "consumers": ("predictor.dynamics",)} | fields
+    given = {"sources": ("mass_estimate",), "readers": ("predictor.dynamics",)} | fields
     return Channel.model_validate({"name": name} | given)
 
 
@@ -34,7 +34,7 @@ GROUPED = MASS.model_copy(update={"correlation_group": "mass"})
     [
         ({"sources": (MASS, MASS)}, "source 'mass_estimate' is declared twice"),
         ({"channels": (channel(), channel())}, "channel 'mass' is declared twice"),
-        ({"channels": (channel(consumers=("a.b", "a.b")),)}, "consumer 'a.b' is declared twice"),
+        ({"channels": (channel(readers=("a.b", "a.b")),)}, "reader 'a.b' is declared twice"),
         ({"channels": (channel(sources=("mass_estimat",)),)}, "did you mean 'mass_estimate'?"),
         ({"sources": (MASS, ZERO), "channels": (STRANGE,)}, "'zero_wind' ([3], m/s) cannot stand"),
         ({"channels": (channel(erasure_default=(1.0, 2.0)),)}, "erasure_default has shape [2]"),
@@ -60,8 +60,8 @@ def test_refuses_reconstructions_in_a_circle() -> None:
         build(
             sources=(one, two),
             channels=(
-                channel("first", sources=("one",), consumers=("b.input",)),
-                channel("second", sources=("two",), consumers=("a.input",)),
+                channel("first", sources=("one",), readers=("b.input",)),
+                channel("second", sources=("two",), readers=("a.input",)),
             ),
             reconstructs={"a": "one", "b": "two"},
         )
@@ -95,7 +95,7 @@ sources:
 channels:
 - name: mass
   sources: [mass_estimate]
-  consumers:
+  readers:
   - predictor.dynamics
   - planner.hover
 """
@@ -144,10 +144,10 @@ def test_control_characters_are_refused_and_line_breaks_come_back(character: str
         (
             "- planner.hover",
             "- predictor.dynamics",
-            "line 11: channel 'mass': consumer 'predictor.",
+            "line 11: channel 'mass': reader 'predictor.",
         ),
         ("name: toy\n", "name: toy\nreconstructs: {gru: mass_estimate}\n", "line 2: reconstructs:"),
-        ("- planner.hover", "- planner", "line 11: channels[0].consumers[1]: is 'planner'"),
+        ("- planner.hover", "- planner", "line 11: channels[0].readers[1]: is 'planner'"),
     ],
 )
 def test_a_mistake_is_told_with_its_line(old: str, new: str, sentence: str, tmp_path: Path) -> None:

@@ -21,11 +21,11 @@ sources:
 channels:
 - name: gain
   sources: [gain_estimate]
-  consumers: [observer.model, observer.scale, controller.inverse]
+  readers: [observer.model, observer.scale, controller.inverse]
   erasure_default: 1.0
-- {name: velocity, sources: [speedometer], consumers: [observer.difference, controller.feedback]}
-- {name: heading, sources: [compass], consumers: [pilot.course], erasure_default: 0.5}
-- {name: slope, sources: [true_slope], consumers: [controller.feedforward]}
+- {name: velocity, sources: [speedometer], readers: [observer.difference, controller.feedback]}
+- {name: heading, sources: [compass], readers: [pilot.course], erasure_default: 0.5}
+- {name: slope, sources: [true_slope], readers: [controller.feedforward]}
 """)
 SHORT = Schedule(epochs=2, batch_size=16)
 

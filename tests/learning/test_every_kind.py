@@ -22,7 +22,7 @@ name: rover
 sources:
 - {name: camera, unit: '1', shape: [6, 8], provenance: measured}
 channels:
-- {name: image, sources: [camera], consumers: [encoder.pixels, guard.pixels], erasure_default: 0.5}
+- {name: image, sources: [camera], readers: [encoder.pixels, guard.pixels], erasure_default: 0.5}
 """)
 SHAPE = INTERFACE.source("camera").shape
 KINDS = tuple(kind for kind in INTERVENTIONS if kind.misfit(SHAPE) is None)

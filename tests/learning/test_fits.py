@@ -67,7 +67,7 @@ def test_training_sees_what_the_taps_deliver_and_targets_pass_none() -> None:
 
     drift = Fault(channel="velocity", intervention=Drift(rate_per_s=2.0, walk_per_sqrt_s=1.0))
     fitted = fit(Spy, data, loss, repair=uncertainty_training(drift), schedule=SHORT, validation=0)
-    faults = resolve((drift,), data.interface, data.consumers)
+    faults = resolve((drift,), data.interface, data.readers)
     fitted_on = [target.tolist() for target in targets]
     minibatches = iter(zip(SEEN, fitted_on, strict=True))
     for epoch in range(SHORT.epochs):
@@ -79,7 +79,7 @@ def test_training_sees_what_the_taps_deliver_and_targets_pass_none() -> None:
             for port, value in expected.items():
                 assert np.array_equal(inputs[port].numpy(), value)
     assert next(minibatches, None) is None
-    counts = {count.consumer: count for count in fitted.record.taps}
+    counts = {count.reader: count for count in fitted.record.taps}
     assert counts["observer.difference"].deliveries == 2 * 40 * 4
     assert counts["observer.difference"].altered_steps == 2 * 40 * 3  # a drift begins at zero
     assert counts["observer.model"].altered_steps == 0

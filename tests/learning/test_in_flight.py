@@ -12,7 +12,7 @@ from faultpath.faults import Fault, Scale, resolve
 from faultpath.learning import Learned, errors, fit, uncertainty_training, withheld, withholding
 from faultpath.loop import Batch, Inputs, Module, Port, Reading, Taps
 from faultpath.systems import ComposedSystem, FunctionPlant, Parts
-from faultpath.trials import Arm
+from faultpath.trials import Treatment
 from faultpath.trials.attempt import taps_of
 
 GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")
@@ -49,15 +49,15 @@ def system(*variants: Module) -> ComposedSystem:
 
 
 def fly(made: ComposedSystem, variant: str, *faults: Fault, scenes=("seed/1", "seed/2")):
-    resolved = resolve(faults, made.interface, made.variants[variant].consumers)
-    taps = taps_of(made, Arm(variant=variant, faults=resolved), scenes)
+    resolved = resolve(faults, made.interface, made.variants[variant].readers)
+    taps = taps_of(made, Treatment(variant=variant, faults=resolved), scenes)
     return made.run(variant, scenes, taps, 0)
 
 
 def test_a_withheld_channel_is_not_read_and_its_neutral_value_arrives() -> None:
     inner, repair = Brake(), withholding("gain", value=1.25)
     deployed = system(Brake(), withheld(inner, repair, system(Brake()).interface))
-    reading, blind = (deployed.variants[f"variant_{i}"].consumers for i in (0, 1))
+    reading, blind = (deployed.variants[f"variant_{i}"].readers for i in (0, 1))
     assert reading - blind == {"brake.model"}
     inner.got.clear()
     fly(deployed, "variant_1")
@@ -78,7 +78,7 @@ def test_what_is_withheld_in_flight_is_what_was_in_the_fit() -> None:
     repair = withholding("heading", "pilot")
     made = withheld(Pilot(), repair, INTERFACE)
     (fault,) = repair.against(INTERFACE, 0.1, {"pilot.course"}).faults
-    taps = Taps(INTERFACE, (fault,), scenes=("a", "b"), dt_s=0.1, consumers={"pilot.course"})
+    taps = Taps(INTERFACE, (fault,), scenes=("a", "b"), dt_s=0.1, readers={"pilot.course"})
     in_fit = taps.deliver("heading", "pilot.course", Reading(np.ones((2, 3)), "compass", 0), 0)
     inputs = Inputs("pilot", 0, {Port("velocity", "feedback"): torch.zeros(2)}, {})
     outputs, _ = made.step(inputs, made.begin(Batch(("a", "b"), 0, 0.1)))

@@ -19,7 +19,7 @@ GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")
 def relative_errors(q_eps: Sequence[Fault], n: int = 4000, steps: int = 3, seed: int = 0):
     """What the observer's ports get of readings of one: error by port, `[N, T]`."""
     data = windows(n, steps, readings={"gain": np.ones(n), "velocity": np.ones((n, steps))})
-    faults = resolve(q_eps, data.interface, data.consumers)
+    faults = resolve(q_eps, data.interface, data.readers)
     got, _ = delivered(data, faults, data.readings, range(n), seed, epoch=0)
     return {port: value - 1 for port, value in got.items()}
 
@@ -62,7 +62,7 @@ def test_places_of_one_channel_get_the_same_error_and_one_place_may_err_alone() 
 
 def test_draws_belong_to_window_seed_and_epoch_and_not_to_the_minibatch() -> None:
     data = windows(30)
-    faults = resolve(errors({"gain": 0.1}, "step"), data.interface, data.consumers)
+    faults = resolve(errors({"gain": 0.1}, "step"), data.interface, data.readers)
 
     def of(index, seed=0, epoch=0):
         rows = {name: value[index] for name, value in data.readings.items()}
@@ -85,7 +85,7 @@ UNEVEN = {"gain": np.ones((60, 4)), "velocity": np.ones((60, 5))}
 
 
 def of_observer(repair):
-    return repair.against(INTERFACE, DT_S, windows().consumers)
+    return repair.against(INTERFACE, DT_S, windows().readers)
 
 
 @pytest.mark.parametrize(

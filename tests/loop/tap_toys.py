@@ -24,13 +24,13 @@ INTERFACE = Interface(
         Channel(
             name="mass",
             sources=("scale",),
-            consumers=("predictor.dynamics", "observer.model"),
+            readers=("predictor.dynamics", "observer.model"),
             erasure_default=1.0,
         ),
         Channel(
             name="wind",
             sources=("still", "truth"),
-            consumers=("predictor.wind", "planner.wind"),
+            readers=("predictor.wind", "planner.wind"),
             erasure_default=(0.0, 0.0, 1.0),
         ),
     ),
@@ -67,7 +67,7 @@ def series(scene: str, channel: str, steps: int) -> np.ndarray[Any, Any]:
 
 
 def make(faults: Iterable[Fault] = (), scenes: Sequence[str] = "ab", **more: Any) -> Taps:
-    found = resolve(faults, INTERFACE, more.get("consumers"))
+    found = resolve(faults, INTERFACE, more.get("readers"))
     return Taps(INTERFACE, found, scenes=tuple(scenes), dt_s=DT_S, **more)
 
 
@@ -75,15 +75,15 @@ def play(
     faults: Iterable[Fault],
     scenes: Sequence[str],
     *,
-    consumer: str = "predictor.wind",
+    reader: str = "predictor.wind",
     channel: str = "wind",
     to: Any = np.asarray,
     steps: int = 16,
     **more: Any,
 ) -> np.ndarray[Any, Any]:
-    """Return what `consumer` gets, `[T, B, ...]`."""
+    """Return what `reader` gets, `[T, B, ...]`."""
     taps = make(faults, scenes, **more)
     readings = np.stack([series(scene, channel, steps) for scene in scenes], axis=1)
     shown = [Reading(to(readings[step]), SOURCES[channel], step) for step in range(steps)]
-    values = (taps.deliver(channel, consumer, each, step) for step, each in enumerate(shown))
+    values = (taps.deliver(channel, reader, each, step) for step, each in enumerate(shown))
     return np.stack([np.asarray(value) for value in values])

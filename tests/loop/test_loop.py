@@ -6,7 +6,7 @@ from loop_toys import FACTS, SCENES, Guess, Line, Planner, execute, interface_of
 
 from faultpath.core.errors import SystemMistake
 from faultpath.faults import parse_fault, resolve
-from faultpath.interface import transitive_consumers
+from faultpath.interface import transitive_readers
 from faultpath.loop import (
     Batch,
     IllegalRead,
@@ -15,8 +15,8 @@ from faultpath.loop import (
     Port,
     Taps,
     UndeclaredReader,
-    consumers,
     graph,
+    readers,
 )
 from faultpath.loop import interface_of as derived
 from faultpath.systems.checks.reads import ReadLog
@@ -190,10 +190,10 @@ def test_a_trace_says_who_read_what_of_which_step() -> None:
 def test_the_interface_follows_from_the_ports() -> None:
     parts = (Guess(), Planner(), Line())
     interface = interface_of(parts)
-    assert interface.channel("action").consumers == ("observer.executed", "line.motor")
+    assert interface.channel("action").readers == ("observer.executed", "line.motor")
     assert interface.reconstructs == {"observer": ("guess",)}
-    every = {name for channel in interface.channels for name in channel.consumers}
-    assert every == set(consumers(parts))
+    every = {name for channel in interface.channels for name in channel.readers}
+    assert every == set(readers(parts))
     other = Guess()
     other.reads = frozenset({Port("position", "other")})
     with pytest.raises(SystemMistake, match=r"does not list observer\.other"):
@@ -221,7 +221,7 @@ def test_a_fault_reaches_the_readers_of_all_that_a_module_writes() -> None:
     interface = derived(facts, (observer, pilot, Line()))
     assert interface.reconstructs == {"observer": ("speed", "guess")}
     reached = ("observer.seen", "planner.start", "planner.feedback")
-    assert transitive_consumers(interface, "position") == reached
+    assert transitive_readers(interface, "position") == reached
     taps = Taps(interface, resolve(fault("position:scale=2"), interface), scenes=SCENES, dt_s=0.1)
     parts = graph(interface, Line(), (observer, pilot))
     list(Loop(interface, parts).execute(_batch(), taps))

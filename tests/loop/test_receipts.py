@@ -20,8 +20,8 @@ LATE = DOUBLE.model_copy(update={"onset_step": 3, "duration_steps": 2}).aimed_at
 def run(taps: Taps, to: Any = np.asarray, steps: Any = range(6), zero: int = -1) -> None:
     for step in steps:
         value = to(np.array([0.0, 0.0] if step == zero else [1.0, 2.0]))
-        for consumer in ("predictor.dynamics", "observer.model"):
-            taps.deliver("mass", consumer, Reading(value, "scale", step), step)
+        for reader in ("predictor.dynamics", "observer.model"):
+            taps.deliver("mass", reader, Reading(value, "scale", step), step)
 
 
 @LIBRARIES
@@ -163,7 +163,7 @@ def test_taps_that_attach_a_fault_elsewhere_are_told_by_the_faults(
     attach = Taps._add  # pyright: ignore[reportPrivateUsage] - what is made wrong here
 
     def misplaced(self: Taps, faults: Any, dt_s: float, seed: int) -> None:
-        moved = [fault.model_copy(update={"consumers": reached}) for fault in faults]
+        moved = [fault.model_copy(update={"readers": reached}) for fault in faults]
         attach(self, moved, dt_s, seed)
 
     monkeypatch.setattr(Taps, "_add", misplaced)

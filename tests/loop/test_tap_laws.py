@@ -29,9 +29,9 @@ WINDOWS = pytest.mark.parametrize(
 )
 
 
-def fault(intervention: Intervention, window: dict[str, Any], *consumers: str) -> Fault:
+def fault(intervention: Intervention, window: dict[str, Any], *readers: str) -> Fault:
     given = {"channel": "wind", "intervention": intervention} | window
-    return Fault.model_validate(given).aimed_at(*consumers)
+    return Fault.model_validate(given).aimed_at(*readers)
 
 
 @EACH
@@ -135,8 +135,8 @@ def test_faults_of_one_cause_draw_the_same_numbers() -> None:
     noise = Noise(std=1.0)
     storm = [Fault(channel=c, intervention=noise, cause="storm") for c in ("mass", "wind")]
 
-    def error(faults: list[Any], channel: str, consumer: str) -> np.ndarray[Any, Any]:
-        tap = {"channel": channel, "consumer": consumer}
+    def error(faults: list[Any], channel: str, reader: str) -> np.ndarray[Any, Any]:
+        tap = {"channel": channel, "reader": reader}
         return play(faults, "ab", **tap) - play([], "ab", **tap)
 
     mass = error(storm, "mass", "observer.model")

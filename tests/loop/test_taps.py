@@ -1,4 +1,4 @@
-"""Delivery: what a consumer may read, what a reading has to be, and that nobody changes it."""
+"""Delivery: what a reader may read, what a reading has to be, and that nobody changes it."""
 
 import re
 from contextlib import nullcontext
@@ -22,21 +22,21 @@ from faultpath.loop import (
     WrittenTo,
 )
 
-SCALE = Fault(channel="mass", intervention=Scale(factor=2.0), consumers=("observer",))
+SCALE = Fault(channel="mass", intervention=Scale(factor=2.0), readers=("observer",))
 
 
 def mass(step: int, value: Any = None, source: str = "scale") -> Reading:
     return Reading(np.array([1.0, 3.0]) if value is None else value, source, step)
 
 
-def test_without_a_fault_the_consumer_gets_the_very_tensor() -> None:
+def test_without_a_fault_the_reader_gets_the_very_tensor() -> None:
     taps = make([SCALE])
     value = to_torch([1.0, 3.0])
     assert taps.deliver("mass", "predictor.dynamics", mass(0, value), 0) is value
 
 
 STILL, WIND = mass(0, source="still"), Reading(np.zeros((2, 3)), "truth", 0)
-FEWER, TRUE = make(consumers={"predictor.dynamics"}), make(bindings={"wind": "truth"})
+FEWER, TRUE = make(readers={"predictor.dynamics"}), make(bindings={"wind": "truth"})
 
 
 @pytest.mark.parametrize(
@@ -50,9 +50,9 @@ FEWER, TRUE = make(consumers={"predictor.dynamics"}), make(bindings={"wind": "tr
     ],
 )
 def test_an_illegal_read_names_the_tap(taps, tap, reading, error, said):
-    channel, consumer = tap.split(" -> ")
+    channel, reader = tap.split(" -> ")
     with pytest.raises(error, match=f"^tap {tap}: .*{re.escape(said)}"):
-        taps.deliver(channel, consumer, reading, 0)
+        taps.deliver(channel, reader, reading, 0)
 
 
 def test_steps_do_not_run_backwards() -> None:
@@ -68,10 +68,10 @@ def test_steps_do_not_run_backwards() -> None:
         ({"bindings": {"wnd": "still"}}, "unknown channel 'wnd'; did you mean 'wind'"),
         ({"bindings": {"wind": "scale"}}, "channel 'wind' cannot be bound: unknown source 'scale'"),
         ({"privileged": {"oracle"}}, "unknown source 'oracle'"),
-        ({"consumers": {"pilot.x"}}, "this variant's consumers: unknown consumer 'pilot.x'"),
+        ({"readers": {"pilot.x"}}, "this variant's readers: unknown reader 'pilot.x'"),
         ({"faults": [SCALE.aimed_at("pilot")]}, "channel 'mass': unknown reader 'pilot'"),
         (
-            {"faults": [SCALE], "consumers": {"predictor.dynamics"}},
+            {"faults": [SCALE], "readers": {"predictor.dynamics"}},
             "fault 'mass scaled by 2 at observer.model' reaches no reader",
         ),
     ],
@@ -121,7 +121,7 @@ class TestModuleView:
             view.module = "planner"  # pyright: ignore[reportAttributeAccessIssue]
 
 
-NULL = Fault(channel="mass", intervention=Scale(factor=1.0), consumers=("observer",))
+NULL = Fault(channel="mass", intervention=Scale(factor=1.0), readers=("observer",))
 FROZEN = NULL.model_copy(update={"intervention": Freeze()})
 ANY_FAULT = pytest.mark.parametrize("faults", [(), (NULL,), (SCALE,), (FROZEN,)])
 CLEAN_OR_NULL = pytest.mark.parametrize("faults", [(), (NULL,)])
@@ -132,7 +132,7 @@ def deliver(taps: Taps, value: Any, step: int = 0, place: str = "observer.model"
 
 
 @ANY_FAULT
-def test_a_consumer_cannot_write_into_what_it_gets(faults: tuple[Fault, ...]) -> None:
+def test_a_reader_cannot_write_into_what_it_gets(faults: tuple[Fault, ...]) -> None:
     taps = make(faults)
     plant = np.array([1.0, 3.0])
     for step in range(2):
@@ -211,7 +211,7 @@ def test_a_step_before_the_first_is_refused(step: int) -> None:
 class TestGuard:
     @pytest.mark.parametrize("inference", [False, True])
     @ANY_FAULT
-    def test_a_consumer_that_writes_is_named(self, inference, faults):
+    def test_a_reader_that_writes_is_named(self, inference, faults):
         import torch
 
         with torch.inference_mode() if inference else nullcontext():

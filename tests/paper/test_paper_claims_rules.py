@@ -145,8 +145,8 @@ def test_an_interval_without_width_of_few_scenes_is_no_more_than_a_point(rule, v
 def effect(n: int, wins: int, losses: int) -> Contrast:
     """Return the tested difference of one seed with so many scenes won and lost."""
     scene = np.arange(n)
-    arms = scene < wins, (scene >= wins) & (scene < wins + losses)
-    return with_test(success_effect(*arms, Resamples.draw("turn", n, n_resamples=10)), "exact")
+    variants = scene < wins, (scene >= wins) & (scene < wins + losses)
+    return with_test(success_effect(*variants, Resamples.draw("turn", n, n_resamples=10)), "exact")
 
 
 N = 40
@@ -185,8 +185,10 @@ def test_the_least_detectable_effect_is_that_of_the_resamples() -> None:
 def test_the_least_detectable_change_is_that_of_the_interval_that_decides():
     """The bootstrap of 25 equal scenes has no spread, and its change no detectable size."""
     drawn = Resamples.draw("claims", 25)
-    arms = np.ones((25, 1), dtype=bool)
-    found = decisive(change(success_effect(arms, arms, drawn), success_effect(arms, arms, drawn)))
+    variants = np.ones((25, 1), dtype=bool)
+    found = decisive(
+        change(success_effect(variants, variants, drawn), success_effect(variants, variants, drawn))
+    )
     assert found.interval is not None
     low, high = found.interval
     assert found.least == pytest.approx(2.8015852 * (high - low) / (2 * 1.959964), rel=1e-5)

@@ -29,10 +29,10 @@ def won(wins: Callable[[Cell], int]) -> Ends:
 
 def trials(cells: Iterable[Cell], ends: Ends, scenes: Iterable[int] = range(SCENES)) -> Trials:
     """Return a table with each variant, path and seed once."""
-    arms = {(c.variant, c.path, seed): c for c in cells for seed in c.seeds}
+    variants = {(c.variant, c.path, seed): c for c in cells for seed in c.seeds}
     rows = (
-        Trial(*arm, i, "", _outcome(i, arm[-1], ends(cell, arm[-1], i)))
-        for (arm, cell), i in product(arms.items(), scenes)
+        Trial(*variant, i, "", _outcome(i, variant[-1], ends(cell, variant[-1], i)))
+        for (variant, cell), i in product(variants.items(), scenes)
     )
     return Trials.of(rows)
 

@@ -39,7 +39,7 @@ def test_tables_and_figures_follow_from_the_outcomes(run: Run) -> None:
     }
 
 
-def test_every_arm_of_the_paper_was_flown(run: Run) -> None:
+def test_every_variant_of_the_paper_was_flown(run: Run) -> None:
     results, found = run
     wanted = PAPER.cells(cell for page in PAGES for cell in page.cells)
     assert all(results.seeds(cell) == cell.seeds for cell in wanted)

@@ -12,11 +12,11 @@ from faultpath.decisions.family import decide_paths
 def audit(scenes: int, alone: int, shared: int) -> dict:
     """Decide an audit in which the versions differ in all scenes, to a side or (0) in none."""
 
-    def arms(side: int):
+    def variants(side: int):
         won, lost = (np.full((scenes, 1), side == of) for of in (1, -1))
         return won, lost
 
-    success = {"correct": arms(0), "observer": arms(alone), "shared": arms(shared)}
+    success = {"correct": variants(0), "observer": variants(alone), "shared": variants(shared)}
     family = decide_paths(success, rule="unconditional")
     effects = {
         n: [e.value, *(e.interval or (-100, 100)), e.sign] for n, e in family.effects.items()

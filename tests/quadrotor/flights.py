@@ -37,7 +37,7 @@ class Log(DeliveryListener):
 
     def _keep(self, tap: Tap, given: Any, got: Any) -> None:
         pair = given.numpy().copy(), got.numpy().copy()
-        self.kept.setdefault((tap.channel, tap.consumer), []).append(pair)
+        self.kept.setdefault((tap.channel, tap.reader), []).append(pair)
 
 
 class LoggingTaps(Taps):
@@ -48,9 +48,9 @@ class LoggingTaps(Taps):
         super().__init__(*args, observer=kept, **kwargs)
         self.log = kept.kept
 
-    def delivered(self, channel: str, consumer: str) -> np.ndarray:
+    def delivered(self, channel: str, reader: str) -> np.ndarray:
         """Return `[steps, scenes, ...]`."""
-        return np.stack([value for _, value in self.log[channel, consumer]])
+        return np.stack([value for _, value in self.log[channel, reader]])
 
 
 ANALYTIC = {"predictor": "dki-drag", "clearance": "true"}
@@ -79,12 +79,12 @@ def wire(
     parts = system.variants[variant]
     return LoggingTaps(
         system.interface,
-        resolve(faults, system.interface, parts.consumers),
+        resolve(faults, system.interface, parts.readers),
         scenes=tuple(scenes),
         dt_s=system.control_dt_s,
         seed=seed,
         bindings=parts.bindings,
-        consumers=parts.consumers,
+        readers=parts.readers,
         privileged=parts.privileged - without,
     )
 

@@ -23,7 +23,7 @@ from faultpath.core import arrays
 from faultpath.core.errors import UserError
 from faultpath.faults import at_readers
 from faultpath.loop import Batch, DeliveryListener, Query, Reading, Tap, Taps
-from faultpath.trials import Arm
+from faultpath.trials import Treatment
 from faultpath.trials.attempt import taps_of
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
@@ -77,9 +77,9 @@ def _wired(
     scenes: Sequence[str],
     observer: DeliveryListener | None = None,
 ) -> Taps:
-    consumers = built.variants[variant].consumers
-    faults = at_readers([part for text in texts for part in fault(text, built)], consumers)
-    return taps_of(built, Arm(variant=variant, faults=faults), scenes, observer=observer)
+    readers = built.variants[variant].readers
+    faults = at_readers([part for text in texts for part in fault(text, built)], readers)
+    return taps_of(built, Treatment(variant=variant, faults=faults), scenes, observer=observer)
 
 
 @pytest.mark.skipif(torch.cuda.is_available(), reason="there is a GPU here, which flies below")

@@ -67,8 +67,8 @@ def test_errors_of_one_flight_are_delivered_to_one_module_of_another(tmp_path):
 
 def test_faults_reach_the_sensors_of_an_estimator_and_variants_may_differ_in_it():
     system = quadrotor(bring=FILTER, wind="L1", sensor_noise="1")
-    assert "estimator.filter" in system.variants[FILTER].consumers
-    assert "estimator.filter" not in system.variants["dob"].consumers
+    assert "estimator.filter" in system.variants[FILTER].readers
+    assert "estimator.filter" not in system.variants["dob"].readers
     biased = fault("gyroscope:offset=0.2/0/0", system)
     plain, _ = fly(system, f"{FILTER}/dob")
     faulted, _ = fly(system, f"{FILTER}/dob", faults=biased)

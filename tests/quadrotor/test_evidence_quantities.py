@@ -75,7 +75,7 @@ def test_the_wind_input_is_the_variant_s(recorded):
     assert right < estimated < none
 
 
-def test_a_fault_strikes_only_the_consumers_that_it_names(recorded):
+def test_a_fault_strikes_only_the_readers_that_it_names(recorded):
     clean, at_reconstruction, at_predictor, shared = (
         ask(recorded, "position-response", "wm-a-wind/gru", *faults)
         for faults in ((), (AT_RECONSTRUCTION,), (AT_PREDICTOR,), (SHARED,))

@@ -5,7 +5,7 @@ from flights import fault
 
 from faultpath.faults import at_readers
 from faultpath.systems.checks.blocks import BlockSpec, run_block
-from faultpath.trials import Arm, SystemSpec, load_system
+from faultpath.trials import SystemSpec, Treatment, load_system
 from faultpath.trials.attempt import Done, attempt
 from faultpath.trials.execution.recheck import difference
 from faultpath.trials.store.signals import TOGETHER
@@ -16,14 +16,14 @@ SCENE = ("selection/003",)
 def test_a_recorded_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
     system = load_system(SystemSpec(name="quadrotor", options={"clearance": "true", "wind": "L3"}))
     wrong = fault("calibration=+0.1", system)
-    faulted = at_readers(wrong, system.variants["dob"].consumers)
+    faulted = at_readers(wrong, system.variants["dob"].readers)
     told: list[dict[str, np.ndarray]] = []
     for faults in ((), faulted):
-        arm = Arm(variant="dob", faults=faults)
-        run = run_block(system, BlockSpec(arm, SCENE, signals=True))
+        treatment = Treatment(variant="dob", faults=faults)
+        run = run_block(system, BlockSpec(treatment, SCENE, signals=True))
         assert run.error == ""
         if faults:
-            again = attempt(system, arm, SCENE)
+            again = attempt(system, treatment, SCENE)
             assert isinstance(again, Done)
             assert difference(again.outcomes, Done(run.outcomes, ())) == ""
         told.append({each.name: each.values for each in run.signals[0]})

@@ -72,10 +72,10 @@ def test_loss_reads_no_future_state_command_or_wind():
     assert loss(made) == loss(changed)
 
 
-def corrupted(faults, consumers=(HEAD,), count=COUNT):
+def corrupted(faults, readers=(HEAD,), count=COUNT):
     readings = {"mass": torch.full((count,), 1.5), "thrust_scale": torch.full((count,), 0.8)}
     ids = tuple(f"wind/{i:05d}/0" for i in range(count))
-    return readings, corruption.corrupted(faults, consumers, ids, 0, readings)
+    return readings, corruption.corrupted(faults, readers, ids, 0, readings)
 
 
 def test_mass_and_thrust_scale_err_independently_within_the_half_range():
@@ -87,9 +87,9 @@ def test_mass_and_thrust_scale_err_independently_within_the_half_range():
     assert abs(float(torch.corrcoef(torch.stack((mass, scale)))[0, 1])) < 0.08
 
 
-def test_consumers_of_one_channel_share_the_draw_and_others_are_left_alone():
+def test_readers_of_one_channel_share_the_draw_and_others_are_left_alone():
     places = ("predictor.dynamics", "predictor.trim", "predictor.wind_map")
-    readings, delivered = corrupted(dcc(places[:2]), consumers=places)
+    readings, delivered = corrupted(dcc(places[:2]), readers=places)
     assert torch.equal(delivered["mass", places[0]], delivered["mass", places[1]])
     assert not torch.equal(delivered["mass", places[0]], readings["mass"])
     assert delivered["mass", places[2]] is readings["mass"]

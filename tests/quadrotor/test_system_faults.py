@@ -20,14 +20,14 @@ def plain(short) -> Outcome:
 
 
 def _altered(receipts: Receipts) -> set[tuple[str, str]]:
-    return {(tap.channel, tap.consumer) for tap in receipts.taps if tap.steps_altered.any()}
+    return {(tap.channel, tap.reader) for tap in receipts.taps if tap.steps_altered.any()}
 
 
 @pytest.mark.parametrize("identity", ["scale=1", "noise=0", "delay=0", "dropout=0"])
 def test_an_identity_on_every_channel_is_no_fault_to_the_bit(identity, plain):
     system = quadrotor(wind="L2")
-    present = system.variants["dob"].consumers
-    channels = [c.name for c in system.interface.channels if present & set(c.consumers)]
+    present = system.variants["dob"].readers
+    channels = [c.name for c in system.interface.channels if present & set(c.readers)]
     faults = [part for name in channels for part in fault(f"{name}:{identity}", system)]
     (faulted,), taps = fly(system, faults=faults)
     assert bits(faulted) == bits(plain)
@@ -40,10 +40,10 @@ def test_calibration_strikes_mass_and_thrust_scale_everywhere_and_nothing_else()
     system = quadrotor(wind="L2")
     _, taps = fly(system, scenes=HELD_OUT[:2], faults=fault("calibration=-0.2", system))
     assert _altered(taps.receipts()) == set(ALTERED_BY_CALIBRATION)
-    for (channel, consumer), deliveries in taps.log.items():
-        sign = ALTERED_BY_CALIBRATION.get((channel, consumer), 0)
+    for (channel, reader), deliveries in taps.log.items():
+        sign = ALTERED_BY_CALIBRATION.get((channel, reader), 0)
         for reading, value in deliveries:
-            assert np.array_equal(value, reading * (1 - 0.2 * sign)), (channel, consumer)
+            assert np.array_equal(value, reading * (1 - 0.2 * sign)), (channel, reader)
 
 
 def test_a_fault_at_the_observer_leaves_the_inputs_of_the_predictor_clean(plain):
@@ -83,7 +83,7 @@ def test_a_fault_of_any_channel_flies_and_tells(text, plain):
     ends = [faulted.metrics[name] for name in ("terminal_distance_m", "min_clearance_m")]
     assert np.isfinite([*ends, *trace(faulted).flat]).all()
     assert bits(faulted)[-1] != bits(plain)[-1]
-    named = {(part.channel, reader) for part in faults for reader in part.consumers}
+    named = {(part.channel, reader) for part in faults for reader in part.readers}
     assert set() < _altered(taps.receipts()) <= named
     for hashes in ("initial_hash", "disturbance_hash", "planner_noise_hash"):
         assert getattr(faulted, hashes) == getattr(plain, hashes)

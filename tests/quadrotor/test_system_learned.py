@@ -13,7 +13,7 @@ LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
 pytestmark = pytest.mark.usefixtures("short")
 
 
-def test_an_arms_seed_chooses_the_training_of_what_its_variant_names():
+def test_an_variants_seed_chooses_the_training_of_what_its_variant_names():
     found = {each.name: each for each in setups(quadrotor(**LEARNED).options)}
     assert found["gru"].load_reconstruction(2) is reconstruction("gru", 2)
     assert found["gru"].load_predictor(2) is predictor("wm-a-wind", 0)
@@ -27,7 +27,7 @@ def test_a_noisy_state_is_late_and_the_same_for_everyone():
     system = quadrotor(**LEARNED)
     _, taps = fly(system, "gru", faults=fault("noisy_state=1", system))
     for channel in STATE_NOISE_STD:
-        readers = [consumer for name, consumer in taps.log if name == channel]
+        readers = [reader for name, reader in taps.log if name == channel]
         assert len(readers) > 1
         got = [taps.delivered(channel, reader) for reader in readers]
         assert all(np.array_equal(value, got[0]) for value in got)
@@ -45,9 +45,9 @@ def test_calibration_errors_reach_the_predictor_s_history_but_not_the_hover_befo
     system = quadrotor(**LEARNED)
     _, taps = fly(system, "gru", faults=fault("calibration=0.1@predictor", system))
     receipts = taps.receipts().taps
-    places = {t.consumer for t in receipts if t.channel == "mass" and t.steps_altered.any()}
+    places = {t.reader for t in receipts if t.channel == "mass" and t.steps_altered.any()}
     readers = ("dynamics", "wind_map", "trim", "normalise_thrust", "history")
     assert places == {f"predictor.{reader}" for reader in readers}
     hover = Vehicle.stack([system.scene(HELD_OUT[0]).vehicle]).hover_command().T
-    for consumer in ("predictor.history", "reconstruction.history"):
-        assert np.array_equal(taps.delivered("action", consumer)[0], hover.numpy())
+    for reader in ("predictor.history", "reconstruction.history"):
+        assert np.array_equal(taps.delivered("action", reader)[0], hover.numpy())

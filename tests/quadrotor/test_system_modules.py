@@ -5,9 +5,9 @@ import torch
 from faultpath_quadrotor.estimators.protocol import ExactEstimator
 from flights import HELD_OUT, STEPS, quadrotor
 
-from faultpath.loop import Batch, consumers
+from faultpath.loop import Batch, readers
 from faultpath.systems.checks.reads import ReadLog
-from faultpath.trials import Arm
+from faultpath.trials import Treatment
 from faultpath.trials.attempt import taps_of
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
@@ -20,11 +20,11 @@ pytestmark = pytest.mark.usefixtures("short")
 
 
 @pytest.mark.parametrize("clearance", ["true", "depth"])
-def test_a_variants_consumers_follow_from_its_ports_and_truth_has_one_door(clearance):
+def test_a_variants_readers_follow_from_its_ports_and_truth_has_one_door(clearance):
     system = quadrotor(clearance=clearance)
     for name, variant in system.variants.items():
         graph = system.loop(name, None).graph
-        assert variant.consumers == consumers(graph.parts)
+        assert variant.readers == readers(graph.parts)
         assert [type(module) for module in graph.modules if module.truths] == [ExactEstimator]
 
 
@@ -33,14 +33,14 @@ def test_what_flies_reads_every_port_and_commands_late(options, variant):
     system = quadrotor(**options)
     batch = Batch(HELD_OUT[:2], 0, system.control_dt_s)
     log = ReadLog(batch.scenes)
-    taps = taps_of(system, Arm(variant=variant), batch.scenes, observer=log)
+    taps = taps_of(system, Treatment(variant=variant), batch.scenes, observer=log)
     with torch.inference_mode():
         instants = list(system.loop(variant, 0).execute(batch, taps))
     assert (len(instants), instants[-1].step) == (STEPS + 1, STEPS)
     reads = log.reads()
-    assert {each.consumer for each in reads} == set(system.variants[variant].consumers)
+    assert {each.reader for each in reads} == set(system.variants[variant].readers)
     assert all(tap.deliveries == STEPS for tap in taps.receipts().taps)
     assert (system.variants[variant].privileged == set()) == (options is LEARNED)
-    taught = {each.consumer for each in reads if each.channel == "action"}
-    late = {each.consumer for each in reads if each.valid_step < each.step}
+    taught = {each.reader for each in reads if each.channel == "action"}
+    late = {each.reader for each in reads if each.valid_step < each.step}
     assert late == taught - {"vehicle.actuators"}

@@ -1,4 +1,4 @@
-"""What each variant may know, and what arms of a contrast share."""
+"""What each variant may know, and what variants of a contrast share."""
 
 import pytest
 import torch
@@ -58,7 +58,7 @@ def test_a_privileged_source_needs_its_permission(variant, predictor, source):
         system.run(variant, HELD_OUT[:1], taps, 0)
 
 
-def test_arms_of_a_contrast_meet_the_same_conditions():
+def test_variants_of_a_contrast_meet_the_same_conditions():
     system = quadrotor(wind="L2")
     ends = [fly(system, variant, HELD_OUT[:2])[0] for variant in VARIANTS]
     for first, *rest in zip(*ends, strict=True):

@@ -55,15 +55,15 @@ sources:
 - {name: reconstructed_wind, unit: m/s, shape: [3], provenance: reconstructed}
 channels:
 - {name: mass, sources: [mass_estimate], gap: fidelity,
-   consumers: [predictor.dynamics, predictor.wind_map, predictor.trim, reconstruction.head]}
+   readers: [predictor.dynamics, predictor.wind_map, predictor.trim, reconstruction.head]}
 - {name: thrust_scale, sources: [thrust_scale_estimate], gap: fidelity,
-   consumers: [predictor.dynamics, predictor.trim, reconstruction.head]}
+   readers: [predictor.dynamics, predictor.trim, reconstruction.head]}
 - {name: position, sources: [position_estimate], gap: fidelity,
-   consumers: [predictor.initial_state]}
+   readers: [predictor.initial_state]}
 - {name: velocity, sources: [velocity_estimate], gap: fidelity,
-   consumers: [predictor.initial_state, reconstruction.history]}
+   readers: [predictor.initial_state, reconstruction.history]}
 - {name: wind, sources: [zero_wind, reconstructed_wind], gap: availability,
-   consumers: [predictor.wind_map]}
+   readers: [predictor.wind_map]}
 reconstructs: {reconstruction: reconstructed_wind}
 """
 
@@ -150,19 +150,19 @@ def three_seeds() -> ReportInput:
 def _variant(name: str) -> VariantShown:
     return VariantShown(
         name=name,
-        consumers=tuple(sorted({c for channel in interface().channels for c in channel.consumers})),
+        readers=tuple(sorted({c for channel in interface().channels for c in channel.readers})),
         bindings={"wind": "reconstructed_wind"},
     )
 
 
-def _faulted(*consumers: str) -> tuple[FaultedTap, ...]:
-    """Return the taps of a fault on the calibration at these consumers, as receipts name them."""
+def _faulted(*readers: str) -> tuple[FaultedTap, ...]:
+    """Return the taps of a fault on the calibration at these readers, as receipts name them."""
     return tuple(
-        FaultedTap(channel=channel.name, consumer=consumer, faulted_steps=9, altered_steps=9)
+        FaultedTap(channel=channel.name, reader=reader, faulted_steps=9, altered_steps=9)
         for channel in interface().channels
         if channel.name in ("mass", "thrust_scale")
-        for consumer in channel.consumers
-        if consumer in consumers
+        for reader in channel.readers
+        if reader in readers
     )
 
 
@@ -177,13 +177,13 @@ def _paths() -> tuple[Path, ...]:
     )
 
 
-def _path(name: str, title: str, consumers: tuple[str, ...]) -> Path:
-    faulted = _faulted(*consumers)
+def _path(name: str, title: str, readers: tuple[str, ...]) -> Path:
+    faulted = _faulted(*readers)
     return Path(
         name=name,
         title=title,
-        consumers=consumers,
-        baseline_consumers=consumers,
+        readers=readers,
+        baseline_readers=readers,
         faulted=faulted,
         baseline_faulted=faulted,
     )

@@ -46,9 +46,9 @@ def test_the_first_scene_shows_both_errors_and_their_sum_on_every_path(heard) ->
     shown = adding(heard, pairs_of(heard))
     assert shown is not None
     assert len(shown.paths) == len(SIZES)
-    for (one, other), (_, arms) in zip(SIZES.values(), shown.paths, strict=True):
-        for arm in arms:
-            assert arm.sizes == pytest.approx((abs(one), abs(other), abs(one + other)))
+    for (one, other), (_, variants) in zip(SIZES.values(), shown.paths, strict=True):
+        for variant in variants:
+            assert variant.sizes == pytest.approx((abs(one), abs(other), abs(one + other)))
     assert "under the shared fault" in shown.caption
     assert shown.caption.count("2.0 and 1.8 m/s²") == 2
     page = report_page(heard)

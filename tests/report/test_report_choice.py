@@ -61,7 +61,7 @@ def begun(source: ReportInput, record: DecisionRecord, pairs: list[Pair]) -> lis
     ]
 
 
-def test_an_isolated_win_is_shown_by_a_scene_where_only_that_arm_survives_there(
+def test_an_isolated_win_is_shown_by_a_scene_where_only_that_variant_survives_there(
     one_seed: ReportInput,
 ) -> None:
     record = announcing(one_seed, reconstruction=1)

@@ -153,7 +153,7 @@ def test_other_paths_are_blank_and_not_left_out(
     lost = make(lost="predictor")
     first, second = run(lost, 1), run(one_seed, 2)
     record, moved = second.record, {"path": "planner"}
-    planner = FaultPath(name="planner", title="Planner only", consumers=(), baseline_consumers=())
+    planner = FaultPath(name="planner", title="Planner only", readers=(), baseline_readers=())
     copied = [cell for cell in record.cells if cell.path == record.effects[1].path]
     secondary = (*record.secondary, record.secondary[1].model_copy(update=moved))
     update = {

@@ -29,7 +29,7 @@ def screen(source: ReportInput) -> str:
 
 
 def states(fork: Fork) -> list[list[str]]:
-    return [[f"{r.module}: {r.state}" for r in readers] for _, _, readers in fork.arms]
+    return [[f"{r.module}: {r.state}" for r in readers] for _, _, readers in fork.variants]
 
 
 def with_paths(source: ReportInput, change: Callable[[Path], Path]) -> ReportInput:
@@ -50,7 +50,7 @@ def test_each_path_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
 
 @pytest.mark.parametrize("readers", [("*",), ("predictor.trim",)])
 def test_the_fault_is_in_words_whoever_gets_it(one_seed: ReportInput, readers) -> None:
-    fault = Fault(channel="mass", consumers=readers, intervention=Scale(factor=0.6))
+    fault = Fault(channel="mass", readers=readers, intervention=Scale(factor=0.6))
     question = one_seed.record.question.model_copy(update={"faults": (fault,)})
     record = one_seed.record.model_copy(update={"question": question})
     console = Console(file=io.StringIO(), width=100)
@@ -84,14 +84,14 @@ def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> N
 
 def test_a_module_that_does_not_read_the_fault_is_grey_and_says_why(one_seed: ReportInput) -> None:
     baseline, repair = one_seed.system.variants
-    kept = tuple(name for name in repair.consumers if name != "reconstruction.head")
-    variants = (baseline, repair.model_copy(update={"consumers": kept}))
+    kept = tuple(name for name in repair.readers if name != "reconstruction.head")
+    variants = (baseline, repair.model_copy(update={"readers": kept}))
     blind = replace(one_seed, system=one_seed.system.model_copy(update={"variants": variants}))
 
     def untouched(path: Path) -> Path:
         update = {
-            "consumers": tuple(c for c in path.consumers if c in kept),
-            "faulted": tuple(tap for tap in path.faulted if tap.consumer in kept),
+            "readers": tuple(c for c in path.readers if c in kept),
+            "faulted": tuple(tap for tap in path.faulted if tap.reader in kept),
         }
         return path.model_copy(update=update)
 

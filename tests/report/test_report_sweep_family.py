@@ -12,7 +12,8 @@ from faultpath.report.inputs import ReportInput
 
 
 def drawn(source: ReportInput, rng: np.random.Generator, sizes: int) -> list[Compared]:
-    """Return sizes of which no arm differs, each detected by itself where its p is low enough."""
+    """Return sizes of which no variant differs, each detected by itself where its p is low
+    enough."""
     runs: list[Compared] = []
     correct = float(rng.random())
     for number in range(1, sizes + 1):

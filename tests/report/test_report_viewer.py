@@ -26,9 +26,9 @@ def test_every_trial_is_there_to_the_centimetre(three_seeds: ReportInput) -> Non
     traces, seen = traces_of(three_seeds.trials), 0
     for scene in data["scenes"]:
         for pair in scene["pairs"]:
-            for arm, variant in (("baseline", "gru"), ("repair", "gru-dcc")):
+            for variant, variant in (("baseline", "gru"), ("repair", "gru-dcc")):
                 at = TrialAddress(variant, pair["path"], scene["seed"], scene["scene"])
-                place = pair[arm]["track"]
+                place = pair[variant]["track"]
                 if place is None:
                     assert at not in traces
                     continue
@@ -99,11 +99,11 @@ def test_without_positions_the_player_opens_on_what_the_plant_measures(
 def test_signals_are_plotted_beside_what_they_are_compared_with(one_seed: ReportInput) -> None:
     steps = np.arange(5, dtype=np.float32)[:, None]
 
-    def told(arm: int) -> tuple[Signal, ...]:
+    def told(variant: int) -> tuple[Signal, ...]:
         return (
             Signal("true_wind", "wind", "m/s", steps),
             Signal("wind_again", "wind", "m/s", steps),
-            Signal("reconstructed_wind", "wind", "m/s", arm + steps / 2),
+            Signal("reconstructed_wind", "wind", "m/s", variant + steps / 2),
             Signal("goal", "goal", "m", steps * 0 + 3),
             Signal("wind error at a.b", "wind error", "m/s", steps * 0 + 1),
             Signal(IN_FORCE, IN_FORCE, "1", np.isin(steps, (1, 2, 4)).astype(np.float32)),

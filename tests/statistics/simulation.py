@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from scipy.stats import multinomial
 
 from faultpath.core.streams import generator
-from faultpath.decisions.compared import Outcomes as Arms
+from faultpath.decisions.compared import Outcomes as Variants
 from faultpath.decisions.contrasts import alpha_shares
-from faultpath.decisions.family import Family, decide_paths
+from faultpath.decisions.family import Family, decide_conditions
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.statistics.estimate import ALPHA, RULE, RULES
 from faultpath.statistics.power import detectable, detected, rule_power
@@ -26,14 +26,14 @@ Floats = NDArray[np.float64]
 PRIOR = RULES[RULE].prior
 RATES = (0.005, 0.02, 0.05, 0.1, 0.3, 0.5)
 LEANS = {0.0: "even", 0.5: "three to one", 1.0: "one-sided"}
-PATHS = (CORRECT, "reconstruction", "predictor", SHARED)
+CONDITIONS = (CORRECT, "reconstruction", "predictor", SHARED)
 
 
 @dataclass(frozen=True)
 class Population:
     """Scenes of which a share ``rate`` differs in each seed, on average over the seeds.
 
-    ``lean`` is the share of these that favours the first arm less the share that favours the
+    ``lean`` is the share of these that favours the first variant less the share that favours the
     second: 0 symmetric, 1 one-sided. With probability ``alike`` a scene treats all seeds alike,
     else each for itself. ``seed_effects``: seeds have other rates (0 to twice ``rate``) and, where
     ``lean`` leaves room, other directions.
@@ -94,7 +94,7 @@ class Population:
 def joint(first: Population, second: Population, together: float) -> Floats:
     """Return the chances [sizes, sizes] of a scene in two conditions.
 
-    With probability ``together`` a scene that is good to one arm in one condition is so in the
+    With probability ``together`` a scene that is good to one variant in one condition is so in the
     other, else the conditions are independent.
     """
     one, two = first.chances(), second.chances()
@@ -112,7 +112,7 @@ def joint(first: Population, second: Population, together: float) -> Floats:
 
 def powered(seeds: int, scenes: int = 100, runs: int = 20_000) -> float:
     """Return the power of one or more seeds of which half of the scenes agree, where 5.4 % of the
-    trials favour one arm and .6 % the other."""
+    trials favour one variant and .6 % the other."""
     truth = Population(0.06, 0.8, seeds, 0.5)
     if seeds == 1:
         return rule_power(scenes, truth.rate, truth.mean, rule=RULE)
@@ -158,21 +158,21 @@ def break_even_coverage(
 
 
 def audit_of(
-    stream: np.random.Generator, n: int, paths: Mapping[str, Population], together: float
-) -> dict[str, Arms]:
-    """Return paired successes [scenes, seeds] on each path.
+    stream: np.random.Generator, n: int, conditions: Mapping[str, Population], together: float
+) -> dict[str, Variants]:
+    """Return paired successes [scenes, seeds] under each condition.
 
-    ``together`` is the chance that a scene is the same on all paths, as where a fault changes
-    nothing.
+    ``together`` is the chance that a scene is the same under all conditions, as where a fault
+    changes nothing.
     """
-    seeds = next(iter(paths.values())).seeds
+    seeds = next(iter(conditions.values())).seeds
     common = stream.random((n, seeds + 2))
-    found: dict[str, Arms] = {}
-    for path, population in paths.items():
+    found: dict[str, Variants] = {}
+    for condition, population in conditions.items():
         same = stream.random((n, 1)) < together
         draws: Floats = np.where(same, common, stream.random((n, seeds + 2)))
         difference = population.outcomes(draws)
-        found[path] = (difference >= 0.0, difference <= 0.0)
+        found[condition] = (difference >= 0.0, difference <= 0.0)
     return found
 
 
@@ -181,24 +181,24 @@ def announces(family: Family) -> bool:
     return any(each.sign for part in (family.effects, family.changes) for each in part.values())
 
 
-def equal_arms(scenes: int, truth: Population, together: float, runs: int = 2000) -> float:
-    """Return the share of audits of arms that do not differ that announce anything."""
-    stream = generator("statistics", f"equal arms {scenes} {truth} {together}", 0)
-    paths = dict.fromkeys(PATHS, truth)
-    audits = (audit_of(stream, scenes, paths, together) for _ in range(runs))
-    return sum(announces(decide_paths(arms, rule=RULE)) for arms in audits) / runs
+def equal_variants(scenes: int, truth: Population, together: float, runs: int = 2000) -> float:
+    """Return the share of audits of variants that do not differ that announce anything."""
+    stream = generator("statistics", f"equal variants {scenes} {truth} {together}", 0)
+    conditions = dict.fromkeys(CONDITIONS, truth)
+    audits = (audit_of(stream, scenes, conditions, together) for _ in range(runs))
+    return sum(announces(decide_conditions(variants, rule=RULE)) for variants in audits) / runs
 
 
 def failing(
-    stream: np.random.Generator, arms: Mapping[str, Arms], rates: Mapping[str, float]
-) -> dict[str, Arms]:
+    stream: np.random.Generator, variants: Mapping[str, Variants], rates: Mapping[str, float]
+) -> dict[str, Variants]:
     """Return successes of which a share of the trials under each condition has no outcome."""
-    lost: dict[str, Arms] = {}
-    for path, pair in arms.items():
+    lost: dict[str, Variants] = {}
+    for condition, pair in variants.items():
         one, two = (
-            np.where(stream.random(a.shape) < rates.get(path, 0.0), np.nan, a) for a in pair
+            np.where(stream.random(a.shape) < rates.get(condition, 0.0), np.nan, a) for a in pair
         )
-        lost[path] = one, two
+        lost[condition] = one, two
     return lost
 
 
@@ -219,13 +219,13 @@ def reversals(
     """Return the share of audits that announce a reversal: isolated effects as stated, shared
     -20 pp, and a share of all trials failed."""
     stream = generator("statistics", f"reversals {scenes} {seeds} {isolated}", 0)
-    paths = reversing(seeds, isolated)
+    conditions = reversing(seeds, isolated)
     announced = 0
     for _ in range(runs):
-        arms = audit_of(stream, scenes, paths, 0.3)
+        variants = audit_of(stream, scenes, conditions, 0.3)
         if failed:
-            arms = failing(stream, arms, dict.fromkeys(paths, failed))
-        family = decide_paths(arms, rule=RULE)
+            variants = failing(stream, variants, dict.fromkeys(conditions, failed))
+        family = decide_conditions(variants, rule=RULE)
         announced += "reversal" in family.turns.values()
     return announced / runs
 
@@ -235,11 +235,11 @@ def beside_failures(failed: float, runs: int = 600) -> float:
     the trials under the shared fault failed, which has no effect."""
     stream = generator("statistics", "beside failures", 0)
     none = Population(0.1, 0.0, 3, 0.5)
-    paths = {CORRECT: none, "reconstruction": Population(0.3, 0.4, 3, 0.5), SHARED: none}
+    conditions = {CORRECT: none, "reconstruction": Population(0.3, 0.4, 3, 0.5), SHARED: none}
     significant = 0
     for _ in range(runs):
-        arms = audit_of(stream, 60, paths, 0.3)
-        family = decide_paths(failing(stream, arms, {SHARED: failed}), rule=RULE)
+        variants = audit_of(stream, 60, conditions, 0.3)
+        family = decide_conditions(failing(stream, variants, {SHARED: failed}), rule=RULE)
         significant += family.effects["reconstruction"].sign == 1
     return significant / runs
 
@@ -260,13 +260,13 @@ def trainings(
             shift = np.where(stream.random(seeds) < 0.1, -collapse, collapse / 9.0)
         easy = stream.random((scenes, 1))
         noise = stream.normal(0.0, 0.15, size=(2, scenes, seeds))
-        arms = (easy + noise[0] < 0.5 + shift, easy + noise[1] < 0.5)
-        announced += announces(decide_paths({CORRECT: arms}, rule=RULE, models=models))
+        variants = (easy + noise[0] < 0.5 + shift, easy + noise[1] < 0.5)
+        announced += announces(decide_conditions({CORRECT: variants}, rule=RULE, models=models))
     return announced / runs
 
 
 def detection(scenes: int, truth: Population, alpha: float, runs: int = 20) -> float:
-    """Return how often a true difference is detected that audits of equal arms reported as the
+    """Return how often a true difference is detected that audits of equal variants reported as the
     least detectable one, averaged over ``runs`` reports."""
     stream = generator("statistics", f"detection {scenes} {truth} {alpha}", 0)
     shares: list[float] = []
@@ -286,18 +286,21 @@ def detection(scenes: int, truth: Population, alpha: float, runs: int = 20) -> f
 
 
 def any_look(scenes: int, truth: Population, together: float, runs: int = 150) -> float:
-    """Return the share of sequential audits of equal arms that announce anything at any of ten
+    """Return the share of sequential audits of equal variants that announce anything at any of ten
     looks."""
     stream = generator("statistics", f"looks {scenes} {truth} {together}", 0)
     looks = np.unique(np.linspace(0, scenes, 11, dtype=np.int64)[1:]).tolist()
-    shares = alpha_shares(PATHS, SHARED)
+    shares = alpha_shares(CONDITIONS, SHARED)
     announced = 0
     for _ in range(runs):
-        arms = audit_of(stream, scenes, dict.fromkeys(PATHS, truth), together)
+        variants = audit_of(stream, scenes, dict.fromkeys(CONDITIONS, truth), together)
         announced += any(
             announces(
-                decide_paths(
-                    {path: (one[:look], two[:look]) for path, (one, two) in arms.items()},
+                decide_conditions(
+                    {
+                        condition: (one[:look], two[:look])
+                        for condition, (one, two) in variants.items()
+                    },
                     rule=RULE,
                     primary=SHARED,
                     shares=shares,

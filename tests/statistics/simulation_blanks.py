@@ -44,7 +44,7 @@ _NOT_ASKED = BreakEven(
 def judged(
     success: Bools, blank: Bools, cluster: str = "scene", shares: bool = True
 ) -> DecisionRecord:
-    """Return the record of `success` [arms, conditions, scenes, seeds] without what is `blank`.
+    """Return the record of `success` [variants, conditions, scenes, seeds] without what is `blank`.
 
     Break-even sets are left out unless `shares` asks for them.
     """
@@ -52,12 +52,12 @@ def judged(
     for at in product(*map(range, success.shape)):
         if blank[at]:
             continue
-        arm, condition, scene, seed = at
+        variant, condition, scene, seed = at
         status = Status.SUCCESS if success[at] else Status.CRASH
         named = (
             (f"task {scene}", f"{seed}", "") if cluster == "task" else ("", f"{scene}", f"{seed}")
         )
-        where = ("old", "new")[arm], CONDITIONS[condition], *named
+        where = ("old", "new")[variant], CONDITIONS[condition], *named
         rows.append(Received("line", *where, status, "", float("nan")))
     asked = JudgeQuestion.model_validate({"baseline": "old", "repair": "new", "cluster": cluster})
     laid = pair_results(rows, asked)
@@ -68,13 +68,13 @@ def judged(
     with ExitStack() as stack:
         for name, value in unread.items():
             stack.enter_context(patch(f"faultpath.decisions.decide.{name}", return_value=value))
-        return decide(laid.question, laid.paths, laid.trials, laid.findings)
+        return decide(laid.question, laid.conditions, laid.trials, laid.findings)
 
 
 def drawn(
     stream: np.random.Generator, kind: str, seeds: int, shifts: tuple[float, ...]
 ) -> tuple[Bools, Bools]:
-    """Return success and what is missing of it [arms, conditions, scenes, seeds]."""
+    """Return success and what is missing of it [variants, conditions, scenes, seeds]."""
     tasks = 5 if kind == "clustered" else 1
     shape = (2, 3, SCENES, seeds * tasks)
     own = stream.random(shape) + 0.8 * (stream.random((1, 1, SCENES, 1)) - 0.5)
@@ -89,16 +89,16 @@ def drawn(
     if kind == "both":  # both die, most often where only the baseline would succeed
         dies = np.where(success[0] & ~success[1], 0.6, 0.05)
         blank[:] = stream.random(shape[1:]) < dies
-    if kind == "clustered":  # half of the tasks have a scene less, in both arms
+    if kind == "clustered":  # half of the tasks have a scene less, in both variants
         blank[:, :, ::2, -1] = True
     return success, blank
 
 
 def wrong(record: DecisionRecord, shifts: tuple[float, ...]) -> bool:
-    """Return whether any break-even set puts an arm ahead where the other one is."""
+    """Return whether any break-even set puts a variant ahead where the other one is."""
     ends = dict(zip(("correct", "observer", "shared"), shifts, strict=True))
-    sets = [(each, "correct", each.path) for each in record.break_even]
-    sets += [(each, each.path, "shared") for each in record.break_even_beta]
+    sets = [(each, "correct", each.condition) for each in record.break_even]
+    sets += [(each, each.condition, "shared") for each in record.break_even_beta]
     for each, none, every in sets:
         for region in each.result.regions:
             for share in (region.low + 1e-9, region.high - 1e-9):
@@ -109,8 +109,8 @@ def wrong(record: DecisionRecord, shifts: tuple[float, ...]) -> bool:
 
 
 def blanks(kind: str, seeds: int, runs: int = 100) -> tuple[float, float]:
-    """Return the share of results of equal arms that announce anything, and of those of arms that
-    differ in which any break-even set is wrong."""
+    """Return the share of results of equal variants that announce anything, and of those of
+    variants that differ in which any break-even set is wrong."""
     stream = generator("statistics", f"blanks {kind} {seeds}", 0)
     rates = [0, 0]
     for column, shifts in enumerate(((0.0, 0.0, 0.0), SHIFTS)):

@@ -18,7 +18,7 @@ from simulation import (
     beside_failures,
     break_even_coverage,
     detection,
-    equal_arms,
+    equal_variants,
     interval_coverage,
     powered,
     reversals,
@@ -129,7 +129,7 @@ def sections() -> Iterator[Section]:
         ),
     )
     for title, what, found in (
-        ("Audits of equal versions", "four conditions", equal_arms),
+        ("Audits of equal versions", "four conditions", equal_variants),
         ("Sequential audits of equal versions", "four conditions and ten looks", any_look),
     ):
         yield (
@@ -292,15 +292,15 @@ def kept(title: str, measured: Callable[[], str]) -> str:
     files = [file for room in rooms for file in room.rglob("*.py")]
     files += Path(__file__).parent.glob("simulation*.py")
     code = sha256(b"".join(file.read_bytes() for file in sorted(files))).hexdigest()[:16]
-    path = Path("build/statistics") / code / f"{title}.md"
-    if not path.is_file():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_file(path, measured().encode())
-    return path.read_text("utf-8")
+    condition = Path("build/statistics") / code / f"{title}.md"
+    if not condition.is_file():
+        condition.parent.mkdir(parents=True, exist_ok=True)
+        write_file(condition, measured().encode())
+    return condition.read_text("utf-8")
 
 
 def main() -> None:
-    """Write the page; its path is the argument."""
+    """Write the page; its condition is the argument."""
     lines = [
         "# What the statistics keep",
         "",

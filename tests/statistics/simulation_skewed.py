@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 
 class Skewed(NamedTuple):
-    """Scenes of which neither arm is ahead, and that differ otherwise to one side than to the
+    """Scenes of which neither variant is ahead, and that differ otherwise to one side than to the
     other: many by little, few by much."""
 
     scenes: int
@@ -48,9 +48,9 @@ class Skewed(NamedTuple):
         return cls(scenes, seeds, chances)
 
     def announced(self, runs: int, stream: np.random.Generator) -> tuple[float, float]:
-        """Return how often an audit of one path announces a difference, and how often the version
-        that is so more often: where a fault at one module certainly favours the other, as often is
-        a reversal false."""
+        """Return how often an audit of one condition announces a difference, and how often the
+        version that is so more often: where a fault at one module certainly favours the other, as
+        often is a reversal false."""
         counts = stream.multinomial(self.scenes, self.chances, size=runs).astype(np.float64)
         values = np.arange(-self.seeds, self.seeds + 1) / self.seeds
         counts, times = np.unique(counts, axis=0, return_counts=True)

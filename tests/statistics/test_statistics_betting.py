@@ -20,7 +20,7 @@ def effect(first, second):
     return with_test(success_effect(first, second, resamples, sequential=True), "exact")
 
 
-def arms(wins: int, losses: int, n: int):
+def variants(wins: int, losses: int, n: int):
     scene = np.arange(n)
     return scene < wins, (scene >= wins) & (scene < wins + losses)
 
@@ -61,7 +61,7 @@ def test_a_bet_on_discordant_pairs_is_robbins_mixture():
 def test_the_interval_leaves_out_0_exactly_where_the_test_rejects(scenes):
     for wins in range(scenes + 1):
         for losses in range(scenes + 1 - wins):
-            found = effect(*arms(wins, losses, scenes))
+            found = effect(*variants(wins, losses, scenes))
             assert found.test is not None
             assert (found.side != 0) == (found.test.p_value <= 0.05)
             assert found.side in (0, found.test.leans)
@@ -72,7 +72,7 @@ def test_the_interval_leaves_out_0_exactly_where_the_test_rejects(scenes):
 
 
 @given(st.integers(0, 2**32), st.integers(1, 3))
-def test_swapping_the_arms_mirrors_and_copying_a_seed_changes_nothing(seed, seeds):
+def test_swapping_the_variants_mirrors_and_copying_a_seed_changes_nothing(seed, seeds):
     stream = generator("betting", "mirror", seed)
     first, second = stream.random((2, 30, seeds)) < 0.5
     found, mirrored = effect(first, second), effect(second, first)
@@ -85,7 +85,7 @@ def test_swapping_the_arms_mirrors_and_copying_a_seed_changes_nothing(seed, seed
 
 
 def test_each_contrast_stands_at_its_own_share():
-    one, two = effect(*arms(9, 0, 40)), effect(*arms(0, 9, 40))
+    one, two = effect(*variants(9, 0, 40)), effect(*variants(0, 9, 40))
     family = {"one": one, "two": two, "change": with_test(change(one, two), "exact")}
     shares = {"one": 0.5, "two": 0.1, "change": 0.1}
     decided = decide_family(family, 0.05, shares)

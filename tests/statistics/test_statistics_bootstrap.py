@@ -96,8 +96,8 @@ def test_the_interval_for_new_trainings_holds_their_mean(seeds):
     for _ in range(audits):
         shift = rng.normal(0.0, 0.08, size=seeds)
         scene, one, two = rng.random((N, 1)), *rng.normal(0.0, 0.15, size=(2, N, seeds))
-        arms = scene + one < 0.5 + shift, scene + two < 0.5
-        low, high = success_effect(*arms, RESAMPLES, models=True).interval
+        variants = scene + one < 0.5 + shift, scene + two < 0.5
+        low, high = success_effect(*variants, RESAMPLES, models=True).interval
         held += low <= 0.0 <= high
     assert held >= 0.92 * audits
 
@@ -113,8 +113,8 @@ def test_newly_trained_models_without_discordance_are_not_known_to_be_equal():
 
 @fewer
 @given(BINARY)
-def test_swapping_the_arms_flips_the_sign_and_mirrors_the_interval(pair):
-    forward, backward = (mean_effect(*arms, RESAMPLES, "m") for arms in (pair, pair[::-1]))
+def test_swapping_the_variants_flips_the_sign_and_mirrors_the_interval(pair):
+    forward, backward = (mean_effect(*variants, RESAMPLES, "m") for variants in (pair, pair[::-1]))
     low, high = forward.interval
     assert (backward.value, backward.interval) == (-forward.value, (-high, -low))
     assert backward.per_seed == tuple(-value for value in forward.per_seed)

@@ -58,7 +58,7 @@ def test_seeds_are_averaged_after_their_quantiles():
     assert found.n_seeds == 3
 
 
-def test_a_difference_is_paired_and_mirrors_when_the_arms_are_swapped():
+def test_a_difference_is_paired_and_mirrors_when_the_variants_are_swapped():
     values, scenes = windows()
     noise = windows()[0][::-1]
     same = quantile_difference(values, values, scenes, **FEW)

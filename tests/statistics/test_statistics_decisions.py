@@ -28,9 +28,9 @@ def contrast(p_value, low=1.0, high=2.0, leans=1):
 
 
 def test_effects_and_changes_are_tested_by_the_signs_of_scenes():
-    arms = np.random.default_rng(1).random((4, N, 3)) < 0.5
-    one, two = (success_effect(*pair, RESAMPLES) for pair in (arms[:2], arms[2:]))
-    first, second = (pair[0].astype(int) - pair[1] for pair in (arms[:2], arms[2:]))
+    variants = np.random.default_rng(1).random((4, N, 3)) < 0.5
+    one, two = (success_effect(*pair, RESAMPLES) for pair in (variants[:2], variants[2:]))
+    first, second = (pair[0].astype(int) - pair[1] for pair in (variants[:2], variants[2:]))
     for contrasted, difference, name in (
         (one, first, "sign test on scene means"),
         (change(one, two), second - first, "sign test on scene differences"),
@@ -43,7 +43,8 @@ def test_effects_and_changes_are_tested_by_the_signs_of_scenes():
 
 
 def test_interval_and_test_have_to_point_the_same_way():
-    """Many small wins and few large losses: the sign test finds the first arm, the mean is below.
+    """Many small wins and few large losses: the sign test finds the first variant, the mean is
+    below.
 
     Thirty scenes in which one seed of five wins, ten in which all of them lose.
     """

@@ -16,7 +16,7 @@ from faultpath.statistics.resamples import Resamples
 
 
 def counted(first_only, second_only, n_pairs=100):
-    """Arms of one seed with these counts."""
+    """Variants of one seed with these counts."""
     scene = np.arange(n_pairs)
     return scene < first_only, (scene >= first_only) & (scene < first_only + second_only)
 

@@ -47,8 +47,8 @@ def test_exact_coverage_is_that_of_the_intervals_themselves():
         for count in (second, equal, first):
             chance /= float(np.prod(np.arange(1, count + 1)))
         scene = np.arange(6)
-        arms = scene < first, (scene >= first) & (scene < first + second)
-        low, high = success_effect(*arms, resamples, rule=RULE).interval
+        variants = scene < first, (scene >= first) & (scene < first + second)
+        low, high = success_effect(*variants, resamples, rule=RULE).interval
         expected += chance * (low <= 100 * population.mean <= high)
     assert simulated.interval_coverage(6, population) == pytest.approx(expected)
 
@@ -87,9 +87,11 @@ def test_a_break_even_frequency_near_zero_cost_is_covered(lean):
     assert kept(found, 1000, least=0.93)
 
 
-def test_equal_arms_announce_next_to_nothing_and_no_reversal_is_made_up():
+def test_equal_variants_announce_next_to_nothing_and_no_reversal_is_made_up():
     """By signs of point estimates 44 % of audits had a reversal."""
-    assert kept(simulated.equal_arms(100, Population(0.3, 0.0, 3, 0.5), 0.7, 150), 150, most=ALPHA)
+    assert kept(
+        simulated.equal_variants(100, Population(0.3, 0.0, 3, 0.5), 0.7, 150), 150, most=ALPHA
+    )
     assert kept(simulated.reversals(100, 1, 0.0, runs=150), 150, most=0.025)
     assert simulated.reversals(100, 1, 0.2, runs=20) > 0.5
 
@@ -127,7 +129,7 @@ def test_a_p_divided_by_four_breaks_a_promise(monkeypatch):
     """The simulations take the code that decides."""
     real = unconditional.p_value
     monkeypatch.setattr(unconditional, "p_value", lambda *given: real(*given) / 4)
-    found = simulated.equal_arms(100, Population(0.3, 0.0), 0.0, 400)
+    found = simulated.equal_variants(100, Population(0.3, 0.0), 0.0, 400)
     assert not kept(found, 400, most=ALPHA)
 
 

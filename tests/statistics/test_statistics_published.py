@@ -25,8 +25,8 @@ def split(text):
     return tuple(int(part) for part in text.split(":"))
 
 
-def arms(counts, *, overlap):
-    """Binary arms with these counts per seed, scenes overlapping between seeds much or little.
+def variants(counts, *, overlap):
+    """Binary variants with these counts per seed, scenes overlapping between seeds much or little.
 
     The paper prints counts per seed, not which scenes they are. Overlap of wins with wins gives the
     widest interval that the counts allow, avoiding it the narrowest.
@@ -48,7 +48,7 @@ def arms(counts, *, overlap):
 
 def widest(counts):
     """Return the effect of counts with the widest interval that they allow."""
-    return success_effect(*arms(counts, overlap=True), RESAMPLES)
+    return success_effect(*variants(counts, overlap=True), RESAMPLES)
 
 
 @pytest.mark.parametrize("name", CONTRASTS)
@@ -59,7 +59,7 @@ def test_differences_counts_and_intervals_of_tables_2_and_4(name):
     effect = widest(counts)
     assert round(effect.value, 1) == CONTRASTS[name]["pp"]
     assert wording.won(effect.won) == "/".join(counts)
-    narrowest = success_effect(*arms(counts, overlap=False), RESAMPLES)
+    narrowest = success_effect(*variants(counts, overlap=False), RESAMPLES)
     outer, inner = (percentile_interval(found.draws) for found in (effect, narrowest))
     assert outer[0] - 0.7 <= low <= inner[0] + 0.7
     assert inner[1] - 0.7 <= high <= outer[1] + 0.7

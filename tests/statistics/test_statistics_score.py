@@ -64,15 +64,17 @@ def test_sums_of_sizes_that_round_do_not_break_the_mirror():
     """Sizes of a third and of two: their sum depends on the order in its last bit."""
     stream = np.random.default_rng(0)
     for rate in stream.random(600):
-        arms = stream.random((2, N, 3)) < rate
-        forward, backward = (success_effect(*pair, RESAMPLES) for pair in (arms, arms[::-1]))
+        variants = stream.random((2, N, 3)) < rate
+        forward, backward = (
+            success_effect(*pair, RESAMPLES) for pair in (variants, variants[::-1])
+        )
         assert backward.scenes.far == forward.scenes.far
 
 
 @laws
 @given(ARMS, st.sampled_from([0.5, 0.95, 0.999]))
-def test_the_interval_holds_exactly_the_means_that_the_test_does_not_reject(arms, level):
-    values = (arms[0].astype(float) - arms[1]).mean(axis=1)
+def test_the_interval_holds_exactly_the_means_that_the_test_does_not_reject(variants, level):
+    values = (variants[0].astype(float) - variants[1]).mean(axis=1)
     scenes = SceneValues.paired(values, 1.0)
     low, high = scenes.interval(level)
     assert -1 <= low < high <= 1
@@ -107,7 +109,7 @@ def test_a_change_is_bounded_by_the_sum_of_both_bounds():
 
 
 @pytest.mark.parametrize("successes", [0, 1, 15, 30])
-def test_one_arms_rate_has_wilsons_interval(successes):
+def test_one_variants_rate_has_wilsons_interval(successes):
     outcomes = np.arange(N) < successes
     found = success_rate(outcomes, RESAMPLES)
     low, high = proportion_confint(successes, N, method="wilson")

@@ -14,7 +14,7 @@ from simulation import Population, announces, kept
 from simulation_skewed import skewed
 from statsmodels.stats.contingency_tables import mcnemar
 
-from faultpath.decisions.family import decide_paths
+from faultpath.decisions.family import decide_conditions
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.statistics import score, signflip, unconditional
 from faultpath.statistics.contrast import change
@@ -46,7 +46,7 @@ def test_p_values_are_the_exact_fractions_of_every_table_up_to_60_discordant_pai
 
 
 def found(first, second, rule="exact"):
-    """Return the tested contrast of two binary arms."""
+    """Return the tested contrast of two binary variants."""
     resamples = Resamples.draw("t", max(1, len(first)), n_resamples=1)
     return with_test(success_effect(first, second, resamples, rule=rule), rule)
 
@@ -79,10 +79,10 @@ def test_wrong_input_is_refused(first, second, message):
 @pytest.mark.parametrize("rule", ["exact", RULE])
 @settings(max_examples=60, deadline=None)
 @given(PAIR, st.integers(2, 4), st.randoms(use_true_random=False))
-def test_swapped_arms_mirror_to_the_bit_and_copies_and_orders_change_nothing(
+def test_swapped_variants_mirror_to_the_bit_and_copies_and_orders_change_nothing(
     rule, pair, times, random
 ):
-    once, mirrored, same = (found(*arms, rule) for arms in (pair, pair[::-1], pair[[0, 0]]))
+    once, mirrored, same = (found(*variants, rule) for variants in (pair, pair[::-1], pair[[0, 0]]))
     low, high = once.interval
     assert (mirrored.value, mirrored.interval) == (-once.value, (-high, -low))
     assert (mirrored.test.p_value, mirrored.test.leans) == (once.test.p_value, -once.test.leans)
@@ -133,7 +133,8 @@ def test_the_scores_p_is_where_it_begins_to_reject(seed):
 
 
 def lopsided(rng: np.random.Generator, scenes: int, gains: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return two arms of one mean: many scenes gain one of three seeds, few lose all of them."""
+    """Return two variants of one mean: many scenes gain one of three seeds, few lose all of
+    them."""
     kind, which = rng.random((scenes, 1)), rng.integers(0, 3, size=(scenes, 1))
     gained = (kind < gains) & (np.arange(3) == which)
     lost = (kind > 1.0 - gains / 3) & np.ones(3, dtype=bool)
@@ -144,11 +145,11 @@ def lopsided(rng: np.random.Generator, scenes: int, gains: float) -> tuple[np.nd
 def test_many_small_gains_against_few_whole_losses_are_no_difference(gains):
     """The sign test, with an interval at 95 % as the only guard, announced .07 to .18."""
     rng, audits, announced = np.random.default_rng(11), 250, {"exact": 0, UNCONDITIONAL: 0}
-    paths = (CORRECT, "first", "second", SHARED)
+    conditions = (CORRECT, "first", "second", SHARED)
     for _ in range(audits):
-        arms = {path: lopsided(rng, 100, gains) for path in paths}
+        variants = {condition: lopsided(rng, 100, gains) for condition in conditions}
         for rule in announced:
-            announced[rule] += announces(decide_paths(arms, rule=rule))
+            announced[rule] += announces(decide_conditions(variants, rule=rule))
     assert announced["exact"] > 0.07 * audits
     assert announced[UNCONDITIONAL] <= 0.046 * audits + 3 * np.sqrt(0.05 * 0.95 * audits)
 
@@ -197,8 +198,8 @@ def test_in_skewed_populations_the_level_is_kept():
 
 @laws
 @given(ARMS)
-def test_interval_and_test_agree(arms):
-    effect = found(*arms, RULE)
+def test_interval_and_test_agree(variants):
+    effect = found(*variants, RULE)
     low, high = effect.interval
     assert effect.test.rejects() == (effect.side != 0)
     assert low <= effect.value <= high
@@ -208,19 +209,19 @@ def test_interval_and_test_agree(arms):
 @given(st.integers(0, 20), st.integers(0, 20), st.integers(2, 4))
 def test_of_scenes_that_differ_wholly_it_is_e_plus_m(first, second, seeds):
     scene = np.arange(N)[:, None] + np.zeros(seeds)
-    arms = scene < first, (scene >= first) & (scene < first + second)
+    variants = scene < first, (scene >= first) & (scene < first + second)
     alone = unconditional.p_value(first, second, N)
-    values, counts = found(*arms, RULE).scenes.kinds()
+    values, counts = found(*variants, RULE).scenes.kinds()
     tango = score.p_value(values, counts, 1.0) if first != second else 1.0
-    assert found(*arms, RULE).test.p_value == pytest.approx(max(alone, tango), rel=1e-9)
+    assert found(*variants, RULE).test.p_value == pytest.approx(max(alone, tango), rel=1e-9)
 
 
 @laws
 @given(ARMS, ARMS)
 def test_power_and_changes_take_the_same_test(one, two):
     seeds = min(one.shape[2], two.shape[2])
-    arms = (one[..., :seeds], two[..., :seeds])
-    pair = [success_effect(*pair, RESAMPLES, rule=RULE) for pair in arms]
+    variants = (one[..., :seeds], two[..., :seeds])
+    pair = [success_effect(*pair, RESAMPLES, rule=RULE) for pair in variants]
     moved = with_test(change(*pair), RULE)
     assert moved.test.rejects() == (moved.side != 0)
     values = np.arange(-2 * seeds, 2 * seeds + 1) / seeds

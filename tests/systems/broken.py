@@ -18,8 +18,8 @@ sources:
 - {name: mass_estimate, unit: kg, provenance: estimated}
 - {name: sonar, unit: m, provenance: measured}
 channels:
-- {name: range, sources: [laser, sonar], consumers: [pilot.approach, guard.limit]}
-- {name: mass, sources: [mass_estimate], consumers: [pilot.thrust]}
+- {name: range, sources: [laser, sonar], readers: [pilot.approach, guard.limit]}
+- {name: mass, sources: [mass_estimate], readers: [pilot.thrust]}
 """)
 DISTANCE = Metric(unit="m", better="less", words="distance", title="Distance left at the end")
 PILOT = frozenset({"pilot.approach", "pilot.thrust"})

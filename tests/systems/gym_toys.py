@@ -7,7 +7,7 @@ from gymnasium.spaces import Box, Dict, Discrete
 from faultpath.loop import Module, Port
 from faultpath.systems import ComposedSystem, FunctionPlant
 from faultpath.systems.gymnasium import GymnasiumPlant
-from faultpath.trials import Arm
+from faultpath.trials import Treatment
 from faultpath.trials.attempt import taps_of
 
 REAL = Box(-np.inf, np.inf, (1,), np.float64)
@@ -88,4 +88,4 @@ def system(made, modules=None, **given):
 
 
 def fly(built, scenes=SCENES, variant="only", seed=0):
-    return built.run(variant, scenes, taps_of(built, Arm(variant=variant), scenes), seed)
+    return built.run(variant, scenes, taps_of(built, Treatment(variant=variant), scenes), seed)

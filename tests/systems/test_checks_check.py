@@ -28,7 +28,7 @@ SAID = {
     "unpaired": ("pairing", "their disturbances differ"),
     "hashless": ("pairing", "All 4 scenes carry the same hashes"),
     "deaf": ("declared reads", "Variant 'guarded' declares that guard.limit reads 'range'"),
-    "nosy": ("declared reads", "tap range -> guard.limit: this variant has no such consumer"),
+    "nosy": ("declared reads", "tap range -> guard.limit: this variant has no such reader"),
     "of the future": ("declared reads", "the reading is of step 1, which is after step 0"),
     "another source": ("declared reads", "the reading is of source 'sonar'"),
     "keeps": (
@@ -79,11 +79,11 @@ def test_a_fault_that_alters_another_tap_is_seen_without_the_taps_own_counts(mon
     attach = Taps._add
 
     def misplaced(self, faults, dt_s, seed):
-        moved = {"consumers": ("guard.limit", *also)}
+        moved = {"readers": ("guard.limit", *also)}
         guarded = ("range", "guard.limit") in self._taps
         at = [
             fault.model_copy(update=moved)
-            if guarded and fault.consumers == ("pilot.approach",)
+            if guarded and fault.readers == ("pilot.approach",)
             else fault
             for fault in faults
         ]
@@ -206,7 +206,7 @@ def test_a_system_that_takes_one_scene_at_a_time_flies_all_that_are_asked_for():
     assert report.checks[0].says.startswith("8 ")
 
 
-def test_a_consumer_that_ignores_its_reading_is_remarked_and_not_failed():
+def test_a_reader_that_ignores_its_reading_is_remarked_and_not_failed():
     report = check(broken="ignores")
     assert failed(report) == {}
     (remarks,) = (each.remarks for each in report.checks if each.remarks)

@@ -32,8 +32,8 @@ def trace(name, variant, fault=None, library="selection", **options):
 def test_it_says_who_read_what_and_when_and_stops_after_its_steps():
     system, found = trace(TOY, "calibrated")
     assert {read.step for read in found.reads} == {0, 1, 2}
-    assert {read.consumer for read in found.reads} == system.variants["calibrated"].consumers
-    late = [read.valid_step for read in found.reads if read.consumer == "observer.executed"]
+    assert {read.reader for read in found.reads} == system.variants["calibrated"].readers
+    late = [read.valid_step for read in found.reads if read.reader == "observer.executed"]
     assert late == [-1, 0, 1]
     assert found.reconstructed == {"observed_slope": ("observer", ("gain", "push", "velocity"))}
     assert found.findings == ()
@@ -41,7 +41,7 @@ def test_it_says_who_read_what_and_when_and_stops_after_its_steps():
 
 def test_a_run_of_ones_own_is_traced_and_a_fault_shows_whom_it_reaches():
     _, found = trace(DOCK, "ranges", "range:scale=0.7@speedometer", library="floors")
-    altered = {read.consumer: read.altered_by for read in found.reads if read.altered_by}
+    altered = {read.reader: read.altered_by for read in found.reads if read.altered_by}
     assert altered == {"speedometer.difference": ("scaled by 0.7",)}
     (speed,) = (line for line in trace_table(found).lines if line.label == "approach.feedback")
     assert [entry.text for entry in speed.entries] == [
@@ -52,7 +52,7 @@ def test_a_run_of_ones_own_is_traced_and_a_fault_shows_whom_it_reaches():
 @pytest.mark.parametrize(
     ("name", "variant", "broken", "said"),
     [
-        (BROKEN, "bare", "nosy", r"tap range -> guard.limit: this variant has no such consumer"),
+        (BROKEN, "bare", "nosy", r"tap range -> guard.limit: this variant has no such reader"),
         (BROKEN, "guarded", "deaf", r"declares that guard.limit reads 'range', but in the first 3"),
         (BROKEN, "bare", "of the future", r"tap range -> pilot.approach: the reading is of step 1"),
         (BROKEN, "bare", "another source", r"of source 'sonar', but the channel is bound to 'las"),

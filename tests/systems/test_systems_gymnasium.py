@@ -13,7 +13,7 @@ from faultpath.loop import Port
 from faultpath.systems import ComposedSystem, writes
 from faultpath.systems.checks.blocks import BlockSpec, run_block
 from faultpath.systems.episodes import EpisodePlant
-from faultpath.trials import Arm, SystemSpec
+from faultpath.trials import SystemSpec, Treatment
 from faultpath.trials.checks import UNNAMED
 from faultpath.trials.code import system_code
 from faultpath.trials.registry import load_parts
@@ -68,7 +68,7 @@ def test_what_runs_is_the_interface():
         "slope": ((), "m", "estimated"),
     }
     assert built.interface.channel("slope").gap == "fidelity"
-    assert built.variants["only"].consumers == {"steer.feedback", "steer.model", "plant.actuator"}
+    assert built.variants["only"].readers == {"steer.feedback", "steer.model", "plant.actuator"}
 
 
 def test_scenes_set_up_in_another_way_are_no_pair():
@@ -120,7 +120,7 @@ def test_what_is_traced_and_rendered_is_kept_for_the_player():
         units={"place": {"unit": "m, 1", "components": ("where", "clock")}},
         modules=[Ahead()],
     )
-    found = run_block(made, BlockSpec(Arm(variant="only", seed=0), SCENES[:2], signals=True))
+    found = run_block(made, BlockSpec(Treatment(variant="only", seed=0), SCENES[:2], signals=True))
     for outcome, signals in zip(found.outcomes, found.signals, strict=True):
         named = {each.name: each for each in signals}
         assert named["place"].parts == ("where", "clock")

@@ -13,7 +13,7 @@ from faultpath.core.errors import SystemMistake
 from faultpath.faults import parse_fault
 from faultpath.loop import Batch, Inputs, NotDelivered, Port
 from faultpath.systems import ComposedSystem, shared_objects, tapped, writes
-from faultpath.trials import Arm
+from faultpath.trials import Treatment
 from faultpath.trials.attempt import Wrong, attempt
 
 
@@ -57,7 +57,7 @@ def test_what_is_read_is_delivered_and_all_else_stays_shared():
 
     module = writes("voltage", of=make)(lambda control, current: control.command(current))
     assert module.reads == {Port("flux", "control.flux"), Port("current", "current")}
-    assert module.consumer(Port("flux", "control.flux")) == "control.flux"
+    assert module.reader(Port("flux", "control.flux")) == "control.flux"
     memory = module.begin(Batch(("a", "b"), 0, 0.1))
     stand_in = memory[0].objects.par
     assert isinstance(stand_in, Parameters)
@@ -92,7 +92,7 @@ def test_a_mapping_is_delivered_however_it_is_read():
     seen = {}
 
     def make():
-        return tapped({"mass": 1.0, "arm": 0.2}, "mass", at="control")
+        return tapped({"mass": 1.0, "treatment": 0.2}, "mass", at="control")
 
     def read(par):
         seen.update(item=par["mass"], get=par.get("mass"), missing=par.get("span", 7))
@@ -102,7 +102,7 @@ def test_a_mapping_is_delivered_however_it_is_read():
     module = writes("out", of=make)(read)
     given = {Port("mass", "control.mass"): np.array([4.0])}
     module.step(Inputs("module", 0, given, {}), module.begin(Batch(("a",), 0, 0.1)))
-    both = {"mass": 4.0, "arm": 0.2}
+    both = {"mass": 4.0, "treatment": 0.2}
     assert (seen.pop("copied"), seen.pop("spread")) == (both, both)
     assert seen == {"item": 4.0, "get": 4.0, "missing": 7, "values": [4.0, 0.2]}
 
@@ -173,9 +173,9 @@ def system(**variants):
     return ComposedSystem("drive", plant, {name: [m] for name, m in variants.items()}, units)
 
 
-def test_parts_inside_one_module_are_consumers_of_their_own():
+def test_parts_inside_one_module_are_readers_of_their_own():
     made = system(fixed=drive(0.0), slow=drive(0.0, late=True))
-    assert set(made.interface.channel("flux").consumers) == {"observer.flux", "control.flux"}
+    assert set(made.interface.channel("flux").readers) == {"observer.flux", "control.flux"}
     found = audit(made, baseline="fixed", repair="slow", fault="flux:scale=3", scenes=8)
     paths = [path.name for path in found.record.paths]
     assert paths == ["correct", "control", "observer", "shared"]
@@ -184,14 +184,14 @@ def test_parts_inside_one_module_are_consumers_of_their_own():
 def attempted(module, fault):
     made = system(only=module)
     faults = parse_fault(fault, made.interface, {}, 0.1)
-    return attempt(made, Arm(variant="only", faults=faults), ("seed/1", "seed/2"))
+    return attempt(made, Treatment(variant="only", faults=faults), ("seed/1", "seed/2"))
 
 
 def test_receipts_count_what_was_read_and_a_fault_after_a_write_is_not_delivered():
-    taps = {tap.consumer: tap for tap in attempted(drive(0.1), "flux:scale=3").taps}
+    taps = {tap.reader: tap for tap in attempted(drive(0.1), "flux:scale=3").taps}
     assert taps["observer.flux"].deliveries == 2
     assert taps["control.flux"].deliveries == taps["control.flux"].faulted_steps == 2 * 10
-    taps = {tap.consumer: tap for tap in attempted(drive(0.0, late=True), "flux:scale=3").taps}
+    taps = {tap.reader: tap for tap in attempted(drive(0.0, late=True), "flux:scale=3").taps}
     assert taps["control.flux"].deliveries == taps["control.flux"].faulted_steps == 2 * 6
     late = attempted(drive(0.1), "flux:scale=3,onset=5")
     assert isinstance(late, Wrong)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from toy_study import study_of
 
-from faultpath.trials.arm import Study
+from faultpath.trials.plan import Study
 
 _NUMBERS = count()
 _SYSTEM = """

@@ -12,15 +12,15 @@ from calls import alive, until
 from toy_study import SCENES, SYSTEM, UNITS, study, study_of
 from toy_system import STEPS
 
-from faultpath.trials.arm import Study
 from faultpath.trials.execution.runner import run_study
+from faultpath.trials.plan import Study
 
 _RUN = """
 import sys
 from pathlib import Path
 from faultpath.core.errors import Stopped
 from faultpath.trials.execution.runner import run_study
-from faultpath.trials.arm import Study
+from faultpath.trials.plan import Study
 
 study = Study.model_validate_json(Path(sys.argv[1]).read_text())
 try:
@@ -145,12 +145,12 @@ def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path):
             assert row.outcome.metrics == expected.outcome.metrics
     (planner,) = result.deliveries.at("plain", "correct")
     assert planner.deliveries == 2 * STEPS * (len(SCENES) - 1)
-    assert len(result.failures) == len(study().arms())
+    assert len(result.failures) == len(study().treatments())
     for failure in result.failures:
         assert failure.scene == "s05"
         text = failure.details.read_text()
         assert 'raise ValueError(f"no air in' in text
-        assert json.dumps(failure.arm.variant) in text
+        assert json.dumps(failure.treatment.variant) in text
 
 
 def test_what_failed_is_tried_again_and_nothing_else(undisturbed, tmp_path):
@@ -172,7 +172,9 @@ def test_what_failed_is_tried_again_and_nothing_else(undisturbed, tmp_path):
     assert not list((tmp_path / "run" / "failures").iterdir())
     assert _shards(tmp_path / "run") == UNITS
     (notice,) = notices
-    assert notice.startswith("Kept 72 of 120 trials, from 20")  # an arm stands twice in the table
+    assert notice.startswith(
+        "Kept 72 of 120 trials, from 20"
+    )  # a treatment stands twice in the table
     assert "10 that failed are tried again" in notice
 
 

@@ -156,7 +156,7 @@ def test_a_reading_that_is_no_number_costs_its_scene_alone(tmp_path):
     assert "tap mass -> planner.thrust: the first reading is not finite" in failure.error
 
 
-def test_a_consumer_that_writes_is_told_to_copy(tmp_path):
+def test_a_reader_that_writes_is_told_to_copy(tmp_path):
     result = run_study(study_of(UNRULY, SCENES[4:8], does="write"), tmp_path, workers=0)
     assert len(result.failures) == 4
     assert "what a tap delivers cannot be written to" in result.failures[0].error

@@ -6,8 +6,8 @@ import pytest
 from toy_study import SCENES, rows, study
 
 from faultpath.core.errors import Stopped, UserError
-from faultpath.trials.arm import Study
 from faultpath.trials.execution.runner import RunResult, run_study
+from faultpath.trials.plan import Study
 from faultpath.trials.trials import Trials
 from faultpath.trials.work.executor import Progress
 

@@ -54,7 +54,7 @@ class Odd(ToySystem):
                 got = taps.deliver("mass", CONSUMERS[0], Reading(state, "mass", STEPS), STEPS)
                 if kind == "writes":
                     got *= 2.0
-                if kind == "plant writes":  # into what it has delivered, and the consumer has kept
+                if kind == "plant writes":  # into what it has delivered, and the reader has kept
                     state += 1.0
                     return _moved(outcomes, got)
         return outcomes
@@ -83,7 +83,7 @@ def _study(kind: str, count: int = 1, **options: str):
         ("drifts", r"Results do not repeat: .* of 'plain' under correct inputs, seed 0"),
         ("crowded", r"Results do not repeat: .* of 'plain' .*time_s by up"),
         ("plant writes", r"Results do not repeat: 1 scene of 'plain' .* a copy of every reading"),
-        ("writes", r"A module writes .*tap mass -> planner.thrust: the consumer"),
+        ("writes", r"A module writes .*tap mass -> planner.thrust: the reader"),
         ("hashless", r"All 10 scenes carry the same hashes of initial state"),
     ],
 )
@@ -137,7 +137,7 @@ def _stopping(after: int):
     return stopping
 
 
-def test_a_few_scenes_of_a_later_arm_are_flown_at_other_places_than_before(tmp_path):
+def test_a_few_scenes_of_a_later_treatment_are_flown_at_other_places_than_before(tmp_path):
     result = run_study(_study("", count=12, block="10"), tmp_path, workers=0)
     assert [each.why for each in result.rechecks].count("sample") == 1
     few = next(each for each in result.rechecks if each.why == "sample")
@@ -145,7 +145,7 @@ def test_a_few_scenes_of_a_later_arm_are_flown_at_other_places_than_before(tmp_p
     assert (one.why, len(one.scenes), one.unit != few.unit) == ("guarded", 1, True)
     assert (len(few.scenes), few.unit_scenes, few.differs) == (SAMPLE, 10, "")
     assert all(SCENES.index(scene) > i for i, scene in enumerate(few.scenes))
-    first = study().rows[0].arm
+    first = study().rows[0].treatment
     assert (few.variant, few.faults, few.seed) != (first.variant, "correct inputs", first.seed)
 
 
@@ -166,10 +166,13 @@ def test_one_that_leaves_its_reading_alone_is_not_accused(tmp_path):
     assert run_study(_study("reads"), tmp_path, workers=0).findings == ()
 
 
-def test_a_consumer_that_never_reads_is_named(tmp_path):
+def test_a_reader_that_never_reads_is_named(tmp_path):
     row = study().rows[0]
     deaf = row.model_copy(
-        update={"variant": "deaf", "arm": row.arm.model_copy(update={"variant": "deaf"})}
+        update={
+            "variant": "deaf",
+            "treatment": row.treatment.model_copy(update={"variant": "deaf"}),
+        }
     )
     asked = study().model_copy(update={"rows": (row, deaf)})
     (finding,) = run_study(asked, tmp_path, workers=0).findings

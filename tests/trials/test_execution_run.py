@@ -13,10 +13,10 @@ from faultpath.core.errors import UserError
 from faultpath.core.files import parquet
 from faultpath.loop import NotDelivered, TapCount, UndeclaredReader
 from faultpath.trials import Deliveries
-from faultpath.trials.arm import Arm, Row, Study
 from faultpath.trials.declared import Library, SceneRef
 from faultpath.trials.execution.runner import RunResult, run_study
 from faultpath.trials.execution.schedule import plan
+from faultpath.trials.plan import Row, Study, Treatment
 from faultpath.trials.store import tables
 from faultpath.trials.store.folder import RunFolder, read_outcomes
 from faultpath.trials.store.tables import decode_traces, traces_of
@@ -146,14 +146,14 @@ def test_progress_reaches_the_end_and_never_goes_back(tmp_path):
     rows = [int(progress.count.split()[0]) for progress in seen]
     assert rows == sorted(rows)
     assert (rows[0], rows[-1], seen[-1].count) == (0, 120, "120 of 120 trials")
-    assert seen[-1].done == seen[-1].total == 10 * len(study().arms())
+    assert seen[-1].done == seen[-1].total == 10 * len(study().treatments())
     assert all(0 <= progress.done <= progress.total for progress in seen)
 
 
 def test_bookkeeping_grows_with_the_rows_and_not_with_rows_times_blocks(tmp_path, monkeypatch):
     calls: list[str] = []
-    key, list_shards = Arm.key, RunFolder.list_shards
-    monkeypatch.setattr(Arm, "key", lambda arm: calls.append("key") or key(arm))
+    key, list_shards = Treatment.key, RunFolder.list_shards
+    monkeypatch.setattr(Treatment, "key", lambda treatment: calls.append("key") or key(treatment))
     monkeypatch.setattr(
         RunFolder, "list_shards", lambda folder: calls.append("list") or list_shards(folder)
     )
@@ -171,16 +171,18 @@ def _study_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Study:
 
 @pytest.mark.parametrize("workers", [0, 1])
 @pytest.mark.parametrize(
-    ("variant", "consumer", "error"),
+    ("variant", "reader", "error"),
     [
         ("deaf", "observer.balance", NotDelivered),
         ("nosy", "planner.thrust", UndeclaredReader),
         ("plain", "observer.balance", UserError),
     ],
 )
-def test_an_audit_that_is_wrong_stops(tmp_path, variant, consumer, error, workers):
-    fault = FAULT.aimed_at(consumer)
-    row = Row(variant=variant, path="p", seed=0, arm=Arm(variant=variant, faults=(fault,)))
+def test_an_audit_that_is_wrong_stops(tmp_path, variant, reader, error, workers):
+    fault = FAULT.aimed_at(reader)
+    row = Row(
+        variant=variant, path="p", seed=0, treatment=Treatment(variant=variant, faults=(fault,))
+    )
     with pytest.raises(error, match=r"observer\.balance"):
         run_study(_study_of(row), tmp_path, workers=workers)
 
@@ -192,7 +194,10 @@ def test_an_audit_that_is_wrong_stops(tmp_path, variant, consumer, error, worker
         (study(("s00", "s01", "s00")), "selects scene 's00' twice"),
         (study(()), "selects no scene"),
         (_study_of(rows()[0], rows()[0]), "two rows"),
-        (_study_of(Row(variant="x", path="p", seed=0, arm=Arm(variant="no"))), "no variant 'no'"),
+        (
+            _study_of(Row(variant="x", path="p", seed=0, treatment=Treatment(variant="no"))),
+            "no variant 'no'",
+        ),
     ],
 )
 def test_a_study_that_cannot_be_run_is_refused(tmp_path, wrong, sentence):
@@ -201,16 +206,16 @@ def test_a_study_that_cannot_be_run_is_refused(tmp_path, wrong, sentence):
 
 
 def test_a_key_names_everything_that_decides_a_result():
-    arms = [Arm(variant="v", seed=seed) for seed in (0, 1)]
+    treatments = [Treatment(variant="v", seed=seed) for seed in (0, 1)]
     scenes = [SceneRef(f"s{i}", i) for i in (0, 1)]
     here, other = (Library("ten", tuple(scenes), digest) for digest in ("hash", "other"))
     cases = (
-        (arms[:1], scenes[:1], 4, here, "fingerprint"),
-        (arms[:1], scenes[:1], 1, here, "fingerprint"),  # the size of blocks decides none
-        (arms[1:], scenes[:1], 4, here, "fingerprint"),
-        (arms[:1], scenes[1:], 4, here, "fingerprint"),
-        (arms[:1], scenes[:1], 4, other, "fingerprint"),
-        (arms[:1], scenes[:1], 4, here, "another"),
+        (treatments[:1], scenes[:1], 4, here, "fingerprint"),
+        (treatments[:1], scenes[:1], 1, here, "fingerprint"),  # the size of blocks decides none
+        (treatments[1:], scenes[:1], 4, here, "fingerprint"),
+        (treatments[:1], scenes[1:], 4, here, "fingerprint"),
+        (treatments[:1], scenes[:1], 4, other, "fingerprint"),
+        (treatments[:1], scenes[:1], 4, here, "another"),
     )
     keys = [plan(*case)[0].key for case in cases]
     assert keys[0] == keys[1]

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from faultpath.faults import at_readers
-from faultpath.trials import Arm, SystemSpec, load_system
+from faultpath.trials import SystemSpec, Treatment, load_system
 from faultpath.trials.attempt import Done, attempt
 from faultpath.trials.code import source_state, system_code
 
@@ -36,13 +36,13 @@ def test_whatever_runs_in_a_flight_counts(name, monkeypatch):
     spec = SystemSpec(name=place, options=options)
     system = load_system(spec)
     scenes = [scene.id for scene in system.library(library).scenes[:1]]
-    faults = at_readers(system.fault(text), system.variants[variant].consumers)
+    faults = at_readers(system.fault(text), system.variants[variant].readers)
     code = system_code(system, spec)
 
     ran: set[str] = set()
     sys.setprofile(lambda frame, event, _: ran.add(frame.f_code.co_filename))
     try:
-        done = attempt(system, Arm(variant=variant, faults=faults), scenes)
+        done = attempt(system, Treatment(variant=variant, faults=faults), scenes)
     finally:
         sys.setprofile(None)
     assert isinstance(done, Done), done

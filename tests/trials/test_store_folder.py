@@ -9,17 +9,17 @@ import pytest
 
 from faultpath.core.errors import UserError
 from faultpath.loop import TapCount
-from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.attempt import Done
 from faultpath.trials.code import CodeState
 from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.plan import Row, Study, SystemSpec, Treatment
 from faultpath.trials.store.folder import RunFolder, read_outcomes
 from faultpath.trials.store.manifest import FORMAT, Manifest
 from faultpath.trials.store.tables import encode_shard
 
 
 def _manifest(name: str = "a", seed: int = 0, scenes: tuple[str, ...] = ("s0",)) -> Manifest:
-    row = Row(variant="v", path="correct", seed=seed, arm=Arm(variant="v", seed=seed))
+    row = Row(variant="v", path="correct", seed=seed, treatment=Treatment(variant="v", seed=seed))
     system = SystemSpec(name="quadrotor")
     study = Study(name=name, system=system, library="l", scenes=scenes, rows=(row,))
     return Manifest(faultpath_version="1", code=_code(), library_hash="h", study=study)

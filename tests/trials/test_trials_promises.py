@@ -8,7 +8,6 @@ import pytest
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.trials import (
-    Arm,
     FloorPlan,
     Metric,
     Pillar,
@@ -16,6 +15,7 @@ from faultpath.trials import (
     System,
     SystemShown,
     SystemSpec,
+    Treatment,
     load_system,
     system_shown,
 )
@@ -125,7 +125,7 @@ def test_nothing_is_lost_on_the_way_through_the_file(planned: System) -> None:
     assert shown.plans == {"cart/001": PLAN}
     for variant in shown.variants:
         declared = planned.variants[variant.name]
-        assert set(variant.consumers) == declared.consumers
+        assert set(variant.readers) == declared.readers
         assert variant.bindings == dict(declared.bindings)
 
 
@@ -172,7 +172,7 @@ def test_a_scene_comes_out_the_same_in_a_block_of_any_size(toy) -> None:
 
     def trials(size: int) -> list[tuple[object, ...]]:
         blocks = [scenes[first : first + size] for first in range(0, len(scenes), size)]
-        replies = [attempt(system, Arm(variant="calibrated"), block) for block in blocks]
+        replies = [attempt(system, Treatment(variant="calibrated"), block) for block in blocks]
         assert all(isinstance(reply, Done) for reply in replies), replies
         return [
             (replace(outcome, trace=None), outcome.trace.tobytes())

@@ -174,11 +174,11 @@ def state():
 
 torch.set_num_threads(3)
 before, path = state(), list(sys.path)
-from faultpath.trials import Arm, SystemSpec, load_system
+from faultpath.trials import Treatment, SystemSpec, load_system
 from faultpath.trials.attempt import Done, attempt
 system = load_system(SystemSpec(name=sys.argv[1]))
 (name,), library = list(system.variants)[:1], system.library(sys.argv[2])
-assert isinstance(attempt(system, Arm(variant=name), [library.scenes[0].id]), Done)
+assert isinstance(attempt(system, Treatment(variant=name), [library.scenes[0].id]), Done)
 after = state()
 print([name for name in before if before[name] != after[name]])
 print([place for place in sys.path if place not in path], sys.path[: len(path)] == path)

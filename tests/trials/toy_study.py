@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from faultpath.faults import Fault, Scale
-from faultpath.trials.arm import Arm, Row, Study, SystemSpec
+from faultpath.trials.plan import Row, Study, SystemSpec, Treatment
 
 SYSTEM = f"{Path(__file__).with_name('toy_system.py')}:create"
 SCENES = tuple(f"s{i:02d}" for i in range(10))
@@ -14,17 +14,18 @@ PATHS = {
     "shared": (FAULT.aimed_at("planner.thrust", "observer.balance"),),
 }
 UNITS = 2 * len(PATHS) * 2 * 3 - 2 * 3
-"""Variants, paths, seeds and blocks; `plain` has one arm for two of the paths (see `rows`)."""
+"""Variants, paths, seeds and blocks; `plain` has one treatment for two of the paths (see
+`rows`)."""
 
 
 def rows() -> tuple[Row, ...]:
-    """Every variant on every path; `plain` has no second consumer, so `shared` is `planner`."""
+    """Every variant on every path; `plain` has no second reader, so `shared` is `planner`."""
     return tuple(
         Row(
             variant=variant,
             path=path,
             seed=seed,
-            arm=Arm(
+            treatment=Treatment(
                 variant=variant,
                 faults=PATHS["planner" if (variant, path) == ("plain", "shared") else path],
                 seed=seed,

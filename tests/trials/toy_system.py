@@ -35,7 +35,7 @@ class ToySystem(System):
         return Interface(
             name="toy",
             sources=(Source(name="mass", unit="kg", provenance=Provenance.ESTIMATED),),
-            channels=(Channel(name="mass", sources=("mass",), consumers=CONSUMERS),),
+            channels=(Channel(name="mass", sources=("mass",), readers=CONSUMERS),),
         )
 
     @property

@@ -21,7 +21,7 @@ SEEDS = (0, 1, 2)
 
 @dataclass(frozen=True)
 class Setting:
-    """Where a cell is flown: the options of the system that no arm changes."""
+    """Where a cell is flown: the options of the system that no treatment changes."""
 
     library: str = HELD_OUT
     """Role of the library; a run may put another library into the place of the held-out one."""
@@ -55,17 +55,17 @@ class Cell:
     """Whether no seed trains it anew: it flies once, and is paired with each trained seed."""
 
     @property
-    def path(self) -> str:
+    def condition(self) -> str:
         """Path of the outcome table that holds the cell's trials."""
         return f"{self.setting}: {' and '.join(self.faults) or CORRECT}"
 
     @property
     def group(self) -> Group:
         """Its trials."""
-        return Group(self.variant, self.path, self.seeds[0] if self.fixed else None)
+        return Group(self.variant, self.condition, self.seeds[0] if self.fixed else None)
 
     def __str__(self) -> str:
-        return f"{self.variant} ({self.path})"
+        return f"{self.variant} ({self.condition})"
 
 
 def of_seed(cell: Cell, seed: int = 0) -> Cell:
@@ -83,13 +83,14 @@ class Profile:
     seeds: tuple[int, ...]
 
     def cells(self, cells: Iterable[Cell]) -> tuple[Cell, ...]:
-        """Return the cells that this profile flies: each variant and path once, all its seeds."""
+        """Return the cells that this profile flies: each variant and condition once, all its
+        seeds."""
         flown: dict[tuple[str, str], Cell] = {}
         for cell in cells:
             seeds = [seed for seed in cell.seeds if seed in self.seeds]
             if not seeds or (self.name == QUICK.name and not cell.quick):
                 continue
-            address = cell.variant, cell.path
+            address = cell.variant, cell.condition
             earlier = flown.get(address)
             every = {*seeds, *(earlier.seeds if earlier else ())}
             flown[address] = Cell(cell.setting, cell.variant, cell.faults, tuple(sorted(every)))

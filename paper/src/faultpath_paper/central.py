@@ -161,7 +161,10 @@ def by_training(case: Case) -> str:
 
 def table_of(cases: Sequence[Case]) -> Table:
     """Return the question's numbers run by run, the paper's below."""
-    theirs = [paper_contrast(REPAIR, BASELINE, path) for path in ("reconstruction-only", "shared")]
+    theirs = [
+        paper_contrast(REPAIR, BASELINE, condition)
+        for condition in ("reconstruction-only", "shared")
+    ]
     printed = [f"{wording.signed(c.value)} {bracket(c.interval or ())}" for c in theirs]
     rows = [
         line(

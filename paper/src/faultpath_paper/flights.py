@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from faultpath.faults import at_readers
-from faultpath.trials import Arm, Row, Study, System, SystemSpec, Trials, load_system
+from faultpath.trials import Row, Study, System, SystemSpec, Treatment, Trials, load_system
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.work.executor import Progress
 from faultpath_paper.cells import SYSTEM, Cell, Profile, Setting
@@ -32,8 +32,8 @@ class Leg:
 
     @property
     def trials(self) -> int:
-        """Trials of all arms."""
-        return len(self.study.arms()) * len(self.study.scenes)
+        """Trials of all treatments."""
+        return len(self.study.treatments()) * len(self.study.scenes)
 
 
 @dataclass(frozen=True)
@@ -101,9 +101,9 @@ def fly(legs: Sequence[Leg], folder: Path, run: Run, show: Callable[[Progress], 
 
 
 def _row(system: System, cell: Cell, seed: int) -> Row:
-    consumers = system.variants[cell.variant].consumers
+    readers = system.variants[cell.variant].readers
     faults = tuple(
-        fault for text in cell.faults for fault in at_readers(system.fault(text), consumers)
+        fault for text in cell.faults for fault in at_readers(system.fault(text), readers)
     )
-    arm = Arm(variant=cell.variant, faults=faults, seed=seed)
-    return Row(variant=cell.variant, path=cell.path, seed=seed, arm=arm)
+    treatment = Treatment(variant=cell.variant, faults=faults, seed=seed)
+    return Row(variant=cell.variant, condition=cell.condition, seed=seed, treatment=treatment)

@@ -36,7 +36,7 @@ def flown(results: Results, cells: Iterable[Cell]) -> str:
             run_seeds = results.seeds(cell)
             scenes, seeds = libraries.setdefault(cell.setting.library, (set(), set()))
             seeds.update(run_seeds)
-            rows = results.trials.rows(cell.variant, cell.path, run_seeds[:1])[0]
+            rows = results.trials.rows(cell.variant, cell.condition, run_seeds[:1])[0]
             scenes.update(scene.id for scene in compress(results.trials.scenes, rows >= 0))
     if not libraries:
         return "No trial of this table was run."

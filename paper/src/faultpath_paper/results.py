@@ -34,7 +34,7 @@ class Results:
 
     def seeds(self, cell: Cell) -> tuple[int, ...]:
         """Return the seeds of a cell that were run; `NotRun` without any."""
-        run = [s for s in self.trials.seeds_of(cell.variant, cell.path) if s in cell.seeds]
+        run = [s for s in self.trials.seeds_of(cell.variant, cell.condition) if s in cell.seeds]
         if not run:
             raise NotRun(cell)
         return tuple(run)
@@ -53,7 +53,7 @@ class Results:
 
     def has(self, cell: Cell) -> bool:
         """Return whether any trial of a cell was run."""
-        return bool(self.trials.seeds_of(cell.variant, cell.path))
+        return bool(self.trials.seeds_of(cell.variant, cell.condition))
 
     def pairs(
         self,
@@ -88,7 +88,7 @@ class Results:
         """Return the outcomes of seed 0's trials, without failed ones; `NotRun` without any."""
         if 0 not in self.seeds(cell):
             raise NotRun(f"{cell}, seed 0")
-        ends = self.trials.outcomes(cell.variant, cell.path, 0)
+        ends = self.trials.outcomes(cell.variant, cell.condition, 0)
         ended = [outcome for outcome in ends if not outcome.failed]
         if not ended:
             raise NotRun(f"a trial of {cell} that did not fail")

@@ -93,7 +93,7 @@ class QuadrotorChoices(BaseModel):
     ] = "wm-a-wind"
     predictor_seed: Annotated[
         int,
-        "Which training of it; variants that name a predictor take the seed of their arm.",
+        "Which training of it; variants that name a predictor take the seed of their treatment.",
         Offered(0, 1, 2),
     ] = 0
     estimator: Annotated[

@@ -11,7 +11,7 @@ from faultpath.faults import Address, Fault, Record, resolve
 from faultpath.loop import DeliveryListener, Reading, Tap
 from faultpath.plugin.recording import taps_of
 from faultpath.plugin.system import UserError
-from faultpath.trials import Arm
+from faultpath.trials import Treatment
 from faultpath_quadrotor.estimators import ErrorStateFilter
 from faultpath_quadrotor.estimators.eskf import AT, Filtered
 from faultpath_quadrotor.estimators.protocol import STATE_SOURCES
@@ -32,7 +32,7 @@ class _Seen(DeliveryListener):
 
     @override
     def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
-        if tap.consumer in (_FILTER, _PRESENT):
+        if tap.reader in (_FILTER, _PRESENT):
             self.steps += [{} for _ in range(step + 1 - len(self.steps))]
             self.steps[step][tap.channel] = reading.value
 
@@ -54,10 +54,14 @@ def state_errors(
             f"variant '{variant}' has no filter whose errors could be recorded: choose "
             "--estimator eskf"
         )
-    consumers = system.variants[variant].consumers
-    arm = Arm(variant=variant, faults=resolve(faults, system.interface, consumers), seed=seed)
+    readers = system.variants[variant].readers
+    treatment = Treatment(
+        variant=variant, faults=resolve(faults, system.interface, readers), seed=seed
+    )
     observer = _Seen()
-    outcomes = system.run(variant, scenes, taps_of(system, arm, scenes, observer=observer), seed)
+    outcomes = system.run(
+        variant, scenes, taps_of(system, treatment, scenes, observer=observer), seed
+    )
     errors = _errors(filter_, observer.steps)
     ends = [max(1, round(outcome.time_s / system.control_dt_s)) for outcome in outcomes]
     return {

@@ -201,7 +201,7 @@ def _weights(folder: Path) -> tuple[Path, ...]:
     return tuple(sorted((*folder.glob("*.json"), *folder.glob("*.safetensors"))))
 
 
-@lru_cache(maxsize=4)  # a library's blocks; each arm flies over the same ones
+@lru_cache(maxsize=4)  # a library's blocks; each treatment flies over the same ones
 def _field(scenes: tuple[Scene, ...], free_space: bool, place: torch.device) -> DistanceField:
     return DistanceField.bake(scenes, free_space, device=place)
 

@@ -85,7 +85,7 @@ class UserPart:
         return tuple(self._folder / file for file in files)
 
     def load(self, seed: int | None, device: torch.device = CPU) -> Any:
-        """Return a new one for an arm of this seed; the first one of a seed is tried out.
+        """Return a new one for a treatment of this seed; the first one of a seed is tried out.
 
         Raises `SystemMistake` for one that is not like its blank, or that fails when it is tried.
         """
@@ -180,10 +180,10 @@ def _explaining(act: Callable[[], Any]) -> Any:
 
 def _check_ports(name: str, reads: Collection[tuple[str, str]]) -> None:
     known = {
-        (channel.name, consumer.partition(".")[2])
+        (channel.name, reader.partition(".")[2])
         for channel in quadrotor_interface().channels
-        for consumer in channel.consumers
-        if consumer.startswith("reconstruction.")
+        for reader in channel.readers
+        if reader.startswith("reconstruction.")
     }
     for read in reads:
         if read not in known:

@@ -2,9 +2,9 @@
 
 A variant is named by its wind input (`zero-wind`, `gru`, `dob`, `true-wind`), by its predictor
 (`wm-a+dcc`), or by both (`wm-a-wind/gru`). The parts that it names are loaded with the seed of the
-arm as their training seed; a variant that names no predictor has that of the options. The user's
-own parts come beside the shipped ones, under the names that the user gave them; a planner makes a
-variant with the predictor of the options.
+treatment as their training seed; a variant that names no predictor has that of the options. The
+user's own parts come beside the shipped ones, under the names that the user gave them; a planner
+makes a variant with the predictor of the options.
 """
 
 from collections.abc import Iterator, Mapping
@@ -52,7 +52,7 @@ class Setup:
     name: str
     predictor: str
     predictor_seed: int | None
-    """`None`: the seed of the arm."""
+    """`None`: the seed of the treatment."""
     wind: str | None
     """`None` for a predictor without a wind input."""
     planner: str | None = None
@@ -67,7 +67,7 @@ class Setup:
         return {self.predictor, self.wind, self.planner, self.estimator}
 
     def load_predictor(self, seed: int | None, device: torch.device = CPU) -> Predictor:
-        """Return the predictor for an arm of this seed; blank for `None`."""
+        """Return the predictor for a treatment of this seed; blank for `None`."""
         fixed = self.predictor_seed is not None and seed is not None
         trained = self.predictor_seed if fixed else seed
         if self.predictor in self.user_parts:
@@ -77,7 +77,7 @@ class Setup:
     def load_reconstruction(
         self, seed: int | None, device: torch.device = CPU
     ) -> Reconstruction | None:
-        """Return the wind reconstruction for an arm of this seed, if the variant has one."""
+        """Return the wind reconstruction for a treatment of this seed, if the variant has one."""
         if self.wind is None or self.wind in _FIXED:
             return None
         if self.wind in self.user_parts:
@@ -85,13 +85,13 @@ class Setup:
         return reconstruction(self.wind, seed, device)
 
     def load_planner(self, seed: int | None, options: QuadrotorOptions) -> Planner:
-        """Return the planner for an arm of this seed."""
+        """Return the planner for a treatment of this seed."""
         if self.planner is None:
             return options.build_planner()
         return self.user_parts[self.planner].load(seed, options.place)
 
     def load_estimator(self, seed: int | None, options: QuadrotorOptions) -> Estimator | None:
-        """Return the estimator for an arm of this seed; `None` for the exact one."""
+        """Return the estimator for a treatment of this seed; `None` for the exact one."""
         if self.estimator is None:
             return None
         if self.estimator in FILTERS:

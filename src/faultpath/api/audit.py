@@ -1,4 +1,4 @@
-"""`faultpath.audit`: run the arms of one question, decide, and write the run folder."""
+"""`faultpath.audit`: run the treatments of one question, decide, and write the run folder."""
 
 import os
 from collections.abc import Callable
@@ -175,19 +175,19 @@ def _recorded(
     What goes wrong here is a finding, never an error of the audit.
     """
     few = shown_first(record, result.trials)[: 1 + record.scenes // _SCENES_FOR_ONE]
-    named = {path.name for path in record.paths}
+    named = {condition.name for condition in record.conditions}
     before = outcomes_at(result.trials)
     missing = [
         at
         for at in before
-        if (at.scene, at.seed) in few and at.path in named and at not in recorded
+        if (at.scene, at.seed) in few and at.condition in named and at not in recorded
     ]
     if not missing:
         return recorded, "", True
     try:
         with job.display.progress("Recording signals") as show:
 
-            def note(arm: object, done: int, total: int) -> None:
+            def note(treatment: object, done: int, total: int) -> None:
                 count = f"{done} of {total} batches of {counted(len(few), 'scene')}"
                 show(Progress(done, total, count))
 
@@ -208,6 +208,6 @@ def _recorded(
     at, differs = unlike[0].address, unlike[0].differs
     finding = (
         f"Signals of {len(unlike)} of {counted(len(replays), 'trial')} were not recorded: run "
-        f"again, it came out otherwise: {at.variant}, {at.path}, {at.scene}: {differs}."
+        f"again, it came out otherwise: {at.variant}, {at.condition}, {at.scene}: {differs}."
     )
     return recorded, finding, False

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from faultpath.api.display import Display
 from faultpath.api.job import begin, with_question_signature
 from faultpath.api.systems import Chosen
-from faultpath.decisions.planning import faults_by_path
+from faultpath.decisions.planning import faults_by_condition
 from faultpath.faults import Fault
 from faultpath.trials import System
 from faultpath.trials.question import CheckQuestion, TraceQuestion
@@ -41,7 +41,7 @@ def check(
     conditions: dict[str, dict[str, tuple[Fault, ...]]] = {}
     if question.fault is not None:
         variants = chosen_variants(chosen.system, question.variants)
-        conditions = faults_by_path(chosen.system.fault(question.fault), variants)
+        conditions = faults_by_condition(chosen.system.fault(question.fault), variants)
     if chosen.own:
         question = question.model_copy(update={"workers": 0})
     with display.progress("Checking") as show:

@@ -44,7 +44,8 @@ class RunComparison:
             entry = in_json(run.folder, run.record)
             if run.family is not None:
                 entry["over_all_sizes"] = {
-                    path: {"sign": sign, "corrected_p": p} for path, (sign, p) in run.family.items()
+                    condition: {"sign": sign, "corrected_p": p}
+                    for condition, (sign, p) in run.family.items()
                 }
             entries.append(entry)
         return {

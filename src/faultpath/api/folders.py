@@ -115,17 +115,22 @@ def _doubts(
 def _other_trials(record: DecisionRecord, trials: Trials) -> Iterator[str]:
     """Yield where the record tells of other trials than the outcomes hold."""
     question = record.question
-    arms = set(product((question.baseline, question.repair), (p.name for p in record.paths)))
-    cells = {(cell.variant, cell.path): (cell.trials, cell.success) for cell in record.cells}
-    rows = {arm: trials.rows(*arm).ravel() for arm in product(trials.variants, trials.conditions)}
-    rows = {arm: of[of >= 0] for arm, of in rows.items() if (of >= 0).any()}
-    if not arms or set(cells) != arms or set(rows) != arms:
+    variants = set(
+        product((question.baseline, question.repair), (p.name for p in record.conditions))
+    )
+    cells = {(cell.variant, cell.condition): (cell.trials, cell.success) for cell in record.cells}
+    rows = {
+        variant: trials.rows(*variant).ravel()
+        for variant in product(trials.variants, trials.conditions)
+    }
+    rows = {variant: of[of >= 0] for variant, of in rows.items() if (of >= 0).any()}
+    if not variants or set(cells) != variants or set(rows) != variants:
         yield "the result and the outcomes have different versions, conditions or seeds"
         return
     if np.isnan(trials.time_s[~trials.failed]).any() and question.judged is None:
         yield "trials of an audit have no time"
     solved = trials.has(Status.SUCCESS)
-    if any(cells[arm] != (len(of), int(solved[of].sum())) for arm, of in rows.items()):
+    if any(cells[variant] != (len(of), int(solved[of].sum())) for variant, of in rows.items()):
         yield "the result and the outcomes count different successes"
     measured = set(trials.metrics)
     names = {name for of in record.secondary for name in of.metrics}
@@ -134,14 +139,14 @@ def _other_trials(record: DecisionRecord, trials: Trials) -> Iterator[str]:
 
 
 def _other_effects(record: DecisionRecord) -> Iterator[str]:
-    """Yield where effects do not fit the paths of the record, or each other."""
-    paths = {path.name for path in record.paths}
+    """Yield where effects do not fit the conditions of the record, or each other."""
+    conditions = {condition.name for condition in record.conditions}
     results = (*record.effects, *record.break_even, *record.break_even_beta)
-    if not paths.issuperset(result.path for result in results):
+    if not conditions.issuperset(result.condition for result in results):
         yield "the result has effects under conditions that it does not name"
-    names = [effect.path for effect in record.effects]
-    ends = {path for change in record.changes for path in (change.isolated, SHARED)}
-    if not ends.issubset(names) or [of.path for of in record.secondary] != names:
+    names = [effect.condition for effect in record.effects]
+    ends = {condition for change in record.changes for condition in (change.isolated, SHARED)}
+    if not ends.issubset(names) or [of.condition for of in record.secondary] != names:
         yield "the result has effects that contradict each other"
 
 
@@ -150,16 +155,22 @@ def _other_taps(
 ) -> Iterator[str]:
     """Yield where the record names other faulted taps than interface and receipts."""
     question = record.question
-    taps = {(c.name, consumer) for c in interface.channels for consumer in c.consumers}
-    for path in record.paths:
-        faulted = {question.repair: path.faulted, question.baseline: path.baseline_faulted}
+    taps = {(c.name, reader) for c in interface.channels for reader in c.readers}
+    for condition in record.conditions:
+        faulted = {
+            question.repair: condition.faulted,
+            question.baseline: condition.baseline_faulted,
+        }
         for variant, named in faulted.items():
-            if not taps.issuperset((tap.channel, tap.consumer) for tap in named):
+            if not taps.issuperset((tap.channel, tap.reader) for tap in named):
                 yield "the result names injection points that the interface does not have"
             try:
-                received = faulted_taps(deliveries.at(variant, path.name))
+                received = faulted_taps(deliveries.at(variant, condition.name))
             except KeyError:
                 yield "the delivery log leaves out a version or condition of the result"
             else:
                 if received != named:
-                    yield f"delivery log and result differ in who got the fault under '{path.name}'"
+                    yield (
+                        "delivery log and result differ in who got the fault under "
+                        f"'{condition.name}'"
+                    )

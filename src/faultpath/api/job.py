@@ -81,7 +81,7 @@ def begin(
     question = ask(model, arguments, isinstance(progress, Display) and progress.is_command)
     how = vars(question)
     executor = how.get("executor", "local")
-    chosen = choose(system, question.options, how.get("workers"), question.arms, executor)
+    chosen = choose(system, question.options, how.get("workers"), question.named_variants, executor)
     library = library_of(chosen.system, question.library)
     fields = {"system": chosen.spec.name, **question.model_dump(exclude_unset=True)}
     shown = display(progress, call, fields | {"options": chosen.spec.options})

@@ -68,7 +68,7 @@ def judge(
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
 
     def conclude(question: Question) -> DecisionRecord:
-        return decide(question, laid.paths, laid.trials, laid.findings)
+        return decide(question, laid.conditions, laid.trials, laid.findings)
 
     begin(folder)
     record = concluded(folder, laid.question, conclude)
@@ -92,8 +92,8 @@ def _folder(laid: LaidOut, sources: dict[str, str]) -> Path:
         [sorted(sources.values()), question.model_dump(mode="json")], sort_keys=True
     )
     digest = hashlib.sha256(content.encode()).hexdigest()[:8]
-    arms = re.sub(r"[^A-Za-z0-9.+,_-]+", "_", f"{question.repair}-vs-{question.baseline}")[:150]
-    return Path("runs") / f"judged-{arms}-{digest}"
+    variants = re.sub(r"[^A-Za-z0-9.+,_-]+", "_", f"{question.repair}-vs-{question.baseline}")[:150]
+    return Path("runs") / f"judged-{variants}-{digest}"
 
 
 def _system(question: Question) -> SystemShown:
@@ -102,7 +102,7 @@ def _system(question: Question) -> SystemShown:
         control_dt_s=1.0,
         interface=Interface(name="results", sources=(), channels=()),
         variants=tuple(
-            VariantShown(name=name, consumers=(), bindings={})
+            VariantShown(name=name, readers=(), bindings={})
             for name in (question.baseline, question.repair)
         ),
         plans={},
@@ -113,7 +113,7 @@ def _stored(folder: Path, laid: LaidOut, system: SystemShown) -> RunResult:
     """Write the trials and what else pages are made from."""
     question, trials = laid.question, laid.trials
     rows = dict.fromkeys((t.variant, t.condition, t.seed) for t in trials)
-    taps = tuple(RowDeliveries(variant=v, path=p, seed=s, taps=()) for v, p, s in rows)
+    taps = tuple(RowDeliveries(variant=v, condition=p, seed=s, taps=()) for v, p, s in rows)
     deliveries = Deliveries(rows=taps, findings=laid.findings)
     outcomes = encode_outcomes(trials)
     write_file(folder / OUTCOMES, outcomes, folder)

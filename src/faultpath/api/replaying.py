@@ -16,7 +16,7 @@ from faultpath.decisions.record import DecisionRecord
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.systems.checks.blocks import BlockSpec, RecordedBlock, run_blocks
-from faultpath.trials import Arm, Outcome, Study, System, SystemSpec, Trials, library_of
+from faultpath.trials import Outcome, Study, System, SystemSpec, Treatment, Trials, library_of
 from faultpath.trials.attempt import Done
 from faultpath.trials.code import CodeState, named, system_code
 from faultpath.trials.execution.dispatch import Built
@@ -60,15 +60,15 @@ class Replayed:
 
 
 def chosen_scenes(
-    source: ReportInput, scenes: Sequence[str], paths: Sequence[str]
+    source: ReportInput, scenes: Sequence[str], conditions: Sequence[str]
 ) -> tuple[str, ...]:
     """Return the scenes to run again, by default those that the report begins with.
 
     `UserError` for a scene or condition that the run does not have.
     """
     every = [scene.id for scene in source.trials.scenes]
-    named = [path.name for path in source.record.paths]
-    for what, names, known in (("scene", scenes, every), ("condition", paths, named)):
+    named = [condition.name for condition in source.record.conditions]
+    for what, names, known in (("scene", scenes, every), ("condition", conditions, named)):
         for name in names:
             if name not in known:
                 raise UserError(f"the run: {unknown(what, name, known)}")
@@ -86,7 +86,7 @@ def shown_first(record: DecisionRecord, trials: Trials) -> tuple[tuple[str, int]
 def replay(
     source: ReportInput,
     scenes: Sequence[str],
-    paths: Sequence[str] = (),
+    conditions: Sequence[str] = (),
     say: Callable[[str], None] = lambda text: None,
     trust: bool = False,
     code: Sequence[str] = (),
@@ -108,10 +108,10 @@ def replay(
             f"the run is of a {question.system}, which only its own process had: put what builds "
             "the system into a file, and audit that."
         )
-    arms = question.baseline, question.repair
+    treatments = question.baseline, question.repair
     spec = SystemSpec(name=question.system, options=question.options)
-    check_named(RECORD, spec, arms, code, trust)
-    chosen = choose(spec.name, spec.options, None, arms)
+    check_named(RECORD, spec, treatments, code, trust)
+    chosen = choose(spec.name, spec.options, None, treatments)
     system = chosen.system
     library = library_of(system, question.library)
     if library.content_hash != question.library_hash:
@@ -122,12 +122,12 @@ def replay(
     request = ask(AuditQuestion, {name: getattr(question, name) for name in kept})
     study = plan_audit(system, chosen.spec, request, library).study
     before = outcomes_at(source.trials)
-    named = paths or {row.path for row in study.rows}
-    addresses = [at for at in before if at.scene in scenes and at.path in named]
+    named = conditions or {row.condition for row in study.rows}
+    addresses = [at for at in before if at.scene in scenes and at.condition in named]
 
-    def note(arm: Arm, done: int, total: int) -> None:
-        faults = " and ".join(fault.describe() for fault in arm.faults) or "correct inputs"
-        say(f"Ran {arm.variant}, seed {arm.seed}, again: {faults} ({done} of {total}).")
+    def note(treatment: Treatment, done: int, total: int) -> None:
+        faults = " and ".join(fault.describe() for fault in treatment.faults) or "correct inputs"
+        say(f"Ran {treatment.variant}, seed {treatment.seed}, again: {faults} ({done} of {total}).")
 
     with local(0) as executor:
         trials = run_again(before, study, system, executor, addresses, note)
@@ -172,22 +172,25 @@ def run_again(
     system: System,
     executor: Executor,
     trials: Iterable[TrialAddress],
-    note: Callable[[Arm, int, int], None],
+    note: Callable[[Treatment, int, int], None],
 ) -> list[Replayed]:
-    """Run some trials of a study again and listen; an arm that several paths share runs once.
+    """Run some trials of a study again and listen; a treatment that several conditions share runs
+    once.
 
     Raises what makes an audit itself wrong: code that changed under way, workers that do not start.
     """
     chosen = before.keys() & set(trials)
-    arms: dict[str, Arm] = {}
+    treatments: dict[str, Treatment] = {}
     addresses: dict[str, dict[str, list[TrialAddress]]] = {}
     for row in study.rows:
         for scene in study.scenes:
-            at = TrialAddress(row.variant, row.path, row.seed, scene)
+            at = TrialAddress(row.variant, row.condition, row.seed, scene)
             if at in chosen:
-                arms[key := row.arm.key()] = row.arm
+                treatments[key := row.treatment.key()] = row.treatment
                 addresses.setdefault(key, {}).setdefault(scene, []).append(at)
-    tasks = [BlockSpec(arms[key], tuple(scenes), signals=True) for key, scenes in addresses.items()]
+    tasks = [
+        BlockSpec(treatments[key], tuple(scenes), signals=True) for key, scenes in addresses.items()
+    ]
     replays: dict[TrialAddress, Replayed] = {}
     done = 0
 
@@ -195,14 +198,14 @@ def run_again(
         nonlocal done
         done += 1
         for place, scene in enumerate(task.scenes):
-            for at in addresses[task.arm.key()][scene]:
+            for at in addresses[task.treatment.key()][scene]:
                 differs, signals = f"failed: {run.error}", ()
                 if not run.error:
                     again = Done((run.outcomes[place],), ())
                     differs = difference([before[at]], again)
                     signals = () if differs else run.signals[place]
                 replays[at] = Replayed(at, differs, signals)
-        note(task.arm, done, len(tasks))
+        note(task.treatment, done, len(tasks))
 
     built = Built.of(system, study.system, study.library)
     run_blocks(executor, built, tasks, settle)

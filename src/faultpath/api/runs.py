@@ -94,9 +94,9 @@ class Run(FinishedRun):
         return found(self.record, what)
 
     def table(self) -> pa.Table:
-        """Return the trials as an Arrow table, one row each: variant, `path` (the condition), seed,
-        scene, status, time_s, the system's metrics (null where a trial has none), and what the
-        injection points did.
+        """Return the trials as an Arrow table, one row each: variant, `condition` (the condition),
+        seed, scene, status, time_s, the system's metrics (null where a trial has none), and what
+        the injection points did.
 
         Its `to_pandas` makes a DataFrame where pandas is installed.
         """

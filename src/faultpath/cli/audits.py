@@ -42,8 +42,8 @@ def audit(
     alone, and under the shared fault."""
     gate = Gate.of(fail_if, junit, summary)
     # What builds a system may load for seconds; until then this is all that there is to see.
-    arms = f"{one_line(arguments['repair'])} with {one_line(arguments['baseline'])}"
-    typer.echo(f"Building {one_line(system)}, to compare {arms}.", err=as_json)
+    variants = f"{one_line(arguments['repair'])} with {one_line(arguments['baseline'])}"
+    typer.echo(f"Building {one_line(system)}, to compare {variants}.", err=as_json)
 
     from faultpath.api.audit import audits
     from faultpath.api.comparing import compare

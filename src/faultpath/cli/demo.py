@@ -34,8 +34,8 @@ def demo(
         toy = Path(__file__).resolve().parents[3] / "examples" / _TOY
     console = SafeConsole()
     console.print(_STORY, markup=False)
-    arms = {"baseline": "calibrated", "repair": "blind", "fault": "gain:scale=0.6"}
-    run = audit(f"{toy}:create", **arms, library="carts", folder=out, progress=display())
+    variants = {"baseline": "calibrated", "repair": "blind", "fault": "gain:scale=0.6"}
+    run = audit(f"{toy}:create", **variants, library="carts", folder=out, progress=display())
     console.print(decision(run.record))
     console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
     console.print(f"The system: {toy}. Next, one of your own: faultpath init mine", markup=False)

@@ -17,7 +17,7 @@ def replay(
         list[str] | None,
         typer.Option(help="Scene by its id, several times for several; default those shown first."),
     ] = None,
-    path: Annotated[
+    condition: Annotated[
         list[str] | None,
         typer.Option(help="Condition: correct, shared or a module's name; default all."),
     ] = None,
@@ -46,15 +46,15 @@ def replay(
     if RECORD not in read_provenance(folder).files:
         raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")
     source = read_run(folder)
-    scenes = chosen_scenes(source, scene or (), path or ())
+    scenes = chosen_scenes(source, scene or (), condition or ())
     console = SafeConsole()
     say = partial(console.print, markup=False)
-    again = replay(source, scenes, path or (), say, trust, code or ())
+    again = replay(source, scenes, condition or (), say, trust, code or ())
     replays = again.trials
     unlike = [trial for trial in replays if trial.differs]
     for trial in unlike:
         at = trial.address
-        where = f"{at.variant}, {at.path}, seed {at.seed}, {at.scene}"
+        where = f"{at.variant}, {at.condition}, seed {at.seed}, {at.scene}"
         console.print(f"{where}: {trial.differs}.", markup=False, style=STYLES["bad"])
     message = (
         f"{counted(len(replays), 'trial')} in {counted(len(scenes), 'scene')} came out as in the "

@@ -1,7 +1,7 @@
 """Random streams keyed by what they are for, never drawn from a shared generator.
 
 A draw is addressed by (purpose, scene id, seed, step). Two trials that share those four get the
-same numbers whatever else runs beside them, which is what makes arms of a contrast paired.
+same numbers whatever else runs beside them, which is what makes treatments of a contrast paired.
 """
 
 import hashlib

@@ -29,28 +29,36 @@ class ComparedTrials:
     mismatches: tuple[Mismatch, ...]
 
 
-def compared(repair: str, baseline: str, paths: Iterable[str], trials: Trials) -> ComparedTrials:
+def compared(
+    repair: str, baseline: str, conditions: Iterable[str], trials: Trials
+) -> ComparedTrials:
     """Return the trials of two variants that are compared; `UserError` when no pair is left.
 
     Each condition keeps its own scenes and seeds: what failed elsewhere costs it nothing. Where all
     seeds gave the same in everything, one counts.
     """
-    pairs = {path: pair(trials, Group(repair, path), Group(baseline, path)) for path in paths}
+    pairs = {
+        condition: pair(trials, Group(repair, condition), Group(baseline, condition))
+        for condition in conditions
+    }
     mismatches = tuple(mismatch for paired in pairs.values() for mismatch in paired.mismatches)
-    success = {path: paired.success for path, paired in pairs.items()}
-    left = [path for path, pair in success.items() if paired_scenes(*pair).any()]
+    success = {condition: paired.success for condition, paired in pairs.items()}
+    left = [condition for condition, pair in success.items() if paired_scenes(*pair).any()]
     if not left:
         raise UserError(
             "no scene is left to compare, because in each of them a trial failed: fix what made it "
             "fail, or choose other scenes."
         )
-    columns = np.concatenate([part for path in left for part in success[path]])
+    columns = np.concatenate([part for condition in left for part in success[condition]])
     alike = np.array_equal(columns, np.repeat(columns[:, :1], columns.shape[1], 1), equal_nan=True)
     seeds = slice(1) if alike else slice(None)
     return ComparedTrials(
-        pairs={path: pairs[path] for path in left},
-        success={path: (success[path][0][:, seeds], success[path][1][:, seeds]) for path in left},
-        void=tuple(path for path in pairs if path not in left),
+        pairs={condition: pairs[condition] for condition in left},
+        success={
+            condition: (success[condition][0][:, seeds], success[condition][1][:, seeds])
+            for condition in left
+        },
+        void=tuple(condition for condition in pairs if condition not in left),
         mismatches=mismatches,
     )
 

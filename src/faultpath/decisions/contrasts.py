@@ -54,45 +54,49 @@ class Measure:
     ) -> Iterator[tuple[str, Contrast]]:
         """Yield the tested effects, and their changes from those `alone` to the shared one, by
         name."""
-        for path in tested:
-            yield effect_name(path), self.effect(*success[path])
-        for path in isolated(tested):
-            if ends := self.together(alone[path], success[SHARED]):
-                yield change_name(path), change(*ends)
+        for condition in tested:
+            yield effect_name(condition), self.effect(*success[condition])
+        for condition in isolated(tested):
+            if ends := self.together(alone[condition], success[SHARED]):
+                yield change_name(condition), change(*ends)
 
     def tested(self, contrasts: Iterator[tuple[str, Contrast]]) -> dict[str, Contrast]:
         """Return contrasts by name, each with its test."""
         return {name: with_test(contrast, self.rule) for name, contrast in contrasts}
 
 
-def default_primary(primary: str, paths: Collection[str]) -> str:
-    """Return the primary path: as named, else the shared one, else the isolated."""
-    alone = [name for name in paths if name not in (CORRECT, SHARED)]
-    return primary or (SHARED if SHARED in paths else (alone or list(paths))[0])
+def default_primary(primary: str, conditions: Collection[str]) -> str:
+    """Return the primary condition: as named, else the shared one, else the isolated."""
+    alone = [name for name in conditions if name not in (CORRECT, SHARED)]
+    return primary or (SHARED if SHARED in conditions else (alone or list(conditions))[0])
 
 
-def alpha_shares(paths: Collection[str], primary: str) -> dict[str, float]:
+def alpha_shares(conditions: Collection[str], primary: str) -> dict[str, float]:
     """Return each contrast's share of the error rate, by its name, where they are not equal.
 
-    The effect on the primary path, for which sequential audits stop, has a half; all others share
-    the rest. Where that path has none, the others' shares are equal.
+    The effect under the primary condition, for which sequential audits stop, has a half; all others
+    share the rest. Where that condition has none, the others' shares are equal.
     """
-    named = [*map(effect_name, paths), *map(change_name, isolated(paths))]
+    named = [*map(effect_name, conditions), *map(change_name, isolated(conditions))]
     others = [name for name in named if name != effect_name(primary)]
     shares = dict.fromkeys(others, 0.5 / max(1, len(others)))
     return {effect_name(primary): 0.5 if others else 1.0, **shares}
 
 
-def effect_name(path: str) -> str:
-    """Name the effect on a path among the contrasts of a family."""
-    return f"effect/{path}"
+def effect_name(condition: str) -> str:
+    """Name the effect under a condition among the contrasts of a family."""
+    return f"effect/{condition}"
 
 
-def change_name(path: str) -> str:
-    """Name the change from an isolated path to the shared one, likewise."""
-    return f"change/{path}"
+def change_name(condition: str) -> str:
+    """Name the change from an isolated condition to the shared one, likewise."""
+    return f"change/{condition}"
 
 
 def isolated(tested: Collection[str]) -> list[str]:
-    """Return the paths of which the change to the shared one is tested."""
-    return [path for path in tested if path not in (CORRECT, SHARED)] if SHARED in tested else []
+    """Return the conditions of which the change to the shared one is tested."""
+    return (
+        [condition for condition in tested if condition not in (CORRECT, SHARED)]
+        if SHARED in tested
+        else []
+    )

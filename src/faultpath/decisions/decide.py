@@ -8,10 +8,17 @@ import numpy as np
 from faultpath.core.errors import UserError
 from faultpath.decisions.compared import ComparedTrials
 from faultpath.decisions.contrasts import change_name, default_primary, effect_name
-from faultpath.decisions.descriptive import cells_of, percent, secondary, untested_paths
+from faultpath.decisions.descriptive import cells_of, percent, secondary, untested_conditions
 from faultpath.decisions.effects import Change, Effect, Missing
 from faultpath.decisions.family import Family, family_of
-from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Invalid, Path, PathBreakEven
+from faultpath.decisions.model import (
+    AS_RUN,
+    CORRECT,
+    SHARED,
+    Condition,
+    ConditionBreakEven,
+    Invalid,
+)
 from faultpath.decisions.question import Question
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording
@@ -28,7 +35,7 @@ from faultpath.trials.trials import Trials
 
 def decide(
     question: Question,
-    paths: Sequence[Path],
+    conditions: Sequence[Condition],
     trials: Trials,
     findings: Sequence[str] = (),
     repeats: bool = True,
@@ -36,42 +43,53 @@ def decide(
     """Return the decision record of an audit.
 
     Each effect rests on the scenes that have its trials, each change on those that both have; a
-    path that has none is left out, and named. The record carries `findings`, and what was found
-    about its pairs. Where trials do not `repeats`, or a pair met different conditions, nothing is
-    significant. `UserError` when no pair is left on any path, for a primary path that the audit
-    does not have, and where newly trained models are asked for and too few trainings differ.
+    condition that has none is left out, and named. The record carries `findings`, and what was
+    found about its pairs. Where trials do not `repeats`, or a pair met different conditions,
+    nothing is significant. `UserError` when no pair is left under any condition, for a primary
+    condition that the audit does not have, and where newly trained models are asked for and too few
+    trainings differ.
     """
-    question = question.model_copy(update={"primary": primary_path(question.primary, paths)})
-    cells = cells_of(question, paths, trials)
+    question = question.model_copy(
+        update={"primary": primary_condition(question.primary, conditions)}
+    )
+    cells = cells_of(question, conditions, trials)
     # Whether a fault acted is told by receipts, and other tools' results have none.
-    untested = () if question.judged else untested_paths(paths, cells)
-    comparison, family = family_of(question, paths, trials, untested)
+    untested = () if question.judged else untested_conditions(conditions, cells)
+    comparison, family = family_of(question, conditions, trials, untested)
     invalid: Invalid | None = "unpaired" if comparison.mismatches else None
     if not repeats:
         invalid = "unrepeatable"
     if invalid:
         family = family.without_claims()
-    effects = {path: _effect(question, path, comparison, family) for path in comparison.success}
+    effects = {
+        condition: _effect(question, condition, comparison, family)
+        for condition in comparison.success
+    }
 
-    def between(pairs: Sequence[tuple[str, str]], words: Shares) -> list[PathBreakEven]:
+    def between(pairs: Sequence[tuple[str, str]], words: Shares) -> list[ConditionBreakEven]:
         results = (
             _break_even(question, comparison, family, (effects[none], effects[every]), words)
             for none, every in pairs
         )
         return [result for result in results if result]
 
-    faulted = [path for path in effects if path not in (CORRECT, AS_RUN, *untested)]
-    from_none = [(CORRECT, path) for path in faulted] if CORRECT in effects else []
-    from_one = [(path, SHARED) for path in family.changes]
+    faulted = [condition for condition in effects if condition not in (CORRECT, AS_RUN, *untested)]
+    from_none = [(CORRECT, condition) for condition in faulted] if CORRECT in effects else []
+    from_one = [(condition, SHARED) for condition in family.changes]
     state = stopped(question, family, trials)
     first = next(iter(family.effects.values()))
     record = DecisionRecord(
         question=question,
-        paths=tuple(path.model_copy(update={"acted": path.name not in untested}) for path in paths),
+        conditions=tuple(
+            condition.model_copy(update={"acted": condition.name not in untested})
+            for condition in conditions
+        ),
         cells=cells,
         effects=tuple(effects.values()),
-        changes=tuple(_change(path, family) for path in family.changes),
-        secondary=tuple(secondary(path, comparison.pairs[path], question) for path in effects),
+        changes=tuple(_change(condition, family) for condition in family.changes),
+        secondary=tuple(
+            secondary(condition, comparison.pairs[condition], question) for condition in effects
+        ),
         break_even=tuple(between(from_none, FREQUENCY)),
         break_even_beta=tuple(between(from_one, BETA)),
         scenes=max(effect.scenes for effect in effects.values()),
@@ -82,7 +100,10 @@ def decide(
         stopped=state and state.model_copy(update={"small": ()} if invalid else {}),
     )
     noted = (
-        *(f"{phrases.no_pair(path)}: the table shows what failed." for path in comparison.void),
+        *(
+            f"{phrases.no_pair(condition)}: the table shows what failed."
+            for condition in comparison.void
+        ),
         *phrases.failed_trials(record),
         *phrases.partly_measured(record),
         *mismatch_words(comparison.mismatches),
@@ -91,12 +112,13 @@ def decide(
     return record.model_copy(update={"findings": tuple(dict.fromkeys(noted))})
 
 
-def primary_path(named: str, paths: Sequence[Path]) -> str:
-    """Return the path of the primary contrast: as named, else the shared one, else the isolated.
+def primary_condition(named: str, conditions: Sequence[Condition]) -> str:
+    """Return the condition of the primary contrast: as named, else the shared one, else the
+    isolated.
 
     `UserError` for a name that the audit does not have.
     """
-    names = [path.name for path in paths]
+    names = [condition.name for condition in conditions]
     if named and named not in names:
         raise UserError(
             f"the audit has no condition '{named}' for its primary contrast: it has "
@@ -105,17 +127,19 @@ def primary_path(named: str, paths: Sequence[Path]) -> str:
     return default_primary(named, names)
 
 
-def _effect(question: Question, path: str, comparison: ComparedTrials, family: Family) -> Effect:
-    repair, baseline = comparison.success[path]
-    effect, pairs = family.effects[path], comparison.pairs[path]
+def _effect(
+    question: Question, condition: str, comparison: ComparedTrials, family: Family
+) -> Effect:
+    repair, baseline = comparison.success[condition]
+    effect, pairs = family.effects[condition], comparison.pairs[condition]
     assert effect.test is not None
     assert effect.pairs is not None
     assert effect.won is not None
     unpaired = np.isnan(repair - baseline)
     rates = [percent(np.where(unpaired, np.nan, part)) for part in (baseline, repair)]
     void, missing = int(pairs.void.sum()), None
-    if path in family.fills:
-        against, favour = family.fills[path]
+    if condition in family.fills:
+        against, favour = family.fills[condition]
         ours, theirs = (int(failed.sum()) for failed in pairs.ended(Status.FAILED))
         missing = Missing(
             void=void,
@@ -123,9 +147,9 @@ def _effect(question: Question, path: str, comparison: ComparedTrials, family: F
             baseline=theirs,
             against_pp=against.value,
             favour_pp=favour.value,
-            uneven=path in family.uneven,
-            unsettled=effect_name(path) in family.unsettled,
-            repairs=family.repairs.get(path),
+            uneven=condition in family.uneven,
+            unsettled=effect_name(condition) in family.unsettled,
+            repairs=family.repairs.get(condition),
         )
     elif void:
         missing = Missing(void=void)
@@ -135,7 +159,7 @@ def _effect(question: Question, path: str, comparison: ComparedTrials, family: F
     if level and question.generalise == "scenes" and question.stop is None:
         least = detectable(effect.pairs, rule=question.rule, alpha=level, on_top=True)
     return Effect(
-        path=path,
+        condition=condition,
         **_difference(effect),
         won=effect.won,
         ahead=effect.ahead,
@@ -145,13 +169,13 @@ def _effect(question: Question, path: str, comparison: ComparedTrials, family: F
     )
 
 
-def _change(path: str, family: Family) -> Change:
-    contrast = family.changes[path]
+def _change(condition: str, family: Family) -> Change:
+    contrast = family.changes[condition]
     return Change(
-        isolated=path,
+        isolated=condition,
         **_difference(contrast),
-        unsettled=change_name(path) in family.unsettled,
-        turn=family.turns[path],
+        unsettled=change_name(condition) in family.unsettled,
+        turn=family.turns[condition],
     )
 
 
@@ -178,18 +202,18 @@ def _break_even(
     family: Family,
     ends: tuple[Effect, Effect],
     words: Shares,
-) -> PathBreakEven | None:
+) -> ConditionBreakEven | None:
     """Return where baseline and repair are even between the effects at two ends of a share, over
     the scenes that both have, as a result of the condition with the fault, or of the one module."""
     at_none, at_all = ends
-    tests = [family.effects[end.path].test for end in ends]
+    tests = [family.effects[end.condition].test for end in ends]
     level = 1.0 - min(test.critical_p for test in tests if test and test.critical_p is not None)
     tested = family.measure.together(
-        comparison.success[at_none.path], comparison.success[at_all.path]
+        comparison.success[at_none.condition], comparison.success[at_all.condition]
     )
     if tested is None:
         return None
-    filled = [family.fills[end.path] for end in ends if end.path in family.fills]
+    filled = [family.fills[end.condition] for end in ends if end.condition in family.fills]
     # Both ends with what failed trials leave open against the repair, and for it.
     fills = tuple(zip(*filled, strict=True)) if any(a.value != b.value for a, b in filled) else ()
     result = break_even(*tested, level=level, fills=fills)
@@ -202,8 +226,8 @@ def _break_even(
         shown = wording.last(region.high) > 0 and wording.first(region.low) < 100
         if low and high and shown and not inner:
             kept.append(region)
-    return PathBreakEven(
-        path=at_all.path if words is FREQUENCY else at_none.path,
+    return ConditionBreakEven(
+        condition=at_all.condition if words is FREQUENCY else at_none.condition,
         result=only(result, kept),
         curve=mixture_curve(*tested, level=level, fills=fills),
         words=shares(question, result.regions, at_none, at_all, words),

@@ -1,4 +1,4 @@
-"""Descriptive numbers of a path, which decide nothing: how trials ended, times, metrics."""
+"""Descriptive numbers of a condition, which decide nothing: how trials ended, times, metrics."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from faultpath.decisions.effects import AtThreshold, Secondary
-from faultpath.decisions.model import CORRECT, ArmCounts, Path
+from faultpath.decisions.model import CORRECT, Condition, VariantCounts
 from faultpath.decisions.question import Question
 from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.statistics.effects import mean_effect, median_effect, seed_sums, success_effect
@@ -24,12 +24,14 @@ def percent(success: Floats) -> float:
     return 100.0 * float(seed_sums(ran).sum()) / ran.size
 
 
-def cells_of(question: Question, paths: Sequence[Path], trials: Trials) -> tuple[ArmCounts, ...]:
+def cells_of(
+    question: Question, conditions: Sequence[Condition], trials: Trials
+) -> tuple[VariantCounts, ...]:
     """Return how the trials of both versions ended under every condition."""
-    cells: list[ArmCounts] = []
-    for path in paths:
+    cells: list[VariantCounts] = []
+    for condition in conditions:
         for variant in (question.baseline, question.repair):
-            rows = trials.rows(variant, path.name).ravel()
+            rows = trials.rows(variant, condition.name).ravel()
             rows = rows[rows >= 0]
             count = {status: int(trials.has(status)[rows].sum()) for status in Status}
             ran = len(rows) - count[Status.FAILED]
@@ -37,9 +39,9 @@ def cells_of(question: Question, paths: Sequence[Path], trials: Trials) -> tuple
             times = times[np.isfinite(times)]
             faulted, altered = (trials.steps[:, rows] > 0).sum(axis=1).tolist()
             cells.append(
-                ArmCounts(
+                VariantCounts(
                     variant=variant,
-                    path=path.name,
+                    condition=condition.name,
                     trials=len(rows),
                     success=count[Status.SUCCESS],
                     crash=count[Status.CRASH],
@@ -54,18 +56,24 @@ def cells_of(question: Question, paths: Sequence[Path], trials: Trials) -> tuple
     return tuple(cells)
 
 
-def untested_paths(paths: Sequence[Path], cells: Sequence[ArmCounts]) -> tuple[str, ...]:
-    """Return the paths on which the fault changed nothing in any trial."""
-    acted = {cell.path for cell in cells if cell.altered_trials}
-    return tuple(path.name for path in paths if path.name != CORRECT and path.name not in acted)
+def untested_conditions(
+    conditions: Sequence[Condition], cells: Sequence[VariantCounts]
+) -> tuple[str, ...]:
+    """Return the conditions on which the fault changed nothing in any trial."""
+    acted = {cell.condition for cell in cells if cell.altered_trials}
+    return tuple(
+        condition.name
+        for condition in conditions
+        if condition.name != CORRECT and condition.name not in acted
+    )
 
 
-def secondary(path: str, pairs: Pairs, question: Question) -> Secondary:
+def secondary(condition: str, pairs: Pairs, question: Question) -> Secondary:
     """Return time and metrics under a condition, over the scenes of which every seed has both
     outcomes, for new scenes and the seeds run."""
     pairs = pairs.whole()
     if not pairs.scenes:
-        return Secondary(path=path)
+        return Secondary(condition=condition)
     library, scenes = question.library_hash, len(pairs.scenes)
     repair, baseline = pairs.ended(Status.SUCCESS)
     times = pairs.time_s
@@ -96,7 +104,7 @@ def secondary(path: str, pairs: Pairs, question: Question) -> Secondary:
                 for at in question.thresholds
             ]
     return Secondary(
-        path=path,
+        condition=condition,
         time_s=time_s,
         joint_successes=int(joint.sum()),
         metrics=metrics,

@@ -82,7 +82,7 @@ class Difference(Result):
 class Effect(Difference):
     """The repair minus the baseline under one condition, over the scenes of which a pair ran."""
 
-    path: str
+    condition: str
     won: tuple[tuple[int, int], ...]
     """Seed by seed: scenes in which only the repair succeeded, and those in which only the baseline
     did."""
@@ -156,7 +156,7 @@ class Change(Difference):
 class Secondary(Result):
     """Time and metrics under one condition, repair minus baseline; nothing is decided from them."""
 
-    path: str
+    condition: str
     time_s: Estimate | None = None
     """On jointly successful scenes."""
     joint_successes: int = 0

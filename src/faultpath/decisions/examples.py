@@ -25,17 +25,20 @@ def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
     """Return up to six scenes with their seeds by the rule at the top."""
     patterns, index = _patterns(pairs), {(pair.scene, pair.seed): pair.index for pair in pairs}
     counts = Counter(patterns.values())
-    signs = {effect.path: effect.sign for effect in record.effects if effect.leads}
-    arms = {PairKind.REPAIR_ONLY: 1, PairKind.BASELINE_ONLY: -1}
+    signs = {effect.condition: effect.sign for effect in record.effects if effect.leads}
+    variants = {PairKind.REPAIR_ONLY: 1, PairKind.BASELINE_ONLY: -1}
 
     def order(at: At) -> tuple[int, ...]:
         pattern = patterns[at]
-        shown = {path: signs.get(path, 0) * arms.get(kind, 0) for path, kind in pattern}
+        shown = {
+            condition: signs.get(condition, 0) * variants.get(kind, 0)
+            for condition, kind in pattern
+        }
         reversals = sum(
             change.turn == "reversal" and shown.get(change.isolated) == shown.get(SHARED) == 1
             for change in record.changes
         )
-        alike = len({kind for _, kind in pattern}) == 1 and pattern[0][1] not in arms
+        alike = len({kind for _, kind in pattern}) == 1 and pattern[0][1] not in variants
         return -reversals, -sum(shown.values()), alike, -counts[pattern], index[at], at[1]
 
     ranked = sorted(patterns, key=order)
@@ -66,9 +69,9 @@ def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[At, str]:
 
 
 def _patterns(pairs: Sequence[Pair]) -> dict[At, tuple[tuple[str, PairKind], ...]]:
-    """Return who succeeded, path by path, in every scene and seed without a void pair."""
+    """Return who succeeded, condition by condition, in every scene and seed without a void pair."""
     return {
-        at: tuple((path, pair.kind) for path, pair in group.items())
+        at: tuple((condition, pair.kind) for condition, pair in group.items())
         for at, group in by_scene(pairs).items()
         if not any(pair.kind is PairKind.VOID for pair in group.values())
     }

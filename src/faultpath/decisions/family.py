@@ -24,7 +24,7 @@ from faultpath.decisions.missing import (
     repairs_needed,
     uneven,
 )
-from faultpath.decisions.model import SHARED, Path
+from faultpath.decisions.model import SHARED, Condition
 from faultpath.decisions.question import Question
 from faultpath.statistics import betting
 from faultpath.statistics.contrast import Contrast, ordered_sum
@@ -40,23 +40,23 @@ class Family:
     """Every contrast of an audit with its decision."""
 
     effects: Mapping[str, Contrast]
-    """By path; without a decision where nothing was tested."""
+    """By condition; without a decision where nothing was tested."""
     changes: Mapping[str, Contrast]
-    """Shared minus isolated, by the isolated path."""
+    """Shared minus isolated, by the isolated condition."""
     turns: Mapping[str, Turn]
     hypotheses: int
     scenes_needed: int
     measure: Measure
     fills: Mapping[str, tuple[Contrast, Contrast]]
-    """By path, where trials are missing: the effect with all of them against the repair, and for
-    it."""
+    """By condition, where trials are missing: the effect with all of them against the repair, and
+    for it."""
     uneven: Collection[str]
-    """Paths on which one version failed more often than chance explains."""
+    """Conditions on which one version failed more often than chance explains."""
     unsettled: Collection[str]
     """Contrasts, by the names of `alpha_shares`, that would be decided but for those trials."""
     repairs: Mapping[str, tuple[int, int]]
-    """By path that is unsettled: how many failed trials of the repair and of the baseline have to
-    run to settle it, if they come out as the others did."""
+    """By condition that is unsettled: how many failed trials of the repair and of the baseline have
+    to run to settle it, if they come out as the others did."""
 
     def without_claims(self) -> "Family":
         """Return the family of trials on which nothing can rest: no contrast is decided."""
@@ -75,14 +75,14 @@ class Family:
 
 
 def family_of(
-    question: Question, paths: Sequence[Path], trials: Trials, untested: Sequence[str]
+    question: Question, conditions: Sequence[Condition], trials: Trials, untested: Sequence[str]
 ) -> tuple[ComparedTrials, Family]:
     """Return the trials of an audit that are compared, and what is decided of them.
 
     `UserError` when no pair is left, and where newly trained models are asked for and too few
     trainings gave different outcomes.
     """
-    names = [path.name for path in paths]
+    names = [condition.name for condition in conditions]
     comparison = compared(question.repair, question.baseline, names, trials)
     if question.generalise == "models":
         columns = np.concatenate([part for pair in comparison.success.values() for part in pair])
@@ -94,7 +94,7 @@ def family_of(
                 f"and gave different outcomes, and what holds for newly trained models needs "
                 f"{FEWEST_TRAININGS}: leave --generalise models out."
             )
-    family = decide_paths(
+    family = decide_conditions(
         comparison.success,
         rule=question.rule,
         primary=question.primary,
@@ -105,7 +105,7 @@ def family_of(
     return comparison, family
 
 
-def decide_paths(
+def decide_conditions(
     success: Mapping[str, Outcomes],
     *,
     rule: RuleName,
@@ -115,25 +115,25 @@ def decide_paths(
     alpha: float = ALPHA,
     shares: Mapping[str, float] | None = None,
 ) -> Family:
-    """Return what is decided of all paths, from successes `[scenes, seeds]` alone, not a number
-    where a trial has no outcome.
+    """Return what is decided of all conditions, from successes `[scenes, seeds]` alone, not a
+    number where a trial has no outcome.
 
     This is the rule of `faultpath audit`, without words and without secondary outcomes, and what
-    simulations of its error rates call. The family holds the effect on every path and every change
-    from an isolated path to `SHARED`, each over the scenes that have its trials; Holm's procedure
-    runs over all of them at `alpha`, by a `rule` that is weighted with the parts of `alpha_shares`
-    for the `primary` path. Paths in `untested` (the fault never acted there) take no part. `models`
-    speaks of newly trained models as well. `shares` of `alpha`, by the names of `alpha_shares`, say
-    that the audit was sequential: what is decided then holds at whatever scene it stopped, each
-    contrast at its own share. Where trials are missing, what is decided has to be so too with all
-    of them against it.
+    simulations of its error rates call. The family holds the effect under every condition and every
+    change from an isolated condition to `SHARED`, each over the scenes that have its trials; Holm's
+    procedure runs over all of them at `alpha`, by a `rule` that is weighted with the parts of
+    `alpha_shares` for the `primary` condition. Conditions in `untested` (the fault never acted
+    there) take no part. `models` speaks of newly trained models as well. `shares` of `alpha`, by
+    the names of `alpha_shares`, say that the audit was sequential: what is decided then holds at
+    whatever scene it stopped, each contrast at its own share. Where trials are missing, what is
+    decided has to be so too with all of them against it.
     """
     success = {
-        path: (np.asarray(one, np.float64), np.asarray(two, np.float64))
-        for path, (one, two) in success.items()
+        condition: (np.asarray(one, np.float64), np.asarray(two, np.float64))
+        for condition, (one, two) in success.items()
     }
     measure = Measure(rule, models, shares is not None)
-    tested = [path for path in success if path not in untested]
+    tested = [condition for condition in success if condition not in untested]
     family = measure.tested(measure.contrasts(success, success, tested))
     parts = alpha_shares(tested, default_primary(primary, success))
     weights = {name: parts[name] for name in family} if RULES[rule].weighted else None
@@ -142,28 +142,33 @@ def decide_paths(
     fills, unsettled = dict[str, tuple[Contrast, Contrast]](), list[str]()
     if any_missing(success):
         low, high = (
-            {path: filled(pair, favour) for path, pair in success.items()}
+            {condition: filled(pair, favour) for condition, pair in success.items()}
             for favour in (False, True)
         )
-        fills = {path: (measure.effect(*low[path]), measure.effect(*high[path])) for path in low}
+        fills = {
+            condition: (measure.effect(*low[condition]), measure.effect(*high[condition]))
+            for condition in low
+        }
         least = decide(nearest_to_nothing(measure, low, high, tested, decided))
         unsettled = [name for name, c in decided.items() if c.sign not in (0, least[name].sign)]
     repairs = {
-        path: repairs_needed(decided, effect_name(path), success[path], measure, decide)
-        for path in tested
-        if effect_name(path) in unsettled
+        condition: repairs_needed(
+            decided, effect_name(condition), success[condition], measure, decide
+        )
+        for condition in tested
+        if effect_name(condition) in unsettled
     }
     decided |= {name: _with_sign_0(decided[name]) for name in unsettled}
     effects = {
-        path: decided.get(effect_name(path)) or with_test(measure.effect(*pair), rule)
-        for path, pair in success.items()
+        condition: decided.get(effect_name(condition)) or with_test(measure.effect(*pair), rule)
+        for condition, pair in success.items()
     }
     changes = {
-        path: decided[change_name(path)]
-        for path in isolated(tested)
-        if change_name(path) in decided
+        condition: decided[change_name(condition)]
+        for condition in isolated(tested)
+        if change_name(condition) in decided
     }
-    lopsided = [path for path, pair in success.items() if uneven(pair)]
+    lopsided = [condition for condition, pair in success.items() if uneven(pair)]
     largest = (
         max(weights.values()) / ordered_sum(weights.values()) if weights else 1.0 / len(family)
     )
@@ -173,7 +178,10 @@ def decide_paths(
     return Family(
         effects=effects,
         changes=changes,
-        turns={path: _turn(path, effects, moved, lopsided) for path, moved in changes.items()},
+        turns={
+            condition: _turn(condition, effects, moved, lopsided)
+            for condition, moved in changes.items()
+        },
         hypotheses=len(family if shares is None else shares),
         scenes_needed=needed,
         measure=measure,
@@ -185,13 +193,13 @@ def decide_paths(
 
 
 def _turn(
-    path: str, effects: Mapping[str, Contrast], moved: Contrast, uneven: Collection[str]
+    condition: str, effects: Mapping[str, Contrast], moved: Contrast, uneven: Collection[str]
 ) -> Turn:
-    """Return what sharing does to the effect on an isolated path; no reversal rests on a path where
-    the trials of one version failed more often."""
-    if path in uneven or SHARED in uneven:
+    """Return what sharing does to the effect under an isolated condition; no reversal rests on a
+    condition where the trials of one version failed more often."""
+    if condition in uneven or SHARED in uneven:
         return "interaction" if moved.sign else "none"
-    return turn(effects[path], effects[SHARED], moved)
+    return turn(effects[condition], effects[SHARED], moved)
 
 
 def _with_sign_0(contrast: Contrast) -> Contrast:

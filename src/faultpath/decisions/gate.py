@@ -53,13 +53,15 @@ def found(record: DecisionRecord, what: str) -> Answer:
             return Answer(True, f"{capital(places(behind))}, {ahead}")
         case "undecided":
             primary = record.question.primary
-            main = next((effect for effect in record.effects if effect.path == primary), None)
+            main = next((effect for effect in record.effects if effect.condition == primary), None)
             settled = main is not None and (main.sign != 0 or record.is_small(main))
             return Answer(not settled, f"{capital(where(primary))}: {in_short(record, main)}.")
         case "void":
             void = sum(effect.void for effect in record.effects)
-            lost = [path.name for path in record.paths]
-            lost = [name for name in lost if name not in {effect.path for effect in record.effects}]
+            lost = [condition.name for condition in record.conditions]
+            lost = [
+                name for name in lost if name not in {effect.condition for effect in record.effects}
+            ]
             sentences = [f"{counted(void, 'pair')} of trials {'is' if void == 1 else 'are'} void."]
             sentences += [f"{phrases.no_pair(name)}." for name in lost]
             return Answer(bool(void or lost), " ".join(sentences))
@@ -73,9 +75,9 @@ def holds_when_shared(record: DecisionRecord) -> Answer:
     Away from floor and ceiling, and not because the baseline's trials failed. `UserError` for a
     result without a shared fault.
     """
-    if SHARED not in {path.name for path in record.paths}:
+    if SHARED not in {condition.name for condition in record.conditions}:
         raise UserError("the result has no shared fault, so nothing says whether the repair holds.")
-    effect = next((effect for effect in record.effects if effect.path == SHARED), None)
+    effect = next((effect for effect in record.effects if effect.condition == SHARED), None)
     text = sentence(f"{where(SHARED)}, {in_short(record, effect)}")
     return Answer(effect is not None and effect.leads and effect.sign > 0, text)
 

@@ -1,4 +1,5 @@
-"""From trials that other tools ran to what an audit is decided from: question, paths, trials."""
+"""From trials that other tools ran to what an audit is decided from: question, conditions,
+trials."""
 
 import hashlib
 import json
@@ -8,9 +9,9 @@ from dataclasses import dataclass
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
-from faultpath.decisions.decide import primary_path
+from faultpath.decisions.decide import primary_condition
 from faultpath.decisions.judging_table import Address, Key, table_of, units_of
-from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Path
+from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Condition
 from faultpath.decisions.question import JudgedTrials, Question, resolve
 from faultpath.decisions.sentences.wording import capital, counted, where
 from faultpath.statistics.estimate import RULE
@@ -22,7 +23,7 @@ from faultpath.trials.received.trial import NO_OUTCOME, Received
 from faultpath.trials.store.tables import FIXED
 
 _ONE = "one module"
-"""The path of a condition that is called isolated, and says no module."""
+"""The condition of a condition that is called isolated, and says no module."""
 _FIRST = {CORRECT: 0, SHARED: 2}
 
 
@@ -31,37 +32,38 @@ class LaidOut:
     """Arguments of `decide`."""
 
     question: Question
-    paths: tuple[Path, ...]
+    conditions: tuple[Condition, ...]
     trials: Trials
     findings: tuple[str, ...]
 
 
 def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
-    """Pair the trials of two arms by what names them: task, scene, seed and condition.
+    """Pair the trials of two variants by what names them: task, scene, seed and condition.
 
-    What one arm has and the other lacks is a failed trial, so that its pair is void, and is named.
-    Raises `UserError` for arms and conditions that are not there, a trial that is there twice, arms
-    without a trial in common, and hashes that only some trials have.
+    What one variant has and the other lacks is a failed trial, so that its pair is void, and is
+    named.
+    Raises `UserError` for variants and conditions that are not there, a trial that is there twice,
+    variants without a trial in common, and hashes that only some trials have.
     """
     if request.baseline == request.repair:
         raise UserError(f"baseline and repair are both '{request.repair}': name two versions.")
     for name in (request.baseline, request.repair):
-        if name not in (versions := {row.arm for row in rows}):
+        if name not in (versions := {row.variant for row in rows}):
             raise UserError(f"the results: {unknown('version', name, versions)}.")
-    rows = [row for row in rows if row.arm in (request.baseline, request.repair)]
-    names = _path_names({row.condition for row in rows}, request)
+    rows = [row for row in rows if row.variant in (request.baseline, request.repair)]
+    names = _condition_names({row.condition for row in rows}, request)
     if request.cluster == "task" and not all(row.task for row in rows):
         raise UserError("not every trial names its task: give --column task=NAME.")
     received = _by_address(rows, names, request)
-    paths = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
-    _check_paired(received, paths, request)
+    conditions = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
+    _check_paired(received, conditions, request)
 
     units = units_of(received, request)
     hashed = _hashed(rows)
     tasks = {address[2][0]: row.task for address, row in received.items()}
-    trials, missing = table_of(received, paths, units, request, hashed)
+    trials, missing = table_of(received, conditions, units, request, hashed)
     keys = {unit: sorted(members) for unit, members in units.labels.items()}
-    laid = tuple(_path(name) for name in paths)
+    laid = tuple(_condition(name) for name in conditions)
     dull = not any(row.status is Status.CRASH for row in rows)
     question = resolve(
         Question,
@@ -74,7 +76,7 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
         ),
         n_scenes=len(units.labels),
         seeds=units.seeds,
-        primary=primary_path(request.primary or "", laid),
+        primary=primary_condition(request.primary or "", laid),
         trained=request.generalise == "models",
         ends={Status.TIMEOUT.value: "no success"} if dull else {},
         metrics=_metrics(request),
@@ -86,8 +88,8 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
     return LaidOut(question, laid, trials, tuple(findings))
 
 
-def _path_names(conditions: Collection[str], question: JudgeQuestion) -> dict[str, str]:
-    """Return the path of each condition; `UserError` without one that is nominal."""
+def _condition_names(conditions: Collection[str], question: JudgeQuestion) -> dict[str, str]:
+    """Return the condition of each condition; `UserError` without one that is nominal."""
     for name in filter(None, (question.nominal, question.shared)):
         if name not in conditions:
             raise UserError(
@@ -129,11 +131,11 @@ def _by_address(
         key = (scene, row.seed)
         if question.cluster == "task":
             key = (row.task, f"{row.scene}, seed {row.seed}" if row.seed else row.scene)
-        address = (row.arm, names[row.condition], key)
+        address = (row.variant, names[row.condition], key)
         if (before := trials.setdefault(address, row)) is not row:
             seed = f", seed {row.seed}" if row.seed else ""
             raise UserError(
-                f"{row.where} and {before.where} are the same trial (version {row.arm}, scene "
+                f"{row.where} and {before.where} are the same trial (version {row.variant}, scene "
                 f"{scene}{seed}): give each once, or name the column that tells them apart, as in "
                 "--column seed=NAME."
             )
@@ -141,24 +143,27 @@ def _by_address(
 
 
 def _check_paired(
-    trials: Collection[Address], paths: Sequence[str], question: JudgeQuestion
+    trials: Collection[Address], conditions: Sequence[str], question: JudgeQuestion
 ) -> None:
-    """Raise `UserError` for a path on which no trial of one arm has its pair in the other."""
-    for path in paths:
+    """Raise `UserError` for a condition on which no trial of one variant has its pair in the
+    other."""
+    for condition in conditions:
         ones, twos = (
-            sorted(key for arm, at, key in trials if (arm, at) == (name, path))
+            sorted(key for variant, at, key in trials if (variant, at) == (name, condition))
             for name in (question.baseline, question.repair)
         )
         for name, keys in ((question.baseline, ones), (question.repair, twos)):
             if not keys:
                 raise UserError(
-                    f"'{name}' has no trial {where(path)}: give both versions under each condition."
+                    f"'{name}' has no trial {where(condition)}: give both versions under each "
+                    "condition."
                 )
         if not set(ones) & set(twos):
             first, second = (", seed ".join(filter(None, keys[0])) for keys in (ones, twos))
             raise UserError(
                 f"no trial of '{question.baseline}' has its pair in '{question.repair}' "
-                f"{where(path)} (the first are scene {first} and scene {second}): name the columns "
+                f"{where(condition)} (the first are scene {first} and scene {second}): name the "
+                "columns "
                 "that say what belongs together, as in --column scene=NAME."
             )
 
@@ -175,10 +180,10 @@ def _hashed(rows: Sequence[Received]) -> bool:
     return bool(ended) and not bare
 
 
-def _path(name: str) -> Path:
+def _condition(name: str) -> Condition:
     titles = {CORRECT: "Correct inputs", SHARED: "Shared fault", AS_RUN: "The results"}
     title = titles.get(name, f"{capital(name.replace('_', ' '))} only")
-    return Path(name=name, title=title, consumers=(), baseline_consumers=())
+    return Condition(name=name, title=title, readers=(), baseline_readers=())
 
 
 def _metrics(question: JudgeQuestion) -> dict[str, Metric]:
@@ -203,11 +208,11 @@ def _findings(
     question: JudgeQuestion,
     hashed: bool,
 ) -> Iterable[str]:
-    for (arm, path), keys in missing.items():
+    for (variant, condition), keys in missing.items():
         unit, label = keys[0]
         which = "" if not label else f" ({'' if question.cluster == 'task' else 'seed '}{label})"
         yield (
-            f"{capital(where(path))}, {counted(len(keys), 'trial')} of {arm} "
+            f"{capital(where(condition))}, {counted(len(keys), 'trial')} of {variant} "
             f"{'is' if len(keys) == 1 else 'are'} missing, for example that in {unit}{which}: "
             "each voids its pair."
         )

@@ -14,9 +14,10 @@ from faultpath.trials.trials import Trial, Trials
 
 _NONE = "none"
 Key = tuple[str, str]
-"""Key of a trial within its arm and path: its scene or task, and which of its trials it is."""
+"""Key of a trial within its variant and condition: its scene or task, and which of its trials it
+is."""
 Address = tuple[str, str, Key]
-"""Arm, path and key."""
+"""Arm, condition and key."""
 
 
 @dataclass(frozen=True)
@@ -63,26 +64,29 @@ def units_of(trials: Iterable[Address], request: JudgeQuestion) -> Units:
 
 def table_of(
     trials: Mapping[Address, Received],
-    paths: Sequence[str],
+    conditions: Sequence[str],
     units: Units,
     request: JudgeQuestion,
     hashed: bool,
 ) -> tuple[Trials, dict[tuple[str, str], list[Key]]]:
-    """Return a row for each trial that should be there, and by arm and path those that are not."""
+    """Return a row for each trial that should be there, and by variant and condition those that are
+    not."""
     rows: list[Trial] = []
     missing: dict[tuple[str, str], list[Key]] = {}
     tasks = {unit: row.task for (_, _, (unit, _)), row in trials.items()}
     ordered = sorted(units.labels, key=_in_order)
-    for path, arm in product(paths, (request.baseline, request.repair)):
+    for condition, variant in product(conditions, (request.baseline, request.repair)):
         for (place, seed), (index, unit) in product(enumerate(units.seeds), enumerate(ordered)):
             labels = units.compared[unit][place : place + 1]
-            row = trials.get((arm, path, (unit, labels[0]))) if labels else None
+            row = trials.get((variant, condition, (unit, labels[0]))) if labels else None
             if row is None:
-                missing.setdefault((arm, path), []).append((unit, "".join(labels)))
+                missing.setdefault((variant, condition), []).append((unit, "".join(labels)))
             topology = tasks[unit] if request.cluster == "scene" else ""
             outcome = _outcome(unit, row, hashed)
-            rows.append(Trial(arm, path, seed, index, topology, outcome))
-    rows.sort(key=lambda row: (paths.index(row.condition), row.variant, row.seed, row.scene_index))
+            rows.append(Trial(variant, condition, seed, index, topology, outcome))
+    rows.sort(
+        key=lambda row: (conditions.index(row.condition), row.variant, row.seed, row.scene_index)
+    )
     return Trials.of(rows), missing
 
 

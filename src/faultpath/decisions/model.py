@@ -10,7 +10,7 @@ from faultpath.statistics.estimate import BreakEven
 CORRECT = "correct"
 SHARED = "shared"
 AS_RUN = "as-run"
-"""The only path of results that name no condition; no module can be called so."""
+"""The only condition of results that name no condition; no module can be called so."""
 Invalid = Literal["unrepeatable", "unpaired"]
 """Trials that came out otherwise when they ran again; pairs that met different conditions."""
 
@@ -19,35 +19,35 @@ class FaultedTap(Result):
     """A tap at which a fault was in force, by the delivery log: all scenes and seeds together."""
 
     channel: str
-    consumer: str
+    reader: str
     faulted_steps: int
     """Control steps with a fault in force while the scene ran."""
     altered_steps: int
-    """Those in which what the consumer got differed from the reading."""
+    """Those in which what the reader got differed from the reading."""
 
 
-class Path(Result):
+class Condition(Result):
     """One way in which the fault reaches the system."""
 
     name: str
     """`correct`, the name of the only faulted module, or `shared`."""
     title: str
-    consumers: tuple[str, ...]
+    readers: tuple[str, ...]
     """Taps faulted in the repaired system; empty for `correct`."""
-    baseline_consumers: tuple[str, ...]
-    """Taps faulted in the baseline. Where the baseline has no such consumer the fault cannot reach
+    baseline_readers: tuple[str, ...]
+    """Taps faulted in the baseline. Where the baseline has no such reader the fault cannot reach
     it, and its trials under correct inputs stand in."""
     faulted: tuple[FaultedTap, ...] = ()
-    """Taps faulted in the repaired system: from receipts, where `consumers` is the plan."""
+    """Taps faulted in the repaired system: from receipts, where `readers` is the plan."""
     baseline_faulted: tuple[FaultedTap, ...] = ()
     """Taps faulted in the baseline."""
 
 
-class ArmCounts(Result):
-    """The trials of one variant on one path, all seeds together."""
+class VariantCounts(Result):
+    """The trials of one variant under one condition, all seeds together."""
 
     variant: str
-    path: str
+    condition: str
     trials: int
     success: int
     crash: int
@@ -60,17 +60,17 @@ class ArmCounts(Result):
     altered_trials: int
 
 
-class PathBreakEven(Result):
-    """The shares at which neither arm is decided to be ahead, on one path: of episodes with the
-    fault, or of the module's faults that are common cause (beta)."""
+class ConditionBreakEven(Result):
+    """The shares at which neither variant is decided to be ahead, under one condition: of episodes
+    with the fault, or of the module's faults that are common cause (beta)."""
 
-    path: str
+    condition: str
     result: BreakEven
     curve: tuple[tuple[float, float, float, float], ...]
     """`(share, expected difference, low, high)` in fractions and percentage points. The band
     touches 0 exactly where the share is in the set of `result`."""
     words: str
-    """Sentence part on it, without the path; empty where no end has an effect that leads."""
+    """Sentence part on it, without the condition; empty where no end has an effect that leads."""
 
 
 class StoppedAudit(Result):
@@ -81,7 +81,7 @@ class StoppedAudit(Result):
     reached: bool
     """Whether what it was to stop for came about."""
     small: tuple[str, ...]
-    """Paths on which the difference was shown to be smaller than the margin."""
+    """Conditions on which the difference was shown to be smaller than the margin."""
 
 
 class AuditResult(Result):
@@ -89,16 +89,16 @@ class AuditResult(Result):
 
     format: Literal[4] = 4
     question: Question
-    paths: tuple[Path, ...]
-    cells: tuple[ArmCounts, ...]
+    conditions: tuple[Condition, ...]
+    cells: tuple[VariantCounts, ...]
     effects: tuple[Effect, ...]
     changes: tuple[Change, ...]
     secondary: tuple[Secondary, ...] = ()
     """Under each condition that has an effect."""
-    break_even: tuple[PathBreakEven, ...]
-    """Over the frequency of the fault, each path but that of correct inputs."""
-    break_even_beta: tuple[PathBreakEven, ...] = ()
-    """Over the beta factor, each isolated path: of the faults of that module, the share that
+    break_even: tuple[ConditionBreakEven, ...]
+    """Over the frequency of the fault, each condition but that of correct inputs."""
+    break_even_beta: tuple[ConditionBreakEven, ...] = ()
+    """Over the beta factor, each isolated condition: of the faults of that module, the share that
     reaches all modules at once."""
     scenes: int
     """Scenes that are compared: the most that any effect rests on."""
@@ -123,12 +123,12 @@ class AuditResult(Result):
         return self.scenes < self.scenes_needed
 
     def winner(self, sign: int) -> str:
-        """Return the arm of a decided side."""
+        """Return the variant of a decided side."""
         return self.question.repair if sign > 0 else self.question.baseline
 
     def is_small(self, effect: Effect) -> bool:
         """Whether an effect was shown to be smaller than the margin of a sequential audit."""
-        return self.stopped is not None and effect.path in self.stopped.small
+        return self.stopped is not None and effect.condition in self.stopped.small
 
     @property
     def scenes_run(self) -> str:

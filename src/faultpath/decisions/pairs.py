@@ -1,4 +1,5 @@
-"""Pairs of trials, both arms in the same scene, path and seed, as pages and examples show them."""
+"""Pairs of trials, both variants in the same scene, condition and seed, as pages and examples show
+them."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -41,9 +42,10 @@ WORDS = {
 
 @dataclass(frozen=True)
 class Pair:
-    """Both arms in one scene on one path with one seed; an arm is `None` when it never ran."""
+    """Both variants in one scene under one condition with one seed; a variant is `None` when it
+    never ran."""
 
-    path: str
+    condition: str
     seed: int
     scene: str
     index: int
@@ -54,11 +56,11 @@ class Pair:
     @cached_property
     def void_reason(self) -> str | None:
         """Why the pair says nothing, or `None` for a pair that counts."""
-        for arm, trial in (("baseline", self.baseline), ("repair", self.repair)):
+        for variant, trial in (("baseline", self.baseline), ("repair", self.repair)):
             if trial is None:
-                return f"the {arm} did not run"
+                return f"the {variant} did not run"
             if trial.failed:
-                return f"the {arm} failed: {trial.error or 'no message was kept'}"
+                return f"the {variant} failed: {trial.error or 'no message was kept'}"
         if self.baseline and self.repair and unlike(self.baseline, self.repair):
             return "the two trials differ in initial state, disturbance or planner noise"
         return None
@@ -90,8 +92,10 @@ def read_pairs(trials: Trials, record: DecisionRecord) -> tuple[Pair, ...]:
     if is_sample(trials):
         places = np.linspace(0, len(trials.scenes) - 1, MOST_SCENES).astype(int).tolist()
     pairs: list[Pair] = []
-    for path in record.paths:
-        sides = [trials.planned(name, path.name) for name in (question.baseline, question.repair)]
+    for condition in record.conditions:
+        sides = [
+            trials.planned(name, condition.name) for name in (question.baseline, question.repair)
+        ]
         for scene in places:
             ref = trials.scenes[scene]
             for at, seed in enumerate(trials.seeds):
@@ -99,10 +103,10 @@ def read_pairs(trials: Trials, record: DecisionRecord) -> tuple[Pair, ...]:
                 if max(rows) < 0:
                     continue
                 baseline, repair = (trials.outcome(r, ref.id) if r >= 0 else None for r in rows)
-                about = (path.name, seed, ref.id, ref.index, ref.topology)
+                about = (condition.name, seed, ref.id, ref.index, ref.topology)
                 pairs.append(Pair(*about, baseline, repair))
-    order = {path.name: place for place, path in enumerate(record.paths)}
-    return tuple(sorted(pairs, key=lambda p: (order[p.path], p.topology, p.index, p.seed)))
+    order = {condition.name: place for place, condition in enumerate(record.conditions)}
+    return tuple(sorted(pairs, key=lambda p: (order[p.condition], p.topology, p.index, p.seed)))
 
 
 def is_sample(trials: Trials) -> bool:
@@ -127,8 +131,8 @@ def counts(trials: Trials, record: DecisionRecord, condition: str) -> dict[PairK
 
 
 def by_scene(pairs: Iterable[Pair]) -> dict[tuple[str, int], dict[str, Pair]]:
-    """Return the pairs by scene and seed, in each by path."""
+    """Return the pairs by scene and seed, in each by condition."""
     groups: dict[tuple[str, int], dict[str, Pair]] = {}
     for member in pairs:
-        groups.setdefault((member.scene, member.seed), {})[member.path] = member
+        groups.setdefault((member.scene, member.seed), {})[member.condition] = member
     return groups

@@ -1,4 +1,5 @@
-"""Plan an audit: which arms a question about a repair needs, on which paths of the fault."""
+"""Plan an audit: which treatments a question about a repair needs, under which conditions of the
+fault."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,8 +9,8 @@ from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import unknown
 from faultpath.decisions.analysis import Analysis, Round, Rounds
-from faultpath.decisions.decide import decide, primary_path
-from faultpath.decisions.model import CORRECT, SHARED, FaultedTap, Path
+from faultpath.decisions.decide import decide, primary_condition
+from faultpath.decisions.model import CORRECT, SHARED, Condition, FaultedTap
 from faultpath.decisions.question import Question, StopRule, resolve
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences.wording import counted
@@ -19,13 +20,13 @@ from faultpath.interface import module_of
 from faultpath.loop import TapCount
 from faultpath.statistics.estimate import RULE
 from faultpath.trials import (
-    Arm,
     Deliveries,
     Library,
     Row,
     Study,
     System,
     SystemSpec,
+    Treatment,
     Trials,
     Variant,
 )
@@ -44,7 +45,7 @@ class Audit(Analysis[None]):
 
     request: AuditQuestion
     question: Question
-    paths: tuple[Path, ...]
+    conditions: tuple[Condition, ...]
     study: Study
 
     def rounds(self) -> Rounds[None]:
@@ -56,20 +57,22 @@ class Audit(Analysis[None]):
     ) -> DecisionRecord:
         """Return the decision record of a run; raises as `faultpath.decisions.decide`."""
         question = self.question
-        paths = [
-            path.model_copy(
+        conditions = [
+            condition.model_copy(
                 update={
-                    "faulted": faulted_taps(deliveries.at(question.repair, path.name)),
-                    "baseline_faulted": faulted_taps(deliveries.at(question.baseline, path.name)),
+                    "faulted": faulted_taps(deliveries.at(question.repair, condition.name)),
+                    "baseline_faulted": faulted_taps(
+                        deliveries.at(question.baseline, condition.name)
+                    ),
                 }
             )
-            for path in self.paths
+            for condition in self.conditions
         ]
-        return decide(question, paths, trials, deliveries.findings, repeats=deliveries.repeats)
+        return decide(question, conditions, trials, deliveries.findings, repeats=deliveries.repeats)
 
     def stops(self, trials: Trials) -> bool:
         """Return whether a sequential audit ends with these trials."""
-        return stops(self.question, self.paths, trials)
+        return stops(self.question, self.conditions, trials)
 
 
 def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
@@ -77,7 +80,7 @@ def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
     return tuple(
         FaultedTap(
             channel=tap.channel,
-            consumer=tap.consumer,
+            reader=tap.reader,
             faulted_steps=tap.faulted_steps,
             altered_steps=tap.altered_steps,
         )
@@ -87,27 +90,30 @@ def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
 
 
 def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library: Library) -> Audit:
-    """Lay out the arms: both variants under correct inputs, under the fault at each module that
-    reads it alone, and under the fault shared by all of them.
+    """Lay out the treatments: both variants under correct inputs, under the fault at each module
+    that reads it alone, and under the fault shared by all of them.
 
-    The primary path, which leads the headline, is by default the shared one, or the only isolated
-    one.
+    The primary condition, which leads the headline, is by default the shared one, or the only
+    isolated one.
 
     Raises `UserError` for an unknown variant or metric, a repair that is its own baseline, a number
-    of scenes that the library does not have, a fault that reaches neither variant, a primary path
-    that does not exist, newly trained models of a system that trains none, from one seed or in a
-    sequential audit, or a margin that is none.
+    of scenes that the library does not have, a fault that reaches neither variant, a primary
+    condition that does not exist, newly trained models of a system that trains none, from one seed
+    or in a sequential audit, or a margin that is none.
     """
     variants = two_variants(system, request)
     sequential = request.stop_when is not None
     chosen = scenes_of(library, request.scenes, in_order=not sequential)
     faults = system.fault(request.fault)
-    conditions = faults_by_path(faults, variants)
-    paths = [
-        _path(name, of[request.repair], of[request.baseline]) for name, of in conditions.items()
+    faults_of = faults_by_condition(faults, variants)
+    conditions = [
+        _condition(name, of[request.repair], of[request.baseline]) for name, of in faults_of.items()
     ]
-    # Where the fault cannot reach a variant, that is the arm under correct inputs: it runs once.
-    rows = [row for path, of in conditions.items() for row in rows_of(path, of, request.seeds)]
+    # Where the fault cannot reach a variant, that is the treatment under correct inputs: it runs
+    # once.
+    rows = [
+        row for condition, of in faults_of.items() for row in rows_of(condition, of, request.seeds)
+    ]
     _check(system, request)
     study = Study(
         name=f"{spec.name}-{request.repair}-vs-{request.baseline}",
@@ -125,7 +131,7 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
             order=chosen,
             order_seed=_ORDER_SEED,
             look=study.look,
-            trials=len(study.arms()),
+            trials=len(study.treatments()),
         )
     question = resolve(
         Question,
@@ -135,7 +141,7 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         fault=str(request.fault),
         faults=faults,
         n_scenes=len(chosen),
-        primary=primary_path(request.primary or "", paths),
+        primary=primary_condition(request.primary or "", conditions),
         trained=system.trained,
         ends={status.value: words for status, words in system.ends.items()},
         metrics=dict(system.metrics),
@@ -147,10 +153,10 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
     if request.stop_when is not None:
         small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
         named.append(f"until-{request.stop_when}{small}")
-    return Audit(request, question, system, tuple(named), tuple(paths), study)
+    return Audit(request, question, system, tuple(named), tuple(conditions), study)
 
 
-def faults_by_path(
+def faults_by_condition(
     faults: Sequence[Fault], variants: Sequence[Variant]
 ) -> dict[str, dict[str, tuple[Fault, ...]]]:
     """Return the faults of each condition in each variant; none under correct inputs. With a single
@@ -158,8 +164,8 @@ def faults_by_path(
 
     `UserError` for faults that reach no variant, and a module named like a condition.
     """
-    shared = {variant.name: at_readers(faults, variant.consumers) for variant in variants}
-    reached = (reader for parts in shared.values() for part in parts for reader in part.consumers)
+    shared = {variant.name: at_readers(faults, variant.readers) for variant in variants}
+    reached = (reader for parts in shared.values() for part in parts for reader in part.readers)
     modules = sorted({module_of(reader) for reader in reached})
     if not modules:
         names = " nor ".join(f"'{variant.name}'" for variant in variants)
@@ -180,24 +186,24 @@ def faults_by_path(
 
 
 def rows_of(
-    path: str, faults: Mapping[str, Sequence[Fault]], seeds: Sequence[int]
+    condition: str, faults: Mapping[str, Sequence[Fault]], seeds: Sequence[int]
 ) -> Iterator[Row]:
-    """Yield the rows of a path: each variant under its faults, once with each seed."""
+    """Yield the rows of a condition: each variant under its faults, once with each seed."""
     for variant, parts in faults.items():
         for seed in seeds:
-            arm = Arm(variant=variant, faults=tuple(parts), seed=seed)
-            yield Row(variant=variant, path=path, seed=seed, arm=arm)
+            treatment = Treatment(variant=variant, faults=tuple(parts), seed=seed)
+            yield Row(variant=variant, condition=condition, seed=seed, treatment=treatment)
 
 
-def _path(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Path:
-    """Return a path of the fault, with what it reaches in each variant."""
+def _condition(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Condition:
+    """Return a condition of the fault, with what it reaches in each variant."""
     titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
     ours, theirs = (
-        tuple(dict.fromkeys(consumer for fault in faults for consumer in fault.consumers))
+        tuple(dict.fromkeys(reader for fault in faults for reader in fault.readers))
         for faults in (repair, baseline)
     )
     title = titles.get(name, f"{name.replace('_', ' ').capitalize()} only")
-    return Path(name=name, title=title, consumers=ours, baseline_consumers=theirs)
+    return Condition(name=name, title=title, readers=ours, baseline_readers=theirs)
 
 
 def _check(system: System, question: AuditQuestion) -> None:

@@ -41,7 +41,7 @@ class StopRule(Result):
     """When a sequential audit stops."""
 
     when: StopWhen
-    """`decided`: the primary contrast is; `all-decided`: the effect on every path is."""
+    """`decided`: the primary contrast is; `all-decided`: the effect under every condition is."""
     margin_pp: float | None = None
     """A difference that is shown to be smaller than this counts as decided too."""
     order: tuple[str, ...]
@@ -51,7 +51,7 @@ class StopRule(Result):
     look: int
     """Scenes from one look at the results to the next."""
     trials: int
-    """That a scene takes: distinct arms."""
+    """That a scene takes: distinct treatments."""
 
 
 class JudgedTrials(Result):
@@ -71,14 +71,14 @@ class Question(Resolved):
     fault: str
     """The fault in words, as given on the command line."""
     faults: tuple[Fault, ...] = ()
-    """The same spelled out, channel by channel, at every consumer that it names; empty in records
+    """The same spelled out, channel by channel, at every reader that it names; empty in records
     that do not say."""
     library: str
     library_hash: str
     n_scenes: int
     seeds: tuple[int, ...]
     primary: str = ""
-    """Path of the primary contrast, which leads the headline; empty for the default."""
+    """Condition of the primary contrast, which leads the headline; empty for the default."""
     generalise: Generalise = "scenes"
     """Population that intervals and tests hold for: new scenes, or newly trained models too."""
     trained: bool = False

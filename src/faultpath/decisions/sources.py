@@ -18,7 +18,7 @@ class Candidate(Frozen, allow_inf_nan=False):
     """Name of the source, or of the group whose sources err together."""
     sources: tuple[str, ...]
     channels: tuple[str, ...]
-    consumers: tuple[str, ...]
+    readers: tuple[str, ...]
     """Places that read it in either variant: every use of a shared source counts."""
     fault: str = ""
     """As large as its expected error; empty where that is not known."""
@@ -26,9 +26,9 @@ class Candidate(Frozen, allow_inf_nan=False):
     """Why there is no fault."""
     note: str = ""
     response: float | None = None
-    """How far a probe moves the commands, see `probing`: the largest of both variants and all paths
-    of the fault. Errors of several modules may cancel, and that is no reason to audit their source
-    last."""
+    """How far a probe moves the commands, see `probing`: the largest of both variants and all
+    conditions of the fault. Errors of several modules may cancel, and that is no reason to audit
+    their source last."""
     rank: int | None = None
     """Sources that nothing tells apart share one; `None` before they are ranked."""
 
@@ -39,7 +39,7 @@ def candidates(
     """Return the uncertain sources that a variant reads, in the order of declaration.
 
     Uncertain is what is measured, estimated or reconstructed, or declares an uncertainty. The
-    `faults` take the place of declared sizes. `UserError` for one that reaches no consumer,
+    `faults` take the place of declared sizes. `UserError` for one that reaches no reader,
     and for two of one source.
     """
     interface = system.interface
@@ -85,7 +85,7 @@ def channels_of(interface: Interface, variants: Sequence[Variant], source: str) 
         for variant in variants
         for channel in interface.channels
         if bound(variant, interface, channel.name) == source
-        and variant.consumers.intersection(channel.consumers)
+        and variant.readers.intersection(channel.readers)
     }
     return tuple(fed)
 
@@ -100,7 +100,7 @@ def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
     channels = tuple(dict.fromkeys(fault.channel for fault in system.fault(parsed)))
     sources = {bound(variant, system.interface, c): None for variant in variants for c in channels}
     candidate = _candidate(system, variants, parsed.name, tuple(sources), channels, text)
-    if not candidate.consumers:
+    if not candidate.readers:
         raise UserError(f"fault '{text}' reaches no module: neither version reads it there.")
     return candidate
 
@@ -120,12 +120,12 @@ def _candidate(
         reached = [
             reader
             for variant in variants
-            for part in at_readers(parts, variant.consumers)
-            for reader in part.consumers
+            for part in at_readers(parts, variant.readers)
+            for reader in part.readers
         ]
     else:
-        read = [c for channel in channels for c in interface.channel(channel).consumers]
-        reached = [c for c in read if any(c in variant.consumers for variant in variants)]
+        read = [c for channel in channels for c in interface.channel(channel).readers]
+        reached = [c for c in read if any(c in variant.readers for variant in variants)]
     for channel in channels:
         one, two = (bound(variant, interface, channel) for variant in variants)
         if one != two:
@@ -138,7 +138,7 @@ def _candidate(
         name=name,
         sources=sources,
         channels=channels,
-        consumers=tuple(dict.fromkeys(reached)),
+        readers=tuple(dict.fromkeys(reached)),
         fault=fault,
         unsized=unsized,
         note=note,

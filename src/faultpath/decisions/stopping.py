@@ -3,20 +3,20 @@
 from collections.abc import Iterable, Sequence
 
 from faultpath.core.errors import UserError
-from faultpath.decisions.descriptive import cells_of, untested_paths
+from faultpath.decisions.descriptive import cells_of, untested_conditions
 from faultpath.decisions.family import Family, family_of
-from faultpath.decisions.model import Path, StoppedAudit
+from faultpath.decisions.model import Condition, StoppedAudit
 from faultpath.decisions.question import EarlierLook, Question
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases
 from faultpath.trials.trials import Trials
 
 
-def stops(question: Question, paths: Sequence[Path], trials: Trials) -> bool:
+def stops(question: Question, conditions: Sequence[Condition], trials: Trials) -> bool:
     """Return whether a sequential audit stops with these trials; their order does not matter."""
-    untested = untested_paths(paths, cells_of(question, paths, trials))
+    untested = untested_conditions(conditions, cells_of(question, conditions, trials))
     try:
-        _, family = family_of(question, paths, trials, untested)
+        _, family = family_of(question, conditions, trials, untested)
     except UserError:  # no pair is sound so far
         return False
     state = stopped(question, family, trials)
@@ -33,17 +33,21 @@ def stopped(question: Question, family: Family, trials: Trials) -> StoppedAudit 
     if rule is None:
         return None
     small: list[str] = []
-    for path, effect in family.effects.items():
+    for condition, effect in family.effects.items():
         critical = effect.test.critical_p if effect.test else None
         if critical is None or effect.n_scenes < family.scenes_needed:
             continue
         level, margin = 1.0 - critical, rule.margin_pp or 0.0
         # Whatever failed trials would have been.
-        filled = (effect, *family.fills.get(path, ()))
+        filled = (effect, *family.fills.get(condition, ()))
         ends = [contrast.ends(level) or (-100.0, 100.0) for contrast in filled]
         if all(-margin < low and high < margin for low, high in ends):
-            small.append(path)
-    settled = {path for path, effect in family.effects.items() if effect.sign or path in small}
+            small.append(condition)
+    settled = {
+        condition
+        for condition, effect in family.effects.items()
+        if effect.sign or condition in small
+    }
     required = set(family.effects) if rule.when == "all-decided" else {question.primary}
     scenes = len(trials.scenes)
     return StoppedAudit(scenes=scenes, reached=required <= settled, small=tuple(small))
@@ -54,9 +58,9 @@ def with_earlier_analyses(
 ) -> DecisionRecord:
     """Return a record that tells of other conclusions from its trials, and what they cost.
 
-    `earlier` are records of the same arms by the same code, with the looks that they tell of. The
-    same question asked again is no look, and one with too few scenes to announce anything is none.
-    A sequential audit allows for all looks with the same primary contrast.
+    `earlier` are records of the same variants by the same code, with the looks that they tell of.
+    The same question asked again is no look, and one with too few scenes to announce anything is
+    none. A sequential audit allows for all looks with the same primary contrast.
     """
 
     def look(question: Question) -> EarlierLook:

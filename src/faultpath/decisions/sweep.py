@@ -11,10 +11,10 @@ from faultpath.statistics.estimate import ALPHA, RULES, Sign
 def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
     """Return p and weight of every contrast that a record tested, by its name."""
     tested = [effect for effect in record.effects if effect.corrected_p is not None]
-    p_values = {effect_name(effect.path): effect.p_value for effect in tested}
+    p_values = {effect_name(effect.condition): effect.p_value for effect in tested}
     p_values |= {change_name(change.isolated): change.p_value for change in record.changes}
     question = record.question
-    parts = alpha_shares([effect.path for effect in tested], question.primary)
+    parts = alpha_shares([effect.condition for effect in tested], question.primary)
     weighted = RULES[question.rule].weighted or question.stop is not None
     return {name: (p, parts[name] if weighted else 1.0) for name, p in p_values.items()}
 
@@ -22,7 +22,8 @@ def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
 def decide_sizes(
     records: Sequence[DecisionRecord], once: Collection[str] = ()
 ) -> list[dict[str, tuple[Sign, float]]]:
-    """Return for each size, by path, the side that is decided over all sizes, and the adjusted p.
+    """Return for each size, by condition, the side that is decided over all sizes, and the adjusted
+    p.
 
     Holm's procedure over every contrast of every size, weighted as each audit by itself: whatever
     is decided then holds with an error of at most 5 % for all sizes together. A size decides no
@@ -46,7 +47,7 @@ def decide_sizes(
         family: dict[str, tuple[Sign, float]] = {}
         for effect in record.effects:
             if effect.corrected_p is not None:
-                p = adjusted[key(size, effect_name(effect.path))]
-                family[effect.path] = effect.sign if p <= ALPHA else 0, p
+                p = adjusted[key(size, effect_name(effect.condition))]
+                family[effect.condition] = effect.sign if p <= ALPHA else 0, p
         families.append(family)
     return families

@@ -24,7 +24,7 @@ to."""
 class Draws:
     """Random numbers addressed by cause, scene, seed and step, one row a scene.
 
-    Two consumers, arms or blocks that share those four get the same numbers. Every call at one
+    Two readers, treatments or blocks that share those four get the same numbers. Every call at one
     address starts the stream anew: calls with different shapes, and normal and uniform numbers,
     come from the same bits. `beside` gives an independent address.
 
@@ -42,7 +42,7 @@ class Draws:
     _kept: dict[Any, Any] = field(
         default_factory=dict[Any, Any], init=False, repr=False, compare=False
     )
-    """Numbers drawn last, which the other consumers of a step need too; and draws of `beside`."""
+    """Numbers drawn last, which the other readers of a step need too; and draws of `beside`."""
 
     def normal(self, shape_per_scene: tuple[int, ...], step: int) -> NDArray[np.float64]:
         """Return standard normal numbers `[B, *shape_per_scene]`."""
@@ -131,7 +131,7 @@ class Intervention(BaseModel, ABC):
 
     @abstractmethod
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return `(value, memory)`: what the consumer would get, and what to carry on."""
+        """Return `(value, memory)`: what the reader would get, and what to carry on."""
 
     def is_random(self) -> bool:
         """Return whether errors are drawn, here or in a part."""

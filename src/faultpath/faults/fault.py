@@ -14,13 +14,13 @@ from faultpath.faults.kinds import AnyIntervention
 from faultpath.interface import Channel, Interface, module_of, modules
 
 ALL = "*"
-"""Every consumer of the channel: the fault is shared."""
+"""Every reader of the channel: the fault is shared."""
 
 
 class Fault(Frozen):
-    """One intervention on one channel, at some or all of its consumers, for some time.
+    """One intervention on one channel, at some or all of its readers, for some time.
 
-    `isolated` and `shared` are the same fault with two values of `consumers`. During recovery the
+    `isolated` and `shared` are the same fault with two values of `readers`. During recovery the
     value returns linearly to the reading, number by number.
     """
 
@@ -28,8 +28,8 @@ class Fault(Frozen):
     """Stored with trials, whose identity it is part of."""
     channel: str
     intervention: AnyIntervention
-    consumers: tuple[str, ...] = Field(default=(ALL,), min_length=1)
-    """Consumers (`module.place`), whole modules, or `*` for everyone who reads the channel."""
+    readers: tuple[str, ...] = Field(default=(ALL,), min_length=1)
+    """Readers (`module.place`), whole modules, or `*` for everyone who reads the channel."""
     onset_step: int = Field(default=0, ge=0)
     """First step in force."""
     duration_steps: int | None = Field(default=None, ge=1)
@@ -56,15 +56,15 @@ class Fault(Frozen):
         return self.cause or f"{self.channel}:{self.intervention.kind}"
 
     def draws(self, scenes: tuple[str, ...], seed: int) -> Draws:
-        """Return the random numbers of the fault, which all of its consumers share."""
+        """Return the random numbers of the fault, which all of its readers share."""
         if self.loading == 1.0:
             return Draws(scenes, seed, self.drawn_from)
         own = f"{self.drawn_from}/own/{self.channel}:{self.intervention.kind}"
         return Draws(scenes, seed, self.drawn_from, self.loading, Draws(scenes, seed, own))
 
     def aimed_at(self, *names: str) -> Self:
-        """Return the same fault at other consumers: `module.place`, modules, or `*`."""
-        return self.model_copy(update={"consumers": names or (ALL,)})
+        """Return the same fault at other readers: `module.place`, modules, or `*`."""
+        return self.model_copy(update={"readers": names or (ALL,)})
 
     @property
     def _end(self) -> float:
@@ -87,7 +87,7 @@ class Fault(Frozen):
 
     def describe(self) -> str:
         """Return the fault in a few words."""
-        at = "every consumer" if ALL in self.consumers else ", ".join(self.consumers)
+        at = "every reader" if ALL in self.readers else ", ".join(self.readers)
         words = f"{self.channel} {self.intervention.words()} at {at}"
         words += f" from step {self.onset_step}" if self.onset_step else ""
         if self.duration_steps is not None:
@@ -107,7 +107,7 @@ def at_readers(faults: Iterable[Fault], names: Collection[str]) -> tuple[Fault, 
     without the faults that then reach nobody."""
     narrowed: list[Fault] = []
     for fault in faults:
-        readers = tuple(c for c in fault.consumers if c in names or module_of(c) in names)
+        readers = tuple(c for c in fault.readers if c in names or module_of(c) in names)
         if readers:
             narrowed.append(fault.aimed_at(*readers))
     return tuple(narrowed)
@@ -139,31 +139,31 @@ def resolve(
     channels = [interface.channel(fault.channel) for fault in faults]
     resolved: list[Fault] = []
     for fault, channel in zip(faults, channels, strict=True):
-        _check_readers(fault.consumers, channels, interface)
+        _check_readers(fault.readers, channels, interface)
         wrong = fault.intervention.misfit(interface.source(channel.sources[0]).shape)
         if wrong:
             raise UserError(
                 f"channel '{fault.channel}': {fault.intervention.kind} does not fit: {wrong}"
             )
         update = {
-            "consumers": channel.consumers,
+            "readers": channel.readers,
             "intervention": fault.intervention.resolved(channel),
             "cause": fault.drawn_from,
         }
-        names = channel.consumers if ALL in fault.consumers else fault.consumers
+        names = channel.readers if ALL in fault.readers else fault.readers
         resolved += at_readers((fault.model_copy(update=update),), names)
     return tuple(resolved) if present is None else reaching(resolved, present)
 
 
 def _check_readers(names: Iterable[str], channels: Iterable[Channel], interface: Interface) -> None:
     """Raise `UserError` for a name of nobody who reads one of the channels."""
-    readers = {reader for channel in channels for reader in channel.consumers}
+    readers = {reader for channel in channels for reader in channel.readers}
     known = readers | {module_of(reader) for reader in readers}
     for name in names:
         if name == ALL or name in known:
             continue
         what = " and ".join(f"channel '{channel.name}'" for channel in channels)
-        everyone = {reader for channel in interface.channels for reader in channel.consumers}
+        everyone = {reader for channel in interface.channels for reader in channel.readers}
         if name in everyone or name in modules(interface):
             problem = f"'{name}' does not read it; its readers: {listed(known)}"
         else:

@@ -49,7 +49,7 @@ def parse_fault(
         for part in (parsed, *parsed.joined):
             update, options = _timing(part.options, dt_s)
             if part.readers:
-                update["consumers"] = part.readers
+                update["readers"] = part.readers
             if parsed.joined and "loading" in options:
                 update["loading"] = _loading(options.pop("loading"))
             declared = (

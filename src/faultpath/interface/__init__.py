@@ -1,4 +1,4 @@
-"""The interface that a system declares: sources, channels, consumers, reconstructions."""
+"""The interface that a system declares: sources, channels, readers, reconstructions."""
 
 from faultpath.interface.declaration import Channel, Gap, Provenance, Source, Uncertainty
 from faultpath.interface.interface import (
@@ -7,7 +7,7 @@ from faultpath.interface.interface import (
     module_of,
     modules,
     rank,
-    transitive_consumers,
+    transitive_readers,
 )
 from faultpath.interface.yaml_io import read_interface
 
@@ -23,5 +23,5 @@ __all__ = [
     "modules",
     "rank",
     "read_interface",
-    "transitive_consumers",
+    "transitive_readers",
 ]

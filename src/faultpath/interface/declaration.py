@@ -1,7 +1,7 @@
 """The declaration of the information that a system's modules read.
 
 Terms follow the paper, section "A Framework for Auditing Information Interfaces": a channel
-conditions a module; its source, its consumers and its deployment conditions (latency, rate, error
+conditions a module; its source, its readers and its deployment conditions (latency, rate, error
 correlation) are recorded; a gap is one of fidelity (an estimate replaces the truth) or of
 availability (a channel that the trained module expects is missing).
 """
@@ -23,7 +23,7 @@ from faultpath.core.results import Frozen
 from faultpath.core.text import has_control_characters
 
 Name = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]
-Consumer = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*$")]
+Reader = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*$")]
 
 
 def _readable(text: str) -> str:
@@ -135,14 +135,14 @@ class Source(Frozen, allow_inf_nan=False):
 
 
 class Channel(Frozen, allow_inf_nan=False):
-    """A source as consumers see it."""
+    """A source as readers see it."""
 
     name: Name
     sources: tuple[Name, ...] = Field(min_length=1)
     """Sources that may feed the channel; the first does at deployment."""
-    consumers: tuple[Consumer, ...] = Field(min_length=1)
+    readers: tuple[Reader, ...] = Field(min_length=1)
     """Every place that reads the channel, as `module.place`."""
     erasure_default: Constant = 0.0
-    """Value that a consumer gets when the channel is erased."""
+    """Value that a reader gets when the channel is erased."""
     gap: Gap = Gap.NONE
     description: Words = ""

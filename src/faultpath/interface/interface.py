@@ -101,7 +101,7 @@ def _check_unique(what: str, names: Iterable[str], *where: str | int) -> None:
 
 def _check_channel(known: Mapping[str, Source], channel: Channel, where: Where) -> None:
     _check_unique(f"channel '{channel.name}': source", channel.sources, *where, "sources")
-    _check_unique(f"channel '{channel.name}': consumer", channel.consumers, *where, "consumers")
+    _check_unique(f"channel '{channel.name}': reader", channel.readers, *where, "readers")
     for index, name in enumerate(channel.sources):
         here = (*where, "sources", index)
         if name not in known:
@@ -128,7 +128,7 @@ def _check_reconstructions(interface: Interface, known: Mapping[str, Source]) ->
         if module not in readers:
             raise _refuse(
                 here,
-                f"reconstructs: module '{module}' reads no channel; name its consumers in the "
+                f"reconstructs: module '{module}' reads no channel; name its readers in the "
                 f"channels that it reads, known modules: {listed(readers)}",
             )
         if name not in known:
@@ -153,10 +153,10 @@ def _check_cycles(interface: Interface) -> None:
     """Refuse modules that reconstruct what they themselves need within a step."""
     waiting = {
         module: {
-            module_of(consumer)
+            module_of(reader)
             for channel in interface.channels
             if not set(names).isdisjoint(channel.sources)
-            for consumer in channel.consumers
+            for reader in channel.readers
         }
         for module, names in interface.reconstructs.items()
     }
@@ -176,18 +176,18 @@ def _check_cycles(interface: Interface) -> None:
     )
 
 
-def module_of(consumer: str) -> str:
-    """Return the module of a consumer `module.place`."""
-    return consumer.partition(".")[0]
+def module_of(reader: str) -> str:
+    """Return the module of a reader `module.place`."""
+    return reader.partition(".")[0]
 
 
 def modules(interface: Interface) -> tuple[str, ...]:
     """Return every module that reads something, in the order of declaration."""
-    return tuple(dict.fromkeys(module_of(name) for c in interface.channels for name in c.consumers))
+    return tuple(dict.fromkeys(module_of(name) for c in interface.channels for name in c.readers))
 
 
-def transitive_consumers(interface: Interface, channel: str) -> tuple[str, ...]:
-    """Return the consumers that a fault on `channel` reaches, directly or through reconstructions.
+def transitive_readers(interface: Interface, channel: str) -> tuple[str, ...]:
+    """Return the readers that a fault on `channel` reaches, directly or through reconstructions.
 
     Raises `UserError` for an unknown name.
     """
@@ -200,9 +200,9 @@ def transitive_consumers(interface: Interface, channel: str) -> tuple[str, ...]:
     seen, followed = {channel}, set[str]()
     while waiting:
         here = waiting.popleft()
-        reached.update(dict.fromkeys(here.consumers))
+        reached.update(dict.fromkeys(here.readers))
         outputs = interface.reconstructs.get
-        fresh = {source for c in here.consumers for source in outputs(module_of(c), ())} - followed
+        fresh = {source for c in here.readers for source in outputs(module_of(c), ())} - followed
         followed |= fresh
         for index in sorted({index for source in fresh for index in fed.get(source, ())}):
             other = interface.channels[index]
@@ -215,16 +215,16 @@ def transitive_consumers(interface: Interface, channel: str) -> tuple[str, ...]:
 def rank(interface: Interface) -> tuple[Channel, ...]:
     """Return the channels, the one to audit first in front.
 
-    By how many consumers a fault reaches, how many read the channel itself, and the expected
+    By how many readers a fault reaches, how many read the channel itself, and the expected
     relative uncertainty of its first source, where an unknown one counts least (paper, section
     "Propose Repairs, Then Audit Their Composition").
     """
 
     def order(channel: Channel) -> tuple[int, int, float, str]:
         expected = interface.source(channel.sources[0]).expected_uncertainty
-        reach = len(transitive_consumers(interface, channel.name))
+        reach = len(transitive_readers(interface, channel.name))
         weight = -1.0 if expected is None else expected
-        return -reach, -len(channel.consumers), -weight, channel.name
+        return -reach, -len(channel.readers), -weight, channel.name
 
     return tuple(sorted(interface.channels, key=order))
 

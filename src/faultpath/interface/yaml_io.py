@@ -16,19 +16,19 @@ from faultpath.interface.interface import Interface
 
 def read_interface(
     facts: Path | str | Mapping[str, Any],
-    consumers: Mapping[str, Sequence[str]] | None = None,
+    readers: Mapping[str, Sequence[str]] | None = None,
     writers: Mapping[str, str] | None = None,
 ) -> Interface:
     """Return the interface in a YAML file, in YAML text (a `str` with a line break), or as data.
 
-    What it does not say about who reads and who reconstructs is taken from `consumers` (by
+    What it does not say about who reads and who reconstructs is taken from `readers` (by
     channel) and `writers` (module by source), where these are given.
 
     Raises `UserError` with file, line and what to do.
     """
     if isinstance(facts, Mapping):
         data = copy.deepcopy(dict(facts))
-        _complete(data, consumers or {}, writers or {})
+        _complete(data, readers or {}, writers or {})
         try:
             return Interface.model_validate(data)
         except ValidationError as error:
@@ -50,19 +50,19 @@ def read_interface(
         # YAML holds whatever its author wrote.
         if not isinstance(data, dict):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise Misread("holds no interface; start with `name:`, `sources:`, `channels:`")
-        _complete(data, consumers or {}, writers or {})
+        _complete(data, readers or {}, writers or {})
         return document.fill(Interface)
     except Misread as error:
         raise UserError(error.at(where)) from None
 
 
 def _complete(
-    data: dict[str, Any], consumers: Mapping[str, Sequence[str]], writers: Mapping[str, str]
+    data: dict[str, Any], readers: Mapping[str, Sequence[str]], writers: Mapping[str, str]
 ) -> None:
     """Fill in who reads and who reconstructs; what has another shape is left for validation."""
     for channel in _dicts(data, "channels"):
-        if "consumers" not in channel and channel.get("name") in consumers:
-            channel["consumers"] = list(consumers[channel["name"]])
+        if "readers" not in channel and channel.get("name") in readers:
+            channel["readers"] = list(readers[channel["name"]])
     outputs: dict[str, list[str]] = {}
     for source in _dicts(data, "sources"):
         name: str = source["name"]

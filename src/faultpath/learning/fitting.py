@@ -102,7 +102,7 @@ def fit(
     if seed < 0:
         raise UserError(f"fit: the seed {seed} is negative: seeds start at 0")
     repairs = (repair,) if isinstance(repair, Repair) else tuple(repair)
-    repairs = tuple(part.against(data.interface, data.dt_s, data.consumers) for part in repairs)
+    repairs = tuple(part.against(data.interface, data.dt_s, data.readers) for part in repairs)
     with torch.random.fork_rng():
         # The module's own code draws from torch's global state (initialisation, dropout): it is the
         # fit's own in here, and the caller's again behind.
@@ -146,7 +146,7 @@ def evaluate(
     resolved = [
         fault
         for parts in understood((*faults, *kept(repairs)), data.interface, data.dt_s)
-        for fault in resolve(parts, data.interface, data.consumers)
+        for fault in resolve(parts, data.interface, data.readers)
     ]
     task = _WindowTask(
         fitted.module, data, loss, repairs, fitted.record.seed, Schedule(), validation=0.0
@@ -223,9 +223,7 @@ class _WindowTask(FitTask):
             name=self.name,
             seed=self.seed,
             repairs=self.repairs,
-            reads=tuple(
-                f"{port.channel} -> {consumer}" for port, consumer in self._data.ports.items()
-            ),
+            reads=tuple(f"{port.channel} -> {reader}" for port, reader in self._data.ports.items()),
             architecture=Architecture.of(net),
             parameters=parameter_count(net),
             data=self._data.digested(self.host_targets, self.training),

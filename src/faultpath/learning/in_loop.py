@@ -81,8 +81,8 @@ def withheld(module: Module, repair: Repair, interface: Interface) -> Module:
         shape = interface.source(channel.sources[0]).shape
         neutral = np.broadcast_to(channel.erasure_default if value is None else value, shape)
         for port in module.ports:
-            names = {ALL, module.name, module.consumer(port)}
-            if port.channel == fault.channel and names & set(fault.consumers):
+            names = {ALL, module.name, module.reader(port)}
+            if port.channel == fault.channel and names & set(fault.readers):
                 values[port] = neutral
     if not values:
         raise UserError(

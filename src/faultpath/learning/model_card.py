@@ -146,7 +146,7 @@ class FitRecord(Card):
 
     format: Literal["faultpath-fit/2"] = "faultpath-fit/2"
     repairs: tuple[Repair, ...]
-    """As they act, every consumer and default spelled out; none for a baseline."""
+    """As they act, every reader and default spelled out; none for a baseline."""
     reads: tuple[str, ...]
     """The taps `channel -> module.place` of the module."""
     architecture: Architecture

@@ -44,7 +44,7 @@ class Repair(Frozen):
         return f"{self.kind.replace('_', ' ')}: {'; '.join(descriptions)}"
 
     def against(self, interface: Interface, dt_s: float, present: Collection[str]) -> "Repair":
-        """Return the repair as it acts on the consumers that are `present`, all spelled out.
+        """Return the repair as it acts on the readers that are `present`, all spelled out.
 
         Raises `UserError` where it does not fit, or acts on none of them.
         """
@@ -163,20 +163,20 @@ def errors(
 
 
 def withholding(
-    channel: str, consumers: str | Iterable[str] = ALL, value: Constant | None = None
+    channel: str, readers: str | Iterable[str] = ALL, value: Constant | None = None
 ) -> Repair:
-    """Return the repair in which consumers never get a channel but its neutral value.
+    """Return the repair in which readers never get a channel but its neutral value.
 
     The taps put it in place of the reading in every window of a fit; in a loop `withheld` does, in
     a module that no longer reads the channel.
 
     Args:
         channel: Channel to withhold.
-        consumers: Modules or `module.place`; all by default.
+        readers: Modules or `module.place`; all by default.
         value: In the reading's unit and shape; default the channel's erasure default.
     """
-    names = (consumers,) if isinstance(consumers, str) else tuple(consumers)
-    fault = Fault(channel=channel, intervention=Erase(default=value), consumers=names)
+    names = (readers,) if isinstance(readers, str) else tuple(readers)
+    fault = Fault(channel=channel, intervention=Erase(default=value), readers=names)
     return Repair(kind="withholding", faults=(fault,))
 
 

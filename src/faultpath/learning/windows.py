@@ -31,7 +31,7 @@ class Windows:
 
     Args:
         interface: Interface of the module's system; its taps deliver.
-        reader: The module, or the consumers `module.place` of one or several, that is fitted.
+        reader: The module, or the readers `module.place` of one or several, that is fitted.
         readings: By channel, what the source holds: `[N, T, ...]` step by step in order, or
             `[N, ...]` for what is constant in a window. Without steps all are `[N, ...]`.
         targets: Handed to the loss, `[N, ...]` or such by name; a reconstruction needs none.
@@ -85,7 +85,7 @@ class Windows:
         missing = {port.channel for port in self.ports} - set(readings)
         if missing:
             raise UserError(
-                f"windows: {listed(self.consumers)} read {listed(missing)}, of which there are no "
+                f"windows: {listed(self.readers)} read {listed(missing)}, of which there are no "
                 "readings: add them, or name fewer places as reader"
             )
 
@@ -93,31 +93,31 @@ class Windows:
         return len(self.ids)
 
     @cached_property
-    def consumers(self) -> tuple[str, ...]:
+    def readers(self) -> tuple[str, ...]:
         """The reader spelled out, `module.place`."""
         names = (self.reader,) if isinstance(self.reader, str) else tuple(self.reader)
-        known = dict.fromkeys(c for channel in self.interface.channels for c in channel.consumers)
+        known = dict.fromkeys(c for channel in self.interface.channels for c in channel.readers)
         for name in names:
-            if not any(name in (consumer, module_of(consumer)) for consumer in known):
+            if not any(name in (reader, module_of(reader)) for reader in known):
                 places = {*known, *map(module_of, known)}
                 raise UserError(f"windows: {unknown('reader', name, places)}")
         return tuple(c for c in known if c in names or module_of(c) in names)
 
     @cached_property
     def ports(self) -> Mapping[Port, str]:
-        """Ports at which the reader reads, with the consumer's full name."""
+        """Ports at which the reader reads, with the reader's full name."""
         ports: dict[Port, str] = {}
         for channel in self.interface.channels:
-            for consumer in channel.consumers:
-                if consumer not in self.consumers:
+            for reader in channel.readers:
+                if reader not in self.readers:
                     continue
-                port = Port(channel.name, consumer.partition(".")[2])
+                port = Port(channel.name, reader.partition(".")[2])
                 if port in ports:
                     raise UserError(
-                        f"windows: {ports[port]} and {consumer} read '{port.channel}' at places of "
+                        f"windows: {ports[port]} and {reader} read '{port.channel}' at places of "
                         "one name: fit them apart"
                     )
-                ports[port] = consumer
+                ports[port] = reader
         return ports
 
     def shape(self, channel: str) -> tuple[int, ...]:
@@ -157,10 +157,10 @@ class Windows:
                     "fit: the windows have no targets; only a reconstruction needs none"
                 )
             return self.targets
-        for port, consumer in self.ports.items():
+        for port, reader in self.ports.items():
             if port.channel in channels:
                 raise UserError(
-                    f"fit: {consumer} reads '{channels[0]}', which it is to reconstruct: leave "
+                    f"fit: {reader} reads '{channels[0]}', which it is to reconstruct: leave "
                     "that place out of reader"
                 )
         if channels[0] not in self.readings:
@@ -202,20 +202,20 @@ def delivered(
     A window is a scene of the taps and draws by its name, the seed and the epoch: neither its
     minibatch nor its place there matters. `readings` hold the rows `index` of the windows'.
     Arrays are `[n, T, ...]`, or `[n, ...]` where windows have no steps. Raises `NotDelivered`
-    where a fault missed a consumer that it names.
+    where a fault missed a reader that it names.
     """
     steps, interface = windows.steps, windows.interface
     ids = tuple(windows.ids[i] for i in index)
-    taps = window_taps(interface, faults, ids, windows.dt_s, seed, epoch, windows.consumers)
+    taps = window_taps(interface, faults, ids, windows.dt_s, seed, epoch, windows.readers)
     ports = windows.ports
     got: dict[Port, list[Array]] = {port: [] for port in ports}
     for step in range(steps or 1):
-        for port, consumer in ports.items():
+        for port, reader in ports.items():
             value = readings[port.channel]
             if value.ndim == len(windows.shape(port.channel)) + 2:
                 value = value[:, step]
             reading = Reading(value, taps.bindings[port.channel], step)
-            got[port].append(taps.deliver(port.channel, consumer, reading, step))
+            got[port].append(taps.deliver(port.channel, reader, reading, step))
     taps.verify(last_step=(steps or 1) - 1)
     stacked = {
         port: values[0] if steps is None else namespace(values[0]).stack(values, axis=1)
@@ -231,7 +231,7 @@ def window_taps(
     dt_s: float,
     seed: int,
     epoch: int,
-    consumers: Collection[str],
+    readers: Collection[str],
 ) -> Taps:
     """Return taps for which windows are scenes, with draws of their own in each epoch of a fit."""
     return Taps(
@@ -240,7 +240,7 @@ def window_taps(
         scenes=ids,
         dt_s=dt_s,
         seed=_EPOCHS * seed + epoch,
-        consumers=consumers,
+        readers=readers,
         privileged={s.name for s in interface.sources if s.provenance is Provenance.PRIVILEGED},
     )
 

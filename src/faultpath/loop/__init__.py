@@ -14,7 +14,7 @@ from faultpath.loop.parts import (
     Port,
     Progress,
     State,
-    consumers,
+    readers,
 )
 from faultpath.loop.reading import (
     FaultedElsewhere,
@@ -63,7 +63,7 @@ __all__ = [
     "UndeclaredReader",
     "WrittenTo",
     "added",
-    "consumers",
     "graph",
     "interface_of",
+    "readers",
 ]

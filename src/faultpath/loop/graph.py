@@ -19,7 +19,7 @@ def graph(
     """Return the graph of a plant and modules.
 
     Args:
-        interface: Declares the channels, their sources and their consumers.
+        interface: Declares the channels, their sources and their readers.
         plant: The part that senses and is moved.
         modules: In any order.
         bindings: Channel to source, where it is not the channel's first source.
@@ -62,12 +62,12 @@ def _check_ports(
             "one step before: keep one of the two, or give them two places"
         )
     for port in sorted(part.ports):
-        consumer = part.consumer(port)
-        declared = interface.channel(port.channel).consumers
-        if consumer not in declared:
+        reader = part.reader(port)
+        declared = interface.channel(port.channel).readers
+        if reader not in declared:
             raise SystemMistake(
                 f"{label_of(part)} reads channel '{port.channel}' at '{port.place}', but the "
-                f"interface does not list {consumer} among its consumers: {listed(declared)}"
+                f"interface does not list {reader} among its readers: {listed(declared)}"
             )
         if bound[port.channel] not in writers:
             raise SystemMistake(
@@ -106,17 +106,16 @@ def interface_of(facts: Path | str | Mapping[str, Any], parts: Iterable[Part]) -
     them. Who reads a channel and who reconstructs a source follows from the parts.
 
     Args:
-        facts: As `faultpath.interface.read_interface` takes it; channels need no consumers.
+        facts: As `faultpath.interface.read_interface` takes it; channels need no readers.
         parts: The plant and the modules of all variants, in the order in which readers are shown.
 
     Raises:
         UserError: The facts are no interface, or nobody reads a channel of it.
     """
-    consumers: dict[str, dict[str, None]] = {}
+    readers: dict[str, dict[str, None]] = {}
     writers: dict[str, str] = {}
     for part in parts:
         for port in sorted(part.ports):
-            consumers.setdefault(port.channel, {})[part.consumer(port)] = None
+            readers.setdefault(port.channel, {})[part.reader(port)] = None
         writers |= dict.fromkeys(part.writes, part.name)
-    readers = {channel: tuple(names) for channel, names in consumers.items()}
-    return read_interface(facts, readers, writers)
+    return read_interface(facts, {name: tuple(of) for name, of in readers.items()}, writers)

@@ -60,8 +60,8 @@ class Clock:
 class Deliverer(Protocol):
     """Methods of taps that a loop calls, for classes that stand between the two."""
 
-    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
-        """Return what a consumer gets of a reading; see `Taps.deliver`."""
+    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Any:
+        """Return what a reader gets of a reading; see `Taps.deliver`."""
         ...
 
     def set_active(self, mask: Array | None) -> None:
@@ -151,7 +151,7 @@ class _Execution:
     def _inputs(self, part: Part, step: int, truths: Mapping[str, Any], running: Array) -> Inputs:
         delivered: dict[tuple[str, str], Any] = {}
         at_read: dict[Port, Callable[[], Any]] = {}
-        for port, consumer, source, past, at_read_only in self._ports[id(part)]:
+        for port, reader, source, past, at_read_only in self._ports[id(part)]:
             reading = self._past.get(source) if past else self._now[source]
             if reading is None:
                 raise SystemMistake(
@@ -159,9 +159,9 @@ class _Execution:
                     f"but {self._no_past(source)}"
                 )
             if at_read_only:
-                at_read[port] = partial(self._taps.deliver, port.channel, consumer, reading, step)
+                at_read[port] = partial(self._taps.deliver, port.channel, reader, reading, step)
             else:
-                delivered[port] = self._taps.deliver(port.channel, consumer, reading, step)
+                delivered[port] = self._taps.deliver(port.channel, reader, reading, step)
         declared = part.truths if isinstance(part, Module) else ()
         shown = {name: truths[name] for name in declared}
         return Inputs(part.name, step, delivered, shown, running, at_read, label_of(part))
@@ -180,10 +180,10 @@ class _Execution:
 
 
 def _ports_of(part: Part, graph: Graph) -> Iterator[tuple[Port, str, str, bool, bool]]:
-    """Yield each port, its consumer and source, whether it reads the past, and only when asked."""
+    """Yield each port, its reader and source, whether it reads the past, and only when asked."""
     for port in sorted(part.ports):
         source = graph.bindings[port.channel]
-        yield port, part.consumer(port), source, port not in part.reads, port in part.at_read
+        yield port, part.reader(port), source, port not in part.reads, port in part.at_read
 
 
 def _returned(part: Part, outputs: Outputs, name: str, step: int) -> Any:

@@ -22,7 +22,7 @@ class Port(NamedTuple):
     """A channel and the place in the module where it enters: one tap.
 
     The same channel at two places is two ports, for a fault may reach one of them alone. A module
-    that runs others inside it names their places in full, `observer.flux`: they are consumers of
+    that runs others inside it names their places in full, `observer.flux`: they are readers of
     their own.
     """
 
@@ -93,7 +93,7 @@ class Part(ABC):
     """A part of a loop, which reads at ports."""
 
     name: str
-    """Name under which the interface lists its consumers, `name.place`. Parts may share it: a fault
+    """Name under which the interface lists its readers, `name.place`. Parts may share it: a fault
     at that module then reaches them all."""
     reads: frozenset[Port] = frozenset()
     """Ports that get what their source holds at this step."""
@@ -115,7 +115,7 @@ class Part(ABC):
         """All ports that it reads."""
         return self.reads | self.reads_past
 
-    def consumer(self, port: Port) -> str:
+    def reader(self, port: Port) -> str:
         """Return the name `module.place` under which the interface lists a port."""
         return port.place if "." in port.place else f"{self.name}.{port.place}"
 
@@ -230,6 +230,6 @@ def label_of(part: Part) -> str:
     return "the plant" if isinstance(part, Plant) else f"module '{part.name}'"
 
 
-def consumers(parts: Iterable[Part]) -> frozenset[str]:
+def readers(parts: Iterable[Part]) -> frozenset[str]:
     """Return the names `module.place` under which the interface lists the parts' ports."""
-    return frozenset(part.consumer(port) for part in parts for port in part.ports)
+    return frozenset(part.reader(port) for part in parts for port in part.ports)

@@ -10,7 +10,7 @@ from faultpath.core.errors import SystemMistake
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """A source's value. A consumer cannot write to it; its owner may once the step is over."""
+    """A source's value. A reader cannot write to it; its owner may once the step is over."""
 
     value: Array
     """`[B, ...]`, one row a scene, in the source's unit; or a `Query` whose answers are."""
@@ -42,7 +42,7 @@ class TapError(SystemMistake):
 
 
 class UndeclaredReader(TapError):
-    """A consumer asked for a channel that it is not declared to read in this variant."""
+    """A reader asked for a channel that it is not declared to read in this variant."""
 
 
 class IllegalRead(TapError):
@@ -59,12 +59,12 @@ class NotFinite(Exception):
 
 
 class WrittenTo(TapError):
-    """A consumer wrote into what a tap gave it, and others may have read that."""
+    """A reader wrote into what a tap gave it, and others may have read that."""
 
 
 class NotDelivered(TapError):
-    """A fault never reached a consumer that it names, although a scene ran past its onset."""
+    """A fault never reached a reader that it names, although a scene ran past its onset."""
 
 
 class FaultedElsewhere(TapError):
-    """A consumer that no fault names got an altered reading."""
+    """A reader that no fault names got an altered reading."""

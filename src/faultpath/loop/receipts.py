@@ -62,13 +62,13 @@ class Guard:
         self._written: Any = False
 
     def hand_out(self, value: Array) -> Array:
-        """Return a copy for the consumer, after a look at the last one."""
+        """Return a copy for the reader, after a look at the last one."""
         self._look()
         self._lent, self._kept = copy(value), copy(value)
         return self._lent
 
     def written(self) -> bool:
-        """Return whether a consumer wrote; this waits for the device."""
+        """Return whether a reader wrote; this waits for the device."""
         self._look()
         return bool(to_numpy(self._written))
 
@@ -83,9 +83,9 @@ class TapCount:
     """Counts of one tap, summed over scenes."""
 
     channel: str
-    consumer: str
+    reader: str
     deliveries: int
-    """Control steps at which the consumer got the channel, once for each scene of the block, also
+    """Control steps at which the reader got the channel, once for each scene of the block, also
     for scenes that have ended."""
     faulted_steps: int
     """Those with a fault in force; scenes that have ended do not count."""
@@ -97,8 +97,8 @@ def added(counts: Iterable[TapCount]) -> tuple[TapCount, ...]:
     """Return one count a tap, in the order in which the taps come up first."""
     sums: dict[tuple[str, str], tuple[int, int, int]] = {}
     for count in counts:
-        before = sums.get((count.channel, count.consumer), (0, 0, 0))
-        sums[count.channel, count.consumer] = (
+        before = sums.get((count.channel, count.reader), (0, 0, 0))
+        sums[count.channel, count.reader] = (
             before[0] + count.deliveries,
             before[1] + count.faulted_steps,
             before[2] + count.altered_steps,
@@ -122,9 +122,9 @@ class Receipt:
     """One tap over one run."""
 
     channel: str
-    consumer: str
+    reader: str
     deliveries: int
-    """Control steps at which the consumer got the channel."""
+    """Control steps at which the reader got the channel."""
     asks: int
     """Answers that it got of a query; 0 for a channel with one reading a step."""
     corruptions: tuple[CorruptionReceipt, ...]
@@ -143,14 +143,14 @@ class Receipts:
     steps_faulted: NDArray[np.int64]
     """`[B]`: control steps with a fault in force at some tap that delivered."""
     steps_altered: NDArray[np.int64]
-    """`[B]`: control steps at which some consumer got something else than the reading."""
+    """`[B]`: control steps at which some reader got something else than the reading."""
 
     def counts(self) -> tuple[TapCount, ...]:
         """Return what every tap did, summed over the scenes."""
         return tuple(
             TapCount(
                 tap.channel,
-                tap.consumer,
+                tap.reader,
                 tap.deliveries * len(self.scenes),
                 int(tap.steps_faulted.sum()),
                 int(tap.steps_altered.sum()),
@@ -158,12 +158,12 @@ class Receipts:
             for tap in self.taps
         )
 
-    def at(self, channel: str, consumer: str) -> Receipt:
+    def at(self, channel: str, reader: str) -> Receipt:
         """Return the receipt of one tap; raises `UndeclaredReader` where there is no such tap."""
         for receipt in self.taps:
-            if (receipt.channel, receipt.consumer) == (channel, consumer):
+            if (receipt.channel, receipt.reader) == (channel, reader):
                 return receipt
-        raise UndeclaredReader(f"there is no tap {channel} -> {consumer} in this variant")
+        raise UndeclaredReader(f"there is no tap {channel} -> {reader} in this variant")
 
 
 def check_delivered(
@@ -173,14 +173,14 @@ def check_delivered(
 ) -> None:
     """Compare receipts with the faults.
 
-    `named` holds, by channel and consumer, the words of the faults that name this tap: taken from
+    `named` holds, by channel and reader, the words of the faults that name this tap: taken from
     the faults, not from the taps. `last_step` `[B]` is the last control step at which each scene
     ran. Raises `NotDelivered` where a fault missed every scene of a tap although one ran past the
     onset, and `FaultedElsewhere` where another tap altered a reading.
     """
     for receipt in receipts.taps:
-        tap = f"{receipt.channel} -> {receipt.consumer}"
-        expected = Counter(named.get((receipt.channel, receipt.consumer), ()))
+        tap = f"{receipt.channel} -> {receipt.reader}"
+        expected = Counter(named.get((receipt.channel, receipt.reader), ()))
         acting = Counter(corruption.fault for corruption in receipt.corruptions)
         altered = receipt.steps_faulted.any() or receipt.steps_altered.any()
         if acting - expected or (altered and not expected):
@@ -193,5 +193,5 @@ def check_delivered(
                 raise NotDelivered(
                     f"tap {tap}: '{one.fault}' never reached it, although "
                     f"{int(ran.sum())} of {len(receipts.scenes)} scenes ran past the onset; the "
-                    f"consumer got the channel in {receipt.deliveries} steps"
+                    f"reader got the channel in {receipt.deliveries} steps"
                 )

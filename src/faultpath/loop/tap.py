@@ -1,4 +1,4 @@
-"""One consumer's end of one channel: the faults that act there, and what is counted."""
+"""One reader's end of one channel: the faults that act there, and what is counted."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
@@ -77,10 +77,10 @@ class Corruption:
 
 @dataclass(slots=True, eq=False)
 class Tap:
-    """One consumer's end of one channel."""
+    """One reader's end of one channel."""
 
     channel: str
-    consumer: str
+    reader: str
     source: str
     permitted: bool
     shape: tuple[int, ...]
@@ -95,7 +95,7 @@ class Tap:
     value: Array = None
     """The value of the step's reading."""
     cached: Array = None
-    """Value that the consumer got of it."""
+    """Value that the reader got of it."""
     finite: Array = None
     """Where the first reading was finite, until that has been looked at."""
     guard: Guard | None = None
@@ -103,7 +103,7 @@ class Tap:
     altered: Tally = field(default_factory=Tally)
 
     def __str__(self) -> str:
-        return f"{self.channel} -> {self.consumer}"
+        return f"{self.channel} -> {self.reader}"
 
     def add(self, corruption: Corruption) -> None:
         """Let a fault act here; a fault that is alone counts for the whole tap."""
@@ -114,7 +114,7 @@ class Tap:
         """Return what passed here so far; this waits for the device that holds the counts."""
         return Receipt(
             channel=self.channel,
-            consumer=self.consumer,
+            reader=self.reader,
             deliveries=self.deliveries,
             asks=self.asks,
             corruptions=tuple(
@@ -206,19 +206,19 @@ def _real(value: Array) -> bool:
 def wire(
     interface: Interface,
     bindings: Mapping[str, str],
-    consumers: Collection[str] | None,
+    readers: Collection[str] | None,
     privileged: Collection[str],
     n_scenes: int,
 ) -> dict[tuple[str, str], Tap]:
-    """Return the taps of a variant by channel and consumer; raises `UserError` for wrong names."""
+    """Return the taps of a variant by channel and reader; raises `UserError` for wrong names."""
     for name in bindings:
         interface.channel(name)
     for name in privileged:
         interface.source(name)
-    declared = {name for channel in interface.channels for name in channel.consumers}
-    for name in consumers or ():
+    declared = {name for channel in interface.channels for name in channel.readers}
+    for name in readers or ():
         if name not in declared:
-            raise UserError(f"this variant's consumers: {unknown('consumer', name, declared)}")
+            raise UserError(f"this variant's readers: {unknown('reader', name, declared)}")
     taps: dict[tuple[str, str], Tap] = {}
     for channel in interface.channels:
         bound = bindings.get(channel.name, channel.sources[0])
@@ -228,8 +228,8 @@ def wire(
         source = interface.source(bound)
         secret = source.provenance is Provenance.PRIVILEGED
         shape = (n_scenes, *source.shape)
-        for name in channel.consumers:
-            if consumers is None or name in consumers:
+        for name in channel.readers:
+            if readers is None or name in readers:
                 permitted = bound in privileged or not secret
                 taps[channel.name, name] = Tap(channel.name, name, bound, permitted, shape)
     return taps
@@ -242,30 +242,30 @@ class DeliveryListener:
     """
 
     def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
-        """See that a consumer got `got` of a reading; of a query, the function that answers."""
+        """See that a reader got `got` of a reading; of a query, the function that answers."""
 
     def answered(
         self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
     ) -> None:
-        """See what a query answered to a request, and what the consumer got of that answer."""
+        """See what a query answered to a request, and what the reader got of that answer."""
 
     def faulted(self, step: int, in_force: Any) -> None:
         """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""
 
 
 def refusal(
-    interface: Interface, tap: Tap | None, channel: str, consumer: str, reading: Any, step: int
+    interface: Interface, tap: Tap | None, channel: str, reader: str, reading: Any, step: int
 ) -> TapError:
     """Return what is wrong with a delivery that the interface or the variant does not allow."""
-    here = f"tap {channel} -> {consumer}"
+    here = f"tap {channel} -> {reader}"
     if tap is None:
-        declared = interface.channel(channel).consumers
-        if consumer in declared:
+        declared = interface.channel(channel).readers
+        if reader in declared:
             return UndeclaredReader(
-                f"{here}: this variant has no such consumer; name it in the variant's consumers"
+                f"{here}: this variant has no such reader; name it in the variant's readers"
             )
         return UndeclaredReader(
-            f"{here}: the channel does not declare this consumer; add it to the interface, "
+            f"{here}: the channel does not declare this reader; add it to the interface, "
             f"declared: {listed(declared)}"
         )
     if not isinstance(reading, Reading):
@@ -280,7 +280,7 @@ def refusal(
         )
     if not tap.permitted:
         return IllegalRead(
-            f"{here}: source '{tap.source}' is privileged and this arm does not permit it; "
+            f"{here}: source '{tap.source}' is privileged and this treatment does not permit it; "
             "read another one, or name it in the variant's privileged sources"
         )
     return IllegalRead(

@@ -1,4 +1,4 @@
-"""Taps: the only place where a source's reading becomes what a consumer gets."""
+"""Taps: the only place where a source's reading becomes what a reader gets."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
@@ -32,11 +32,11 @@ class ModuleTaps:
 
     module: str
     deliver: Callable[[str, str, Reading, int], Array]
-    """`deliver(channel, place, reading, step)` for the consumer `module.place`."""
+    """`deliver(channel, place, reading, step)` for the reader `module.place`."""
 
 
 class Taps:
-    """The taps of one variant over one block of scenes, with the faults of one arm.
+    """The taps of one variant over one block of scenes, with the faults of one treatment.
 
     Args:
         interface: The system's interface.
@@ -46,14 +46,14 @@ class Taps:
         dt_s: Length of a control step, s.
         seed: Seed of the faults' random numbers.
         bindings: Channel to the source that feeds it here; the rest keep their first source.
-        consumers: Consumers that this variant has; `None`: all that are declared.
-        privileged: Privileged sources that this arm may read.
-        guard: Give every consumer a copy of its own and let `verify` tell who wrote into it. NumPy
+        readers: Readers that this variant has; `None`: all that are declared.
+        privileged: Privileged sources that this treatment may read.
+        guard: Give every reader a copy of its own and let `verify` tell who wrote into it. NumPy
             readings cannot be written to in any case.
         observer: Sees what is delivered.
 
     Raises:
-        UserError: A name is unknown, or a fault names a consumer that is not here.
+        UserError: A name is unknown, or a fault names a reader that is not here.
     """
 
     def __init__(
@@ -65,7 +65,7 @@ class Taps:
         dt_s: float,
         seed: int = 0,
         bindings: Mapping[str, str] | None = None,
-        consumers: Collection[str] | None = None,
+        readers: Collection[str] | None = None,
         privileged: Collection[str] = (),
         guard: bool = False,
         observer: DeliveryListener | None = None,
@@ -80,7 +80,7 @@ class Taps:
         self._faulted, self._altered = Tally(), Tally()
         self._open: Array = None
         self._closed: Array = None
-        self._taps = wire(interface, bindings or {}, consumers, privileged, len(scenes))
+        self._taps = wire(interface, bindings or {}, readers, privileged, len(scenes))
         for tap in self._taps.values() if guard else ():
             tap.guard = Guard()
         first = {channel.name: channel.sources[0] for channel in interface.channels}
@@ -89,8 +89,8 @@ class Taps:
         faults = tuple(faults)
         self._named: Mapping[tuple[str, str], list[str]] = {}
         for fault in faults:
-            for consumer in fault.consumers:
-                self._named.setdefault((fault.channel, consumer), []).append(fault.describe())
+            for reader in fault.readers:
+                self._named.setdefault((fault.channel, reader), []).append(fault.describe())
         self._add(faults, dt_s, seed)
 
     def _add(self, faults: Iterable[Fault], dt_s: float, seed: int) -> None:
@@ -107,39 +107,39 @@ class Taps:
                     )
                 apart[draws.own] = fault
             common = shared.setdefault(draws, draws)
-            for consumer in fault.consumers:
-                if (fault.channel, consumer) not in self._taps:
+            for reader in fault.readers:
+                if (fault.channel, reader) not in self._taps:
                     raise UserError(
-                        f"fault '{fault.describe()}' has no tap at '{consumer}': spell out its "
-                        "consumers with faultpath.faults.resolve"
+                        f"fault '{fault.describe()}' has no tap at '{reader}': spell out its "
+                        "readers with faultpath.faults.resolve"
                     )
-                self._taps[fault.channel, consumer].add(Corruption(fault, common, dt_s))
+                self._taps[fault.channel, reader].add(Corruption(fault, common, dt_s))
 
-    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
-        """Return what `consumer` gets of `channel` at control step `step`.
+    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Array:
+        """Return what `reader` gets of `channel` at control step `step`.
 
         Without a fault on this tap that is `reading.value` itself, uncopied; a NumPy array comes
         as a view that cannot be written to. A second delivery in one step returns what the first
         did, with a fault or without. A query comes as a function of its request; see `Query`.
 
         Raises:
-            UndeclaredReader: This variant has no such consumer of the channel.
+            UndeclaredReader: This variant has no such reader of the channel.
             IllegalRead: The reading is not of the bound source, is privileged, or of the future.
             MalformedReading: It is no reading or not as declared, differs from that of the step's
                 first delivery, or `step` is before the last one.
             NotFinite: The first reading at this tap is not finite.
         """
-        tap = self._taps.get((channel, consumer))
+        tap = self._taps.get((channel, reader))
         if tap is None:
-            raise self._refusal(tap, channel, consumer, reading, step)
+            raise self._refusal(tap, channel, reader, reading, step)
         try:
             value = reading.value
             if step < 0:
                 raise MalformedReading(f"tap {tap}: step {step} is before the first, which is 0")
             if reading.source != tap.source or not tap.permitted or reading.step > step:
-                raise self._refusal(tap, channel, consumer, reading, step)
+                raise self._refusal(tap, channel, reader, reading, step)
         except AttributeError:
-            raise self._refusal(tap, channel, consumer, reading, step) from None
+            raise self._refusal(tap, channel, reader, reading, step) from None
         if step != tap.last_step:
             if step < tap.last_step:
                 raise MalformedReading(
@@ -157,7 +157,7 @@ class Taps:
             else:
                 got = self._corrupted(tap, value, step) if tap.corruptions else value
                 if isinstance(got, np.ndarray):
-                    if got is not self._open:  # consumers of one array share the view of it
+                    if got is not self._open:  # readers of one array share the view of it
                         self._open, self._closed = got, read_only(got)
                     got = self._closed
                 elif tap.guard is not None:
@@ -252,17 +252,17 @@ class Taps:
         )
 
     def verify(self, last_step: NDArray[np.int64] | int) -> None:
-        """Check that each fault reached the consumers that it names, and nobody else.
+        """Check that each fault reached the readers that it names, and nobody else.
 
         `last_step`: the last control step at which each scene ran, `[B]` or one for all. Raises as
         `check_delivered`, `NotFinite` for a first reading on an accelerator, and `WrittenTo` of a
-        guarded consumer that wrote.
+        guarded reader that wrote.
         """
         for tap in self._taps.values():
             tap.check_finite(self._scenes)
             if tap.guard is not None and tap.guard.written():
                 raise WrittenTo(
-                    f"tap {tap}: the consumer wrote into the reading, which others may read too; "
+                    f"tap {tap}: the reader wrote into the reading, which others may read too; "
                     "copy it before writing"
                 )
         last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))

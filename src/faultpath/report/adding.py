@@ -18,7 +18,7 @@ from faultpath.trials.store.signals import TOGETHER, Signal
 from faultpath.trials.store.tables import TrialAddress
 
 _SQUEEZED = 2.5
-_MOST_PATHS = 4
+_MOST_CONDITIONS = 4
 """The last ones, among them the shared fault."""
 _WIDTH, _LEFT, _RIGHT = 308.0, 38.0, 14.0
 _TOP, _PLOT, _PITCH = 44.0, 96.0, 136.0
@@ -45,17 +45,17 @@ class Lines:
 
 @dataclass(frozen=True)
 class Adding:
-    """One scene: on every path of the fault the errors of both arms."""
+    """One scene: under every condition of the fault the errors of both variants."""
 
     words: str
     """Quantity that the errors are of."""
     unit: str
     names: tuple[str, ...]
     """Names of the two errors and of their sum."""
-    paths: tuple[tuple[str, tuple[Lines, ...]], ...]
-    """Title of a path, with the baseline's lines and the repair's."""
+    conditions: tuple[tuple[str, tuple[Lines, ...]], ...]
+    """Title of a condition, with the baseline's lines and the repair's."""
     caption: str
-    """Summary of the last path, in numbers of this scene alone."""
+    """Summary of the last condition, in numbers of this scene alone."""
     span: tuple[float, float]
     """The range of the values; where a few would squeeze the others, that of the others."""
     beyond: str
@@ -65,11 +65,12 @@ class Adding:
     @property
     def longest_s(self) -> float:
         """Time that the longest trial took."""
-        return max(arm.trial.time_s for _, arms in self.paths for arm in arms)
+        return max(variant.trial.time_s for _, variants in self.conditions for variant in variants)
 
 
 def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
-    """Return the first scene of the viewer of which both errors are known on a path of the fault.
+    """Return the first scene of the viewer of which both errors are known under a condition of the
+    fault.
 
     `None` where the system names no errors, or nothing was recorded.
     """
@@ -83,17 +84,17 @@ def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
 
 def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | None:
     question = source.record.question
-    paths: list[tuple[str, str, tuple[Lines, ...]]] = []
+    conditions: list[tuple[str, str, tuple[Lines, ...]]] = []
     terms: list[Signal] = []
-    for path in source.record.paths:
-        if path.name == CORRECT or path.name not in pairs:
+    for condition in source.record.conditions:
+        if condition.name == CORRECT or condition.name not in pairs:
             continue
-        pair, lines = pairs[path.name], list[Lines]()
+        pair, lines = pairs[condition.name], list[Lines]()
         for role, name, trial in (
             ("baseline", question.baseline, pair.baseline),
             ("repair", question.repair, pair.repair),
         ):
-            named = source.signals.get(TrialAddress(name, path.name, pair.seed, scene), ())
+            named = source.signals.get(TrialAddress(name, condition.name, pair.seed, scene), ())
             topics = [signal.topic for signal in named if signal.name == TOGETHER]
             known = [signal for signal in named if signal.topic in topics]
             numbers = all(np.isfinite(signal.values).any() for signal in known)
@@ -103,29 +104,33 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
                 ended = f"{wording.ended(question, trial.status)}, {trial.time_s:.1f} s"
                 lines.append(Lines(role, name, values, trial, ended))
         if len(lines) == 2:
-            paths.append((path.name, path.title, tuple(lines)))
-    if not paths:
+            conditions.append((condition.name, condition.title, tuple(lines)))
+    if not conditions:
         return None
-    every = np.concatenate([arm.values.ravel() for *_, arms in paths for arm in arms])
+    every = np.concatenate(
+        [variant.values.ravel() for *_, variants in conditions for variant in variants]
+    )
     every = every[np.isfinite(every)]
     low, high = (float(end) for end in np.quantile(every, (0.03, 0.97)))
     whole = float(every.min()), float(every.max())
     cut = whole[1] - whole[0] > _SQUEEZED * max(high - low, 1e-9)
     unit = wording.unit(terms[0].unit)
     largest = max(whole, key=abs)
-    last, _, arms = paths[-1]
-    digits = 2 if min(max(arm.sizes) for arm in arms) < 1 else 1
+    last, _, variants = conditions[-1]
+    digits = 2 if min(max(variant.sizes) for variant in variants) < 1 else 1
     descriptions: list[str] = []
-    for arm in arms:
-        one, other, both = (wording.plain(size, digits) for size in arm.sizes)
+    for variant in variants:
+        one, other, both = (wording.plain(size, digits) for size in variant.sizes)
         descriptions.append(
-            f"{arm.name}: {one} and {other} {unit}, together {both} {unit} ({arm.ended})"
+            f"{variant.name}: {one} and {other} {unit}, together {both} {unit} ({variant.ended})"
         )
     return Adding(
         words=terms[0].topic,
         unit=unit,
         names=tuple(term.name for term in terms),
-        paths=tuple((title, arms) for _, title, arms in paths[-_MOST_PATHS:]),
+        conditions=tuple(
+            (title, variants) for _, title, variants in conditions[-_MOST_CONDITIONS:]
+        ),
         caption=f"Scene {scene}, {where(last)}, mean sizes: {'; '.join(descriptions)}.",
         span=(low, high) if cut else whole,
         beyond=f"{tick_label(float(f'{largest:.2g}'))} {unit}" if cut else "",
@@ -134,50 +139,52 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
 
 
 def adding_panels(shown: Adding) -> list[str]:
-    """Return a picture of each path, the baseline above the repair, all on the same axes."""
+    """Return a picture of each condition, the baseline above the repair, all on the same axes."""
     upward = covering(shown.span, least=1e-9)
     x = Axis(0.0, shown.longest_s, _LEFT, _WIDTH - _RIGHT)
     panels: list[str] = []
-    for title, arms in shown.paths:
-        endings = "; ".join(f"{arm.role} {arm.name}: {arm.ended}" for arm in arms)
+    for title, variants in shown.conditions:
+        endings = "; ".join(
+            f"{variant.role} {variant.name}: {variant.ended}" for variant in variants
+        )
         svg = Svg(
-            _WIDTH, _TOP + _PITCH * len(arms) - 16, f"{title}: {shown.words} over time", endings
+            _WIDTH, _TOP + _PITCH * len(variants) - 16, f"{title}: {shown.words} over time", endings
         )
         svg.text(0, 14, title, "head", room=_WIDTH)
-        for place, arm in enumerate(arms):
+        for place, variant in enumerate(variants):
             top = _TOP + _PITCH * place
             y = upward.at(top + _PLOT, top)
-            svg.text(0, top - 10, arm.role, "small soft")
-            svg.text(54, top - 10, arm.name, f"bold {arm.role}", room=130)
-            svg.text(_WIDTH, top - 10, arm.ended, "small soft", "end")
-            draw_axes(svg, x, y, 4, x.ticks(4) if arm is arms[-1] else ())
+            svg.text(0, top - 10, variant.role, "small soft")
+            svg.text(54, top - 10, variant.name, f"bold {variant.role}", room=130)
+            svg.text(_WIDTH, top - 10, variant.ended, "small soft", "end")
+            draw_axes(svg, x, y, 4, x.ticks(4) if variant is variants[-1] else ())
             svg.text(_LEFT - 6, y.start + 14, shown.unit, "small soft", "end")
             with svg.group(
-                clip_path=svg.clip(arm.role, (x.start, y.end), (x.end, y.start), "until")
+                clip_path=svg.clip(variant.role, (x.start, y.end), (x.end, y.start), "until")
             ):
-                _terms(svg, arm, x, y, shown.dt_s)
-            _end(svg, arm, x(arm.trial.time_s), y)
+                _terms(svg, variant, x, y, shown.dt_s)
+            _end(svg, variant, x(variant.trial.time_s), y)
         svg.text(_WIDTH, svg.height - 7, "s", "small soft", "end")
         panels.append(svg.render())
     return panels
 
 
-def _terms(svg: Svg, arm: Lines, x: Axis, y: Axis, dt_s: float) -> None:
+def _terms(svg: Svg, variant: Lines, x: Axis, y: Axis, dt_s: float) -> None:
     """Draw both errors and their sum, and what the sum leaves."""
-    steps = dt_s * np.arange(arm.values.shape[1], dtype=np.float64)
+    steps = dt_s * np.arange(variant.values.shape[1], dtype=np.float64)
     lines: list[list[Point]] = []
     far = 100 * (y.high - y.low)  # what lies outside the axes is drawn outside, and cut there
-    for values in np.clip(arm.values, y.low - far, y.high + far):
+    for values in np.clip(variant.values, y.low - far, y.high + far):
         known = np.isfinite(values)
         lines.append([(x(t), y(v)) for t, v in zip(steps[known], values[known], strict=True)])
     if both := lines[-1]:
-        svg.polygon([(both[0][0], y(0)), *both, (both[-1][0], y(0))], f"left-over {arm.role}")
-    for points, cls in zip(lines, ("one", "two", f"both {arm.role}"), strict=True):
+        svg.polygon([(both[0][0], y(0)), *both, (both[-1][0], y(0))], f"left-over {variant.role}")
+    for points, cls in zip(lines, ("one", "two", f"both {variant.role}"), strict=True):
         svg.polyline(points, f"term {cls}")
 
 
-def _end(svg: Svg, arm: Lines, end: float, y: Axis) -> None:
+def _end(svg: Svg, variant: Lines, end: float, y: Axis) -> None:
     """Draw when and how the trial ended."""
     svg.line((end, y.start), (end, y.end), "ended")
     with svg.group(transform=f"translate({end:.1f} {y.end + 8:.1f})"):
-        svg.path(_SIGN.get(arm.trial.status, _OTHER), f"end-sign {arm.role}")
+        svg.path(_SIGN.get(variant.trial.status, _OTHER), f"end-sign {variant.role}")

@@ -34,7 +34,7 @@ class Compared:
     source: ReportInput
     """All that its pages are made from."""
     family: Mapping[str, tuple[Sign, float]] | None = None
-    """For a sweep over sizes: by path, the side that is decided over all of them together, and
+    """For a sweep over sizes: by condition, the side that is decided over all of them together, and
     the adjusted p. `None` where every audit stands by itself."""
 
     @property
@@ -52,38 +52,52 @@ class Compared:
         """Question of the audit."""
         return self.record.question
 
-    def effect(self, path: str) -> Effect | None:
-        """Return its effect on a path, as decided beside the others; `None` where it has none."""
-        effect = next((effect for effect in self.record.effects if effect.path == path), None)
-        if effect is None or self.family is None or path not in self.family:
+    def effect(self, condition: str) -> Effect | None:
+        """Return its effect under a condition, as decided beside the others; `None` where it has
+        none."""
+        effect = next(
+            (effect for effect in self.record.effects if effect.condition == condition), None
+        )
+        if effect is None or self.family is None or condition not in self.family:
             return effect
-        sign, p = self.family[path]
+        sign, p = self.family[condition]
         return effect.model_copy(update={"sign": sign, "corrected_p": p})
 
     @property
     def headline(self) -> str:
         """Its own headline, qualified where not all that it decided stands over all sizes."""
         own, family = self.record.headline, self.family or {}
-        fallen = any(e.sign and not family.get(e.path, (e.sign, 0))[0] for e in self.record.effects)
+        fallen = any(
+            e.sign and not family.get(e.condition, (e.sign, 0))[0] for e in self.record.effects
+        )
         return f"By itself, and not over all sizes: {own}" if fallen else own
 
-    def absent(self, path: str) -> str:
+    def absent(self, condition: str) -> str:
         """Say why it has no effect under a condition."""
-        there = any(recorded.name == path for recorded in self.record.paths)
+        there = any(recorded.name == condition for recorded in self.record.conditions)
         return "every pair void" if there else "not run"
 
 
 def titles(runs: Sequence[Compared]) -> dict[str, str]:
-    """Return the paths of all runs by name, with titles that say which is primary in all of them.
+    """Return the conditions of all runs by name, with titles that say which is primary in all of
+    them.
 
     Correct inputs stand first and the shared fault last, as in every audit.
     """
-    by_path = {path.name: path.title for run in reversed(runs) for path in run.record.paths}
-    order = {path.name: None for run in runs for path in run.record.paths}
+    by_condition = {
+        condition.name: condition.title
+        for run in reversed(runs)
+        for condition in run.record.conditions
+    }
+    order = {condition.name: None for run in runs for condition in run.record.conditions}
     primaries = {run.asked.primary for run in runs}
     return {
-        path: f"{by_path[path]} (primary)" if primaries == {path} else by_path[path]
-        for path in sorted(order, key=lambda path: {CORRECT: 0, SHARED: 2}.get(path, 1))
+        condition: f"{by_condition[condition]} (primary)"
+        if primaries == {condition}
+        else by_condition[condition]
+        for condition in sorted(
+            order, key=lambda condition: {CORRECT: 0, SHARED: 2}.get(condition, 1)
+        )
     }
 
 

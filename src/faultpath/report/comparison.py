@@ -34,13 +34,15 @@ _LABEL = 28
 
 
 def headline(runs: Sequence[Compared]) -> str:
-    """Return what all sizes of a sweep answer on the primary path; of other runs how many there
-    are, and where they are decided in opposite directions."""
+    """Return what all sizes of a sweep answer under the primary condition; of other runs how many
+    there are, and where they are decided in opposite directions."""
     if sweep := swept(runs):
         primary = next((p for p in titles(runs) if p == runs[0].asked.primary), SHARED)
         answer = _by_size(runs, primary, sweep[1])
         return f"{len(runs)} sizes of {sweep[0]}, {where(primary)}: {answer}"
-    opposed = [title for path, title in titles(runs).items() if list(_opposite(runs, path))]
+    opposed = [
+        title for condition, title in titles(runs).items() if list(_opposite(runs, condition))
+    ]
     count = f"{len(runs)} audits side by side"
     return f"{count}: significant in opposite directions on {series(opposed)}" if opposed else count
 
@@ -56,14 +58,14 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
     """Return what sizes decide together, where audits are decided in opposite directions, what
     qualifies it, and the caveat.
 
-    Audits of other arms ask something else, and are not held against each other.
+    Audits of other variants ask something else, and are not held against each other.
     """
     conclusions = [
         f"{title}: significant {sides}."
-        for path, title in titles(runs).items()
-        for sides in _opposite(runs, path)
+        for condition, title in titles(runs).items()
+        for sides in _opposite(runs, condition)
     ]
-    if not conclusions and len({_arms(run) for run in runs}) == len(runs):
+    if not conclusions and len({_variants(run) for run in runs}) == len(runs):
         conclusions = [
             "No two of these audits compare the same versions, so none can contradict another."
         ]
@@ -86,8 +88,8 @@ def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
     sweep = swept(runs)
     if sweep is None:
         return
-    for path, title in titles(runs).items():
-        yield f"{title}: {_by_size(runs, path, sweep[1])}."
+    for condition, title in titles(runs).items():
+        yield f"{title}: {_by_size(runs, condition, sweep[1])}."
     if same_correct_trials(runs):
         yield "Correct inputs are the same trials at every size, and count once."
     yield (
@@ -96,11 +98,11 @@ def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
     )
 
 
-def _by_size(runs: Sequence[Compared], path: str, sizes: Sequence[float]) -> str:
+def _by_size(runs: Sequence[Compared], condition: str, sizes: Sequence[float]) -> str:
     """Return who is ahead at which sizes: `gru ahead at 0.1; nothing significant at 0.05`."""
     at: dict[str, list[str]] = {}
     for run, size in sorted(zip(runs, sizes, strict=True), key=lambda pair: pair[1]):
-        sign = effect.sign if (effect := run.effect(path)) else 0
+        sign = effect.sign if (effect := run.effect(condition)) else 0
         ahead = {1: f"{run.asked.repair} ahead", -1: f"{run.asked.baseline} ahead"}
         at.setdefault(ahead.get(sign, "nothing significant"), []).append(tick_label(size))
     if len(at) == 1:
@@ -109,14 +111,15 @@ def _by_size(runs: Sequence[Compared], path: str, sizes: Sequence[float]) -> str
     return "; ".join(f"{words} at {series(of)}" for words, of in at.items())
 
 
-def _opposite(runs: Sequence[Compared], path: str) -> Iterator[str]:
-    """Yield which runs are decided for which arm, for arms that win in some runs and lose in
+def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
+    """Yield which runs are decided for which variant, for variants that win in some runs and lose
+    in
     others: `for a (baseline) in 1, for b (repair) in 2 and 3`."""
-    decided = [(run, effect) for run in runs if (effect := run.effect(path)) and effect.sign]
-    for arms in dict.fromkeys(_arms(run) for run, _ in decided):
+    decided = [(run, effect) for run in runs if (effect := run.effect(condition)) and effect.sign]
+    for variants in dict.fromkeys(_variants(run) for run, _ in decided):
         sides: dict[str, dict[str, list[str]]] = {}
         for run, effect in decided:
-            if _arms(run) != arms:
+            if _variants(run) != variants:
                 continue
             role = "repair" if effect.sign > 0 else "baseline"
             winner = run.asked.repair if effect.sign > 0 else run.asked.baseline
@@ -128,7 +131,7 @@ def _opposite(runs: Sequence[Compared], path: str) -> Iterator[str]:
             yield ", ".join(f"for {side} in {series(numbers)}" for side, numbers in clauses)
 
 
-def _arms(run: Compared) -> frozenset[str]:
+def _variants(run: Compared) -> frozenset[str]:
     return frozenset((run.asked.baseline, run.asked.repair))
 
 
@@ -147,13 +150,14 @@ def facts_table(runs: Sequence[Compared], facts: Facts) -> Table:
 
 
 def effects(runs: Sequence[Compared]) -> Table:
-    """Return the effect of every run on every path; bold is significant, by its own audit."""
+    """Return the effect of every run under every condition; bold is significant, by its own
+    audit."""
     lines: list[Line] = []
-    for path, title in titles(runs).items():
+    for condition, title in titles(runs).items():
         lines.append(line(title))
         for run, label in zip(runs, labels(runs), strict=True):
-            if (effect := run.effect(path)) is None:
-                lines.append(line(label, MISSING, MISSING, run.absent(path)))
+            if (effect := run.effect(condition)) is None:
+                lines.append(line(label, MISSING, MISSING, run.absent(condition)))
                 continue
             rates = map(wording.plain, effect.rates)
             difference = Entry(text=wording.with_interval(effect), detected=effect.significant)
@@ -191,10 +195,10 @@ def page(runs: Sequence[Compared]) -> str:
     facts = differing(runs)
     panels: dict[str, list[Row]] = {
         title: [
-            (label, "", run.effect(path) or run.absent(path))
+            (label, "", run.effect(condition) or run.absent(condition))
             for label, run in zip(labels(runs), runs, strict=True)
         ]
-        for path, title in titles(runs).items()
+        for condition, title in titles(runs).items()
     }
     axis = shared_axis(list(panels.values()))
     return render(

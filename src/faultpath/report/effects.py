@@ -1,4 +1,4 @@
-"""Effects with their intervals, path by path, and over the frequency of the fault."""
+"""Effects with their intervals, condition by condition, and over the frequency of the fault."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class EffectRow:
     """Success of the baseline and of the repair, %."""
     difference: str
     side: str
-    """The arm that is significantly ahead, or `open`."""
+    """The variant that is significantly ahead, or `open`."""
     words: str
     picture: str
     boxed: bool
@@ -38,22 +38,24 @@ class EffectRow:
 
 
 def effect_rows(record: DecisionRecord) -> list[EffectRow]:
-    """Return a row for every path, all pictures on one axis."""
-    effects = {effect.path: effect for effect in record.effects}
+    """Return a row for every condition, all pictures on one axis."""
+    effects = {effect.condition: effect for effect in record.effects}
     plot = _axis_of(record).at(6, _WIDE - 6)
     rows: list[EffectRow] = []
-    for path in record.paths:
-        primary = "primary" if path.name == record.question.primary else ""
-        effect, words = effects.get(path.name), in_short(record, effects.get(path.name))
-        svg = Svg(_WIDE, _HIGH, f"{path.title}: repair minus baseline, pp")
+    for condition in record.conditions:
+        primary = "primary" if condition.name == record.question.primary else ""
+        effect, words = effects.get(condition.name), in_short(record, effects.get(condition.name))
+        svg = Svg(_WIDE, _HIGH, f"{condition.title}: repair minus baseline, pp")
         _grid(svg, plot, 0, _HIGH)
         if effect is None:
-            rows.append(EffectRow(path.title, primary, "", "", "open", words, svg.render(), False))
+            rows.append(
+                EffectRow(condition.title, primary, "", "", "open", words, svg.render(), False)
+            )
             continue
         _mark(svg, plot, effect, _HIGH / 2)
         rows.append(
             EffectRow(
-                title=path.title,
+                title=condition.title,
                 notes=", ".join(filter(None, (primary, wording.reservation(effect)))),
                 rates=" → ".join(map(wording.plain, effect.rates)),
                 difference=wording.with_interval(effect),
@@ -150,7 +152,7 @@ def _sides(svg: Svg, plot: Axis, y: float) -> None:
 
 def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
     """Draw dot, whiskers, a ring for each seed, and the undetectable band where one is given, in
-    the colour of the arm that is decided for."""
+    the colour of the variant that is decided for."""
     e, band = effect, _band(effect)
     side = {1: " repair", -1: " baseline", 0: ""}[effect.sign]
     if band:
@@ -170,37 +172,37 @@ def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
 
 def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[str, str]]:
     """Return the expected success difference over the frequency of the fault, or over the beta
-    factor, a picture a path, each with what is decided.
+    factor, a picture a condition, each with what is decided.
 
     The band is the interval at each share, at the level that the family leaves. The thick line on
-    zero is the set of shares at which neither arm is decided to be ahead, the ring the estimate of
-    the crossing. The curve has the colour of an arm where a sentence names that arm.
+    zero is the set of shares at which neither variant is decided to be ahead, the ring the estimate
+    of the crossing. The curve has the colour of a variant where a sentence names that variant.
     """
-    titles = {path.name: path.title for path in record.paths}
+    titles = {condition.name: condition.title for condition in record.conditions}
     shares = record.break_even_beta if beta else record.break_even
     noun = "beta" if beta else "frequency"
     over = "faults that are common cause" if beta else "episodes with the fault"
-    with_curve = [path for path in shares if path.curve]
+    with_curve = [condition for condition in shares if condition.curve]
     vertical = covering(
-        (v for path in with_curve for _, *ends in path.curve for v in ends), 0.06, 10
+        (v for condition in with_curve for _, *ends in condition.curve for v in ends), 0.06, 10
     )
     panels: list[tuple[str, str]] = []
-    for path in with_curve:
-        title, result = titles.get(path.path, path.path), path.result
-        words = f"{path.words or f'No {noun} is significant'}."
+    for condition in with_curve:
+        title, result = titles.get(condition.condition, condition.condition), condition.result
+        words = f"{condition.words or f'No {noun} is significant'}."
         svg = Svg(290, 248, f"{title}: expected success difference, share of {over}", words)
         svg.text(0, 14, title, "head", room=285)
         svg.text(0, 32, "expected difference in success, pp", "small soft")
         x, y = Axis(0.0, 100.0, 34, 280), vertical.at(208, 42)
         draw_axes(svg, x, y, 5, (0, 25, 50, 75, 100))
         svg.text(x(50), y.start + 34, f"share of {over}, %", "small soft", "middle")
-        upper = [(x(100 * p), y(high)) for p, _, _, high in path.curve]
-        lower = [(x(100 * p), y(low)) for p, _, low, _ in path.curve]
+        upper = [(x(100 * p), y(high)) for p, _, _, high in condition.curve]
+        lower = [(x(100 * p), y(low)) for p, _, low, _ in condition.curve]
         svg.polygon([*upper, *reversed(lower)], "fan")
         sides = {1: "curve repair", -1: "curve baseline"}
-        pieces = [(low, high, "curve") for low, high in result.pieces if path.words]
-        pieces += [(r.low, r.high, sides[r.sign]) for r in result.regions if path.words]
-        first, last = path.curve[0][1], path.curve[-1][1]
+        pieces = [(low, high, "curve") for low, high in result.pieces if condition.words]
+        pieces += [(r.low, r.high, sides[r.sign]) for r in result.regions if condition.words]
+        first, last = condition.curve[0][1], condition.curve[-1][1]
         for low, high, cls in pieces or [(0.0, 1.0, "curve")]:
             line = [(x(100 * p), y((1 - p) * first + p * last)) for p in (low, high)]
             svg.polyline(line, cls)

@@ -16,7 +16,14 @@ from faultpath.report.effects import effect_axis, effect_rows, frequency_panels
 from faultpath.report.frame import STYLES, render, write_pages
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pair_grid import pair_grid, pair_key
-from faultpath.report.tables import SHOWN, by_path, by_threshold, ended, markdown_table, secondary
+from faultpath.report.tables import (
+    SHOWN,
+    by_condition,
+    by_threshold,
+    ended,
+    markdown_table,
+    secondary,
+)
 from faultpath.report.taps import fork_panel, forks
 from faultpath.report.viewer import viewer_data
 
@@ -25,10 +32,13 @@ def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
     record, question = source.record, source.record.question
     pairs, sampled = read_pairs(source.trials, record), is_sample(source.trials)
-    ended_as = {path.name: counts(source.trials, record, path.name) for path in record.paths}
+    ended_as = {
+        condition.name: counts(source.trials, record, condition.name)
+        for condition in record.conditions
+    }
     viewer = viewer_data(source, pairs)
     shown = viewer.shown if viewer else ()
-    titles = {path.name: path.title for path in record.paths}
+    titles = {condition.name: condition.title for condition in record.conditions}
     decided = any(effect.sign for effect in record.effects)
     why = adding(source, pairs) if decided else None
     tables = (ended(record), secondary(record), by_threshold(record))
@@ -43,7 +53,7 @@ def report_page(source: ReportInput) -> str:
         provenance=source.provenance,
         sources=source.provenance.data if question.judged else {},
         n_trials=len(source.trials),
-        paths=titles,
+        conditions=titles,
         names=(question.baseline, question.repair),
         plain=answers(record),
         finding=_finding(record),
@@ -57,7 +67,7 @@ def report_page(source: ReportInput) -> str:
         n_scenes=len(source.trials.scenes),
         effects=effect_rows(record),
         axis=effect_axis(record),
-        numbers=Markup(html(by_path(record, SHOWN, "Effects; bold is significant"))),
+        numbers=Markup(html(by_condition(record, SHOWN, "Effects; bold is significant"))),
         fault=wording.faults(question) or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.system.variants, strict=True)),
         forks=[Markup(fork_panel(fork)) for fork in forks(source)],
@@ -69,7 +79,7 @@ def report_page(source: ReportInput) -> str:
                 Markup(
                     pair_grid(
                         title,
-                        [] if sampled else [p for p in pairs if p.path == name],
+                        [] if sampled else [p for p in pairs if p.condition == name],
                         ended_as[name],
                         question.ends,
                         shown,
@@ -98,7 +108,7 @@ def _finding(record: DecisionRecord) -> list[tuple[Effect, str]]:
 
     Of an interaction only the change is decided: an effect by itself may be a point estimate.
     """
-    effects = {effect.path: effect for effect in record.effects}
+    effects = {effect.condition: effect for effect in record.effects}
     for moved in record.changes:
         if moved.turn == "reversal" and {moved.isolated, SHARED} <= effects.keys():
             return [(effects[p], wording.where(p)) for p in (moved.isolated, SHARED)]

@@ -22,10 +22,10 @@ def tables(record: MapRecord) -> tuple[Table, ...]:
     With too few scenes for a significant difference there is no ranking that could reverse.
     """
     flips = (_flips(record),) if record.scenes >= MIN_SCENES else ()
-    return *flips, _paths(record)
+    return *flips, _conditions(record)
 
 
-def _paths(record: MapRecord) -> Table:
+def _conditions(record: MapRecord) -> Table:
     question = record.question
     of = {point.errors: point for point in record.points}
     lines: list[Line] = []
@@ -40,7 +40,7 @@ def _paths(record: MapRecord) -> Table:
             entries.append(entry)
         lines.append(line(question.said(size), *entries))
     return Table(
-        name="paths",
+        name="conditions",
         title=f"{question.repair} minus {question.baseline}, success, pp",
         corner="Error",
         columns=(*(f"{name} alone" for name in question.against), "shared"),
@@ -65,10 +65,10 @@ def _flips(record: MapRecord) -> Table:
             turned = f"{ahead[flip.turned]}, {question.said(flip.first)}"
             if abs(flip.last) < question.up_to:
                 turned += f" to {question.said(flip.last)}"
-        path = SHARED if flip.path == SHARED else f"{flip.path} alone"
+        condition = SHARED if flip.condition == SHARED else f"{flip.condition} alone"
         direction = "above 0" if flip.direction > 0 else "below 0"
         estimate = "no turn" if flip.estimate is None else question.said(flip.estimate)
-        lines.append(line(path, direction, kept, estimate, turned))
+        lines.append(line(condition, direction, kept, estimate, turned))
     return Table(
         name="flips",
         title="Smallest error that reverses the ranking",
@@ -86,7 +86,7 @@ def _flips(record: MapRecord) -> Table:
 
 def page(record: MapRecord, provenance: RunProvenance) -> str:
     """Return the map as one page that opens without a network."""
-    *turns, paths = tables(record)
+    *turns, conditions = tables(record)
     return render(
         "map.html.j2",
         record=record,
@@ -98,8 +98,8 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
         curve=Markup(correlation_picture(record).render()),
         flips=Markup(html(turns[0])) if turns else "",
         flips_notes=turns[0].notes if turns else (),
-        paths=Markup(html(paths)),
-        paths_notes=paths.notes,
+        conditions=Markup(html(conditions)),
+        conditions_notes=conditions.notes,
     )
 
 

@@ -26,7 +26,8 @@ _EQUAL = "0: both succeed equally often"
 
 
 def map_picture(record: MapRecord) -> Svg:
-    """Return the map: who is decided to be ahead where, the estimate's zero, paths and points."""
+    """Return the map: who is decided to be ahead where, the estimate's zero, conditions and
+    points."""
     question, side = record.question, _SIDE
     title = f"Reversal map of {question.system}: {question.repair} against {question.baseline}"
     svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, title, record.headline)
@@ -148,7 +149,7 @@ def _entry(svg: Svg, left: float, y: float, words: str) -> float:
 
 
 def correlation_picture(record: MapRecord) -> Svg:
-    """Return the expected difference over the correlation, in an arm's colour where decided."""
+    """Return the expected difference over the correlation, in a variant's colour where decided."""
     joint, question = record.joint, record.question
     description = "; ".join(f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.asked)
     width = _LEFT + _SIDE + _RIGHT

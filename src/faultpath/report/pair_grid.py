@@ -1,4 +1,4 @@
-"""Grid of all pairs of a path, a picture of each, and its key."""
+"""Grid of all pairs of a condition, a picture of each, and its key."""
 
 from collections.abc import Collection, Mapping, Sequence
 from itertools import groupby
@@ -73,15 +73,16 @@ def pair_key(pairs: Sequence[Pair]) -> list[tuple[str, str]]:
 
 def address(pair: Pair) -> str:
     """Return the part of a page's address that shows a pair in the viewer."""
-    return f"#scene={quote(pair.scene, safe='')}&seed={pair.seed}&path={quote(pair.path, safe='')}"
+    scene, condition = (quote(text, safe="") for text in (pair.scene, pair.condition))
+    return f"#scene={scene}&seed={pair.seed}&condition={condition}"
 
 
 def _cell(
     svg: Svg, pair: Pair, at: Point, side: float, names: Mapping[str, str], link: str
 ) -> None:
     ends = ", ".join(
-        f"{arm} {names.get(trial.status, trial.status) if trial else 'did not run'}"
-        for arm, trial in (("baseline", pair.baseline), ("repair", pair.repair))
+        f"{variant} {names.get(trial.status, trial.status) if trial else 'did not run'}"
+        for variant, trial in (("baseline", pair.baseline), ("repair", pair.repair))
     )
     tip = f"{pair.scene}, seed {pair.seed}: {pair.void_reason or ends}"
     # By key, scenes are chosen from the viewer's list.

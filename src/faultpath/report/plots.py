@@ -95,7 +95,11 @@ def first_plot(source: ReportInput, signals: Signals, plots: Sequence[Plot]) -> 
     """
     plant = {s.name for s in source.system.interface.sources if s.provenance in _PLANT}
     channels = {name: of.name for of in source.system.interface.channels for name in of.sources}
-    taps = [tap for path in source.record.paths for tap in (*path.faulted, *path.baseline_faulted)]
+    taps = [
+        tap
+        for condition in source.record.conditions
+        for tap in (*condition.faulted, *condition.baseline_faulted)
+    ]
     faulted = {tap.channel for tap in taps}
     moving = {signal.name for named in signals.values() for signal in named if _moves(signal)}
 

@@ -1,4 +1,4 @@
-"""The record as tables: one list of quantities, with the paths as rows or as columns."""
+"""The record as tables: one list of quantities, with the conditions as rows or as columns."""
 
 from collections.abc import Mapping, Sequence
 
@@ -10,11 +10,11 @@ from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.markdown import block
 from faultpath.statistics.estimate import Estimate
 
-_ARMS = ("baseline", "repair")
+_VARIANTS = ("baseline", "repair")
 DIFFERENCE = ("difference", "interval", "won")
-SHOWN = (*_ARMS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even")
+SHOWN = (*_VARIANTS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even")
 ALL = (
-    *(*_ARMS, *DIFFERENCE, "p", "mcnemar", "holm", "decided"),
+    *(*_VARIANTS, *DIFFERENCE, "p", "mcnemar", "holm", "decided"),
     *("power", "scenes", "void", "break-even", "beta"),
 )
 _BETA = (
@@ -24,9 +24,9 @@ _BETA = (
 
 
 def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str]:
-    """Return all that a record says of a path, by the name of the quantity."""
-    break_evens = {b.path: wording.break_even(b.result) for b in record.break_even}
-    betas = {b.path: wording.break_even(b.result) for b in record.break_even_beta}
+    """Return all that a record says of a condition, by the name of the quantity."""
+    break_evens = {b.condition: wording.break_even(b.result) for b in record.break_even}
+    betas = {b.condition: wording.break_even(b.result) for b in record.break_even_beta}
     beside = effect.mcnemar_p
     return {
         "baseline": wording.plain(effect.rates[0]),
@@ -45,8 +45,8 @@ def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str
         "power": wording.detectable(effect),
         "scenes": str(effect.scenes),
         "void": Entry(text=str(effect.void), tone="bad" if effect.void else ""),
-        "break-even": break_evens.get(effect.path, MISSING),
-        "beta": betas.get(effect.path, MISSING),
+        "break-even": break_evens.get(effect.condition, MISSING),
+        "beta": betas.get(effect.condition, MISSING),
     }
 
 
@@ -82,23 +82,23 @@ def decided_for(record: DecisionRecord, effect: Effect) -> Entry:
     p-value for which the difference is not significant where the interval alone excludes 0."""
     if not effect.acted:
         return Entry(text="not tested")
-    arm = record.winner(effect.sign) if effect.sign else "not shown"
+    variant = record.winner(effect.sign) if effect.sign else "not shown"
     p = adjusted(record, effect) if only_alone(effect) else ""
-    return Entry(text=arm, aside=", ".join(filter(None, (effect.extreme, p))))
+    return Entry(text=variant, aside=", ".join(filter(None, (effect.extreme, p))))
 
 
-def by_path(record: DecisionRecord, names: Sequence[str], title: str = "") -> Table:
+def by_condition(record: DecisionRecord, names: Sequence[str], title: str = "") -> Table:
     """Return a table with a row for each condition and a column for each quantity in `names`."""
     labels, titles = _labels(record, names), _titles(record)
     lines = [
         line(
             title_of,
             *(_entries(record, effect)[name] for name in labels),
-            aside="primary" if effect.path == record.question.primary else "",
+            aside="primary" if effect.condition == record.question.primary else "",
         )
         for title_of, effect in zip(titles, record.effects, strict=True)
     ]
-    columns = (label + (", %" if name in _ARMS else "") for name, label in labels.items())
+    columns = (label + (", %" if name in _VARIANTS else "") for name, label in labels.items())
     return Table(title=title, corner="Condition", columns=tuple(columns), lines=tuple(lines))
 
 
@@ -113,7 +113,7 @@ def by_quantity(
         corner="Success, %",
         columns=_titles(record),
         lines=tuple(
-            line(label, *(entries[name] for entries in of), aside=name if name in _ARMS else "")
+            line(label, *(entries[name] for entries in of), aside=name if name in _VARIANTS else "")
             for name, label in _labels(record, names).items()
         ),
         notes=tuple(notes),
@@ -121,16 +121,20 @@ def by_quantity(
 
 
 def whole_table(record: DecisionRecord) -> Table:
-    """Return every quantity of every path, with the question as title: the table of a paper."""
+    """Return every quantity of every condition, with the question as title: the table of a
+    paper."""
     question = record.question
-    arms, seeds = f"{question.repair} against {question.baseline}", wording.seeds(question.seeds)
+    variants, seeds = (
+        f"{question.repair} against {question.baseline}",
+        wording.seeds(question.seeds),
+    )
     title = (
-        f"{arms} on {question.system}, fault {question.fault}: {record.scenes_run} scenes of "
+        f"{variants} on {question.system}, fault {question.fault}: {record.scenes_run} scenes of "
         f"{question.library}, {seeds}"
     )
     if question.judged:
         under = f", {question.fault}" if question.fault else ""
-        title = f"{arms}{under}: {record.scenes_run} {question.judged.unit}s, {seeds}"
+        title = f"{variants}{under}: {record.scenes_run} {question.judged.unit}s, {seeds}"
     corrected = f"Holm's correction is for {record.hypotheses} contrasts."
     if (sets := len(record.break_even + record.break_even_beta)) > 1:
         corrected += f" Of {sets} break-even sets each is wrong in at most 5 % of audits, one or "
@@ -169,13 +173,13 @@ def ended(record: DecisionRecord) -> Table:
     """Return how the trials of both versions ended under each condition."""
     question = record.question
     statuses = ("success", "crash", "timeout", "failed")
-    cells = {(cell.path, cell.variant): cell for cell in record.cells}
+    cells = {(cell.condition, cell.variant): cell for cell in record.cells}
     shown = [s for s in statuses if any(getattr(cell, s) for cell in record.cells)]
     lines: list[Line] = []
-    for path in record.paths:
-        lines.append(line(path.title))
-        for role, name in zip(_ARMS, (question.baseline, question.repair), strict=True):
-            if (cell := cells.get((path.name, name))) is not None:
+    for condition in record.conditions:
+        lines.append(line(condition.title))
+        for role, name in zip(_VARIANTS, (question.baseline, question.repair), strict=True):
+            if (cell := cells.get((condition.name, name))) is not None:
                 time = cell.median_time_s
                 counts = (str(getattr(cell, status)) for status in shown)
                 median = MISSING if time is None else wording.plain(time, 2)
@@ -211,7 +215,8 @@ def secondary(record: DecisionRecord) -> Table | None:
 
 
 def by_threshold(record: DecisionRecord) -> Table | None:
-    """Return the chosen metric and success at each threshold of it, path by path; `None` without.
+    """Return the chosen metric and success at each threshold of it, condition by condition; `None`
+    without.
 
     A trial succeeds at a threshold if it did not crash and its metric is on the better side.
     """
@@ -249,5 +254,5 @@ def by_threshold(record: DecisionRecord) -> Table | None:
 
 
 def _titles(record: DecisionRecord) -> tuple[str, ...]:
-    titles = {path.name: path.title for path in record.paths}
-    return tuple(titles.get(effect.path, effect.path) for effect in record.effects)
+    titles = {condition.name: condition.title for condition in record.conditions}
+    return tuple(titles.get(effect.condition, effect.condition) for effect in record.effects)

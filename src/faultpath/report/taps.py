@@ -1,4 +1,4 @@
-"""Who gets the fault: a picture of each path.
+"""Who gets the fault: a picture of each condition.
 
 Which taps had the fault in force comes from receipts, who reads from the wiring of the variants.
 """
@@ -12,9 +12,9 @@ from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import Svg
 
 Tap = tuple[str, str]
-"""A channel and the consumer that reads it."""
+"""A channel and the reader that reads it."""
 
-_WIDTH, _ARM, _EDGE = 308.0, 147.0, 1.0
+_WIDTH, _VARIANT, _EDGE = 308.0, 147.0, 1.0
 _PITCH, _MODULES = 46.0, 102.0
 _TRUNK, _TAP, _BOX = 12.0, 27.0, 38.0
 _SHORT = 9
@@ -23,7 +23,7 @@ _SHORT = 9
 
 @dataclass(frozen=True)
 class Reader:
-    """A module that may read what the fault is on, in one arm."""
+    """A module that may read what the fault is on, in one variant."""
 
     module: str
     taps: frozenset[Tap]
@@ -51,76 +51,80 @@ class Reader:
 
 @dataclass(frozen=True)
 class Fork:
-    """One path of the fault: a source, and the modules that it splits to."""
+    """One condition of the fault: a source, and the modules that it splits to."""
 
     title: str
     channels: tuple[str, ...]
     everywhere: bool
     """Whether the fault was at every tap at which either variant reads, as from a faulty source."""
-    arms: tuple[tuple[str, str, tuple[Reader, ...]], ...]
-    """Role and name of each arm, with its modules."""
+    variants: tuple[tuple[str, str, tuple[Reader, ...]], ...]
+    """Role and name of each variant, with its modules."""
 
 
 def forks(source: ReportInput) -> tuple[Fork, ...]:
-    """Return every path of the fault, isolated ones first; none where no tap is known."""
+    """Return every condition of the fault, isolated ones first; none where no tap is known."""
     record, question = source.record, source.record.question
     faulted = (
-        tap.channel for path in record.paths for tap in (*path.faulted, *path.baseline_faulted)
+        tap.channel
+        for condition in record.conditions
+        for tap in (*condition.faulted, *condition.baseline_faulted)
     )
     names = tuple(dict.fromkeys([fault.channel for fault in question.faults] or faulted))
     reads = [
         frozenset(
-            (name, consumer)
+            (name, reader)
             for name in names
-            for consumer in source.system.interface.channel(name).consumers
-            if consumer in variant.consumers
+            for reader in source.system.interface.channel(name).readers
+            if reader in variant.readers
         )
         for variant in source.system.variants
     ]
     every = frozenset[Tap]().union(*reads)
-    modules = sorted({module_of(consumer) for _, consumer in every})
+    modules = sorted({module_of(reader) for _, reader in every})
     branches: list[Fork] = []
-    for path in record.paths if every else ():
-        if path.name == CORRECT:
+    for condition in record.conditions if every else ():
+        if condition.name == CORRECT:
             continue
-        arms: list[tuple[str, str, tuple[Reader, ...]]] = []
+        variants: list[tuple[str, str, tuple[Reader, ...]]] = []
         untouched = every
         for role, name, taps, read in (
-            ("baseline", question.baseline, path.baseline_faulted, reads[0]),
-            ("repair", question.repair, path.faulted, reads[1]),
+            ("baseline", question.baseline, condition.baseline_faulted, reads[0]),
+            ("repair", question.repair, condition.faulted, reads[1]),
         ):
-            hit = frozenset((tap.channel, tap.consumer) for tap in taps)
+            hit = frozenset((tap.channel, tap.reader) for tap in taps)
             untouched -= hit
             readers: list[Reader] = []
             for module in modules:
                 # Receipts come before the wiring: a faulted tap was read.
                 here = frozenset(tap for tap in hit | read if module_of(tap[1]) == module)
-                changed = any(t.altered_steps for t in taps if module_of(t.consumer) == module)
+                changed = any(t.altered_steps for t in taps if module_of(t.reader) == module)
                 readers.append(Reader(module, here, here & hit, changed))
-            arms.append((role, name, tuple(readers)))
-        branches.append(Fork(path.title, names, not untouched, tuple(arms)))
+            variants.append((role, name, tuple(readers)))
+        branches.append(Fork(condition.title, names, not untouched, tuple(variants)))
     return tuple(branches)
 
 
 def fork_panel(fork: Fork) -> str:
-    """Return the picture of a path."""
+    """Return the picture of a condition."""
     description = " ".join(
         f"{role.capitalize()} {name}: "
         + series([f"{_named(reader.module)} {reader.state}" for reader in readers])
         + "."
-        for role, name, readers in fork.arms
+        for role, name, readers in fork.variants
     )
-    bottom = _MODULES + _PITCH * len(fork.arms[0][2])
+    bottom = _MODULES + _PITCH * len(fork.variants[0][2])
     svg = Svg(_WIDTH, bottom, f"{fork.title}: who gets the fault", description)
     svg.text(0, 14, fork.title, "head", room=_WIDTH)
     names = ", ".join(map(_named, fork.channels))
     wrong = " wrong" if fork.everywhere else ""
     state = "wrong for all" if fork.everywhere else "correct at the source"
-    for x, (role, name, readers) in zip((_EDGE, _WIDTH - _ARM - _EDGE), fork.arms, strict=True):
+    for x, (role, name, readers) in zip(
+        (_EDGE, _WIDTH - _VARIANT - _EDGE), fork.variants, strict=True
+    ):
         svg.text(x, 34, role, "small soft")
-        svg.text(x, 49, name, f"bold {role}", room=_ARM)
-        svg.rect(x, 57, _ARM, 36, f"source{wrong}", 4)
-        svg.text(x + 8, 72, names, room=_ARM - 16)
+        svg.text(x, 49, name, f"bold {role}", room=_VARIANT)
+        svg.rect(x, 57, _VARIANT, 36, f"source{wrong}", 4)
+        svg.text(x + 8, 72, names, room=_VARIANT - 16)
         svg.text(x + 8, 87, state, f"small {'faulted' if wrong else 'soft'}")
         for i, reader in enumerate(readers):
             _branch(svg, x, _MODULES + _PITCH * (i + 0.5), reader, fork.everywhere)
@@ -129,16 +133,16 @@ def fork_panel(fork: Fork) -> str:
 
 def _branch(svg: Svg, x: float, y: float, reader: Reader, everywhere: bool) -> None:
     """Draw one module with its way from the source, and the tap on it."""
-    above, box, room = max(93.0, y - _PITCH), x + _BOX, _ARM - _BOX - 12
+    above, box, room = max(93.0, y - _PITCH), x + _BOX, _VARIANT - _BOX - 12
     if not reader.taps:
         svg.path(f"M{x + _TRUNK} {above}V{y}H{box}", "wire other")
-        svg.rect(box, y - 19, _ARM - _BOX, 38, "absent", 4)
+        svg.rect(box, y - 19, _VARIANT - _BOX, 38, "absent", 4)
     else:
         trunk, hit = "wire hit" if everywhere else "wire", " hit" if reader.faulted else ""
         svg.line((x + _TRUNK, above), (x + _TRUNK, y), trunk)
         svg.line((x + _TRUNK, y), (x + _TAP, y), trunk)
         svg.line((x + _TAP, y), (box, y), f"wire{hit}")
-        svg.rect(box, y - 19, _ARM - _BOX, 38, "module", 4)
+        svg.rect(box, y - 19, _VARIANT - _BOX, 38, "module", 4)
         svg.circle((x + _TAP, y), 6, f"tap{hit}")
         if hit:
             svg.path(f"M{x + _TAP + 2} {y - 4}l-4 4.5h4l-4 4.5", "bolt")

@@ -17,8 +17,8 @@ from faultpath.decisions.sentences.phrases import (
 )
 from faultpath.decisions.tables import Line, Table, line
 from faultpath.decisions.tables.terminal import Parted, drawn
-from faultpath.interface import Gap, Interface, rank, transitive_consumers
-from faultpath.report.tables import DIFFERENCE, by_path, by_quantity, by_threshold
+from faultpath.interface import Gap, Interface, rank, transitive_readers
+from faultpath.report.tables import DIFFERENCE, by_condition, by_quantity, by_threshold
 from faultpath.systems.checks.reads import Read
 from faultpath.systems.checks.tracing import TraceReport
 
@@ -34,7 +34,7 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     void = any(effect.void for effect in record.effects)
     names = [name for name in _EFFECTS if void or name != "void"]
     success = by_quantity(record, ("baseline", "repair"))
-    effects = by_path(record, names, f"{question.repair} minus {question.baseline}")
+    effects = by_condition(record, names, f"{question.repair} minus {question.baseline}")
     parts: list[RenderableType] = [Text(record.headline, style="bold")]
     if fault := wording.faults(question):
         parts += [Text(f"Fault: {fault}.", style="dim")]
@@ -60,7 +60,7 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     parts += _list("Found in the run", record.findings, "bold red")
     if details:
         if any(effect.mcnemar_p is not None for effect in record.effects):
-            parts += [Text(""), Parted(by_path(record, ("p", "mcnemar", "holm")))]
+            parts += [Text(""), Parted(by_condition(record, ("p", "mcnemar", "holm")))]
         parts += [Text(""), *map(Text, record.sentences)]
         parts += _list("What would change this", record.would_change, "bold")
     return Group(*parts)
@@ -84,15 +84,15 @@ def _list(title: str, items: tuple[str, ...], style: str) -> list[RenderableType
 
 
 def interface_table(interface: Interface) -> RenderableType:
-    """Return the channels of an interface, most consumers first: who feeds each, who reads it and
+    """Return the channels of an interface, most readers first: who feeds each, who reads it and
     who is reached through a reconstruction; and what is reconstructed."""
     lines: list[Line] = []
     for channel in rank(interface):
         sources = (f"{name} {interface.source(name).provenance.value}" for name in channel.sources)
-        reached = set(transitive_consumers(interface, channel.name)) - set(channel.consumers)
-        consumers = (*channel.consumers, *(f"reaches {name}" for name in sorted(reached)))
+        reached = set(transitive_readers(interface, channel.name)) - set(channel.readers)
+        readers = (*channel.readers, *(f"reaches {name}" for name in sorted(reached)))
         gap = "no" if channel.gap is Gap.NONE else channel.gap.value
-        entries = ("\n".join(sources), "\n".join(consumers))
+        entries = ("\n".join(sources), "\n".join(readers))
         lines.append(line(channel.name, *entries, aside=f"{gap} gap"))
     columns = ("fed by", "read by")
     table = Table(
@@ -109,20 +109,20 @@ def interface_table(interface: Interface) -> RenderableType:
 
 
 def trace_table(trace: TraceReport) -> Table:
-    """Return a line for each consumer of a channel, in the order in which they read."""
+    """Return a line for each reader of a channel, in the order in which they read."""
     taps: dict[tuple[str, str], list[Read]] = {}
     for read in trace.reads:
-        taps.setdefault((read.consumer, read.channel), []).append(read)
+        taps.setdefault((read.reader, read.channel), []).append(read)
     columns = ["channel", "source", "at steps", "of steps", "made by"]
     lines: list[Line] = []
-    for (consumer, channel), reads in taps.items():
+    for (reader, channel), reads in taps.items():
         source = reads[0].source
         steps = (" ".join(str(r.step) for r in reads), " ".join(str(r.valid_step) for r in reads))
         entries = [channel, source, *steps, trace.reconstructed.get(source, ("",))[0]]
         if trace.fault:
             by = (name for read in reads for name in read.altered_by)
             entries.insert(1, ", ".join(dict.fromkeys(by)))
-        lines.append(line(consumer, *entries))
+        lines.append(line(reader, *entries))
     if trace.fault:
         columns.insert(1, "altered by")
     return Table(

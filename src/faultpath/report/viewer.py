@@ -73,9 +73,12 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     content = {
         "dt_s": source.system.control_dt_s,
         "space": space,
-        "paths": [{"name": path.name, "title": path.title} for path in source.record.paths],
+        "conditions": [
+            {"name": condition.name, "title": condition.title}
+            for condition in source.record.conditions
+        ],
         "picked": [list(groups).index(at) for at in chosen],
-        "path": _first_path(source.record, groups[(*chosen, *groups)[0]]),
+        "condition": _first_condition(source.record, groups[(*chosen, *groups)[0]]),
         "plot": 0 if space == "space" else first_plot(source, signals, trials.plots),
         "plots": [plot.described() for plot in trials.plots],
         "plans": drawn,
@@ -101,7 +104,7 @@ def _scenes(
             "why": why.get((scene, seed), ""),
             "pairs": [
                 {
-                    "path": pair.path,
+                    "condition": pair.condition,
                     "kind": pair.kind.value,
                     "void": pair.void_reason,
                     "baseline": trials.packed(question.baseline, pair, pair.baseline),
@@ -128,10 +131,14 @@ def _space(source: ReportInput, flat: bool, tracked: bool) -> str:
     return "none" if not tracked else "line" if flat else "space"
 
 
-def _first_path(record: DecisionRecord, pairs: Mapping[str, Pair]) -> str:
-    """Return the path marked first: one on which the first scene shows what is significant."""
-    signs = {effect.path: effect.sign for effect in record.effects if effect.leads}
-    apart = [path for path, pair in pairs.items() if pair.sign and signs.get(path) == pair.sign]
+def _first_condition(record: DecisionRecord, pairs: Mapping[str, Pair]) -> str:
+    """Return the condition marked first: one on which the first scene shows what is significant."""
+    signs = {effect.condition: effect.sign for effect in record.effects if effect.leads}
+    apart = [
+        condition
+        for condition, pair in pairs.items()
+        if pair.sign and signs.get(condition) == pair.sign
+    ]
     primary = record.question.primary or SHARED
     return apart[0] if apart and primary not in apart else primary
 
@@ -149,7 +156,7 @@ class _Trials:
         """Return a trial, of which what is long stands in `series`; `None` where it never ran."""
         if trial is None:
             return None
-        address = TrialAddress(variant, pair.path, pair.seed, pair.scene)
+        address = TrialAddress(variant, pair.condition, pair.seed, pair.scene)
         named = {signal.name: signal for signal in self.signals.get(address, ())}
         track = np.empty((0, 3), np.float32) if trial.trace is None else trial.trace
         faulted: list[list[int]] = []

@@ -64,14 +64,15 @@ def interval(values: Floats, counts: Floats, bound: Floats, level: float) -> tup
     """Return both ends [...] of the confidence sequence at ``level``.
 
     The upper end is the mirrored lower end of the negated values: with ascending ``values``,
-    swapping the arms mirrors the interval to the bit.
+    swapping the variants mirrors the interval to the bit.
     """
     mirrored = _low(-values[..., ::-1], counts[..., ::-1], bound, level)
     return _low(values, counts, bound, level), 0.0 - mirrored
 
 
 def fewest_scenes(alpha: float) -> int:
-    """Return after how many scenes that all favour one arm a two-sided p is at most ``alpha``."""
+    """Return after how many scenes that all favour one variant a two-sided p is at most
+    ``alpha``."""
     scenes = 1
     while p_value(np.ones(1), np.full(1, float(scenes)), 1.0)[0] > alpha:
         scenes += 1

@@ -37,7 +37,7 @@ def break_even(
     ``correct`` and ``faulty`` are effects on the same scenes, without and with the fault. At every
     frequency the test is that of the effects' own intervals, on the mixture: the picture's band
     (`mixture_curve`) touches 0 exactly where a frequency is in the set. Of ``fills``, both effects
-    as trials that failed may have made them, all have to decide for the same arm.
+    as trials that failed may have made them, all have to decide for the same variant.
     """
     mixture, *others = (_Mixture(*ends, level) for ends in ((correct, faulty), *fills))
 

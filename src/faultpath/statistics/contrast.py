@@ -1,4 +1,5 @@
-"""The one type of what paired arms show: a difference with its interval, its test and its decision.
+"""The one type of what paired variants show: a difference with its interval, its test and its
+decision.
 
 A ``Contrast`` keeps what it was made from scene by scene, so that contrasts on the same scenes can
 be subtracted, weighted and turned into a break-even frequency jointly.
@@ -34,7 +35,8 @@ _DIGITS = 9
 
 @dataclass(frozen=True, eq=False)
 class Contrast:
-    """A difference over scenes, first minus second, or what else scenes show, as one arm's value.
+    """A difference over scenes, first minus second, or what else scenes show, as one variant's
+    value.
 
     ``draws`` [resamples] are its bootstrap draws; ``per_seed`` the same quantity from each seed
     alone, in seed order. Bounded outcomes have their ``scenes`` as well, and a score interval in
@@ -179,7 +181,7 @@ def percentile_interval(draws: Floats, level: float = 0.95) -> tuple[float, floa
     """Return the central ``level`` percentile interval of ``draws`` [resamples].
 
     The upper end is taken as the mirrored lower end of the negated draws, so that swapping the
-    arms mirrors the interval to the bit.
+    variants mirrors the interval to the bit.
     """
     if not 0.0 < level < 1.0:
         raise ValueError(f"the level of an interval lies between 0 and 1, not at {level}")

@@ -1,4 +1,5 @@
-"""Contrasts of paired arms: success, means, medians (paper, "Statistical Aggregation"), windows."""
+"""Contrasts of paired variants: success, means, medians (paper, "Statistical Aggregation"),
+windows."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -57,7 +58,7 @@ def mean_effect(first: Numbers, second: Numbers, resamples: Resamples, unit: str
 
 
 def success_rate(outcomes: Numbers, resamples: Resamples) -> Contrast:
-    """Return one arm's success in percent, from binary [scenes, seeds].
+    """Return one variant's success in percent, from binary [scenes, seeds].
 
     For one seed the interval is Wilson's score interval of a proportion.
     """
@@ -113,13 +114,13 @@ def _mean(
 def median_effect(
     first: Numbers, second: Numbers, joint: Numbers, resamples: Resamples
 ) -> Contrast:
-    """Return the median over scenes of the within-scene difference, where both arms count.
+    """Return the median over scenes of the within-scene difference, where both variants count.
 
     ``first``, ``second`` and ``joint`` are [scenes, seeds] (or [scenes]); ``joint`` is true where
-    both arms succeeded, and the arms' entries elsewhere are not read. Differences are averaged
-    over the joint seeds of a scene. Whole scenes are resampled, so the number of jointly
-    successful scenes varies between resamples, as it would between new libraries; the few
-    resamples without any are left out. ``n_scenes`` counts the jointly successful scenes.
+    both variants succeeded, and the variants' entries elsewhere are not read. Differences are
+    averaged over the joint seeds of a scene. Whole scenes are resampled, so the number of jointly
+    successful scenes varies between resamples, as it would between new libraries; the few resamples
+    without any are left out. ``n_scenes`` counts the jointly successful scenes.
     """
     mask = np.asarray(joint, dtype=np.bool_)
     mask = mask[:, np.newaxis] if mask.ndim == 1 else mask

@@ -71,7 +71,7 @@ class PairedTest(NamedTuple):
 
 
 class Region(Frozen, allow_inf_nan=False):
-    """Fault frequencies at which it is decided who is ahead; ``sign`` 1: the first arm."""
+    """Fault frequencies at which it is decided who is ahead; ``sign`` 1: the first variant."""
 
     low: float = Field(ge=0.0, le=1.0)
     high: float = Field(ge=0.0, le=1.0)

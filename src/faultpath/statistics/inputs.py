@@ -29,7 +29,7 @@ def by_scene_and_seed(values: Numbers, name: str = "values", *, binary: bool = F
 
 
 def paired(first: Numbers, second: Numbers, *, binary: bool = False) -> tuple[Floats, Floats]:
-    """Return both arms as float64 [scenes, seeds], refusing arms of different shape."""
+    """Return both variants as float64 [scenes, seeds], refusing variants of different shape."""
     one = by_scene_and_seed(first, "first", binary=binary)
     two = by_scene_and_seed(second, "second", binary=binary)
     if one.shape != two.shape:

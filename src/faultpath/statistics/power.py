@@ -30,7 +30,7 @@ _PRIOR_ALIKE, _PRIOR_SCENES = 0.5, 1.0
 def fewest_scenes(alpha: float = ALPHA) -> int:
     """Return how many scenes a test at ``alpha`` needs at least to detect anything at all.
 
-    If all favour one arm, sign test and E+M test have the same p, ``2 ** (1 - scenes)``.
+    If all favour one variant, sign test and E+M test have the same p, ``2 ** (1 - scenes)``.
     """
     return int(np.ceil(1.0 + np.log2(1.0 / alpha) - 1e-12))
 
@@ -100,7 +100,7 @@ def simulated_power(
 ) -> float:
     """Return the power of several seeds' test and score interval, from `AUDITS` simulated audits.
 
-    In each of ``seeds`` a share ``rate`` of the scenes is discordant and favours the first arm
+    In each of ``seeds`` a share ``rate`` of the scenes is discordant and favours the first variant
     with chance ``(1 + lean) / 2``. A share ``alike`` of the scenes treats all seeds alike, the
     others each for itself. The same stream serves every call, so that neighbouring powers can be
     compared.
@@ -154,8 +154,8 @@ def detectable(
     needs; without any, the upper end of the 95 % Clopper-Pearson interval of their share. Seeds
     agree within a scene as often as was seen; copies of a seed count once.
 
-    ``on_top`` takes what was seen for noise that favours neither arm, and the difference for wins
-    beside it, so that pairs are discordant more often: the number to plan by.
+    ``on_top`` takes what was seen for noise that favours neither variant, and the difference for
+    wins beside it, so that pairs are discordant more often: the number to plan by.
     """
     filled = by_scene_and_seed(np.nan_to_num(pairs, nan=_MISSING), "pairs") + 0.0  # never -0.0
     # Columns as bytes: NumPy's sort of columns takes each scene for a field.

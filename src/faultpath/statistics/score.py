@@ -66,7 +66,7 @@ class SceneValues:
             return cls(values, bound, bound, scale, sequential=sequential, graded=not sequential)
         scenes = cls(values, bound, bound, scale)
         kinds, often = scenes.kinds()
-        # Summed in both orders, since swapping the arms turns the order round.
+        # Summed in both orders, since swapping the variants turns the order round.
         orders = ((kinds, often), (kinds[::-1], often[::-1]))
         return replace(scenes, far=float(max(reach(*pair, bound, rule.prior) for pair in orders)))
 
@@ -136,7 +136,7 @@ def degrees_p_value(values: Floats, counts: Floats, bound: float) -> float:
     ``(sum |y|)^2 / sum y^2``, at ``z = sum y / sqrt(sum y^2)``. Of scenes that differ wholly or not
     at all these are its own numbers.
     """
-    if counts @ values < 0.0:  # one order of sums for both arms
+    if counts @ values < 0.0:  # one order of sums for both variants
         values, counts = -values[::-1].copy(), counts[::-1].copy()
     z, discordants = map(float, _degrees(values, counts))
     p = unconditional.degrees_p_value(z, discordants, round(counts.sum()))
@@ -167,7 +167,7 @@ def degrees_interval(
 
 def _degrees(values: Floats, counts: Floats) -> tuple[Floats, Floats]:
     """Return [...]: z of scenes that differ by degrees, and how many whole ones they are worth."""
-    total, sizes, squares = (  # in both orders, since swapping the arms turns the order round
+    total, sizes, squares = (  # in both orders, since swapping the variants turns the order round
         0.5 * ((counts * y).sum(axis=-1) + (counts * y)[..., ::-1].copy().sum(axis=-1))
         for y in (values, np.abs(values), np.square(values))
     )
@@ -219,7 +219,7 @@ def interval(values: Floats, counts: Floats, far: Floats, z: float) -> tuple[Flo
     """Return both ends [...]: between them lie the means that `rejects` does not reject.
 
     The upper end is the mirrored lower end of the negated values: with ascending ``values``,
-    swapping the arms mirrors the interval to the bit.
+    swapping the variants mirrors the interval to the bit.
     """
     mirrored = _low(-values[..., ::-1], counts[..., ::-1], far, z)
     return _low(values, counts, far, z), 0.0 - mirrored

@@ -1,7 +1,8 @@
 """The test of scene differences by flipping their signs: exact, and without random draws.
 
-Where the arms are exchangeable within a scene, each difference is as likely as its negative. Given
-their sizes, their sum is then a sum of independent signs, whose law is a product of as many terms.
+Where the variants are exchangeable within a scene, each difference is as likely as its negative.
+Given their sizes, their sum is then a sum of independent signs, whose law is a product of as many
+terms.
 """
 
 import numpy as np

@@ -31,7 +31,8 @@ SCENES: Mapping[str, Sequence[int]] = {
 
 @dataclass(frozen=True)
 class Parts:
-    """A variant: its modules, in any order, or a function of the arm's seed that returns them.
+    """A variant: its modules, in any order, or a function of the treatment's seed that returns
+    them.
 
     The function is for trained modules; it gets `None` where only ports and shapes are needed.
     """
@@ -40,14 +41,14 @@ class Parts:
     modules: Sequence[Module] | Callable[[int | None], Sequence[Module]]
 
     def of(self, seed: int | None) -> Sequence[Module]:
-        """Return the modules of an arm."""
+        """Return the modules of a treatment."""
         return self.modules(seed) if callable(self.modules) else self.modules
 
 
 class ComposedSystem(LoopSystem):
     """A system of a plant and modules, whose interface follows from them.
 
-    Consumers follow from the modules' ports, shapes from the first step of each variant.
+    Readers follow from the modules' ports, shapes from the first step of each variant.
     What the plant senses is measured, what a scene's set-up returns is estimated (its channel has a
     fidelity gap), what the plant reads is commanded, what a module writes is reconstructed.
 
@@ -257,8 +258,8 @@ class _Shapes:
     def set_active(self, mask: Any) -> None:
         del mask
 
-    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
-        del channel, consumer, step
+    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Any:
+        del channel, reader, step
         if hasattr(reading.value, "shape"):
             self.shapes.setdefault(reading.source, tuple(np.shape(reading.value)[1:]))
         return reading.value

@@ -18,7 +18,7 @@ _LEAVES = (str, bytes, bool, int, float, complex, type, ModuleType, type(None), 
 
 @dataclass(frozen=True)
 class Shared:
-    """A value that several parts read: a candidate for a channel with a consumer in each part."""
+    """A value that several parts read: a candidate for a channel with a reader in each part."""
 
     what: str
     """The class of an object, or the value of a number."""

@@ -22,7 +22,7 @@ class Reads:
 
     def __init__(self, at: str, what: Any, channels: Mapping[str, str]) -> None:
         self.at, self.what, self.kind = at, what, type(what).__name__
-        # Consumers are in small letters, which attributes need not be.
+        # Readers are in small letters, which attributes need not be.
         self.ports = {n: Port(channel, f"{at}.{n.lower()}") for n, channel in channels.items()}
         self.own: dict[str, Any] = {}
         """Values that its reader wrote itself. From there on it reads these, as it would from an
@@ -75,7 +75,7 @@ class _Keys(dict[Any, Any]):
 def tapped(what: T, *names: str, at: str, **channels: str) -> T:
     """Return a stand-in for an object of which some attributes or keys are delivered at each read.
 
-    Each of them is a channel, by default of the same name, with the consumer `at.name` in small
+    Each of them is a channel, by default of the same name, with the reader `at.name` in small
     letters. All else is the object's own and stays shared with it: the stand-in is of a class made
     from the object's, and has the object's own attributes. Once its reader writes into a tapped
     attribute, the reader gets what it wrote, and no fault reaches it there any more.

@@ -1,4 +1,4 @@
-"""One attempt at running an arm over some scenes, and what can come of it."""
+"""One attempt at running a treatment over some scenes, and what can come of it."""
 
 import traceback
 from collections.abc import Iterable, Sequence
@@ -10,8 +10,8 @@ import numpy as np
 from faultpath.core.error_source import described, located
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import DeliveryListener, TapCount, Taps
-from faultpath.trials.arm import Arm
 from faultpath.trials.outcome import Outcome, checked
+from faultpath.trials.plan import Treatment
 from faultpath.trials.system import System
 
 
@@ -54,21 +54,21 @@ Reply = Done | Raised | Wrong | Died
 
 def taps_of(
     system: System,
-    arm: Arm,
+    treatment: Treatment,
     scenes: Sequence[str],
     guard: bool = False,
     observer: DeliveryListener | None = None,
 ) -> Taps:
-    """Return new taps for an arm over some scenes."""
-    variant = system.variants[arm.variant]
+    """Return new taps for a treatment over some scenes."""
+    variant = system.variants[treatment.variant]
     return Taps(
         system.interface,
-        arm.faults,
+        treatment.faults,
         scenes=tuple(scenes),
         dt_s=system.control_dt_s,
-        seed=arm.seed,
+        seed=treatment.seed,
         bindings=variant.bindings,
-        consumers=variant.consumers,
+        readers=variant.readers,
         privileged=variant.privileged,
         guard=guard,
         observer=observer,
@@ -77,18 +77,20 @@ def taps_of(
 
 def attempt(
     system: System,
-    arm: Arm,
+    treatment: Treatment,
     scenes: Sequence[str],
     guard: bool = False,
     observer: DeliveryListener | None = None,
 ) -> Done | Raised | Wrong:
-    """Run an arm over some scenes; an error comes back as a value.
+    """Run a treatment over some scenes; an error comes back as a value.
 
     `guard` and `observer` are those of `Taps`.
     """
     try:
-        taps = taps_of(system, arm, scenes, guard, observer)
-        outcomes = _checked(system, scenes, system.run(arm.variant, scenes, taps, arm.seed))
+        taps = taps_of(system, treatment, scenes, guard, observer)
+        outcomes = _checked(
+            system, scenes, system.run(treatment.variant, scenes, taps, treatment.seed)
+        )
         dt_s = system.control_dt_s
         steps = [outcome.steps(dt_s) for outcome in outcomes]
         taps.verify(np.array(steps, dtype=np.int64) - 1)

@@ -19,7 +19,7 @@ UNNAMED = ("held-out", "selection")
 """Libraries that audits and checks run where none is named."""
 
 _COLUMNS = frozenset(
-    {"variant", "path", "seed", "scene", "scene_index", "topology", "x_m", "y_m", "z_m"}
+    {"variant", "condition", "seed", "scene", "scene_index", "topology", "x_m", "y_m", "z_m"}
     | {f.name for f in fields(Outcome)}
 )
 """Names that the table of outcomes has already."""
@@ -124,7 +124,7 @@ def check_system(system: System, name: str) -> None:
             )
     for key, variant in values["variants"].items():
         try:
-            wire(values["interface"], variant.bindings, variant.consumers, variant.privileged, 0)
+            wire(values["interface"], variant.bindings, variant.readers, variant.privileged, 0)
         except UserError as error:
             raise SystemMistake(f"{label}: variant '{key}': {error}") from None
 

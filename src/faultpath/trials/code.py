@@ -15,9 +15,9 @@ from pydantic import Field
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.files.opening import opened
 from faultpath.core.results import Frozen
-from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import paths_of
 from faultpath.trials.declared import shown
+from faultpath.trials.plan import SystemSpec
 from faultpath.trials.registry import factory_root
 from faultpath.trials.system import System
 from faultpath.trials.trees import Root, kind_of, loaded, releases, trees_of

@@ -29,11 +29,11 @@ def check_name(what: str, name: Any) -> None:
 
 @dataclass(frozen=True)
 class Variant:
-    """One way to wire the system: which source feeds each channel, and which consumers exist."""
+    """One way to wire the system: which source feeds each channel, and which readers exist."""
 
     name: str
     description: str
-    consumers: frozenset[str]
+    readers: frozenset[str]
     """The taps that this variant reads; a fault cannot reach any other."""
     bindings: Mapping[str, str] = field(default_factory=dict[str, str])
     """Channel to source, where it is not the channel's first source."""
@@ -44,7 +44,7 @@ class Variant:
         """Raise `SystemMistake` for parts of another type."""
         check_name("the name of a variant", self.name)
         label = f"variant '{self.name}'"
-        for what in ("consumers", "privileged"):
+        for what in ("readers", "privileged"):
             for name in _items(f"{label}: {what}", getattr(self, what)):
                 check_name(f"{label}: one of {what}", name)
         bindings: Any = self.bindings

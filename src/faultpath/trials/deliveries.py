@@ -6,7 +6,7 @@ from typing import Literal, Self
 
 from faultpath.core.results import Result
 from faultpath.loop import TapCount, added
-from faultpath.trials.arm import Study
+from faultpath.trials.plan import Study
 from faultpath.trials.trials import Trials
 
 
@@ -14,7 +14,7 @@ class RowDeliveries(Result):
     """The taps of one row of a study."""
 
     variant: str
-    path: str
+    condition: str
     seed: int
     taps: tuple[TapCount, ...]
     """In the order of the interface; empty where every trial failed."""
@@ -34,18 +34,21 @@ class Deliveries(Result):
     def of(
         cls,
         study: Study,
-        arms: Mapping[str, tuple[TapCount, ...]],
+        treatments: Mapping[str, tuple[TapCount, ...]],
         trials: Trials,
         findings: tuple[str, ...],
         repeats: bool = True,
     ) -> Self:
-        """Lay the counts, by arm key, out in the order of the study's rows.
+        """Lay the counts, by treatment key, out in the order of the study's rows.
 
         To `findings` it adds what counts and outcomes show of the declarations.
         """
         rows = tuple(
             RowDeliveries(
-                variant=r.variant, path=r.path, seed=r.seed, taps=arms.get(r.arm.key(), ())
+                variant=r.variant,
+                condition=r.condition,
+                seed=r.seed,
+                taps=treatments.get(r.treatment.key(), ()),
             )
             for r in study.rows
         )
@@ -56,27 +59,28 @@ class Deliveries(Result):
             repeats=repeats,
         )
 
-    def at(self, variant: str, path: str) -> tuple[TapCount, ...]:
-        """Return the taps of a variant on a path, all seeds together; `KeyError` without any."""
-        rows = [row for row in self.rows if (row.variant, row.path) == (variant, path)]
+    def at(self, variant: str, condition: str) -> tuple[TapCount, ...]:
+        """Return the taps of a variant under a condition, all seeds together; `KeyError` without
+        any."""
+        rows = [row for row in self.rows if (row.variant, row.condition) == (variant, condition)]
         if not rows:
-            raise KeyError((variant, path))
+            raise KeyError((variant, condition))
         return added(count for row in rows for count in row.taps)
 
 
 def unread(counts: Iterable[tuple[str, TapCount]]) -> tuple[str, ...]:
-    """Name the consumers that a variant declares and that never read, in any of its arms.
+    """Name the readers that a variant declares and that never read, in any of its treatments.
 
-    `counts` are what the taps did in each arm, with the name of the variant.
+    `counts` are what the taps did in each treatment, with the name of the variant.
     """
     reads: dict[tuple[str, str, str], int] = {}
     for variant, tap in counts:
-        key = (variant, tap.channel, tap.consumer)
+        key = (variant, tap.channel, tap.reader)
         reads[key] = reads.get(key, 0) + tap.deliveries
     return tuple(
-        f"Variant '{variant}' declares that {consumer} reads '{channel}', but it never did: take "
-        "it out of the variant's consumers, or deliver the channel to it."
-        for (variant, channel, consumer), count in reads.items()
+        f"Variant '{variant}' declares that {reader} reads '{channel}', but it never did: take "
+        "it out of the variant's readers, or deliver the channel to it."
+        for (variant, channel, reader), count in reads.items()
         if count == 0
     )
 

@@ -11,7 +11,7 @@ from typing_extensions import override
 
 from faultpath.core.arrays import Array, namespace, to_numpy
 from faultpath.interface import Provenance
-from faultpath.loop import Batch, Deliverer, Graph, Loop, Module, Plant, Taps, consumers, graph
+from faultpath.loop import Batch, Deliverer, Graph, Loop, Module, Plant, Taps, graph, readers
 from faultpath.trials.outcome import Outcome, Status, control_steps
 from faultpath.trials.system import BLOCK, System, Variant
 
@@ -31,7 +31,7 @@ class Wiring:
 class LoopSystem(System):
     """A system built from a plant and modules.
 
-    Consumers and privileged sources of its variants follow from the modules' ports, and `run` is
+    Readers and privileged sources of its variants follow from the modules' ports, and `run` is
     the loop. Its author writes the parts, and says which of them each variant has.
     """
 
@@ -50,8 +50,8 @@ class LoopSystem(System):
     def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
         """Return the modules of a variant, in any order.
 
-        `seed` is that of the arm, for trained modules that of their training; with `None` only
-        their ports will be looked at, so that weights may be blank.
+        `seed` is that of the treatment, for trained modules that of their training; with `None`
+        only their ports will be looked at, so that weights may be blank.
         """
 
     @property
@@ -73,7 +73,7 @@ class LoopSystem(System):
             variants[name] = Variant(
                 name,
                 wiring.description,
-                consumers(parts.parts),
+                readers(parts.parts),
                 wiring.bindings,
                 frozenset(privileged),
             )

@@ -77,7 +77,7 @@ class Outcome:
     faulted_steps: int = 0
     """Control steps at which a fault was in force at some tap that delivered."""
     altered_steps: int = 0
-    """Control steps at which what a consumer got differed from the reading."""
+    """Control steps at which what a reader got differed from the reading."""
     error: str | None = None
     trace: NDArray[np.float32] | None = None
     """Position at each control step, `[T, 3]`, metres, world frame."""

@@ -32,7 +32,7 @@ class Recheck(Shown):
     other: tuple[str, ...] = ()
     """The scenes that came out otherwise."""
     wrote: str = ""
-    """The consumer that wrote into its reading, where the guard saw one."""
+    """The reader that wrote into its reading, where the guard saw one."""
 
 
 class RunProvenance(Shown):

@@ -1,6 +1,5 @@
 """Names that `faultpath.trials` offers."""
 
-from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.checks import library_of
 from faultpath.trials.declared import FloorPlan, Library, Pillar, Prism, SceneRef, Variant
 from faultpath.trials.deliveries import Deliveries, RowDeliveries
@@ -8,6 +7,7 @@ from faultpath.trials.loop_system import LoopSystem, Wiring
 from faultpath.trials.options import Offered, Option
 from faultpath.trials.outcome import VEHICLE, Metric, Outcome, Status
 from faultpath.trials.pairing import Group, PairingRefused, Pairs, pair
+from faultpath.trials.plan import Row, Study, SystemSpec, Treatment
 from faultpath.trials.registry import load_system, system_options
 from faultpath.trials.shown import SystemShown, VariantShown, system_shown
 from faultpath.trials.system import ErrorSum, ErrorTerm, System
@@ -15,7 +15,6 @@ from faultpath.trials.trials import Trial, Trials
 
 __all__ = [
     "VEHICLE",
-    "Arm",
     "Deliveries",
     "ErrorSum",
     "ErrorTerm",
@@ -39,6 +38,7 @@ __all__ = [
     "System",
     "SystemShown",
     "SystemSpec",
+    "Treatment",
     "Trial",
     "Trials",
     "Variant",

@@ -90,7 +90,7 @@ class Request(Asked):
     )
 
     @property
-    def arms(self) -> tuple[str, ...]:
+    def named_variants(self) -> tuple[str, ...]:
         """Variants that it names."""
         named = (vars(self).get(name) for name in ("baseline", "repair", "variant"))
         return (*(name for name in named if name), *vars(self).get("variants", ()))

@@ -25,10 +25,10 @@ from faultpath.core.error_source import described, note_system, ours
 from faultpath.core.error_source import place as where
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
-from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.opened import reads
 from faultpath.trials.options import Factory, Option, builds, call, options_of
+from faultpath.trials.plan import SystemSpec
 from faultpath.trials.system import System
 from faultpath.trials.trees import Root, imported, kind_of, places
 

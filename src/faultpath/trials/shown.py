@@ -19,7 +19,7 @@ class VariantShown(Frozen, allow_inf_nan=False):
 
     name: str
     description: str = ""
-    consumers: tuple[str, ...]
+    readers: tuple[str, ...]
     """The taps that it reads, sorted."""
     bindings: dict[str, str]
     """Channel to source, where it is not the channel's first source."""
@@ -42,9 +42,9 @@ class SystemShown(Frozen, allow_inf_nan=False):
     @model_validator(mode="after")
     def _fits(self) -> Self:
         sources = {channel.name: channel.sources for channel in self.interface.channels}
-        known = {name for channel in self.interface.channels for name in channel.consumers}
+        known = {name for channel in self.interface.channels for name in channel.readers}
         for variant in self.variants:
-            for name in set(variant.consumers) - known:
+            for name in set(variant.readers) - known:
                 raise ValueError(f"variant '{variant.name}' reads at {name!r}: no such tap")
             for channel, source in variant.bindings.items():
                 if source not in sources.get(channel, ()):
@@ -75,7 +75,7 @@ def system_shown(system: System, variants: Iterable[str], scenes: Sequence[str])
                     VariantShown(
                         name=variant.name,
                         description=variant.description,
-                        consumers=tuple(sorted(variant.consumers)),
+                        readers=tuple(sorted(variant.readers)),
                         bindings=dict(variant.bindings),
                     )
                     for variant in (system.variants[name] for name in variants)

@@ -30,7 +30,7 @@ class TrialReadings(Protocol):
         """Return what a source held."""
         ...
 
-    def got(self, channel: str, consumer: str) -> Values:
+    def got(self, channel: str, reader: str) -> Values:
         """Return what a tap delivered, faults included."""
         ...
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.core.errors import UserError
-from faultpath.trials.arm import Row, Study
 from faultpath.trials.declared import Library, SceneRef
 from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.plan import Row, Study
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -227,23 +227,24 @@ def check_rows(rows: Iterable[Row], variants: Iterable[str]) -> None:
     known = tuple(variants)
     addresses: set[tuple[str, str, int]] = set()
     for row in rows:
-        if row.arm.variant not in known:
+        if row.treatment.variant not in known:
             raise UserError(
-                f"the system has no variant {row.arm.variant!r}: choose from {', '.join(known)}"
+                f"the system has no variant {row.treatment.variant!r}: choose from "
+                f"{', '.join(known)}"
             )
-        address = (row.variant, row.path, row.seed)
+        address = (row.variant, row.condition, row.seed)
         if address in addresses:
             raise UserError(
                 f"two rows of the study are both called variant {row.variant!r}, path "
-                f"{row.path!r}, seed {row.seed}: give them different names"
+                f"{row.condition!r}, seed {row.seed}: give them different names"
             )
         addresses.add(address)
 
 
 def assemble(study: Study, library: Library, outcomes: Mapping[tuple[str, str], Outcome]) -> Trials:
-    """Lay the outcomes, by arm key and scene, out in the order of the study's rows."""
+    """Lay the outcomes, by treatment key and scene, out in the order of the study's rows."""
     scenes, trials = selected(study, library), list[Trial]()
     for row in study.rows:
-        where, key = (row.variant, row.path, row.seed), row.arm.key()
+        where, key = (row.variant, row.condition, row.seed), row.treatment.key()
         trials += [Trial(*where, s.index, s.topology, outcomes[key, s.id]) for s in scenes]
     return Trials.of(trials)

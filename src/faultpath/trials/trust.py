@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
-from faultpath.trials.arm import SystemSpec
+from faultpath.trials.plan import SystemSpec
 from faultpath.trials.registry import factory_name, installed_systems
 
 PART = re.compile(r"([^:]+:[A-Za-z_]\w*)(?:/|$)")

@@ -62,9 +62,9 @@ CLAIMS: dict[str, Statements] = {
     "C30": (
         *(_over_nominal(method, SHARED, WITHIN_15_PERCENT) for method in (GRU, DOB)),
         *(
-            _over_nominal(method, path, at_least(1.5))
+            _over_nominal(method, condition, at_least(1.5))
             for method in (GRU, DOB)
-            for path in (ISOLATED, PREDICTOR)
+            for condition in (ISOLATED, PREDICTOR)
         ),
         *(
             _repair_moves_less(
@@ -101,8 +101,8 @@ CLAIMS: dict[str, Statements] = {
             f"rank correlation of success with {error} over {len(in_text.NINE)} cells",
             rank_correlation(
                 [
-                    (table_4.cell(method, path), table_6.by_seed(measure, method, path))
-                    for method, path in in_text.NINE
+                    (table_4.cell(method, condition), table_6.by_seed(measure, method, condition))
+                    for method, condition in in_text.NINE
                 ]
             ),
             by_point(-1, -0.5, strict=False),

@@ -19,7 +19,7 @@ from faultpath_paper.claims.statement import (
     TurnsDown,
     seeds_that_turn,
 )
-from faultpath_paper.pages.table_4 import PATHS, cell, change, paper_contrast, paper_rate
+from faultpath_paper.pages.table_4 import CONDITIONS, cell, change, paper_contrast, paper_rate
 from faultpath_paper.pages.table_6 import negative, paper_negative
 from faultpath_paper.quantities.differences import (
     combined,
@@ -32,7 +32,7 @@ CORRECT, ISOLATED, SHARED = "correct", "reconstruction-only", "shared"
 GRU, DCC, DOB = "gru", "gru+dcc", "dob"
 
 
-def _between_paths(method: str, first: str, second: str, rule: Rule) -> Statement:
+def _between_conditions(method: str, first: str, second: str, rule: Rule) -> Statement:
     return Statement(
         f"success of {method.upper()}, {first} minus {second},",
         success(cell(method, first), cell(method, second)),
@@ -41,25 +41,25 @@ def _between_paths(method: str, first: str, second: str, rule: Rule) -> Statemen
     )
 
 
-def _between_methods(first: str, second: str, path: str, rule: Rule) -> Statement:
+def _between_methods(first: str, second: str, condition: str, rule: Rule) -> Statement:
     return Statement(
-        f"success of {first.upper()} minus {second.upper()}, {path},",
-        success(cell(first, path), cell(second, path)),
+        f"success of {first.upper()} minus {second.upper()}, {condition},",
+        success(cell(first, condition), cell(second, condition)),
         rule,
-        paper_contrast(first, second, path),
+        paper_contrast(first, second, condition),
     )
 
 
-def _repair(path: str) -> tuple[Cell, Cell]:
-    return cell(DCC, path), cell(GRU, path)
+def _repair(condition: str) -> tuple[Cell, Cell]:
+    return cell(DCC, condition), cell(GRU, condition)
 
 
-def _negative(path: str, rule: Rule) -> Statement:
+def _negative(condition: str, rule: Rule) -> Statement:
     return Statement(
-        f"success of GRU+DCC minus GRU at the negative offset, {path},",
-        success(negative(DCC, path), negative(GRU, path)),
+        f"success of GRU+DCC minus GRU at the negative offset, {condition},",
+        success(negative(DCC, condition), negative(GRU, condition)),
         rule,
-        Printed(paper_negative(DCC, path) - paper_negative(GRU, path)),
+        Printed(paper_negative(DCC, condition) - paper_negative(GRU, condition)),
     )
 
 
@@ -72,21 +72,21 @@ def _printed(figure: Mapping[str, Any]) -> Printed:
     return Printed(figure["mean"], (low, high))
 
 
-def _farther(path: str, rule: Rule) -> Statement:
-    at = list(PATHS).index(path)
+def _farther(condition: str, rule: Rule) -> Statement:
+    at = list(CONDITIONS).index(condition)
     return Statement(
-        f"terminal goal distance of GRU+DCC minus GRU, {path},",
-        combined((1, _repair(path)), effect=terminal_distance),
+        f"terminal goal distance of GRU+DCC minus GRU, {condition},",
+        combined((1, _repair(condition)), effect=terminal_distance),
         rule,
         _printed({key: _FARTHER[key][at] for key in ("mean", "ci95")}),
     )
 
 
 CLAIMS: dict[str, Statements] = {
-    "C23": (_between_paths(GRU, ISOLATED, CORRECT, BELOW),),
+    "C23": (_between_conditions(GRU, ISOLATED, CORRECT, BELOW),),
     "C24": (
-        _between_paths(GRU, SHARED, ISOLATED, ABOVE),
-        _between_paths(GRU, SHARED, CORRECT, NO_LOSS),
+        _between_conditions(GRU, SHARED, ISOLATED, ABOVE),
+        _between_conditions(GRU, SHARED, CORRECT, NO_LOSS),
     ),
     "C25": (
         _between_methods(DCC, GRU, ISOLATED, ABOVE),
@@ -117,15 +117,15 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C28": (
-        _between_paths(DOB, ISOLATED, CORRECT, BELOW),
-        _between_paths(DOB, SHARED, ISOLATED, ABOVE),
+        _between_conditions(DOB, ISOLATED, CORRECT, BELOW),
+        _between_conditions(DOB, SHARED, ISOLATED, ABOVE),
         _between_methods(DOB, GRU, SHARED, NO_LOSS),
     ),
     "C29": (_between_methods(DOB, DCC, ISOLATED, BELOW), _between_methods(DOB, DCC, SHARED, ABOVE)),
     "C32": (
         _negative(ISOLATED, by_point(1)),
         _negative(SHARED, by_point(-1)),
-        *(_negative(path, NO_DIFFERENCE) for path in (ISOLATED, SHARED)),
+        *(_negative(condition, NO_DIFFERENCE) for condition in (ISOLATED, SHARED)),
     ),
     "C41": (
         Statement(

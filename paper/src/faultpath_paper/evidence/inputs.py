@@ -122,12 +122,12 @@ class Subject:
         interface = self.system.interface.shaped({source: tuple(codes.shape)})
         taps = Taps(
             interface,
-            [f for parts in faults for f in resolve(parts, interface, self.variant.consumers)],
+            [f for parts in faults for f in resolve(parts, interface, self.variant.readers)],
             scenes=(recording,),
             dt_s=self.system.control_dt_s,
             seed=self.seed,
             bindings=self.variant.bindings,
-            consumers=self.variant.consumers,
+            readers=self.variant.readers,
             privileged=self.variant.privileged,
         )
         reading = Reading(codes[None], taps.bindings[CODE[0]], 0)

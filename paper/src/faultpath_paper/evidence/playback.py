@@ -36,8 +36,8 @@ from faultpath.loop import (
     Progress,
     Reading,
     Taps,
-    consumers,
     graph,
+    readers,
 )
 
 CODE = ("history_code", "predictor.latent")
@@ -125,17 +125,17 @@ class WindowTaps:
 
     def __init__(self, taps: Taps, exchange: Exchange) -> None:
         self.delivered: dict[tuple[str, str], Any] = {}
-        """Values delivered at the present, by channel and consumer."""
+        """Values delivered at the present, by channel and reader."""
         self.set_active = taps.set_active
         self._taps, self._exchange = taps, exchange
 
-    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
-        """Return what a consumer gets; over the history, most channels as they were recorded."""
+    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Any:
+        """Return what a reader gets; over the history, most channels as they were recorded."""
         if step < HISTORY and channel not in HELD:
             return reading.value
         value = self._exchange(reading.value) if channel == CODE[0] else reading.value
-        delivered = self._taps.deliver(channel, consumer, Reading(value, reading.source, 0), 0)
-        self.delivered[channel, consumer] = delivered
+        delivered = self._taps.deliver(channel, reader, Reading(value, reading.source, 0), 0)
+        self.delivered[channel, reader] = delivered
         return delivered
 
 
@@ -150,7 +150,7 @@ class Present:
     delivered: Mapping[tuple[str, str], Any]
 
     def __getitem__(self, tap: tuple[str, str]) -> Tensor:
-        """Return what a consumer got of a channel, `[W, ...]`."""
+        """Return what a reader got of a channel, `[W, ...]`."""
         return self.delivered[tap][: self.count]
 
     def wind(self) -> Tensor:
@@ -197,7 +197,7 @@ def at_present(
     interface = quadrotor_interface().shaped({"predicted_motion": (6, HORIZON, 1)})
     models = modelled(predictor, reconstruction, CPU)
     parts = graph(interface, Playback(wide), [*models, Executed(wide)], bindings)
-    present = consumers(parts.parts)
+    present = readers(parts.parts)
     taps = Taps(
         interface,
         [fault for parts in faults for fault in resolve(parts, interface, present)],
@@ -205,7 +205,7 @@ def at_present(
         dt_s=CONTROL_DT_S,
         seed=seed,
         bindings=bindings,
-        consumers=present,
+        readers=present,
         privileged=PRIVILEGED,
     )
     window_taps = WindowTaps(taps, lambda codes: exchange(codes[: len(windows)])[lanes])

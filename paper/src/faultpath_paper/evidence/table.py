@@ -72,7 +72,7 @@ class Measurement(Frozen):
     recording: Recording
     quantity: Quantity
     subject: str
-    """Variant that is measured: a predictor and what feeds its wind input, as in arms."""
+    """Variant that is measured: a predictor and what feeds its wind input, as in treatments."""
     seed: int = 0
     """Seed of the training of what the variant names, and of the faults' random numbers."""
     faults: tuple[str, ...] = ()

@@ -94,13 +94,13 @@ def windy_error(subject: str) -> Measurement:
 
 WINDY_SUBJECTS = ("wm-a-wind/true-wind", table_3.WITHHELD, "wm-a-wind/zero-wind")
 
-NINE = tuple((method, path) for method in table_4.METHODS for path in table_4.PATHS)
+NINE = tuple((method, condition) for method in table_4.METHODS for condition in table_4.CONDITIONS)
 """Methods and interfaces of Table IV."""
 MECHANISM = tuple(
     error
     for measure in (table_6.acceleration_error, table_6.position_error)
-    for method, path in NINE
-    for error in table_6.by_seed(measure, method, path)
+    for method, condition in NINE
+    for error in table_6.by_seed(measure, method, condition)
 )
 """Errors of the analytic acceleration and of the full prediction, of each of the nine."""
 
@@ -113,7 +113,7 @@ PAGE = Page(
         *(WIND_UPDATED, WIND_FROZEN, CODE_UPDATED, CODE_FROZEN, WITHHELD_UPDATED, WITHHELD_FROZEN),
         CALIBRATION_WITHHELD,
         TRAJECTORY_STILL,
-        *(table_4.cell(method, path) for method, path in NINE),
+        *(table_4.cell(method, condition) for method, condition in NINE),
         *map(of_seed, CEILING),
         REFERENCE_PLANNER,
         *OTHER_PLANNERS.values(),

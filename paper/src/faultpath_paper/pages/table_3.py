@@ -20,7 +20,7 @@ WITHHELD, ZERO, TRAJECTORY, GRU, TRUE = (
     "true-wind",
 )
 ZERO_OF_EVERY_SEED = "wm-a-wind/zero-wind"
-"""The zero input to the predictor of the arm's seed; `zero-wind` has that of seed 0."""
+"""The zero input to the predictor of the treatment's seed; `zero-wind` has that of seed 0."""
 
 
 UNMET = range(70, 100)

@@ -32,7 +32,7 @@ NAMES = {"gru": "GRU", "gru+dcc": "GRU+DCC", "dob": "DOB"}
 METHODS = tuple(NAMES)
 ERROR = 0.1
 
-PATHS: dict[str, tuple[str, ...]] = {
+CONDITIONS: dict[str, tuple[str, ...]] = {
     "correct": (),
     "reconstruction-only": (calibration(ERROR, "reconstruction"),),
     "shared": (calibration(ERROR),),
@@ -40,16 +40,18 @@ PATHS: dict[str, tuple[str, ...]] = {
 """Faults by interface: (e_R, e_P) = (0, 0), (+0.1, 0), (+0.1, +0.1)."""
 
 
-def cell(method: str, path: str) -> Cell:
+def cell(method: str, condition: str) -> Cell:
     """Return a method on an interface; the observer learns nothing and flies once."""
     if method == "dob":
-        return Cell(WINDY, method, PATHS[path], fixed=True)
-    return Cell(WINDY, method, PATHS[path], seeds=SEEDS)
+        return Cell(WINDY, method, CONDITIONS[condition], fixed=True)
+    return Cell(WINDY, method, CONDITIONS[condition], seeds=SEEDS)
 
 
 def change(first: str, second: str, effect: Effect) -> Quantity:
     """Return how much more an effect is under the shared error than under the isolated one."""
-    shared, alone = (_cells(first, second, path) for path in ("shared", "reconstruction-only"))
+    shared, alone = (
+        _cells(first, second, condition) for condition in ("shared", "reconstruction-only")
+    )
     return combined((1, shared), (-1, alone), effect=effect)
 
 
@@ -57,20 +59,20 @@ TITLE = "Wind reconstruction under an isolated and under a shared calibration er
 _PAPER = published("table_4_shared_calibration")
 
 
-def paper_rate(method: str, path: str) -> float:
+def paper_rate(method: str, condition: str) -> float:
     """Return the success that the paper prints, percent."""
-    return _PAPER[NAMES[method]][list(PATHS).index(path)]
+    return _PAPER[NAMES[method]][list(CONDITIONS).index(condition)]
 
 
-def paper_contrast(first: str, second: str, path: str) -> Printed:
+def paper_contrast(first: str, second: str, condition: str) -> Printed:
     """Return what the paper prints of one method minus another, pp."""
-    paper, at = _PAPER[f"{NAMES[first]}_minus_{NAMES[second]}"], list(PATHS).index(path)
+    paper, at = _PAPER[f"{NAMES[first]}_minus_{NAMES[second]}"], list(CONDITIONS).index(condition)
     low, high = paper["ci95"][at]
     return Printed(paper["pp"][at], (low, high))
 
 
-def _cells(first: str, second: str, path: str) -> tuple[Cell, Cell]:
-    return cell(first, path), cell(second, path)
+def _cells(first: str, second: str, condition: str) -> tuple[Cell, Cell]:
+    return cell(first, condition), cell(second, condition)
 
 
 def _contrast(first: str, second: str) -> Rows:
@@ -78,14 +80,14 @@ def _contrast(first: str, second: str) -> Rows:
     printed = published_contrasts(paper["pp"], paper["ci95"], paper["wins_losses"])
     return (
         TableRow(f"{NAMES[first]} minus {NAMES[second]}, success (pp)"),
-        differences((_cells(first, second, path) for path in PATHS), printed),
+        differences((_cells(first, second, condition) for condition in CONDITIONS), printed),
     )
 
 
 def last_column(label: str, group: EntryGroup, *below: str) -> Columns:
     """Return a change between the columns with its intervals, in the last of them."""
     blank = EntryGroup(lambda results: ("",) * 3, ("",) * 3)
-    return Columns((label, "95 % interval", *below), (*[blank] * (len(PATHS) - 1), group))
+    return Columns((label, "95 % interval", *below), (*[blank] * (len(CONDITIONS) - 1), group))
 
 
 def _shown(
@@ -98,7 +100,9 @@ def _shown(
 def _changed(
     first: str, second: str, effect: Effect, paper: Mapping[str, Any], digits: int = 1
 ) -> EntryGroup:
-    cells = [cell(method, path) for method in (first, second) for path in list(PATHS)[1:]]
+    cells = [
+        cell(method, condition) for method in (first, second) for condition in list(CONDITIONS)[1:]
+    ]
     return _shown(change(first, second, effect), cells, paper["mean"], paper["ci95"], digits)
 
 
@@ -116,7 +120,7 @@ PAGE = Page(
             rows=(
                 TableRow("Success (%)"),
                 *(
-                    rates(name, (cell(method, path) for path in PATHS), _PAPER[name])
+                    rates(name, (cell(method, condition) for condition in CONDITIONS), _PAPER[name])
                     for method, name in NAMES.items()
                 ),
                 *_contrast("gru+dcc", "gru"),
@@ -132,10 +136,10 @@ PAGE = Page(
                     ("Mean difference", "95 % interval"),
                     tuple(
                         _shown(combined((1, pair), effect=terminal_distance), pair, mean, ends, 2)
-                        for path, mean, ends in zip(
-                            PATHS, _FARTHER["mean"], _FARTHER["ci95"], strict=True
+                        for condition, mean, ends in zip(
+                            CONDITIONS, _FARTHER["mean"], _FARTHER["ci95"], strict=True
                         )
-                        for pair in [_cells("gru+dcc", "gru", path)]
+                        for pair in [_cells("gru+dcc", "gru", condition)]
                     ),
                 ),
                 last_column(

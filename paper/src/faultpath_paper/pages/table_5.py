@@ -20,13 +20,13 @@ REPAIRS: dict[str, Repair] = {
         for repair, baseline in table_2.PAIRS
     },
     **{
-        f"GRU/{path}": (
+        f"GRU/{condition}": (
             table_4.cell("gru+dcc", "correct"),
             table_4.cell("gru", "correct"),
-            table_4.cell("gru+dcc", path),
-            table_4.cell("gru", path),
+            table_4.cell("gru+dcc", condition),
+            table_4.cell("gru", condition),
         )
-        for path in ("reconstruction-only", "shared")
+        for condition in ("reconstruction-only", "shared")
     },
 }
 """Keys as published."""

@@ -8,13 +8,13 @@ from faultpath_paper.entries import BLANK, EntryGroup, PublishedContrast, differ
 from faultpath_paper.evidence.table import Measurement
 from faultpath_paper.page import Columns, Page, TableRow, TableSpec, rates
 from faultpath_paper.pages.table_1 import recording
-from faultpath_paper.pages.table_4 import ERROR, METHODS, NAMES, PATHS, WINDY
+from faultpath_paper.pages.table_4 import CONDITIONS, ERROR, METHODS, NAMES, WINDY
 
 INTERFACES: dict[str, tuple[str, ...]] = {
-    "correct": PATHS["correct"],
-    "reconstruction-only": PATHS["reconstruction-only"],
+    "correct": CONDITIONS["correct"],
+    "reconstruction-only": CONDITIONS["reconstruction-only"],
     "predictor-only": (calibration(ERROR, "predictor"),),
-    "shared": PATHS["shared"],
+    "shared": CONDITIONS["shared"],
 }
 """(e_R, e_P) = (0, 0), (+0.1, 0), (0, +0.1), (+0.1, +0.1)."""
 
@@ -68,9 +68,9 @@ def _measure(quantity: str, method: str, interface: str, seed: int) -> Measureme
     )
 
 
-def negative(method: str, path: str) -> Cell:
+def negative(method: str, condition: str) -> Cell:
     """Return a method under the negative offset, seed 0."""
-    return Cell(WINDY, method, NEGATIVE[path])
+    return Cell(WINDY, method, NEGATIVE[condition])
 
 
 TITLE = "How reconstruction bias and calibration error compensate"
@@ -83,9 +83,9 @@ def paper_acceleration(method: str, interface: str) -> float:
     return _ERRORS[NAMES[method]][list(INTERFACES).index(interface)]
 
 
-def paper_negative(method: str, path: str) -> float:
+def paper_negative(method: str, condition: str) -> float:
     """Return the success under the negative offset that the paper prints, percent."""
-    return _OFFSET[NAMES[method]][list(NEGATIVE).index(path)]
+    return _OFFSET[NAMES[method]][list(NEGATIVE).index(condition)]
 
 
 def _accelerations(method: str) -> TableRow:
@@ -101,15 +101,15 @@ def _wind_term(interface: str, key: str) -> EntryGroup:
 
 
 def _negative_rates(method: str) -> TableRow:
-    cells = (negative(method, path) for path in NEGATIVE)
+    cells = (negative(method, condition) for condition in NEGATIVE)
     return rates(f"{NAMES[method]} (%)", cells, _OFFSET[NAMES[method]])
 
 
-def _negative_difference(path: str) -> EntryGroup:
-    at = list(NEGATIVE).index(path)
+def _negative_difference(condition: str) -> EntryGroup:
+    at = list(NEGATIVE).index(condition)
     p_value = wording.p_value(_OFFSET["mcnemar_exact_p"][at])
     paper = PublishedContrast(wins_losses=_OFFSET["dcc_only_gru_only"][at], p_value=p_value)
-    return difference(negative("gru+dcc", path), negative("gru", path), paper)
+    return difference(negative("gru+dcc", condition), negative("gru", condition), paper)
 
 
 PAGE = Page(

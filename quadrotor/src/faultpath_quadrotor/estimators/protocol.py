@@ -35,26 +35,26 @@ class Estimator(Module):
 
 
 def with_estimators(
-    interface: Interface, readers: Iterable[Part], fixes: Fixes = Fixes.OPTICAL
+    interface: Interface, parts: Iterable[Part], fixes: Fixes = Fixes.OPTICAL
 ) -> Interface:
-    """Return the interface with the raw sensors that some modules read, and those consumers.
+    """Return the interface with the raw sensors that some modules read, and those readers.
 
-    Estimators are added as consumers of every channel that they read.
+    Estimators are added as readers of every channel that they read.
     """
     known = sensors(fixes)
-    consumers: dict[str, set[str]] = {}
-    for reader in readers:
-        for port in reader.ports:
-            if port.channel in known or isinstance(reader, Estimator):
-                consumers.setdefault(port.channel, set()).add(reader.consumer(port))
+    readers: dict[str, set[str]] = {}
+    for part in parts:
+        for port in part.ports:
+            if port.channel in known or isinstance(part, Estimator):
+                readers.setdefault(port.channel, set()).add(part.reader(port))
     channels = [
         channel.model_copy(
-            update={"consumers": (*channel.consumers, *sorted(consumers.pop(channel.name, ())))}
+            update={"readers": (*channel.readers, *sorted(readers.pop(channel.name, ())))}
         )
         for channel in interface.channels
     ]
     sources = list(interface.sources)
-    for name in sorted(consumers.keys() & known.keys()):
+    for name in sorted(readers.keys() & known.keys()):
         sensor = known[name]
         sources.append(
             Source(
@@ -71,7 +71,7 @@ def with_estimators(
             Channel(
                 name=name,
                 sources=(raw(name),),
-                consumers=tuple(sorted(consumers[name])),
+                readers=tuple(sorted(readers[name])),
                 description=sensor.description,
             )
         )

@@ -1,10 +1,10 @@
 """Wind: sustained flow, Dryden turbulence and one 1-cosine gust, as a function of time.
 
-Wind is a world-frame series in time, not a field in space: every arm of a contrast meets the same
-wind whatever path it flies. Turbulence uses the forms of MIL-F-8785C, 3.7.1.2, along and across
-the sustained flow, with three departures: length scales are capped at the size of a room, the
-intensity is the same along all axes as the standard has it above 2,000 ft, and the airspeed that
-turns lengths into times is a constant of the level rather than the vehicle's own.
+Wind is a world-frame series in time, not a field in space: every treatment of a contrast meets the
+same wind whatever path it flies. Turbulence uses the forms of MIL-F-8785C, 3.7.1.2, along and
+across the sustained flow, with three departures: length scales are capped at the size of a room,
+the intensity is the same along all axes as the standard has it above 2,000 ft, and the airspeed
+that turns lengths into times is a constant of the level rather than the vehicle's own.
 """
 
 import math

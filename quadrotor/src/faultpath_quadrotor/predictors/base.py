@@ -86,11 +86,11 @@ class Predictor(ABC):
     """
 
     reads: frozenset[str]
-    """Places at which it reads its channels: its consumers in the interface."""
+    """Places at which it reads its channels: its readers in the interface."""
     data_files: Sequence[str | PathLike[str]] | None = None
     """Files that a user's own predictor reads, of every seed, such as weights."""
 
-    def consumers(self, module: str = "predictor") -> frozenset[str]:
+    def readers(self, module: str = "predictor") -> frozenset[str]:
         """Return the names `module.place` under which the interface lists its places."""
         return frozenset(f"{module}.{place}" for place in self.reads)
 

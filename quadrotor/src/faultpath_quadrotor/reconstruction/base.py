@@ -17,7 +17,7 @@ class Reconstruction(ABC):
     """Estimates the current wind from completed intervals; it never sees a candidate action.
 
     `reads` is all that it may know. The caller takes exactly these from the taps, so a variant's
-    consumers follow from it, and an undeclared read has no entry. The same channel at two places is
+    readers follow from it, and an undeclared read has no entry. The same channel at two places is
     two reads, because a fault may reach only one of them.
 
     The channel `action` holds the command executed over the interval that has just ended, N and
@@ -28,7 +28,7 @@ class Reconstruction(ABC):
     data_files: Sequence[str | PathLike[str]] | None = None
     """Files that a user's own reconstruction reads, of every seed, such as weights."""
 
-    def consumers(self, module: str = "reconstruction") -> frozenset[str]:
+    def readers(self, module: str = "reconstruction") -> frozenset[str]:
         """Return the names `module.place` under which the interface lists the reads."""
         return frozenset(f"{module}.{place}" for _, place in self.reads)
 

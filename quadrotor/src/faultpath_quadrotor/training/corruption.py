@@ -15,19 +15,19 @@ CALIBRATION = ("mass", "thrust_scale")
 DCC_HALF_RANGE = 0.2  # paper, Section IV-B
 
 
-def dcc(consumers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> tuple[Fault, ...]:
-    """Return independent uniform noise on mass and thrust scale at `consumers`.
+def dcc(readers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> tuple[Fault, ...]:
+    """Return independent uniform noise on mass and thrust scale at `readers`.
 
-    Each channel has its own cause: the two factors are independent, and all consumers of a
-    channel get the same one (paper, Section IV-B and appendix). Consumers that read neither are
+    Each channel has its own cause: the two factors are independent, and all readers of a
+    channel get the same one (paper, Section IV-B and appendix). Readers that read neither are
     left alone, and one may read one channel only.
     """
     interface = quadrotor_interface()
     noise = UniformScale(half_range=half_range)
-    readers = {name for channel in CALIBRATION for name in interface.channel(channel).consumers}
-    aim = tuple(sorted(readers & set(consumers))) or (ALL,)
+    known = {name for channel in CALIBRATION for name in interface.channel(channel).readers}
+    aim = tuple(sorted(known & set(readers))) or (ALL,)
     return tuple(
-        Fault(channel=channel, intervention=noise, cause=f"dcc/{channel}", consumers=aim)
+        Fault(channel=channel, intervention=noise, cause=f"dcc/{channel}", readers=aim)
         for channel in CALIBRATION
     )
 
@@ -37,8 +37,8 @@ STATE_STD = {"position": 0.012, "velocity": 0.026, "attitude": 0.005, "body_rate
 those that the error-state filter's own covariance gives after some seconds (derived)."""
 
 
-def state_noise(consumer: str) -> tuple[Fault, ...]:
-    """Return independent Gaussian errors of the whole state at a consumer, one draw a window.
+def state_noise(reader: str) -> tuple[Fault, ...]:
+    """Return independent Gaussian errors of the whole state at a reader, one draw a window.
 
     The law is that of `dcc`: each channel has its own cause, and an error stays for the window.
     """
@@ -47,7 +47,7 @@ def state_noise(consumer: str) -> tuple[Fault, ...]:
             channel=channel,
             intervention=Bias(std=std),
             cause=f"state/{channel}",
-            consumers=(consumer,),
+            readers=(reader,),
         )
         for channel, std in STATE_STD.items()
     )
@@ -55,38 +55,38 @@ def state_noise(consumer: str) -> tuple[Fault, ...]:
 
 def corrupted(
     faults: Iterable[Fault],
-    consumers: Collection[str],
+    readers: Collection[str],
     windows: tuple[str, ...],
     seed: int,
     readings: Mapping[str, Tensor],
 ) -> DeliveredInputs:
-    """Return each window's readings as each consumer gets them, by (channel, consumer), `[W]`.
+    """Return each window's readings as each reader gets them, by (channel, reader), `[W]`.
 
     Windows are the scenes of the taps: each has one draw for the whole fit, held throughout it,
     keyed by its id and the model's seed (paper, Section IV-B). The draws come from streams of the
     faults' own, so initial weights and the order of minibatches are untouched.
 
     Args:
-        faults: Faults of the readings; without any, every consumer gets the readings themselves.
-        consumers: Consumers that the model under training has.
+        faults: Faults of the readings; without any, every reader gets the readings themselves.
+        readers: Readers that the model under training has.
         windows: Ids, one a row of every reading.
         seed: Seed of the model.
         readings: Values by channel, `[W, ...]`.
 
     Raises:
-        UserError: A name is unknown, or the faults reach none of these consumers.
-        NotDelivered: A fault missed a consumer that it names.
+        UserError: A name is unknown, or the faults reach none of these readers.
+        NotDelivered: A fault missed a reader that it names.
     """
     interface = quadrotor_interface()
-    resolved = resolve(faults, interface, consumers)
-    taps = window_taps(interface, resolved, windows, CONTROL_DT_S, seed, 0, consumers)
+    resolved = resolve(faults, interface, readers)
+    taps = window_taps(interface, resolved, windows, CONTROL_DT_S, seed, 0, readers)
     delivered = {
-        (channel, consumer): taps.deliver(
-            channel, consumer, Reading(value, taps.bindings[channel], 0), 0
+        (channel, reader): taps.deliver(
+            channel, reader, Reading(value, taps.bindings[channel], 0), 0
         )
         for channel, value in readings.items()
-        for consumer in interface.channel(channel).consumers
-        if consumer in consumers
+        for reader in interface.channel(channel).readers
+        if reader in readers
     }
     taps.verify(last_step=0)
     return delivered

@@ -84,11 +84,9 @@ class PredictorTask(ModelTask):
         training, self._validation = _equal_mix(pools)
         self._train, self.count = training, len(training)
         self._scales = scales(training)
-        consumers = self._blank().consumers()
-        faults = dcc(consumers, self._half_range) if self.is_dcc else ()
-        self._delivered = corrupted(
-            faults, consumers, training.ids, self.seed, training.calibration
-        )
+        readers = self._blank().readers()
+        faults = dcc(readers, self._half_range) if self.is_dcc else ()
+        self._delivered = corrupted(faults, readers, training.ids, self.seed, training.calibration)
 
     @property
     def is_dcc(self) -> bool:

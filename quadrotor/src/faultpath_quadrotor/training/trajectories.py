@@ -44,7 +44,7 @@ def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed:
         dt_s=system.control_dt_s,
         seed=seed,
         bindings=wired.bindings,
-        consumers=wired.consumers,
+        readers=wired.readers,
         privileged=wired.privileged,
     )
     batch = Batch(tuple(scenes), seed, system.control_dt_s)

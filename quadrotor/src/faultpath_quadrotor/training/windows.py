@@ -192,16 +192,16 @@ def _unit(name: str) -> float:
 
 
 DeliveredInputs = Mapping[tuple[str, str], Tensor]
-"""The calibration that taps delivered to windows, `[W]`, by channel and consumer; it is held over
+"""The calibration that taps delivered to windows, `[W]`, by channel and reader; it is held over
 history and horizon."""
 
 
 def correct(model: Predictor, windows: Windows) -> DeliveredInputs:
     """Return the true calibration at every place at which a model reads it."""
     return {
-        (channel, consumer): value
+        (channel, reader): value
         for channel, value in windows.calibration.items()
-        for consumer in model.consumers()
+        for reader in model.readers()
     }
 
 

@@ -59,8 +59,8 @@ def decided(
             sign=tuple(tuple(sign_of(v) for v in row) for row in shaded.reshape(side, side)),
         ),
         flips=tuple(
-            _flip(path, sign_of(direction), differences, way, signs, question.up_to)
-            for (path, direction), way in rays(question.against).items()
+            _flip(condition, sign_of(direction), differences, way, signs, question.up_to)
+            for (condition, direction), way in rays(question.against).items()
         ),
         joint=joint(question, differences),
         critical=z,
@@ -96,7 +96,7 @@ def _points(
 
 
 def _flip(
-    path: str,
+    condition: str,
     direction: Sign,
     differences: Differences,
     way: Point,
@@ -129,7 +129,7 @@ def _flip(
         for size in (*places, crossing)
     )
     return Flip(
-        path=path,
+        condition=condition,
         direction=direction,
         start=start,
         turned=0 if first is None else sign_of(signs[first]),

@@ -47,10 +47,12 @@ def cut(cell: Point, spacing: int) -> tuple[Point, ...]:
 
 
 def rays(modules: Sequence[str]) -> dict[tuple[str, int], Point]:
-    """Return the direction of each path of the fault, by name and sign."""
-    paths = dict(zip((*modules, SHARED), ((1, 0), (0, 1), (1, 1)), strict=True))
+    """Return the direction of each condition of the fault, by name and sign."""
+    conditions = dict(zip((*modules, SHARED), ((1, 0), (0, 1), (1, 1)), strict=True))
     return {
-        (name, sign): (sign * x, sign * y) for name, (x, y) in paths.items() for sign in (1, -1)
+        (name, sign): (sign * x, sign * y)
+        for name, (x, y) in conditions.items()
+        for sign in (1, -1)
     }
 
 

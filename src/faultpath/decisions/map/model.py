@@ -51,7 +51,7 @@ class ResolvedMap(Resolved, allow_inf_nan=False):
         return f"{size:+.3g} {self.unit}".replace("-", MINUS).removesuffix(" 1")
 
     def winner(self, sign: int) -> str:
-        """Return the arm of a decided side."""
+        """Return the variant of a decided side."""
         return self.repair if sign > 0 else self.baseline
 
 
@@ -89,10 +89,10 @@ class MapSurface(Result, allow_inf_nan=False):
 
 
 class Flip(Result, allow_inf_nan=False):
-    """On one path, in one direction of the error: at which of the sizes that were run the ranking
-    is reversed."""
+    """On one condition, in one direction of the error: at which of the sizes that were run the
+    ranking is reversed."""
 
-    path: str
+    condition: str
     """A module, or `shared`."""
     direction: Sign
     start: Sign

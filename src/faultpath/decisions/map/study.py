@@ -38,7 +38,7 @@ _LEAST, _LARGEST = 1e-6, 1e12
 _MOST_POINTS = 10_000
 """A hundred errors of each module."""
 _BISECTING = 18
-"""Points that are typically added to bisect the paths of the fault."""
+"""Points that are typically added to bisect the conditions of the fault."""
 
 
 @dataclass(frozen=True)
@@ -87,13 +87,13 @@ class MapPlan(Analysis[list[Point]]):
             invalid = "unrepeatable"
         return decided(self.question, differences, int(trials.failed.sum()), findings, invalid)
 
-    def path(self, point: Point) -> str:
+    def condition(self, point: Point) -> str:
         """Return what rows of a point are called in the outcome table."""
         sizes = (f"{self.question.size(units):+.6g}" for units in point)
         return ",".join(sizes) if any(point) else CORRECT
 
     def study(self, points: Sequence[Point]) -> Study:
-        """Return the study of all points. Arms that a fault cannot reach run once.
+        """Return the study of all points. Variants that a fault cannot reach run once.
 
         Equal errors are one fault that is shared, as in an audit. Studies have the same name
         whatever spread or number of points is asked for.
@@ -112,8 +112,8 @@ class MapPlan(Analysis[list[Point]]):
                 )
             ]
             for name in (question.baseline, question.repair):
-                parts = at_readers(faults, self.system.variants[name].consumers)
-                rows += rows_of(self.path(point), {name: parts}, question.seeds)
+                parts = at_readers(faults, self.system.variants[name].readers)
+                rows += rows_of(self.condition(point), {name: parts}, question.seeds)
         return Study(
             name=self.named[0],
             system=self.spec,
@@ -127,7 +127,7 @@ class MapPlan(Analysis[list[Point]]):
     ) -> tuple[Differences, tuple[str, ...]]:
         """Return success at all points, cut to the scenes that every one has, and what is to be
         said of pairs that met different conditions; `UserError` where a point has no pair."""
-        names = [self.path(point) for point in points]
+        names = [self.condition(point) for point in points]
         comparison = compared(self.question.repair, self.question.baseline, names, trials)
         if comparison.void:
             raise UserError(
@@ -250,11 +250,11 @@ def _places(
             "--against needs two modules that read the faulty source, as in "
             "--against reconstruction,predictor."
         )
-    present = frozenset[str]().union(*(variant.consumers for variant in variants))
+    present = frozenset[str]().union(*(variant.readers for variant in variants))
     faults = reaching(faults, present)
 
     def readers(faults: Iterable[Fault]) -> set[str]:
-        return {place for fault in faults for place in fault.consumers}
+        return {place for fault in faults for place in fault.readers}
 
     reached = [readers(at_readers(faults, (name,))) for name in against]
     for name, places in zip(against, reached, strict=True):

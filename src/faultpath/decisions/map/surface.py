@@ -138,8 +138,8 @@ def next_points(
     """Return the points to add, none when the map is done: same data, same points.
 
     First cells are cut in which the sign is not decided, the largest cells first, until there are
-    `limit` points or cells of the least size. Then, on each path of the fault, the first change of
-    the estimate's sign is bisected down to one unit.
+    `limit` points or cells of the least size. Then, under each condition of the fault, the first
+    change of the estimate's sign is bisected down to one unit.
     """
     every = np.eye(len(differences.points))
     decided = Combined.of(every, differences).signs(simultaneous(every, differences, label))

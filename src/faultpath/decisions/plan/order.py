@@ -15,7 +15,7 @@ from faultpath.trials import LoopSystem, System, Variant
 
 
 def ranked(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
-    """Return candidates, the one with most consumers and then the largest probe response first.
+    """Return candidates, the one with most readers and then the largest probe response first.
 
     This is the paper's rule, Section III-C. It compares point estimates: sources that are equal in
     both share a rank, and stand in the order of declaration, those without a fault last. A response
@@ -23,7 +23,7 @@ def ranked(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
     """
 
     def key(candidate: Candidate) -> tuple[int, float]:
-        return -len(candidate.consumers), 1.0 if candidate.response is None else -candidate.response
+        return -len(candidate.readers), 1.0 if candidate.response is None else -candidate.response
 
     out: list[Candidate] = []
     for _, alike in groupby(
@@ -48,7 +48,7 @@ def repaired_modules(
     for name in named:
         if name not in known:
             raise UserError(f"{system.name}: {unknown('module', name, known)}")
-    repaired = {module_of(consumer) for consumer in baseline.consumers ^ repair.consumers}
+    repaired = {module_of(reader) for reader in baseline.readers ^ repair.readers}
     for channel in interface.channels:
         fed = {bound(variant, interface, channel.name) for variant in (baseline, repair)}
         if len(fed) > 1:
@@ -95,7 +95,7 @@ def makers(interface: Interface, variants: Sequence[Variant]) -> dict[str, tuple
     for module, source in interface.reconstructions:
         for variant in variants:
             for channel in interface.channels:
-                readers = variant.consumers.intersection(channel.consumers)
+                readers = variant.readers.intersection(channel.readers)
                 if bound(variant, interface, channel.name) == source and any(
                     module_of(reader) != module for reader in readers
                 ):
@@ -119,7 +119,7 @@ def recursion(
         for candidate in candidates:
             if set(candidate.sources) & set(made_by[module]):
                 why.setdefault(candidate.name, f"output of {module}")
-            elif any(module_of(consumer) == module for consumer in candidate.consumers):
+            elif any(module_of(reader) == module for reader in candidate.readers):
                 why.setdefault(candidate.name, f"input of {module}, which makes {makes}")
                 behind = (
                     m for m, sources in made_by.items() if set(sources) & set(candidate.sources)

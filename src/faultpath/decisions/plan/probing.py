@@ -21,12 +21,12 @@ from faultpath.core.error_source import described
 from faultpath.core.errors import Notice
 from faultpath.faults import Fault
 from faultpath.loop import Batch, Inputs, Loop, Plant, Progress, Reading, Taps
-from faultpath.trials import Arm, LoopSystem
+from faultpath.trials import LoopSystem, Treatment
 from faultpath.trials.attempt import taps_of
 
 Floats: TypeAlias = NDArray[np.float64]
 Key: TypeAlias = tuple[str, str]
-"""Name of an arm, as its caller has it."""
+"""Name of a treatment, as its caller has it."""
 
 
 def command_responses(
@@ -36,7 +36,7 @@ def command_responses(
     scenes: Sequence[str],
     seed: int,
 ) -> dict[Key, float]:
-    """Return the response to each arm's faults that do not stop the variant's modules.
+    """Return the response to each treatment's faults that do not stop the variant's modules.
 
     Empty where nothing that faultpath sees reaches the plant. Raises what the run raises.
     """
@@ -76,11 +76,11 @@ class _First(Plant):
         self.senses, self.shows = plant.senses, plant.shows
         self.system, self.variant, self.scenes, self.seed = system, variant, scenes, seed
         self.past = {
-            (port.channel, part.consumer(port))
+            (port.channel, part.reader(port))
             for part in loop.graph.parts
             for port in part.reads_past
         }
-        """Taps, by channel and consumer, at which a port reads what was held one step before."""
+        """Taps, by channel and reader, at which a port reads what was held one step before."""
         self.readings: dict[tuple[str, str], Reading] = {}
         """Readings of the past, at the present step."""
         self.sensed: Mapping[str, Any] = {}
@@ -172,19 +172,19 @@ class _Taps:
     own."""
 
     def __init__(self, first: _First, faults: Sequence[Fault], records: bool) -> None:
-        arm = Arm(variant=first.variant, faults=tuple(faults), seed=first.seed)
-        self._taps: Taps = taps_of(first.system, arm, first.scenes)
+        treatment = Treatment(variant=first.variant, faults=tuple(faults), seed=first.seed)
+        self._taps: Taps = taps_of(first.system, treatment, first.scenes)
         self._first, self._records = first, records
         self.set_active = self._taps.set_active
 
-    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
+    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Any:
         """Deliver as `Taps` does."""
-        tap = (channel, consumer)
+        tap = (channel, reader)
         if tap in self._first.past:
             if self._records:
                 self._first.readings[tap] = reading
             reading = self._first.readings[tap]
-        return self._taps.deliver(channel, consumer, reading, step)
+        return self._taps.deliver(channel, reader, reading, step)
 
 
 def _with_plant(loop: Loop, plant: Plant) -> Loop:

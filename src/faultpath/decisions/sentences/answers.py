@@ -94,13 +94,13 @@ def _follows(record: AuditResult) -> Iterator[str]:
             f"Ask which fault your system will meet: {places(turned)}, {one} succeeds more often; "
             f"where the modules share it, {other} succeeds more often."
         )
-        leading = [effect for effect in leading if effect.path == CORRECT]
+        leading = [effect for effect in leading if effect.condition == CORRECT]
     for sign in (1, -1):
         if at := [effect for effect in leading if effect.sign == sign]:
             yield f"{capital(places(at))}, {record.winner(sign)} succeeds more often."
-    alone = any(effect.path not in (CORRECT, SHARED) for effect in leading)
+    alone = any(effect.condition not in (CORRECT, SHARED) for effect in leading)
     for effect in tested if alone else ():
-        if effect.path == SHARED and not (effect.sign or effect.extreme or effect.unsettled):
+        if effect.condition == SHARED and not (effect.sign or effect.extreme or effect.unsettled):
             less = f", and it is smaller than {margin(record)}" if record.is_small(effect) else ""
             yield f"When the fault is shared, no difference is seen{less}."
     if modules := [change.isolated for change in record.changes if change.turn == "interaction"]:
@@ -111,20 +111,21 @@ def _follows(record: AuditResult) -> Iterator[str]:
     if disagree and not turned:
         yield "Which is better depends on which fault occurs, and how often."
     for result in record.break_even if disagree else ():
-        if result.path == record.question.primary and result.words:
-            yield f"Depending on how often the fault occurs, {where(result.path)}: {result.words}."
+        if result.condition == record.question.primary and result.words:
+            place = where(result.condition)
+            yield f"Depending on how often the fault occurs, {place}: {result.words}."
 
 
 def _unknown(record: AuditResult) -> str:
     """Say that no choice follows, and which differences the primary contrast leaves possible."""
-    main = next((e for e in record.effects if e.path == record.question.primary), None)
+    main = next((e for e in record.effects if e.condition == record.question.primary), None)
     text = "Not enough is known to prefer either"
     if main is None or not main.acted or main.low is None or main.high is None:
         return f"{text}."
     if main.unsettled:
-        return f"{text}: {where(main.path)} it depends on trials that failed."
+        return f"{text}: {where(main.condition)} it depends on trials that failed."
     low, high = signed(main.low), signed(main.high)
-    return f"{text}: {where(main.path)}, any difference from {low} to {high} pp is possible."
+    return f"{text}: {where(main.condition)}, any difference from {low} to {high} pp is possible."
 
 
 def reach(record: AuditResult) -> Iterator[str]:
@@ -177,7 +178,7 @@ def _stopped(record: AuditResult) -> Iterator[str]:
 
 
 def _left_open(record: AuditResult) -> Iterator[str]:
-    if idle := [where(effect.path) for effect in record.effects if not effect.acted]:
+    if idle := [where(effect.condition) for effect in record.effects if not effect.acted]:
         yield f"The fault never acted {series(idle)}: nothing was tested there."
     yield from phrases.in_trials_that_ran(record)
     yield from _insignificant(record)
@@ -201,9 +202,9 @@ def _insignificant(record: AuditResult) -> Iterator[str]:
         if not effect.acted or effect.sign or effect.unsettled or record.is_small(effect):
             continue
         if effect.extreme:
-            extreme.setdefault(effect.extreme, []).append(where(effect.path))
+            extreme.setdefault(effect.extreme, []).append(where(effect.condition))
         else:
-            sizes[where(effect.path)] = detectable(effect)
+            sizes[where(effect.condition)] = detectable(effect)
     for end, at in extreme.items():
         both = "fail" if end == "floor" else "succeed"
         yield f"No difference is significant {series(at)}, where both nearly always {both}."

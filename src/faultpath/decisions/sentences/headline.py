@@ -24,7 +24,7 @@ def headline(record: AuditResult) -> str:
     if record.invalid:
         return NO_RESULT[record.invalid]
     primary = record.question.primary
-    main = next((effect for effect in record.effects if effect.path == primary), None)
+    main = next((effect for effect in record.effects if effect.condition == primary), None)
     tested = [effect for effect in record.effects if effect.acted]
     if main is None:
         return f"{no_pair(primary)}."
@@ -33,7 +33,7 @@ def headline(record: AuditResult) -> str:
             f"Too few scenes: {record.scenes} compared, and no difference can be significant with "
             f"fewer than {record.scenes_needed}."
         )
-    if not main.acted and all(effect.path == CORRECT for effect in tested):
+    if not main.acted and all(effect.condition == CORRECT for effect in tested):
         return "The fault never changed a reading: no effect of it was tested."
     if not main.acted:
         return f"{capital(where(primary))}, the fault never acted: nothing was tested there."
@@ -56,13 +56,13 @@ def _few_scenes(record: AuditResult) -> str:
     if not few:
         return ""
     least = min(few, key=lambda effect: sum(effect.ahead))
-    at = f"{where(least.path)} " if len(leading) > 1 else ""
+    at = f"{where(least.condition)} " if len(leading) > 1 else ""
     return f" ({at}{in_few_scenes(least)})"
 
 
 def reversed_at(record: AuditResult) -> list[Effect]:
     """Return the isolated effects that sharing reverses, where advice may rest on both."""
-    of = {effect.path: effect for effect in record.effects if effect.leads}
+    of = {effect.condition: effect for effect in record.effects if effect.leads}
     return [
         of[change.isolated]
         for change in record.changes
@@ -74,14 +74,16 @@ def _reversal(record: AuditResult, main: Effect, turned: Sequence[Effect]) -> st
     """Advise against the isolated fault, unless correct inputs rank the versions as it does: then
     a test with it shows no more than one without."""
     one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
-    modules = " or ".join(effect.path for effect in turned)
+    modules = " or ".join(effect.condition for effect in turned)
     alone = f"the {modules} alone" if len(turned) < 3 else "one module alone"
-    correct = [effect.sign for effect in record.effects if effect.path == CORRECT and effect.leads]
+    correct = [
+        effect.sign for effect in record.effects if effect.condition == CORRECT and effect.leads
+    ]
     if turned[0].sign in correct:
-        at = f" and with it at {alone}" if main.path == SHARED or main in turned else ""
+        at = f" and with it at {alone}" if main.condition == SHARED or main in turned else ""
         return f"{one} is ahead without the fault{at}, {other} with it shared."
     advice = f"Do not choose by the fault at {alone}:"
-    if main.path == CORRECT and main.leads and len(turned) == 1:
+    if main.condition == CORRECT and main.leads and len(turned) == 1:
         ahead = f"{record.winner(main.sign)} is ahead {where(CORRECT)}."
         return f"{ahead} {advice} sharing reverses the ranking."
     return f"{advice} {one} is ahead there, {other} with it shared."
@@ -95,9 +97,9 @@ def _ranking(record: AuditResult, main: Effect, others: Sequence[Effect]) -> str
     """
     state = _state(record, main)
     alike = [effect for effect in others if _state(record, effect) == state]
-    alike.sort(key=lambda effect: effect.path != SHARED)
+    alike.sort(key=lambda effect: effect.condition != SHARED)
     ahead = [effect for effect in others if effect.leads and effect not in alike]
-    shared = [effect for effect in others if effect.path == SHARED]
+    shared = [effect for effect in others if effect.condition == SHARED]
     if len(alike) + 1 == len(record.effects) > 1:
         place = "under every condition" if main.leads else "under any condition"
         return _sentence(record, [main], place=place)
@@ -109,8 +111,8 @@ def _ranking(record: AuditResult, main: Effect, others: Sequence[Effect]) -> str
     named = [main, *shared]
     count = len(named) + len(ahead)
     most = 3 if main.leads or main.extreme or state == _OPEN else 2
-    one_arm = len({effect.sign for effect in ahead}) == 1
-    if one_arm and count <= most and main.path in (CORRECT, SHARED):
+    one_variant = len({effect.sign for effect in ahead}) == 1
+    if one_variant and count <= most and main.condition in (CORRECT, SHARED):
         return _sentence(record, named, ahead, both=count == 2)
     return _sentence(record, named, both=False)
 

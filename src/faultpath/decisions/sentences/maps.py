@@ -119,7 +119,11 @@ def _reversals(record: MapRecord) -> Iterator[str]:
 
 
 def _flipped(question: ResolvedMap, flip: Flip) -> str:
-    where = "With both wrong alike" if flip.path == SHARED else f"With the {flip.path} alone wrong"
+    where = (
+        "With both wrong alike"
+        if flip.condition == SHARED
+        else f"With the {flip.condition} alone wrong"
+    )
     where += ", error above 0" if flip.direction > 0 else ", error below 0"
     clauses: list[str] = []
     if flip.start and flip.until is not None:

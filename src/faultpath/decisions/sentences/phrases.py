@@ -69,7 +69,7 @@ def trainings(record: AuditResult, effect: Effect) -> str:
     p = p_value(sign_p_value(repair, baseline))
     even = len(values) - repair - baseline
     return (
-        f"{capital(where(effect.path))}, {ahead} is ahead in {max(repair, baseline)} of "
+        f"{capital(where(effect.condition))}, {ahead} is ahead in {max(repair, baseline)} of "
         f"{len(values)} trainings{f', neither in {even}' if even else ''}, "
         f"p {p if p.startswith('<') else f'= {p}'}"
     )
@@ -105,7 +105,7 @@ def _ran(record: AuditResult, effect: Effect) -> str:
     assert missing is not None
     ahead = record.winner(1 if effect.value > 0 else -1)
     text = (
-        f"{capital(where(effect.path))}, the trials that ran favour {ahead} "
+        f"{capital(where(effect.condition))}, the trials that ran favour {ahead} "
         f"({with_interval(effect)} pp, {adjusted(record, effect)}), which holds if failing "
         "has nothing to do with how a trial would have ended"
     )
@@ -126,9 +126,9 @@ def _ran(record: AuditResult, effect: Effect) -> str:
 
 def places(effects: Sequence[Effect]) -> str:
     """Return where effects are, the first one's kind first, modules faulted alone together."""
-    alone = [effect.path for effect in effects if effect.path not in (CORRECT, SHARED)]
+    alone = [effect.condition for effect in effects if effect.condition not in (CORRECT, SHARED)]
     joined = where(" or the ".join(alone))
-    named = (joined if effect.path in alone else where(effect.path) for effect in effects)
+    named = (joined if effect.condition in alone else where(effect.condition) for effect in effects)
     return series(list(dict.fromkeys(named)))
 
 
@@ -156,7 +156,7 @@ def in_short(record: AuditResult, effect: Effect | None) -> str:
 
 def change(record: AuditResult, of: Change) -> str:
     """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
-    effects = {effect.path: effect for effect in record.effects}
+    effects = {effect.condition: effect for effect in record.effects}
     if record.invalid:
         return (
             f"Nothing follows of the change from the effect {where(of.isolated)} to that "
@@ -187,16 +187,16 @@ def change(record: AuditResult, of: Change) -> str:
     return f"No change is significant {between}."
 
 
-def no_pair(path: str) -> str:
+def no_pair(condition: str) -> str:
     """Say that a condition has no pair of trials to compare."""
-    return f"{capital(where(path))}, no pair of trials is left to compare"
+    return f"{capital(where(condition))}, no pair of trials is left to compare"
 
 
 def not_standing(record: AuditResult) -> Iterator[str]:
     """Say of each interval that excludes 0 without a significant difference why it is not one."""
     for effect in () if record.invalid else filter(only_alone, record.effects):
         yield (
-            f"{capital(where(effect.path))}, the interval excludes 0, but "
+            f"{capital(where(effect.condition))}, the interval excludes 0, but "
             f"{adjusted(record, effect)} ({record.hypotheses} contrasts): the difference is not "
             "significant."
         )
@@ -204,13 +204,16 @@ def not_standing(record: AuditResult) -> Iterator[str]:
 
 def hardly_acted(record: AuditResult) -> Iterator[str]:
     """Name the versions in which the fault changed nothing in most of the trials."""
-    acted = {effect.path for effect in record.effects if effect.acted}
-    faulted = {path.name: (path.baseline_consumers, path.consumers) for path in record.paths}
+    acted = {effect.condition for effect in record.effects if effect.acted}
+    faulted = {
+        condition.name: (condition.baseline_readers, condition.readers)
+        for condition in record.conditions
+    }
     for cell in record.cells:
-        consumers = faulted[cell.path][cell.variant == record.question.repair]
-        if cell.path in acted and consumers and 2 * cell.altered_trials < cell.trials:
+        readers = faulted[cell.condition][cell.variant == record.question.repair]
+        if cell.condition in acted and readers and 2 * cell.altered_trials < cell.trials:
             yield (
-                f"{capital(where(cell.path))}, the fault changed something in only "
+                f"{capital(where(cell.condition))}, the fault changed something in only "
                 f"{cell.altered_trials} of {cell.trials} trials of {cell.variant}."
             )
 
@@ -223,8 +226,8 @@ def partly_measured(record: AuditResult) -> Iterator[str]:
             if whole < effect.scenes and (whole or record.question.judged):
                 scenes = f"{whole} of {counted(effect.scenes, 'scene')}"
                 yield (
-                    f"{capital(where(effect.path))}, {name} is compared in {scenes}: only there "
-                    "does every trial have it."
+                    f"{capital(where(effect.condition))}, {name} is compared in {scenes}: only "
+                    "there does every trial have it."
                 )
 
 
@@ -239,7 +242,7 @@ def failed_trials(record: AuditResult) -> Iterator[str]:
             continue
         lost = "failed or missing" if question.judged else "failed"
         yield (
-            f"{capital(where(effect.path))}, {counted(missing.repair, 'trial')} of "
+            f"{capital(where(effect.condition))}, {counted(missing.repair, 'trial')} of "
             f"{question.repair} {lost}, {missing.baseline} of {question.baseline}: depending on "
             "how they would have ended, the difference over all scenes lies anywhere from "
             f"{signed(missing.against_pp)} to {signed(missing.favour_pp)} pp."

@@ -38,7 +38,7 @@ def shares(
 
     A region counts where it reaches an end (a share of none, or of all) at which the family
     detects an effect on the same side, away from floor and ceiling: so no sentence contradicts
-    that on the path.
+    that under the condition.
     """
     clauses: list[str] = []
     for region in regions:

@@ -66,8 +66,8 @@ def break_even(result: BreakEven) -> str:
     """Return the frequencies at which nobody is decided to be ahead, in percent.
 
     `59 [33, 80]` with the estimate in front where there is one; `[0, 12] and [80, 100]` for two
-    pieces; `none` where one arm is ahead throughout; `any` where at no frequency it is decided who
-    is. Ends are rounded outwards.
+    pieces; `none` where one variant is ahead throughout; `any` where at no frequency it is decided
+    who is. Ends are rounded outwards.
     """
     if result.kind == "empty":
         return "none"
@@ -138,13 +138,17 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
-def where(path: str) -> str:
-    """Return a path as part of a sentence."""
-    if path == CORRECT:
+def where(condition: str) -> str:
+    """Return a condition as part of a sentence."""
+    if condition == CORRECT:
         return "under correct inputs"
-    if path == AS_RUN:
+    if condition == AS_RUN:
         return "in these results"
-    return "under the shared fault" if path == SHARED else f"with the fault at the {path} alone"
+    return (
+        "under the shared fault"
+        if condition == SHARED
+        else f"with the fault at the {condition} alone"
+    )
 
 
 def capital(words: str) -> str:

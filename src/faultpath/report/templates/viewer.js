@@ -23,7 +23,7 @@ for (const button of document.querySelectorAll("#why-play")) {
   });
 }
 
-// Every trial again: a scene on one clock, a column a path; scene, path and time are in the address.
+// Every trial again: a scene on one clock, a column a condition; scene, condition and time are in the address.
 if (document.getElementById("viewer-data")) {
   const ARMS = ["baseline", "repair"], SIGNS = { success: "✓", crash: "✕" };
   const get = (id) => document.getElementById(`viewer-${id}`);
@@ -60,9 +60,9 @@ if (document.getElementById("viewer-data")) {
   const begin = (data) => {
     const spatial = ["space", "picture"].includes(data.space), { series, dt_s: dt } = data;
     const several = new Set(data.scenes.map((s) => s.seed)).size > 1;
-    const state = { scene: data.picked[0] ?? 0, path: data.path, step: 0, plot: data.plot, playing: 0, last: 1, box: null, range: null };
+    const state = { scene: data.picked[0] ?? 0, condition: data.condition, step: 0, plot: data.plot, playing: 0, last: 1, box: null, range: null };
     const current = () => data.scenes[state.scene];
-    const trials = (pair) => ARMS.filter((arm) => pair[arm]).map((arm) => ({ arm, ...pair[arm] }));
+    const trials = (pair) => ARMS.filter((variant) => pair[variant]).map((variant) => ({ variant, ...pair[variant] }));
     const track = ({ track: at }) => (at === null ? [] : series[at].map((x, i) => [x / 100, series[at + 1][i] / 100]));
     // What a system renders: at each step a line through points, broken where the pen is lifted.
     const drawn = ({ drawn: at }, step) => {
@@ -77,8 +77,8 @@ if (document.getElementById("viewer-data")) {
       for (const v of values) if (v !== null) { low = Math.min(low, v); high = Math.max(high, v); }
       return [low, high];
     };
-    const told = ({ arm, status, ended, time_s: time }) =>
-      `${arm}: ${SIGNS[status] ?? "□"} ${ended}${status === "failed" ? "" : `, ${time.toFixed(2)} s`}`;
+    const told = ({ variant, status, ended, time_s: time }) =>
+      `${variant}: ${SIGNS[status] ?? "□"} ${ended}${status === "failed" ? "" : `, ${time.toFixed(2)} s`}`;
 
     // Both trials of a pair from above: baseline dashed, what is still to come pale.
     const drawPlan = (host, title, pair) => {
@@ -99,23 +99,23 @@ if (document.getElementById("viewer-data")) {
       for (const trial of trials(pair)) {
         const line = drawn(trial, state.step), gap = (n) => !line[n] || line[n].includes(null);
         const d = line.map((p, n) => (gap(n) ? "" : `${gap(n - 1) ? "M" : "L"}${at(p).map((v) => v.toFixed(1))}`)).join("");
-        if (d) draw(svg, "path", { d, class: `v-track ${trial.arm}` });
+        if (d) draw(svg, "path", { d, class: `v-track ${trial.variant}` });
         if (data.space === "picture" || trial.track === null) continue;
         const points = track(trial), now = Math.min(state.step, points.length - 1), [x, y] = at(points[points.length - 1]);
-        draw(svg, "polyline", { points: join(points.slice(now)), class: `v-track rest ${trial.arm}` });
-        draw(svg, "polyline", { points: join(points.slice(0, now + 1)), class: `v-track ${trial.arm}` });
+        draw(svg, "polyline", { points: join(points.slice(now)), class: `v-track rest ${trial.variant}` });
+        draw(svg, "polyline", { points: join(points.slice(0, now + 1)), class: `v-track ${trial.variant}` });
         const sign = { success: `M${x - 5} ${y}l4 4 7 -9`, crash: `M${x - 5} ${y - 5}l10 10m0 -10l-10 10` }[trial.status];
-        for (const cls of ["halo", trial.arm]) draw(svg, "path", { d: sign ?? `M${x - 4.5} ${y - 4.5}h9v9h-9z`, class: `v-end ${cls}` });
-        if (now < points.length - 1) disc(points[now], 4.5, `v-dot ${trial.arm}`);
+        for (const cls of ["halo", trial.variant]) draw(svg, "path", { d: sign ?? `M${x - 4.5} ${y - 4.5}h9v9h-9z`, class: `v-end ${cls}` });
+        if (now < points.length - 1) disc(points[now], 4.5, `v-dot ${trial.variant}`);
       }
       const metres = [0.5, 1, 2, 5, 10, 20, 50, 100].find((m) => m * scale > 30) ?? 200;
       draw(svg, "path", { d: `M8 ${h - 10}v4h${metres * scale}v-4`, class: "v-mark" });
       draw(svg, "text", { x: 12, y: h - 10, class: "v-text" }, `${metres} m`);
     };
 
-    const linesOf = (pair) => trials(pair).flatMap(({ arm, lines }) => lines
+    const linesOf = (pair) => trials(pair).flatMap(({ variant, lines }) => lines
       .filter(([plot]) => plot === state.plot)
-      .map(([, line, place, low, level]) => ({ arm, line, values: series[place].map((v) => (v < 0 ? null : low + v * level)) })));
+      .map(([, line, place, low, level]) => ({ variant, line, values: series[place].map((v) => (v < 0 ? null : low + v * level)) })));
     // Where the goal lies on the one axis of a position that is plotted over time.
     const goal = () => (data.space === "line" && data.plots[state.plot].title === "position" ? data.plans[current().scene]?.goal[0] ?? null : null);
     const drawPlot = (host, title, pair) => {
@@ -145,9 +145,9 @@ if (document.getElementById("viewer-data")) {
         level(goal(), "v-goal");
         draw(svg, "text", { x: left + 5, y: y(goal()) + (y(goal()) < 26 ? 14 : -5), class: "v-text" }, "goal");
       }
-      for (const { arm, line, values } of lines) {
+      for (const { variant, line, values } of lines) {
         const points = values.flatMap((v, i) => (v === null ? [] : [`${x(i).toFixed(1)},${y(v).toFixed(1)}`]));
-        draw(svg, "polyline", { points: points.join(" "), class: `v-signal ${arm} line-${Math.min(line, 3)}` });
+        draw(svg, "polyline", { points: points.join(" "), class: `v-signal ${variant} line-${Math.min(line, 3)}` });
       }
       draw(svg, "line", { x1: x(state.step), x2: x(state.step), y1: 8, y2: under, class: "v-now" });
     };
@@ -160,11 +160,11 @@ if (document.getElementById("viewer-data")) {
       }
       return made;
     };
-    // The list has all scenes, or those in which one arm alone succeeds on one path.
+    // The list has all scenes, or those in which one variant alone succeeds on one condition.
     const every = [...data.scenes.keys()];
-    const apart = data.paths.flatMap(({ name, title }) => ["repair", "baseline"].map((arm) => {
-      const places = every.filter((place) => data.scenes[place].pairs.some((p) => p.path === name && p.kind === `${arm}-only`));
-      return { label: `${title}: only the ${arm} succeeds`, places };
+    const apart = data.conditions.flatMap(({ name, title }) => ["repair", "baseline"].map((variant) => {
+      const places = every.filter((place) => data.scenes[place].pairs.some((p) => p.condition === name && p.kind === `${variant}-only`));
+      return { label: `${title}: only the ${variant} succeeds`, places };
     })).filter(({ places }) => places.length);
     const noun = several ? "trials" : "scenes", part = every.length < data.ran;
     const all = { label: `all ${noun}`, places: every };
@@ -178,18 +178,18 @@ if (document.getElementById("viewer-data")) {
       if (!places.includes(state.scene)) state.scene = places[0];
     };
     offer(0);
-    const columns = data.paths.map(({ name: path, title }) => {
-      const column = make("div", "", { class: "column", "data-path": path });
+    const columns = data.conditions.map(({ name: condition, title }) => {
+      const column = make("div", "", { class: "column", "data-condition": condition });
       const plan = make("div", "", { class: "plan" }), plot = make("div", "", { class: "signal" });
       const said = make("div", "", { class: "told" });
       column.append(make("h3", title), ...(spatial ? [plan] : []), said, plot);
-      return { path, title, column, plan, said, plot };
+      return { condition, title, column, plan, said, plot };
     });
     get("across").replaceChildren(...columns.map((c) => c.column));
 
     const redraw = () => {
-      for (const { path, title, plan, said, plot } of columns) {
-        const pair = current().pairs.find((each) => each.path === path);
+      for (const { condition, title, plan, said, plot } of columns) {
+        const pair = current().pairs.find((each) => each.condition === condition);
         if (!pair) continue;
         plan.hidden = state.box[0][0] > state.box[0][1];
         if (spatial && !plan.hidden) drawPlan(plan, `${title}, from above. ${said.textContent}`, pair);
@@ -198,7 +198,7 @@ if (document.getElementById("viewer-data")) {
       get("clock").textContent = `${(state.step * dt).toFixed(2)} s`;
       get("time").value = String(state.step);
     };
-    // The range of a plot over all paths of the scene; null where it has nothing to show.
+    // The range of a plot over all conditions of the scene; null where it has nothing to show.
     const rangeOf = (plot) => {
       state.plot = plot;
       let [low, high] = ends(current().pairs.flatMap((pair) => linesOf(pair).flatMap(({ values }) => values)));
@@ -234,11 +234,11 @@ if (document.getElementById("viewer-data")) {
       get("scene").value = String(state.scene);
       get("why").textContent = scene.why;
       chooseSignal(state.plot);
-      for (const { path, column, said } of columns) {
-        const pair = scene.pairs.find((each) => each.path === path);
+      for (const { condition, column, said } of columns) {
+        const pair = scene.pairs.find((each) => each.condition === condition);
         column.hidden = !pair;
-        column.classList.toggle("chosen", path === state.path);
-        if (pair) said.replaceChildren(...trials(pair).map((each) => make("p", told(each), { class: each.arm })), make("p", pair.void ? `Void: ${pair.void}.` : ""));
+        column.classList.toggle("chosen", condition === state.condition);
+        if (pair) said.replaceChildren(...trials(pair).map((each) => make("p", told(each), { class: each.variant })), make("p", pair.void ? `Void: ${pair.void}.` : ""));
       }
       redraw();
     };
@@ -246,7 +246,7 @@ if (document.getElementById("viewer-data")) {
     // The address says what is shown, and shows what it says.
     const tell = () => {
       const { scene, seed } = current();
-      const parts = { scene, seed, path: state.path, t: (state.step * dt).toFixed(2) };
+      const parts = { scene, seed, condition: state.condition, t: (state.step * dt).toFixed(2) };
       history.replaceState(null, "", `#${Object.entries(parts).map(([key, value]) => `${key}=${encodeURIComponent(value)}`).join("&")}`);
     };
     const listen = () => {
@@ -256,7 +256,7 @@ if (document.getElementById("viewer-data")) {
       stop();
       state.scene = place;
       offer(0);
-      if (data.paths.some((p) => p.name === asked.path)) state.path = asked.path;
+      if (data.conditions.some((p) => p.name === asked.condition)) state.condition = asked.condition;
       reset(Number.isFinite(Number(asked.t ?? NaN)) ? Math.round(Number(asked.t) / dt) : undefined);
       document.getElementById("viewer").scrollIntoView({ block: "start" });
       get("play").focus({ preventScroll: true });

@@ -26,7 +26,7 @@ from faultpath.loop import (
 from faultpath.systems.checks.reads import Enough, Read, ReadLog
 from faultpath.systems.checks.recording import Recording, signals
 from faultpath.systems.episodes import EpisodePlant
-from faultpath.trials import Arm, LoopSystem, Outcome, System
+from faultpath.trials import LoopSystem, Outcome, System, Treatment
 from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
 from faultpath.trials.execution.dispatch import Built, UndeclaredFile, dispatch
 from faultpath.trials.pairing import unlike
@@ -45,9 +45,9 @@ TRIALS = "trials end"
 
 @dataclass(frozen=True)
 class BlockSpec:
-    """An arm over some scenes."""
+    """A treatment over some scenes."""
 
-    arm: Arm
+    treatment: Treatment
     scenes: tuple[str, ...]
     why: str = ""
     steps: int | None = None
@@ -76,7 +76,7 @@ class RecordedBlock:
     """The check that reports the error."""
 
     def readings(self, dt_s: float, what: str = "clean") -> dict[tuple[str, int, str, str], Any]:
-        """Return what is noted of each reading by scene, step, channel and consumer, while it ran.
+        """Return what is noted of each reading by scene, step, channel and reader, while it ran.
 
         `what` is a field of `Read` by scene: a digest, or the sum.
         """
@@ -136,10 +136,12 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
         scenes = block.scenes[first : first + size]
         recording, log, result = Recording(), ReadLog(scenes, block.steps), None
         if block.signals:
-            result = attempt(_with_plant(system, recording), block.arm, scenes, observer=recording)
+            result = attempt(
+                _with_plant(system, recording), block.treatment, scenes, observer=recording
+            )
         else:
             with suppress(Enough):
-                result = attempt(system, block.arm, scenes, observer=log)
+                result = attempt(system, block.treatment, scenes, observer=log)
         reads += log.reads()
         if isinstance(result, Done):
             outcomes += result.outcomes
@@ -153,7 +155,7 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
             at = place_in(result.traceback)
             error, fails = f"{result.error} ({at})" if at else result.error, TRIALS
             for scene in scenes if block.tap == ("", "") else ():
-                if not scenes[1:] or isinstance(attempt(system, block.arm, (scene,)), Raised):
+                if not scenes[1:] or isinstance(attempt(system, block.treatment, (scene,)), Raised):
                     error += f" in scene {scene!r}"
                     break
             if kind == NotFinite.__name__:

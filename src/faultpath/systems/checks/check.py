@@ -16,7 +16,7 @@ from faultpath.systems.checks.delivery import HELD, MOVED, reader_at, unanswered
 from faultpath.systems.checks.judging import judged
 from faultpath.systems.checks.reads import Read
 from faultpath.systems.checks.seen import UNDER, Check, Seen
-from faultpath.trials import Arm, System, SystemSpec, Variant, library_of
+from faultpath.trials import System, SystemSpec, Treatment, Variant, library_of
 from faultpath.trials.execution.dispatch import Built
 from faultpath.trials.question import CheckQuestion
 from faultpath.trials.work.processes import local
@@ -84,24 +84,24 @@ def check_system(
         known = len(seen.runs) + len(blocks) if seen.runs else None
 
         def settle(block: BlockSpec, result: RecordedBlock) -> None:
-            seen.runs[block.arm.variant, block.why, block.tap] = result
+            seen.runs[block.treatment.variant, block.why, block.tap] = result
             note(len(seen.runs), known)
 
         with local(workers) as executor:  # new processes: they share nothing with those before
             run_blocks(executor, built, blocks, settle)
 
-    run([BlockSpec(_arm(seen, variant.name, {}), scenes, "first") for variant in variants])
+    run([BlockSpec(_treatment(seen, variant.name, {}), scenes, "first") for variant in variants])
     again = [block for name, first in seen.firsts() for block in _again(seen, name, first)]
     for where, faults in conditions.items():
         for name in (name for name, _ in seen.firsts() if faults[name]):
-            arm = Arm(variant=name, faults=tuple(faults[name]), seed=seen.seed)
-            again.append(BlockSpec(arm, scenes, f"{UNDER} ({where})"))
+            treatment = Treatment(variant=name, faults=tuple(faults[name]), seed=seen.seed)
+            again.append(BlockSpec(treatment, scenes, f"{UNDER} ({where})"))
     run(again)
     if doubts := list(_doubts(seen)):
         run(doubts)
     for name in seen.unsteady() if seen.apart else ():
         for whys in (("alone",), ("anew", "repeated")):
-            run([BlockSpec(_arm(seen, name, {}), scenes, why) for why in whys], workers=1)
+            run([BlockSpec(_treatment(seen, name, {}), scenes, why) for why in whys], workers=1)
     return Report(
         system=spec.name,
         options=spec.options,
@@ -128,15 +128,15 @@ def chosen_variants(system: System, names: Sequence[str]) -> tuple[Variant, ...]
 
 def _again(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[BlockSpec]:
     """Yield what is run of a variant beside its first run."""
-    yield BlockSpec(_arm(seen, variant, {}), seen.scenes, "again", second=seen.apart)
+    yield BlockSpec(_treatment(seen, variant, {}), seen.scenes, "again", second=seen.apart)
     if len(seen.scenes) > 1:
-        yield BlockSpec(_arm(seen, variant, {}), seen.scenes[::-2], "part")
+        yield BlockSpec(_treatment(seen, variant, {}), seen.scenes[::-2], "part")
     floats = _floats(first)
     for channel, _ in Counter(channel for channel, _ in floats).most_common(1):
         nudged = {tap: Scale(factor=1.05) for tap in floats if tap[0] == channel}
-        yield BlockSpec(_arm(seen, variant, nudged), seen.scenes, "faulted")
+        yield BlockSpec(_treatment(seen, variant, nudged), seen.scenes, "faulted")
     for tap, read in _begun(first).items():
-        alone = _arm(seen, variant, {tap: _altering(read)})
+        alone = _treatment(seen, variant, {tap: _altering(read)})
         yield BlockSpec(alone, seen.scenes, "tap", read.step + _AFTER, tap)
 
 
@@ -148,14 +148,14 @@ def _doubts(seen: Seen) -> Iterator[BlockSpec]:
         floats = _floats(first)
         if floats and seen.differs(variant, "part") and not seen.differs(variant, "again"):
             nudged = dict.fromkeys(floats, Scale(factor=1.0 + 4.0 * coarsest(first)))
-            yield BlockSpec(_arm(seen, variant, nudged), seen.scenes, "rounded")
+            yield BlockSpec(_treatment(seen, variant, nudged), seen.scenes, "rounded")
     silent = ((name, *reader_at(seen, name, tap)) for name, tap in unanswered(seen))
     for variant, taps, writes in dict.fromkeys(silent) if not seen.unsteady() else ():
         begun = _begun(seen.of(variant, "first"))
         constants = {tap: Erase(default=read.low) for tap, read in begun.items() if tap in taps}
         moved = {tap: _altering(read) for tap, read in begun.items()} | constants
         for why, doing in ((HELD, constants), (MOVED, moved)) if writes else ():
-            yield BlockSpec(_arm(seen, variant, doing), seen.scenes, why, tap=min(taps))
+            yield BlockSpec(_treatment(seen, variant, doing), seen.scenes, why, tap=min(taps))
 
 
 def _begun(run: RecordedBlock) -> dict[tuple[str, str], Read]:
@@ -179,12 +179,14 @@ def _altering(read: Read) -> AnyIntervention:
     return Erase(default=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
 
 
-def _arm(seen: Seen, variant: str, doing: Mapping[tuple[str, str], AnyIntervention]) -> Arm:
-    """Return the arm of a variant in which something is done at some taps."""
+def _treatment(
+    seen: Seen, variant: str, doing: Mapping[tuple[str, str], AnyIntervention]
+) -> Treatment:
+    """Return the treatment of a variant in which something is done at some taps."""
     faults = (
-        Fault(channel=channel, intervention=what, consumers=(consumer,))
-        for (channel, consumer), what in doing.items()
+        Fault(channel=channel, intervention=what, readers=(reader,))
+        for (channel, reader), what in doing.items()
     )
-    present = seen.system.variants[variant].consumers
+    present = seen.system.variants[variant].readers
     resolved = resolve(faults, seen.system.interface, present)
-    return Arm(variant=variant, faults=resolved, seed=seen.seed)
+    return Treatment(variant=variant, faults=resolved, seed=seen.seed)

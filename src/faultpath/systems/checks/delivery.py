@@ -23,12 +23,12 @@ def reader_at(
     """Return all taps of the module that reads at a tap, and what it writes of these readings."""
     system, module = seen.system, module_of(tap[1])
     for part in system.loop(variant, None).graph.parts if isinstance(system, LoopSystem) else ():
-        taps = frozenset((port.channel, part.consumer(port)) for port in part.ports)
+        taps = frozenset((port.channel, part.reader(port)) for port in part.ports)
         if tap in taps:
             writes = part.senses if isinstance(part, Plant) else part.writes
             return taps, frozenset(() if getattr(part, "truths", ()) else writes)
     reads = seen.of(variant, "first").reads
-    taps = frozenset(read.tap for read in reads if module_of(read.consumer) == module)
+    taps = frozenset(read.tap for read in reads if module_of(read.reader) == module)
     return taps, frozenset(system.interface.reconstructs.get(module, ()))
 
 
@@ -63,9 +63,9 @@ def delivery(name: str, seen: Seen) -> Check:
         altered += count
         others = [read for read in run.reads if read.tap != tap and read.altered]
         elsewhere += sum(read.altered for read in others)
-        for channel, consumer in dict.fromkeys(read.tap for read in others):
+        for channel, reader in dict.fromkeys(read.tap for read in others):
             failures.append(
-                f"{lead} altered a reading at {channel} -> {consumer} too, which "
+                f"{lead} altered a reading at {channel} -> {reader} too, which "
                 "the fault does not name; trust no result of this version of faultpath, and report "
                 "it."
             )
@@ -132,4 +132,4 @@ def _unlike(
     last = min(ends, default=0) if all(run.outcomes for run in runs) else 0
     one, two = (run.readings(dt_s, what) for run in runs)
     keys = (key for key in one.keys() & two.keys() if one[key] != two[key] and key[1] < last)
-    return sorted((step, scene, (channel, consumer)) for scene, step, channel, consumer in keys)
+    return sorted((step, scene, (channel, reader)) for scene, step, channel, reader in keys)

@@ -141,7 +141,7 @@ def _independence(name: str, seen: Seen) -> Check:
 
 
 def _pairing(name: str, seen: Seen) -> Check:
-    """Check that two arms meet the same conditions in each scene."""
+    """Check that two treatments meet the same conditions in each scene."""
     if seen.unsteady():
         return Check(name=name, says="results do not repeat, so no two are a pair", judged=False)
     firsts = list(seen.firsts())
@@ -186,7 +186,7 @@ def _readings(name: str, seen: Seen) -> Check:
         if read.lost:
             failures.setdefault(
                 read.source,
-                f"{label}: source '{read.source}' at step {read.step}, read by {read.consumer}, "
+                f"{label}: source '{read.source}' at step {read.step}, read by {read.reader}, "
                 f"is not finite in scene {read.lost!r}; give a number at every step.",
             )
     kinds: dict[str, set[str]] = {}

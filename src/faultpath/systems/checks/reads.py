@@ -1,4 +1,4 @@
-"""Log of who read what while an arm runs, with digests that tell two runs apart."""
+"""Log of who read what while a treatment runs, with digests that tell two runs apart."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -20,17 +20,17 @@ class Enough(BaseException):
 
 
 class Read(Result):
-    """A delivery of one channel to one consumer in one control step."""
+    """A delivery of one channel to one reader in one control step."""
 
     step: int
-    consumer: str
+    reader: str
     channel: str
     source: str
     valid_step: int
     """Step of the reading: before `step` for what is late, held or read of the past; -1 is what
     the source held before the first step."""
     asks: int = 0
-    """Answers that the consumer got of a query."""
+    """Answers that the reader got of a query."""
     altered_by: tuple[str, ...] = ()
     """Faults at the tap, where what was delivered differs from the reading."""
     dtype: str = Field(default="", exclude=True)
@@ -44,16 +44,16 @@ class Read(Result):
     sums: Mapping[str, float] = Field(default={}, exclude=True)
     """Sum of the finite numbers that the source held, by scene."""
     got: Mapping[str, bytes] = Field(default={}, exclude=True)
-    """A digest of what the consumer got, by scene."""
+    """A digest of what the reader got, by scene."""
 
     @property
     def tap(self) -> tuple[str, str]:
-        """Channel and consumer."""
-        return self.channel, self.consumer
+        """Channel and reader."""
+        return self.channel, self.reader
 
     @property
     def altered(self) -> int:
-        """Number of scenes in which the consumer got something else than the source held."""
+        """Number of scenes in which the reader got something else than the source held."""
         return sum(self.clean[scene] != self.got[scene] for scene in self.clean)
 
 
@@ -66,13 +66,13 @@ class ReadLog(DeliveryListener):
     def __init__(self, scenes: Sequence[str], steps: int | None = None) -> None:
         self._scenes, self._steps = scenes, steps
         self._noted: dict[tuple[int, str, str], _Noted] = {}
-        """By step, channel and consumer, in the order in which they happened."""
+        """By step, channel and reader, in the order in which they happened."""
 
     @override
     def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
         if self._steps is not None and step >= self._steps:
             raise Enough
-        key = step, tap.channel, tap.consumer
+        key = step, tap.channel, tap.reader
         if key in self._noted:
             return
         noted = self._noted[key] = _Noted(reading.source, reading.step)
@@ -84,7 +84,7 @@ class ReadLog(DeliveryListener):
     def answered(
         self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
     ) -> None:
-        noted = self._noted[step, tap.channel, tap.consumer]
+        noted = self._noted[step, tap.channel, tap.reader]
         noted.asks += 1
         noted.take(to_numpy(query.value(answer)), to_numpy(query.value(got)))
 
@@ -106,13 +106,13 @@ class _Noted:
     lost: int | None = None
     """Row of a scene with a number that is not finite."""
     clean: list[bytes] = field(default_factory=list[bytes])
-    """Digest by row of what the source held, as `got` is of what the consumer got."""
+    """Digest by row of what the source held, as `got` is of what the reader got."""
     got: list[bytes] = field(default_factory=list[bytes])
     sums: Any = None
     """Sum by row of the finite numbers that the source held."""
 
     def take(self, clean: HostArray, got: HostArray) -> None:
-        """Take in a value and what the consumer got of it."""
+        """Take in a value and what the reader got of it."""
         self.dtype = str(clean.dtype)
         numbers = clean.astype(np.float64).reshape(len(clean), -1)
         finite = np.isfinite(numbers)
@@ -132,10 +132,10 @@ class _Noted:
 
     def read(self, key: tuple[int, str, str], scenes: Sequence[str]) -> Read:
         """Return it as part of a result. Its fields are of our own making and need no check."""
-        step, channel, consumer = key
+        step, channel, reader = key
         return Read.model_construct(
             step=step,
-            consumer=consumer,
+            reader=reader,
             channel=channel,
             source=self.source,
             valid_step=self.valid_step,

@@ -1,7 +1,7 @@
-"""Recordings of an arm's taps and plant while it runs, and the named signals in them.
+"""Recordings of a treatment's taps and plant while it runs, and the named signals in them.
 
 Nothing that runs knows of it: an observer sees what taps deliver, and the plant of a loop senses
-what it senses. Signals are small arrays of numbers: what a source held, what a consumer got where
+what it senses. Signals are small arrays of numbers: what a source held, what a reader got where
 a fault changed it, by how much, and when a fault was in force.
 """
 
@@ -41,7 +41,7 @@ class Recording(DeliveryListener):
         self.sources: dict[str, Steps] = {}
         """By source, or by `plant.truth` for what the plant shows to estimators alone."""
         self.got: dict[tuple[str, str], Steps] = {}
-        """By channel and consumer."""
+        """By channel and reader."""
         self.clean: dict[tuple[str, str], Steps] = {}
         """Numbers that the source had held, where they were delivered."""
         self.force: dict[int, Any] = {}
@@ -59,7 +59,7 @@ class Recording(DeliveryListener):
         self.source(reading.source, reading.value, reading.step)
         clean, received = _numbers(reading.value), _numbers(got)
         if clean is not None and received is not None:
-            at = tap.channel, tap.consumer
+            at = tap.channel, tap.reader
             self.clean.setdefault(at, {})[step] = clean
             self.got.setdefault(at, {})[step] = received
 
@@ -107,8 +107,8 @@ class Trial(TrialReadings):
         return self.rows(self.recording.sources[source])
 
     @override
-    def got(self, channel: str, consumer: str) -> Values:
-        return self.rows(self.recording.got[channel, consumer])
+    def got(self, channel: str, reader: str) -> Values:
+        return self.rows(self.recording.got[channel, reader])
 
     def rows(self, by_step: Mapping[int, Values]) -> Values:
         """Return the scene's numbers by step, `[T, P]`, not a number where nothing was noted."""
@@ -145,15 +145,15 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
         topic = part if part in fed else topics.get(name, name)
         like = name if name in units else fed.get(part, "")
         series.append((name, topic, units.get(like, ""), parts.get(like, ()), by_step))
-    for (channel, consumer), got in recording.got.items():
-        clean = recording.clean[channel, consumer]
+    for (channel, reader), got in recording.got.items():
+        clean = recording.clean[channel, reader]
         if all(np.array_equal(got[step], clean[step], equal_nan=True) for step in got):
             continue
         unit, named_parts = units[fed[channel]], parts.get(fed[channel], ())
         error = {step: got[step] - clean[step] for step in got}
-        series.append((f"{channel} at {consumer}", channel, unit, named_parts, got))
+        series.append((f"{channel} at {reader}", channel, unit, named_parts, got))
         wrong = f"{channel} error"
-        series.append((f"{wrong} at {consumer}", wrong, unit, named_parts, error))
+        series.append((f"{wrong} at {reader}", wrong, unit, named_parts, error))
     if recording.force:
         many = len(done.outcomes)
         force = {

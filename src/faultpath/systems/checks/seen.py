@@ -84,7 +84,7 @@ class Seen:
         before = [by_scene[outcome.scene] for outcome in again.outcomes]
         words = difference(before, Done(again.outcomes, ()))
         if odd:
-            scene, step, channel, consumer = min(odd, key=lambda key: key[1])
+            scene, step, channel, reader = min(odd, key=lambda key: key[1])
             words = words or "differs in its readings alone"
-            words += f", first at step {step} in {channel} -> {consumer}, scene {scene!r}"
+            words += f", first at step {step} in {channel} -> {reader}, scene {scene!r}"
         return words

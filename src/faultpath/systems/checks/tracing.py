@@ -11,7 +11,7 @@ from faultpath.interface import module_of
 from faultpath.systems.checks.blocks import BlockSpec, run_block
 from faultpath.systems.checks.check import chosen_variants
 from faultpath.systems.checks.reads import Read
-from faultpath.trials import Arm, LoopSystem, System, SystemSpec, library_of
+from faultpath.trials import LoopSystem, System, SystemSpec, Treatment, library_of
 from faultpath.trials.question import TraceQuestion
 
 
@@ -44,31 +44,31 @@ def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> T
     reaches no reader there, and a run that fails.
     """
     variant, steps = question.variant or next(iter(system.variants)), question.steps
-    consumers = chosen_variants(system, (variant,))[0].consumers
+    readers = chosen_variants(system, (variant,))[0].readers
     known = [ref.id for ref in library_of(system, question.library).scenes]
     scene = known[0] if question.scene is None else question.scene
     if scene not in known:
         raise UserError(f"library '{question.library}': {unknown('scene', scene, known)}")
     faults = () if question.fault is None else system.fault(question.fault)
-    faults = reaching(faults, consumers)
-    arm = Arm(variant=variant, faults=faults, seed=question.seed)
-    run = run_block(system, BlockSpec(arm, (scene,), steps=steps))
+    faults = reaching(faults, readers)
+    treatment = Treatment(variant=variant, faults=faults, seed=question.seed)
+    run = run_block(system, BlockSpec(treatment, (scene,), steps=steps))
     if run.error and not run.reads:
         raise UserError(f"variant '{variant}' does not run: {run.error}")
     taps = {read.tap for read in run.reads}
     findings = tuple(
-        f"Variant '{variant}' declares that {consumer} reads '{channel.name}', but in the first "
-        f"{steps} steps it did not; trace more --steps, or take it out of the variant's consumers."
+        f"Variant '{variant}' declares that {reader} reads '{channel.name}', but in the first "
+        f"{steps} steps it did not; trace more --steps, or take it out of the variant's readers."
         for channel in system.interface.channels
-        for consumer in channel.consumers
-        if consumer in consumers and (channel.name, consumer) not in taps
+        for reader in channel.readers
+        if reader in readers and (channel.name, reader) not in taps
     )
     if run.error:
         findings = (f"The run ended early: {run.error}.",)
     words = {
         (fault.channel, reader): fault.intervention.words()
         for fault in faults
-        for reader in fault.consumers
+        for reader in fault.readers
     }
     return TraceReport(
         system=spec.name,
@@ -94,7 +94,7 @@ def _reconstructed(system: System, reads: Sequence[Read]) -> dict[str, tuple[str
     sources = {read.source for read in reads}
     readers: dict[str, dict[str, None]] = {}
     for read in reads:
-        readers.setdefault(module_of(read.consumer), {})[read.channel] = None
+        readers.setdefault(module_of(read.reader), {})[read.channel] = None
     return {
         source: (module, tuple(readers.get(module, ())))
         for module, source in system.interface.reconstructions
@@ -105,12 +105,12 @@ def _reconstructed(system: System, reads: Sequence[Read]) -> dict[str, tuple[str
 def _privileged(system: System, variant: str, reads: Sequence[Read]) -> tuple[str, ...]:
     """Return a sentence on each read of what deployment does not have."""
     permitted = system.variants[variant].privileged
-    by_permission = {read.consumer: read.source for read in reads if read.source in permitted}
+    by_permission = {read.reader: read.source for read in reads if read.source in permitted}
     modules = system.modules(variant, None) if isinstance(system, LoopSystem) else ()
     return (
         *(
-            f"{consumer} reads '{source}', which is privileged, by permission of the variant."
-            for consumer, source in by_permission.items()
+            f"{reader} reads '{source}', which is privileged, by permission of the variant."
+            for reader, source in by_permission.items()
         ),
         *(
             f"Module '{module.name}' takes the plant's truth '{truth}' past all taps."

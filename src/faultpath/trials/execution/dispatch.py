@@ -11,12 +11,12 @@ from typing import Any, Generic, TypeVar
 
 from faultpath.core.error_source import explained
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.trials.arm import SystemSpec
 from faultpath.trials.attempt import Died, Wrong
 from faultpath.trials.checks import library_of
 from faultpath.trials.code import Code, CodeState, Watch, named, source_state, system_code
 from faultpath.trials.declared import Library
 from faultpath.trials.opened import reads
+from faultpath.trials.plan import SystemSpec
 from faultpath.trials.registry import load_system, opened_by
 from faultpath.trials.system import System
 from faultpath.trials.work.executor import Executor, Failed, Lost, WorkerLost, elsewhere, tell

@@ -83,7 +83,7 @@ class _Kept(Frozen):
 class Rechecks:
     """Trials of a finished run that run again, and how they differ; kept in the run's folder.
 
-    `outcomes` are those of `units`, by arm key and scene.
+    `outcomes` are those of `units`, by treatment key and scene.
     """
 
     def __init__(
@@ -105,12 +105,12 @@ class Rechecks:
         sound = [
             unit
             for unit in self._units
-            if not any(self._outcomes[unit.arm_key, scene].failed for scene in unit.scenes)
+            if not any(self._outcomes[unit.treatment_key, scene].failed for scene in unit.scenes)
         ]
         if not sound:
             return ()
-        # Not the first arm of a block, where there are others: nothing ran before it from which
-        # anything could have been kept. It has so many scenes that some are left out.
+        # Not the first treatment of a block, where there are others: nothing ran before it from
+        # which anything could have been kept. It has so many scenes that some are left out.
         first = {unit.block: unit.key for unit in reversed(self._units)}
         follow = [unit for unit in sound if unit.key != first[unit.block]]
         unit = min(
@@ -135,11 +135,11 @@ class Rechecks:
     def settle(self, task: Task, reply: Reply) -> None:
         """Compare what came of a second run with the first; keep what that showed."""
         assert task.recheck is not None
-        arm = task.unit.arm
+        treatment = task.unit.treatment
         # Results have to repeat here: that readings differ in a last bit with the number of scenes
         # in a call, as products of matrices do, is no reason to conclude nothing.
         first = [
-            replace(self._outcomes[task.unit.arm_key, scene], trajectory_hash="")
+            replace(self._outcomes[task.unit.treatment_key, scene], trajectory_hash="")
             for scene in task.scenes
         ]
         wrote, other = "", task.scenes
@@ -150,9 +150,9 @@ class Rechecks:
         self._kept[task.unit.key, task.recheck, task.scenes] = Recheck(
             why=task.recheck,
             unit=task.unit.key,
-            variant=arm.variant,
-            faults=" and ".join(fault.describe() for fault in arm.faults) or "correct inputs",
-            seed=arm.seed,
+            variant=treatment.variant,
+            faults=" and ".join(fault.describe() for fault in treatment.faults) or "correct inputs",
+            seed=treatment.seed,
             scenes=task.scenes,
             unit_scenes=len(task.unit.scenes),
             wrote=wrote,

@@ -31,14 +31,17 @@ def repeat(
     def settle(task: Task, reply: Reply) -> None:
         if isinstance(reply, Wrong):
             raise reply.error
-        arm = task.unit.arm
+        treatment = task.unit.treatment
         if differs := difference(blocks[task.unit.key].outcomes, reply):
-            faults = " and ".join(fault.describe() for fault in arm.faults) or "correct inputs"
-            where = f"{faults}, seed {arm.seed}, {len(task.scenes)} scenes from {task.scenes[0]!r}"
+            faults = (
+                " and ".join(fault.describe() for fault in treatment.faults) or "correct inputs"
+            )
+            where = f"{faults}, seed {treatment.seed}, {len(task.scenes)} scenes from "
+            where += repr(task.scenes[0])
             raise UserError(
                 f"{folder.path} holds a finished run, and what is here does not repeat it (changed "
-                f"since: {changed}): a block of {arm.variant!r} ({where}) {differs}. Nothing in "
-                "the folder was changed: choose a new one."
+                f"since: {changed}): a block of {treatment.variant!r} ({where}) {differs}. "
+                "Nothing in the folder was changed: choose a new one."
             )
 
     work(lambda worker: next(waiting, None), settle)
@@ -53,8 +56,8 @@ def _sample(units: Sequence[Unit]) -> list[Unit]:
     """Return a few units of each variant, under as many conditions as that gives."""
     sample: list[Unit] = []
     by_lot = sorted(units, key=lambda unit: hashlib.sha256(unit.key.encode()).digest())
-    for variant in sorted({unit.arm.variant for unit in units}):
-        of_variant = (unit for unit in by_lot if unit.arm.variant == variant)
-        conditions = {repr(unit.arm.faults): unit for unit in of_variant}
+    for variant in sorted({unit.treatment.variant for unit in units}):
+        of_variant = (unit for unit in by_lot if unit.treatment.variant == variant)
+        conditions = {repr(unit.treatment.faults): unit for unit in of_variant}
         sample += list(conditions.values())[:_OF_EACH]
     return sample

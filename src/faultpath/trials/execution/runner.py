@@ -9,7 +9,6 @@ from pathlib import Path
 
 from faultpath.core.errors import Stopped, UserError
 from faultpath.core.version import __version__
-from faultpath.trials.arm import Arm, Study
 from faultpath.trials.attempt import Reply, Wrong, attempt
 from faultpath.trials.code import Code, named
 from faultpath.trials.declared import SceneRef
@@ -19,6 +18,7 @@ from faultpath.trials.execution.recheck import Rechecks
 from faultpath.trials.execution.repeating import repeat
 from faultpath.trials.execution.schedule import Task, TaskQueue, Unit, plan
 from faultpath.trials.execution.state import RunState, Stop
+from faultpath.trials.plan import Study, Treatment
 from faultpath.trials.provenance import Recheck
 from faultpath.trials.registry import load_system
 from faultpath.trials.store.folder import RunFolder
@@ -35,7 +35,7 @@ _log = logging.getLogger("faultpath")
 class Failure:
     """A trial in which the program raised an error or died."""
 
-    arm: Arm
+    treatment: Treatment
     scene: str
     error: str
     details: Path | None
@@ -63,7 +63,7 @@ class RunResult:
 
     @property
     def findings(self) -> tuple[str, ...]:
-        """Findings that a reader has to know: results that do not repeat, consumers that
+        """Findings that a reader has to know: results that do not repeat, readers that
         never read or that write, hashes that prove nothing."""
         return self.deliveries.findings
 
@@ -81,7 +81,7 @@ def run_study(
     recheck: bool = True,
     stop: Stop | None = None,
 ) -> RunResult:
-    """Run every arm of a study over its scenes, keeping what `folder` already holds.
+    """Run every treatment of a study over its scenes, keeping what `folder` already holds.
 
     Args:
         study: Arms and scenes.
@@ -91,7 +91,8 @@ def run_study(
         notice: Called with what a user should read, such as a damaged file or another process in
             the folder.
         system: Saves building it here when the caller has.
-        shared: Lets studies with other arms use the folder one after the other: an arm that one of
+        shared: Lets studies with other treatments use the folder one after the other: a treatment
+        that one of
             them ran is there for the next; the folder's tables are those of the last.
         executor: Runs trials in place of `workers` processes, and keeps its own for the next study.
         time_limit_s: Seconds that a worker may take over one block, or one scene of a block that
@@ -178,21 +179,21 @@ def _units(study: Study, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
     check_rows(study.rows, system.variants)
     fingerprint = f"{manifest.faultpath_version} {manifest.code.digest}"
     size = system.scenes_a_block(len(library.scenes))
-    return plan(study.arms(), scenes, size, library, fingerprint, study.look)
+    return plan(study.treatments(), scenes, size, library, fingerprint, study.look)
 
 
 def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:
     for unit in state.units:
         details = folder.failures / f"{unit.key}.txt"
         for scene in unit.scenes:
-            outcome = state.outcomes[unit.arm_key, scene]
+            outcome = state.outcomes[unit.treatment_key, scene]
             if outcome.failed:
                 where = details if details.exists() else None
-                yield Failure(unit.arm, scene, outcome.error or "", where)
+                yield Failure(unit.treatment, scene, outcome.error or "", where)
 
 
 def _attempted(system: System, task: Task) -> Reply:
-    reply = attempt(system, task.unit.arm, task.scenes, task.recheck == "guarded")
+    reply = attempt(system, task.unit.treatment, task.scenes, task.recheck == "guarded")
     if isinstance(reply, Wrong):
         raise reply.error  # not every error survives being sent as a value
     return reply

@@ -1,4 +1,4 @@
-"""Units of work, one arm over one block of scenes, and which worker does what next."""
+"""Units of work, one treatment over one block of scenes, and which worker does what next."""
 
 import hashlib
 import json
@@ -7,32 +7,32 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from faultpath.trials.arm import Arm
 from faultpath.trials.declared import Library, SceneRef
+from faultpath.trials.plan import Treatment
 
 
 @dataclass(frozen=True)
 class Unit:
-    """One arm over the scenes of one block, stored and resumed as a whole."""
+    """One treatment over the scenes of one block, stored and resumed as a whole."""
 
     key: str
     """Content hash of everything that decides the result."""
-    arm: Arm
-    arm_key: str
-    """That of `arm`, which a model computes anew each time."""
+    treatment: Treatment
+    treatment_key: str
+    """That of `treatment`, which a model computes anew each time."""
     block: int
     scenes: tuple[str, ...]
 
 
 def plan(
-    arms: Sequence[Arm],
+    treatments: Sequence[Treatment],
     scenes: Sequence[SceneRef],
     block_size: int,
     library: Library,
     fingerprint: str,
     look: int = 0,
 ) -> tuple[Unit, ...]:
-    """Return every unit: block by block, in each the arms in order.
+    """Return every unit: block by block, in each the treatments in order.
 
     A block is a place in the library, not a count of selected scenes, so a selection and the whole
     library share the blocks that both hold in full. With a `look`, blocks are so many scenes in
@@ -43,17 +43,19 @@ def plan(
         block = place // look if look else scene.index // block_size
         parts.setdefault(block, []).append(scene.id)
     units: list[Unit] = []
-    dumped = [(arm, arm.key(), arm.model_dump(mode="json")) for arm in arms]
+    dumped = [
+        (treatment, treatment.key(), treatment.model_dump(mode="json")) for treatment in treatments
+    ]
     for block, ids in parts.items():
-        for arm, arm_key, arm_content in dumped:
+        for treatment, treatment_key, treatment_content in dumped:
             content = {
                 "system": fingerprint,
-                "arm": arm_content,
+                "treatment": treatment_content,
                 "scenes": ids,
                 "library": library.content_hash,
             }
             key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
-            units.append(Unit(key, arm, arm_key, block, tuple(ids)))
+            units.append(Unit(key, treatment, treatment_key, block, tuple(ids)))
     return tuple(units)
 
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
 from faultpath.loop import TapCount, added
-from faultpath.trials.arm import Study
 from faultpath.trials.attempt import Died, Done, Raised, Reply, Wrong
 from faultpath.trials.declared import Library
 from faultpath.trials.execution.schedule import Task, Unit
 from faultpath.trials.outcome import Outcome, failed_outcome
+from faultpath.trials.plan import Study
 from faultpath.trials.store.folder import RunFolder
 from faultpath.trials.trials import Trials, assemble
 from faultpath.trials.work.executor import Progress
@@ -54,16 +54,16 @@ class RunState:
         stop: Stop | None = None,
     ) -> None:
         self.outcomes: dict[tuple[str, str], Outcome] = {}
-        """By arm key and scene."""
+        """By treatment key and scene."""
         self.kept = self.computed = 0
         """Units that were stored before, and those that this invocation ran."""
         self._study, self._library, self._units, self._folder = study, library, units, folder
-        self._rows = Counter(row.arm.key() for row in study.rows)
+        self._rows = Counter(row.treatment.key() for row in study.rows)
         self._taps: dict[str, tuple[TapCount, ...]] = {}
         self._partial: dict[str, _Partial] = {}
         self._began, self._ended = time.monotonic(), 0
         self._trials = sum(len(unit.scenes) for unit in units)
-        self._in_rows = sum(len(unit.scenes) * self._rows[unit.arm_key] for unit in units)
+        self._in_rows = sum(len(unit.scenes) * self._rows[unit.treatment_key] for unit in units)
         self._done = self._done_in_rows = 0
         """Trials with an outcome, and in how many of the rows' trials they stand."""
         self._failed, self._sound = 0, False
@@ -124,7 +124,7 @@ class RunState:
                 raise reply.error
         partial = self._partial.setdefault(unit.key, _Partial())
         for scene, detail in details.items():
-            partial.tracebacks.append(f"{scene}: {unit.arm.model_dump_json()}\n{detail}\n")
+            partial.tracebacks.append(f"{scene}: {unit.treatment.model_dump_json()}\n{detail}\n")
         partial.outcomes |= {outcome.scene: outcome for outcome in outcomes}
         self._count(unit, len(outcomes))
         partial.taps = added((*partial.taps, *taps))
@@ -167,15 +167,17 @@ class RunState:
             )
 
     def _outcomes_of(self, unit: Unit) -> list[Outcome]:
-        return [self.outcomes[unit.arm_key, scene] for scene in unit.scenes]
+        return [self.outcomes[unit.treatment_key, scene] for scene in unit.scenes]
 
     def _enter(self, unit: Unit, shard: Done) -> None:
-        self.outcomes.update(((unit.arm_key, outcome.scene), outcome) for outcome in shard.outcomes)
+        self.outcomes.update(
+            ((unit.treatment_key, outcome.scene), outcome) for outcome in shard.outcomes
+        )
         self._taps[unit.key] = shard.taps
 
     def _count(self, unit: Unit, trials: int) -> None:
         self._done += trials
-        self._done_in_rows += trials * self._rows[unit.arm_key]
+        self._done_in_rows += trials * self._rows[unit.treatment_key]
 
     def enough(self) -> bool:
         """Take the looks whose trials are all there; return whether the study stops."""
@@ -201,10 +203,10 @@ class RunState:
         return tuple(unit for unit in self._units if not self._stop or unit.block < self._looks)
 
     def taps(self) -> dict[str, tuple[TapCount, ...]]:
-        """Return what the taps did in the units that count, by the key of their arm."""
+        """Return what the taps did in the units that count, by the key of their treatment."""
         counts: dict[str, list[TapCount]] = {}
         for unit in self.units:
-            counts.setdefault(unit.arm_key, []).extend(self._taps[unit.key])
+            counts.setdefault(unit.treatment_key, []).extend(self._taps[unit.key])
         return {key: added(taps) for key, taps in counts.items()}
 
     def progress(self) -> Progress:

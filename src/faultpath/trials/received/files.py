@@ -39,9 +39,9 @@ def read_results(
 ) -> tuple[list[Received], dict[str, str]]:
     """Return the trials in some files, and the SHA-256 of each file.
 
-    A result is a file, a folder, or either with the arm of its trials before it: `mine=runs/a`, and
-    the condition too, `mine@shared=runs/b`. Raises `UserError` for a file that cannot be read, and
-    as `received`.
+    A result is a file, a folder, or either with the variant of its trials before it: `mine=runs/a`,
+    and the condition too, `mine@shared=runs/b`. Raises `UserError` for a file that cannot be read,
+    and as `received`.
     """
     trials: list[Received] = []
     digests: dict[str, str] = {}
@@ -50,7 +50,7 @@ def read_results(
         try:
             data = contents(path, LARGEST_TEXT if path.suffix != ".eval" else inspect_logs.LARGEST)
             before = len(trials)
-            for where, cells in _cells(path, data, question, file.arm):
+            for where, cells in _cells(path, data, question, file.variant):
                 trials.append(received(f"{path}{where}", cells, file, question))
             if len(trials) == before:
                 raise Misread("holds no trial; give a file with one in each row")
@@ -70,14 +70,14 @@ def _files(result: str) -> list[Given]:
     label, equals, rest = result.partition("=")
     if not equals or Path(result).exists():
         label, rest = "", result
-    arm, _, condition = label.partition("@")
+    variant, _, condition = label.partition("@")
     place = Path(rest)
     if not place.is_dir():
-        return [Given(rest, arm, condition)]
+        return [Given(rest, variant, condition)]
     inside = sorted({file for pattern in _READ for file in place.rglob(pattern)})
     if not inside:
         raise UserError(f"{place} holds none of {', '.join(_READ)}: name the files themselves.")
-    return [Given(str(file), arm, condition) for file in inside]
+    return [Given(str(file), variant, condition) for file in inside]
 
 
 def _cells(path: Path, data: bytes, question: JudgeQuestion, label: str) -> Cells:

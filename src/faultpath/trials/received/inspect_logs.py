@@ -81,8 +81,8 @@ def unpacked(path: Path) -> dict[str, Any]:
 def cells(
     log: Mapping[str, Any], question: JudgeQuestion, label: str = ""
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the samples of a log: scenes by their id, seeds by the epoch, the arm by the model, or
-    by `label` where the model is not called as an arm."""
+    """Yield the samples of a log: scenes by their id, seeds by the epoch, the variant by the model,
+    or by `label` where the model is not called as a variant."""
     read = _Log.model_validate(log)
     if read.samples is None:
         raise Misread("holds no samples; write the log with them")
@@ -101,7 +101,7 @@ def cells(
         yield (
             f", sample {sample.id}",
             {
-                "arm": model,
+                "variant": model,
                 "task": read.eval.task,
                 "scene": sample.id,
                 "seed": sample.epoch,

@@ -9,7 +9,7 @@ from faultpath.trials.question import GENERALISE, Asked, Flag, Generalise
 from faultpath.trials.texts import Place, several
 
 COLUMNS = (
-    "arm",
+    "variant",
     "scene",
     "seed",
     "task",
@@ -55,7 +55,7 @@ class JudgeQuestion(Asked):
         dict[str, str], BeforeValidator(_columns), Flag("--column", several=True)
     ] = Field(
         default_factory=dict,
-        description="Column by another name, scene=episode_id: of `arm` (the version), scene, "
+        description="Column by another name, scene=episode_id: of `variant` (the version), scene, "
         "seed, task, condition, success, initial (a hash of the initial state), time_s. For "
         "Inspect and lm-eval success=NAME is the scorer or metric.",
     )

@@ -22,7 +22,7 @@ class Received:
 
     where: str
     """File and line, or what else finds it there."""
-    arm: str
+    variant: str
     condition: str
     task: str
     scene: str
@@ -42,12 +42,12 @@ class Given:
     """A file with what the command line says of all its trials."""
 
     path: str
-    arm: str = ""
+    variant: str = ""
     condition: str = ""
 
     def label(self, name: str, cells: Mapping[str, Any], where: str) -> str:
-        """Return arm or condition of a trial; `UserError` where line and file say different ones,
-        since a label at the wrong file would turn the verdict round."""
+        """Return variant or condition of a trial; `UserError` where line and file say different
+        ones, since a label at the wrong file would turn the verdict round."""
         label, cell = getattr(self, name), _text(cells.get(name), f"{where}: the {name}")
         if label and cell and label != cell:
             raise UserError(
@@ -62,13 +62,13 @@ def received(
 ) -> Received:
     """Return the trial in `cells`, by the names of `COLUMNS` and of metrics.
 
-    `UserError` for a trial without an arm, scene or success, and for cells that cannot be.
+    `UserError` for a trial without a variant, scene or success, and for cells that cannot be.
     """
-    arm, condition = file.label("arm", cells, where), file.label("condition", cells, where)
-    if not arm:
+    variant, condition = file.label("variant", cells, where), file.label("condition", cells, where)
+    if not variant:
         raise UserError(
             f"{where} names no version: write it before the file, as in "
-            f"{question.repair}={file.path}, or name its column with `--column arm=NAME`."
+            f"{question.repair}={file.path}, or name its column with `--column variant=NAME`."
         )
     scene = _text(cells.get("scene"), f"{where}: the scene")
     if not scene:
@@ -77,7 +77,7 @@ def received(
         raise UserError(f"{where} has no success: name the column with --column success=NAME.")
     more = ("task", "seed", "initial")
     texts = {name: _text(cells.get(name), f"{where}: the {name}") for name in more}
-    for name, text in {"arm": arm, "scene": scene, "condition": condition, **texts}.items():
+    for name, text in {"variant": variant, "scene": scene, "condition": condition, **texts}.items():
         if text:
             check_name(f"{where}: the {name}", text)
     status = _status(cells["success"], where, question.success_from)
@@ -93,7 +93,7 @@ def received(
         metrics |= {} if value is None else {name: value}
     return Received(
         where,
-        arm,
+        variant,
         condition,
         texts["task"],
         scene,

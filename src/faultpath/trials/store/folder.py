@@ -64,8 +64,8 @@ class RunFolder:
     ) -> Generator[None, None, None]:
         """Create or continue the run, alone in the folder until the end of the `with` block.
 
-        `shared` lets studies with other arms use the folder one after the other. `UserError` when
-        the folder cannot be written, or holds something else.
+        `shared` lets studies with other treatments use the folder one after the other. `UserError`
+        when the folder cannot be written, or holds something else.
         """
         if not self.manifest.exists():  # nothing is left in a folder of somebody else
             atomic.check_free(self.path)

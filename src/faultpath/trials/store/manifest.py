@@ -8,8 +8,8 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of, read_json
 from faultpath.core.results import Frozen
-from faultpath.trials.arm import Study
 from faultpath.trials.code import CodeState, named
+from faultpath.trials.plan import Study
 
 FORMAT = 2
 """Version of the folder's layout and of its columns."""
@@ -56,7 +56,7 @@ def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: boo
 
     The selection of scenes may differ: a quick look at some scenes grows into the whole library
     in the same folder, and keeps what it has. In a folder that rounds of one study share, their
-    arms may differ as well.
+    treatments may differ as well.
     """
     same_study = (
         ("set of variants, faults or seeds", previous.study.rows, manifest.study.rows),

@@ -25,7 +25,7 @@ TOGETHER = "both together"
 """The signal that is the sum of the two others of its topic, the errors of two modules."""
 
 _SCHEMA = {
-    **dict.fromkeys(("variant", "path"), TEXT),
+    **dict.fromkeys(("variant", "condition"), TEXT),
     "seed": INTEGER,
     **dict.fromkeys(("scene", "signal", "topic", "unit"), TEXT),
     "component": INTEGER,
@@ -74,7 +74,7 @@ def decode_signals(data: bytes) -> dict[TrialAddress, tuple[Signal, ...]]:
     """Return the signals of a Parquet file; `Unreadable` when it holds none."""
     rows, _ = decode(data, _SCHEMA)
     trials: dict[TrialAddress, list[Signal]] = {}
-    same = itemgetter("variant", "path", "seed", "scene", "signal", "topic", "unit")
+    same = itemgetter("variant", "condition", "seed", "scene", "signal", "topic", "unit")
     for key, group in groupby(rows, key=same):
         parts = tuple(group)
         columns = [part["values"] for part in parts]

@@ -30,7 +30,7 @@ from faultpath.trials.trials import STATUSES, Trial, Trials
 
 Trace = NDArray[np.float32]
 
-_ADDRESS = {"variant": TEXT, "path": TEXT, "seed": INTEGER, "scene": TEXT}
+_ADDRESS = {"variant": TEXT, "condition": TEXT, "seed": INTEGER, "scene": TEXT}
 _PLACE = {"scene_index": INTEGER, "topology": TEXT}
 _END = {"status": TEXT, "time_s": NUMBER}
 _COUNTS = {"faulted_steps": INTEGER, "altered_steps": INTEGER}
@@ -53,7 +53,7 @@ class TrialAddress(NamedTuple):
     """Where a trial stands in a study."""
 
     variant: str
-    path: str
+    condition: str
     seed: int
     scene: str
 
@@ -88,7 +88,7 @@ def encode_outcomes(trials: Trials) -> bytes:
     refs = trials.scenes
     columns: dict[str, Any] = {
         "variant": [trials.variants[at] for at in variant],
-        "path": [trials.conditions[at] for at in condition],
+        "condition": [trials.conditions[at] for at in condition],
         "seed": [trials.seeds[at] for at in seed],
         "scene": [refs[at].id for at in scene],
         "scene_index": [refs[at].index for at in scene],
@@ -120,7 +120,7 @@ def decode_outcomes(data: bytes, traces: Mapping[TrialAddress, Trace] | None = N
         address = _address(row)
         outcome = _outcome(row, (traces or {}).get(address), untimed=True)
         place = row["scene_index"], row["topology"]
-        trials.append(Trial(address.variant, address.path, address.seed, *place, outcome))
+        trials.append(Trial(address.variant, address.condition, address.seed, *place, outcome))
     try:
         return Trials.of(trials)
     except (ValueError, UserError) as error:

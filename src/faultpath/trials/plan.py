@@ -28,7 +28,7 @@ class SystemSpec(Frozen):
         return self.name.endswith(_OBJECT) and ":" not in self.name
 
 
-class Arm(Frozen):
+class Treatment(Frozen):
     """One variant of the system under one set of faults, with one seed."""
 
     variant: str
@@ -37,22 +37,23 @@ class Arm(Frozen):
     seed: int = 0
 
     def key(self) -> str:
-        """Content hash: arms that would run the same trials have the same key."""
+        """Content hash: treatments that would run the same trials have the same key."""
         content = json.dumps(self.model_dump(mode="json"), sort_keys=True)
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
 class Row(Frozen):
-    """Where an arm stands in the outcome table. Two rows may share an arm, which runs once."""
+    """Where a treatment stands in the outcome table. Two rows may share a treatment, which runs
+    once."""
 
     variant: str
-    path: str
+    condition: str
     seed: int
-    arm: Arm
+    treatment: Treatment
 
 
 class Study(Frozen):
-    """Which arms run over which scenes."""
+    """Which treatments run over which scenes."""
 
     name: str
     system: SystemSpec
@@ -63,6 +64,6 @@ class Study(Frozen):
     """Scenes of a sequential study from one look at the results to the next, in the order of
     `scenes`. 0 runs them all, in the blocks of their library."""
 
-    def arms(self) -> tuple[Arm, ...]:
-        """Return each distinct arm once, in the order of the rows."""
-        return tuple({row.arm.key(): row.arm for row in self.rows}.values())
+    def treatments(self) -> tuple[Treatment, ...]:
+        """Return each distinct treatment once, in the order of the rows."""
+        return tuple({row.treatment.key(): row.treatment for row in self.rows}.values())
