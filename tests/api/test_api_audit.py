@@ -42,7 +42,15 @@ def run(tmp_path_factory) -> faultpath.Run:
 
 
 def _outcomes(run: faultpath.Run) -> list[tuple]:
-    columns = ("variant", "path", "seed", "scene", "status", "terminal_distance_m", "faulted_steps")
+    columns = (
+        "variant",
+        "condition",
+        "seed",
+        "scene",
+        "status",
+        "terminal_distance_m",
+        "faulted_steps",
+    )
     return list(zip(*(run.table()[name].to_pylist() for name in columns), strict=True))
 
 

@@ -23,9 +23,11 @@ def run(tmp_path_factory):
 def test_signals_of_the_first_scene_are_there_without_being_asked_for(run) -> None:
     recorded = read_run(run.folder).signals
     assert len({at.scene for at in recorded}) == 1
-    paths = ("correct", "controller", "observer", "shared")
-    variants = {(variant, path) for variant in ("calibrated", "blind") for path in paths}
-    assert {(at.variant, at.path) for at in recorded} == variants
+    conditions = ("correct", "controller", "observer", "shared")
+    variants = {
+        (variant, condition) for variant in ("calibrated", "blind") for condition in conditions
+    }
+    assert {(at.variant, at.condition) for at in recorded} == variants
 
 
 def test_two_errors_add_up_to_what_the_acceleration_differs_by(run) -> None:
@@ -36,7 +38,7 @@ def test_two_errors_add_up_to_what_the_acceleration_differs_by(run) -> None:
         assert np.allclose(value[TOGETHER], wanted - had, atol=1e-5, equal_nan=True), at
         gain, slope = value["controller: wrong gain"], value["observer: wrong slope"]
         assert np.allclose(gain + slope, value[TOGETHER], atol=1e-6, equal_nan=True)
-        assert gain.any() == (at.path in ("controller", "shared"))
+        assert gain.any() == (at.condition in ("controller", "shared"))
 
 
 def test_a_second_call_flies_nothing_again_and_completes_what_is_missing(

@@ -33,8 +33,8 @@ def found(folder):
     return replay(read_run(folder), (SCENE,), trust=True).trials
 
 
-def _signals(found, variant: str, path: str) -> dict[str, Signal]:
-    address = TrialAddress(variant, path, 0, SCENE)
+def _signals(found, variant: str, condition: str) -> dict[str, Signal]:
+    address = TrialAddress(variant, condition, 0, SCENE)
     return {s.name: s for each in found if each.address == address for s in each.signals}
 
 
@@ -60,7 +60,7 @@ def test_signals_stay_with_the_run_and_a_changed_file_is_refused(folder, found, 
     run = tmp_path / "run"
     shutil.copytree(folder, run)
     source = read_run(run)
-    few = [each for each in found if each.address.path == "shared"]
+    few = [each for each in found if each.address.condition == "shared"]
     written = keep_signals(run, source, few)
     assert written[0] == run / SIGNALS
     more = read_run(run)
@@ -80,14 +80,14 @@ def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
     )
     changed = replace(source, trials=Trials.of(rows))
     found = replay(changed, (SCENE,), ("shared", "observer"), trust=True).trials
-    differs = {each.address.path: bool(each.differs) for each in found}
+    differs = {each.address.condition: bool(each.differs) for each in found}
     assert differs == {"shared": True, "observer": False}
     for each in found:
         assert ("time_s by up to 1" in each.differs) == bool(each.differs)
         assert bool(each.signals) != bool(each.differs)
 
 
-def test_only_scenes_and_paths_of_a_run_that_can_be_built_are_run_again(folder) -> None:
+def test_only_scenes_and_conditions_of_a_run_that_can_be_built_are_run_again(folder) -> None:
     source = read_run(folder)
     assert len(chosen_scenes(source, (), ())) == 3
     assert chosen_scenes(source, (SCENE, SCENE), ("shared",)) == (SCENE,)
@@ -102,7 +102,7 @@ def test_only_scenes_and_paths_of_a_run_that_can_be_built_are_run_again(folder) 
 
 
 def test_the_verb_says_whether_a_run_repeats(folder, capsys) -> None:
-    assert command(folder, trust=True, scene=[SCENE], path=["observer"]) == 0
+    assert command(folder, trust=True, scene=[SCENE], condition=["observer"]) == 0
     assert "2 trials in 1 scene came out as in the run, to the bit." in capsys.readouterr().out
 
 

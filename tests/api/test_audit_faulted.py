@@ -23,7 +23,10 @@ def asked(text: str) -> Audit:
 
 
 def faulted(record: DecisionRecord) -> dict[str, tuple[tuple[FaultedTap, ...], ...]]:
-    return {path.name: (path.faulted, path.baseline_faulted) for path in record.paths}
+    return {
+        condition.name: (condition.faulted, condition.baseline_faulted)
+        for condition in record.conditions
+    }
 
 
 def tap(reader: str, faulted_steps: int, altered_steps: int) -> FaultedTap:

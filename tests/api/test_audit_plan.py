@@ -46,26 +46,26 @@ LAID_OUT = {
 }
 
 
-def _faulted(audit: Audit, variant: str, path: str) -> set[tuple[str, str]]:
-    (row,) = (r for r in audit.study.rows if (r.variant, r.path) == (variant, path))
+def _faulted(audit: Audit, variant: str, condition: str) -> set[tuple[str, str]]:
+    (row,) = (r for r in audit.study.rows if (r.variant, r.condition) == (variant, condition))
     return {(fault.channel, c) for fault in row.treatment.faults for c in fault.readers}
 
 
-@pytest.mark.parametrize(("question", "paths"), LAID_OUT.values(), ids=LAID_OUT)
-def test_each_path_strikes_the_places_that_it_names_in_either_variant(question, paths):
+@pytest.mark.parametrize(("question", "conditions"), LAID_OUT.values(), ids=LAID_OUT)
+def test_each_condition_strikes_the_places_that_it_names_in_either_variant(question, conditions):
     audit = planned(*question)
-    assert [path.name for path in audit.paths] == list(paths)
-    for path in audit.paths:
-        repair, baseline = paths[path.name]
-        assert _faulted(audit, audit.question.repair, path.name) == repair
-        assert _faulted(audit, audit.question.baseline, path.name) == baseline
-        assert set(path.readers) == {reader for _, reader in repair}
-        assert set(path.baseline_readers) == {reader for _, reader in baseline}
+    assert [condition.name for condition in audit.conditions] == list(conditions)
+    for condition in audit.conditions:
+        repair, baseline = conditions[condition.name]
+        assert _faulted(audit, audit.question.repair, condition.name) == repair
+        assert _faulted(audit, audit.question.baseline, condition.name) == baseline
+        assert set(condition.readers) == {reader for _, reader in repair}
+        assert set(condition.baseline_readers) == {reader for _, reader in baseline}
 
 
 def test_every_cell_has_a_row_and_treatments_that_are_the_same_run_once():
     audit = planned("plain", "observed", "mass:scale=2", seeds=(0, 7))
-    rows = {(row.variant, row.path, row.seed): row.treatment for row in audit.study.rows}
+    rows = {(row.variant, row.condition, row.seed): row.treatment for row in audit.study.rows}
     assert len(rows) == len(audit.study.rows) == 2 * 4 * 2
     for seed in (0, 7):
         # Without an observer there is nobody to strike: its trials under correct inputs stand in.
@@ -110,7 +110,7 @@ def test_scenes_that_the_library_does_not_have(count):
         planned("plain", "observed", "mass:scale=2", scenes=count)
 
 
-def test_a_module_may_not_be_called_like_a_path(monkeypatch):
+def test_a_module_may_not_be_called_like_a_condition(monkeypatch):
     document = yaml_text(INTERFACE.model_dump(mode="json")).replace(
         "observer.model", "shared.model"
     )

@@ -32,7 +32,7 @@ def judged(results: object, folder: Path, **more: Any) -> Run:
 def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None:
     more = {"scenes": 40, "signals": False, "folder": tmp_path / "run"}
     run = faultpath.audit(TOY, **AUDIT | more)
-    columns = {"variant": "variant", "condition": "path", "success": "status"}
+    columns = {"variant": "variant", "condition": "condition", "success": "status"}
     named = {"columns": columns | {"initial": "initial_hash"}}
     named["metrics"] = ["terminal_distance_m:less"]
     results, folder = tmp_path / "run" / "outcomes.parquet", tmp_path / "judged"
@@ -42,7 +42,7 @@ def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None
         assert two.metrics["terminal_distance_m"].value == one.metrics["terminal_distance_m"].value
     for one, two in zip(run.record.effects, again.record.effects, strict=True):
         for name in ("sign", "won", "p_value", "corrected_p", "rates"):
-            assert getattr(one, name) == getattr(two, name), (one.path, name)
+            assert getattr(one, name) == getattr(two, name), (one.condition, name)
         assert (one.low, one.high) == (two.low, two.high)
     turns = [[each.turn for each in each.record.changes] for each in (run, again)]
     assert turns[0] == turns[1]
@@ -85,7 +85,7 @@ def test_what_other_tools_write_is_read(
 ) -> None:
     run = judged([write(tmp_path, *each) for each in WON.items()], tmp_path / "run", **more)
     (effect,) = run.record.effects
-    assert (effect.path, effect.scenes) == (AS_RUN, 30)
+    assert (effect.condition, effect.scenes) == (AS_RUN, 30)
     assert effect.won == ((WINS, LOSSES),)
     assert run.record.secondary[0].time_s is None
     assert run.record.question.judged is not None
@@ -108,7 +108,7 @@ def test_missing_pairs_are_named_and_bound_what_is_decided(tmp_path: Path) -> No
     file.write_text("".join(line for line in lines if line not in (*alone, *both)))
     run = judged(file, tmp_path / "run")
     nominal, shared = run.record.effects
-    assert (shared.path, shared.void, shared.scenes) == (SHARED, 9, 11)
+    assert (shared.condition, shared.void, shared.scenes) == (SHARED, 9, 11)
     for each, against, favour in ((nominal, 55.0, 65.0), (shared, 15.0, 60.0)):
         assert each.missing is not None
         assert each.missing.against_pp == pytest.approx(against)

@@ -49,15 +49,20 @@ def contents(run: Path) -> dict[Path, bytes]:
 
 
 def test_an_audit_leaves_its_files_and_shows_the_reversal(toy_run):
-    assert {path.name for path in toy_run.iterdir()} >= FILES
+    assert {condition.name for condition in toy_run.iterdir()} >= FILES
     record = open_run(toy_run).record
-    assert [path.name for path in record.paths] == ["correct", "controller", "observer", SHARED]
+    assert [condition.name for condition in record.conditions] == [
+        "correct",
+        "controller",
+        "observer",
+        SHARED,
+    ]
     assert {change.isolated: change.turn for change in record.changes}["observer"] == "reversal"
-    signs = [effect.sign for effect in record.effects if effect.path in ("observer", SHARED)]
+    signs = [effect.sign for effect in record.effects if effect.condition in ("observer", SHARED)]
     assert signs == [1, -1]
     recorded = pq.read_table(toy_run / "signals.parquet").to_pydict()
     assert {"blind"} <= set(recorded["variant"])
-    assert {SHARED} <= set(recorded["path"])
+    assert {SHARED} <= set(recorded["condition"])
 
 
 def test_a_second_time_everything_is_kept_and_json_is_all_of_the_standard_output(run):

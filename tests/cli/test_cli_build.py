@@ -16,7 +16,7 @@ from faultpath.decisions.gate import ASKS
 
 COLUMNS = {
     "variant": "variant",
-    "condition": "path",
+    "condition": "condition",
     "success": "status",
     "initial": "initial_hash",
 }

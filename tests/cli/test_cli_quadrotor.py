@@ -32,7 +32,7 @@ def test_a_library_of_ones_own_is_flown_and_reported(monkeypatch):
     question = record.question
     assert (question.n_scenes, question.options) == (2, {"wind": "L1"})
     assert question.library_hash == json.loads(Path("mine.json").read_text())["content_hash"]
-    names = [path.name for path in record.paths]
+    names = [condition.name for condition in record.conditions]
     assert names == ["correct", "predictor", "reconstruction", "shared"]
 
     page = Path("run/report.html").read_bytes()

@@ -121,9 +121,9 @@ FORGED: dict[str, tuple[str, Change]] = {
     "a further field": ("system.json", system(lambda c: c.update(code="import os"))),
     "a plan that is not finite": ("system.json", system(lambda c: c["plans"].update(x=PLAN))),
     "other variants": ("variants", system(lambda c: c.update(variants=[]))),
-    "an effect on no path": (
+    "an effect on no condition": (
         "conditions",
-        record(lambda c: c["effects"][0].update(path="nowhere")),
+        record(lambda c: c["effects"][0].update(condition="nowhere")),
     ),
     "no effects": ("contradict", record(lambda c: c.update(effects=[]))),
     "no secondary outcomes": ("contradict", record(lambda c: c.update(secondary=[]))),
@@ -133,7 +133,7 @@ FORGED: dict[str, tuple[str, Change]] = {
     "another metric": ("'speed'", record(lambda c: c["question"].update(metric="speed"))),
     "a tap that is not there": (
         "injection points",
-        record(lambda c: c["paths"][1].update(faulted=[TAP])),
+        record(lambda c: c["conditions"][1].update(faulted=[TAP])),
     ),
     "receipts of nothing": ("delivery log leaves out", receipts(lambda c: c.update(rows=[]))),
     "receipts of other taps": (

@@ -133,4 +133,9 @@ def test_a_fault_reaches_who_reads(example):
 def test_it_is_audited(example):
     question = {"baseline": "gyro", "repair": "filtered", "fault": "wheel_speeds:freeze,onset_s=50"}
     run = audit(example.create(), **question, scenes=2, signals=False)
-    assert [path.name for path in run.record.paths] == ["correct", "control", "filter", "shared"]
+    assert [condition.name for condition in run.record.conditions] == [
+        "correct",
+        "control",
+        "filter",
+        "shared",
+    ]

@@ -61,7 +61,7 @@ def test_the_audit_strikes_mhe_and_mpc_alone_and_together(masses, monkeypatch):
     question = {"baseline": "fixed", "repair": "estimated", "fault": "inertia:scale=1.1"}
     how = {"scenes": 2, "workers": 0, "signals": False}
     run = audit(masses.create(), **question, library="training", **how)
-    names = [path.name for path in run.record.paths]
+    names = [condition.name for condition in run.record.conditions]
     assert names == ["correct", "controller", "estimator", "shared"]
     assert not run.record.findings
 

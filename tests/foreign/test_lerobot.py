@@ -118,7 +118,7 @@ def test_an_audit_on_lerobots_classes_has_the_bits_of_one_on_the_copy(lerobot, t
 def test_a_shared_offset_cancels_and_the_repair_loses_that(monkeypatch):
     example = imported(monkeypatch, None)
     record = flown(example, library="training", scenes=20).record
-    effects = {effect.path: effect for effect in record.effects}
+    effects = {effect.condition: effect for effect in record.effects}
     assert set(effects) == {"correct", "conversion", "policy", "shared"}
     assert effects["policy"].value == 100
     assert effects["shared"].value == -100

@@ -97,6 +97,6 @@ def test_it_is_audited_with_a_path_for_each_part(example, tmp_path) -> None:
     question = {"baseline": "fixed", "repair": "adapted", "fault": "psi_f:scale=1.11"}
     how = {"workers": 0, "signals": False, "folder": tmp_path}
     run = audit(example.create(), **question, scenes=2, library="training", **how)
-    paths = [path.name for path in run.record.paths]
-    assert paths == ["correct", "current_ctrl", "observer", "reference_gen", "shared"]
+    conditions = [condition.name for condition in run.record.conditions]
+    assert conditions == ["correct", "current_ctrl", "observer", "reference_gen", "shared"]
     assert sum(effect.void for effect in run.record.effects) == 0

@@ -99,7 +99,7 @@ def test_it_is_audited(example, tmp_path) -> None:
     question = {"baseline": "shipped", "repair": "recovers", "fault": "tyre:scale=1.05"}
     how = {"workers": 0, "signals": False, "folder": tmp_path}
     run = audit(example.create("ford"), **question, scenes=2, library="training", **how)
-    assert [path.name for path in run.record.paths] == [
+    assert [condition.name for condition in run.record.conditions] == [
         "correct",
         "controller",
         "firmware",

@@ -42,8 +42,8 @@ def test_both_choose_the_same_for_each_observation(example) -> None:
 
 def test_the_guard_helps_only_where_the_policy_alone_is_faulted(example, tmp_path: Path) -> None:
     run = audit(example.create("onnx"), tmp_path / "run", scenes=12, workers=0)
-    paths = {effect.path: effect for effect in run.record.effects}
-    counts = {name: effect.won for name, effect in paths.items()}
+    conditions = {effect.condition: effect for effect in run.record.effects}
+    counts = {name: effect.won for name, effect in conditions.items()}
     assert counts == {
         "correct": ((0, 0),),
         "guard": ((0, 0),),

@@ -130,8 +130,8 @@ def test_it_is_audited(example, monkeypatch):
     system = example.create()
     asked = {"baseline": "alone", "repair": "fed-forward", "fault": "mass:scale=0.8"}
     run = audit(system, **asked, library="training", scenes=2, workers=0, signals=False)
-    paths = [path.name for path in run.record.paths]
-    assert paths == ["correct", "controller", "feedforward", "filter", "shared"]
+    conditions = [condition.name for condition in run.record.conditions]
+    assert conditions == ["correct", "controller", "feedforward", "filter", "shared"]
 
 
 def test_what_their_objects_share_is_what_the_page_says():

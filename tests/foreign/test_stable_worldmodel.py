@@ -115,7 +115,7 @@ def test_it_is_audited(example, monkeypatch):
     question = {"baseline": "plain", "repair": "rectified", "fault": "exposure:scale=0.85"}
     how = {"scenes": 2, "workers": 0, "signals": False}
     run = audit(example.create(), **question, library="training", **how)
-    names = [path.name for path in run.record.paths]
+    names = [condition.name for condition in run.record.conditions]
     assert names == ["correct", "goal", "observation", "shared"]
 
 

@@ -115,7 +115,7 @@ def test_it_is_audited_at_odometry_and_wheel_command(wheels):
     question = {"baseline": "default", "repair": "trusting", "fault": FAULT}
     how = {"scenes": 2, "workers": 0, "signals": False}
     run = audit(wheels.create(), **question, library="training", **how)
-    assert [effect.path for effect in run.record.effects] == [
+    assert [effect.condition for effect in run.record.effects] == [
         "correct",
         "drive",
         "odometry",

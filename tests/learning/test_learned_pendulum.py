@@ -29,7 +29,7 @@ run = faultpath.audit(
     workers=0,
     progress=False,
 )
-print([path.name for path in run.record.paths])
+print([condition.name for condition in run.record.conditions])
 print("failed" in run.table().column("status").to_pylist() or bool(run.record.findings))
 print(sorted(name.rpartition("/")[2] for name in run.provenance.data))
 shipped = faultpath.load_system(example)
@@ -56,14 +56,14 @@ RUNS = {
 def test_its_fits_are_matched_and_audited(example: str, tmp_path: Path) -> None:
     """One process for all of it: half of the time goes into loading torch and Gymnasium."""
     pytest.importorskip("torch")
-    arguments, (*audited, weights), paths, modules = RUNS[example]
+    arguments, (*audited, weights), conditions, modules = RUNS[example]
     code = [sys.executable, "-c", FIT_AND_AUDIT, str(EXAMPLES / example), arguments]
     done = subprocess.run([*code, *audited, weights], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     fitted, *_, flown, wrong, data, shipped = done.stdout.splitlines()
     assert "matched in all but the repair (uncertainty training: " in fitted
     assert "not matched" not in fitted
-    assert flown == str(["correct", *paths, "shared"])
+    assert flown == str(["correct", *conditions, "shared"])
     assert wrong == "False"
     assert data == str(sorted(path.name for path in (tmp_path / weights).iterdir()))
     assert len(data.split(",")) == 4

@@ -22,7 +22,7 @@ TAIL = 3.0
 Percent = Callable[[Cell], float]
 
 SUCCESS: dict[tuple[str, str], float] = {
-    (cell.variant, cell.path): percent
+    (cell.variant, cell.condition): percent
     for cell, percent in (
         *zip(table_1.PREDICTORS, (68, 69, 70, 69), strict=True),
         *zip(table_1.WITH_TRUE_CLEARANCE, (73, 74), strict=True),
@@ -35,12 +35,12 @@ SUCCESS: dict[tuple[str, str], float] = {
             for of in product(table_3.ROWS, table_3.ENVIRONMENTS, table_3.LEVELS)
         ),
         *(
-            (table_4.cell(method, path), table_4.paper_rate(method, path))
-            for method, path in in_text.NINE
+            (table_4.cell(method, condition), table_4.paper_rate(method, condition))
+            for method, condition in in_text.NINE
         ),
         *(
-            (table_6.negative(method, path), table_6.paper_negative(method, path))
-            for method, path in product(("gru", "gru+dcc"), ("reconstruction-only", "shared"))
+            (table_6.negative(method, condition), table_6.paper_negative(method, condition))
+            for method, condition in product(("gru", "gru+dcc"), ("reconstruction-only", "shared"))
         ),
         *zip((in_text.noisy("wm-a", e) for e in in_text.ERRORS), (20, 73, 10), strict=True),
         *((in_text.noisy("wm-a+dcc", e), 66) for e in in_text.ERRORS),
@@ -99,7 +99,7 @@ MEDIANS: dict[Measurement, float] = {
 
 def as_published(cell: Cell, seed: int, scene: int) -> Status:
     """Let a cell win its first scenes, or some later ones, time out in the next and crash last."""
-    percent = SUCCESS.get((cell.variant, cell.path), 70)
+    percent = SUCCESS.get((cell.variant, cell.condition), 70)
     first = FIRST_WON.get(cell, 0)
     if first <= scene < first + percent:
         return Status.SUCCESS
@@ -121,7 +121,7 @@ def outcomes(ends: Ends, scenes: int = SCENES, slower_s: float = 1.4) -> Trials:
         if row.variant == "dki":
             made = replace(made, time_s=made.time_s + slower_s)
         lost = made.metrics["terminal_distance_m"] > 1
-        if (row.variant, row.condition) == (FARTHER.variant, FARTHER.path) and lost:
+        if (row.variant, row.condition) == (FARTHER.variant, FARTHER.condition) and lost:
             made = replace(made, metrics={**made.metrics, "terminal_distance_m": 2.5})
         return replace(row, outcome=made)
 

@@ -58,7 +58,7 @@ def test_what_was_saved_is_read_back(run: Path) -> None:
     assert len(results.measured(ERROR).values) > 0
     assert found == Reproduction.model_validate_json(found.model_dump_json())
     for cell in (NOMINAL, FAULTY):
-        outcomes = results.trials.outcomes("wm-a", cell.path, 0)
+        outcomes = results.trials.outcomes("wm-a", cell.condition, 0)
         assert {outcome.faulted_steps > 0 for outcome in outcomes} == {cell is FAULTY}
 
 

@@ -28,8 +28,8 @@ def won(wins: Callable[[Cell], int]) -> Ends:
 
 
 def trials(cells: Iterable[Cell], ends: Ends, scenes: Iterable[int] = range(SCENES)) -> Trials:
-    """Return a table with each variant, path and seed once."""
-    variants = {(c.variant, c.path, seed): c for c in cells for seed in c.seeds}
+    """Return a table with each variant, condition and seed once."""
+    variants = {(c.variant, c.condition, seed): c for c in cells for seed in c.seeds}
     rows = (
         Trial(*variant, i, "", _outcome(i, variant[-1], ends(cell, variant[-1], i)))
         for (variant, cell), i in product(variants.items(), scenes)

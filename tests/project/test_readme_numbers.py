@@ -52,7 +52,7 @@ def test_no_block_or_picture_is_stale(run: Callable[..., CompletedProcess[str]])
 def test_a_reference_record_follows_from_its_outcomes(folder: Path) -> None:
     record = record_of(folder.name)
     table = read_outcomes(folder / "outcomes.parquet")
-    again = decide(record.question, record.paths, table, findings=record.findings)
+    again = decide(record.question, record.conditions, table, findings=record.findings)
     assert numbers(again) == numbers(record)
 
 

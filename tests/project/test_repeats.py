@@ -67,4 +67,6 @@ def test_the_sample_is_the_same_each_time_and_has_every_version_and_condition() 
         _, study = repeats.planned(run)
     drawn = [at for at, _ in repeats.sample(run, study, before)]
     assert drawn == [at for at, _ in repeats.sample(run, study, dict(reversed(before.items())))]
-    assert {(at.variant, at.path) for at in drawn} == {(at.variant, at.path) for at in before}
+    assert {(at.variant, at.condition) for at in drawn} == {
+        (at.variant, at.condition) for at in before
+    }

@@ -6,7 +6,7 @@ import pytest
 import state_blocks as blocks
 from state_design import Design
 
-from faultpath.decisions.family import decide_paths
+from faultpath.decisions.family import decide_conditions
 
 
 def audit(scenes: int, alone: int, shared: int) -> dict:
@@ -17,7 +17,7 @@ def audit(scenes: int, alone: int, shared: int) -> dict:
         return won, lost
 
     success = {"correct": variants(0), "observer": variants(alone), "shared": variants(shared)}
-    family = decide_paths(success, rule="unconditional")
+    family = decide_conditions(success, rule="unconditional")
     effects = {
         n: [e.value, *(e.interval or (-100, 100)), e.sign] for n, e in family.effects.items()
     }

@@ -8,14 +8,14 @@ import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from pathlib import Path as FilePath
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from faultpath.decisions.decide import decide
-from faultpath.decisions.model import FaultedTap, Path
+from faultpath.decisions.model import Condition, FaultedTap
 from faultpath.decisions.question import Question
 from faultpath.interface import Interface, read_interface
 from faultpath.report.inputs import ReportInput
@@ -32,11 +32,11 @@ ARGUMENTS = [
     *("--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"),
     *("--disable-component-update", "--disable-sync"),
 ]
-ROOT = FilePath(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[2]
 HASH = "9d0c31f2" * 8
 NASTY = '<script>alert("x")</script> & 100 % of _it_'
 
-# Chance of success by path: (baseline, repair). They share one draw, so pairs are correlated.
+# Chance of success by condition: (baseline, repair). They share one draw, so pairs are correlated.
 CHANCES = {
     "correct": (0.69, 0.60),
     "predictor": (0.30, 0.33),
@@ -77,7 +77,7 @@ def make_input(
     chances: Mapping[str, tuple[float, float]] = CHANCES,
 ) -> ReportInput:
     """Build the audit; everything follows from the arguments. `lost`: every trial there failed."""
-    paths = _paths()
+    conditions = _conditions()
     rows = tuple(
         _lose(row) if row.condition == lost else row
         for row in _rows(seeds, n_scenes, void, chances)
@@ -94,7 +94,7 @@ def make_input(
         seeds=seeds,
     )
     outcomes = Trials.of(rows)
-    record = decide(question, paths, outcomes)
+    record = decide(question, conditions, outcomes)
     return ReportInput(
         record=record,
         provenance=_provenance(),
@@ -166,20 +166,20 @@ def _faulted(*readers: str) -> tuple[FaultedTap, ...]:
     )
 
 
-def _paths() -> tuple[Path, ...]:
+def _conditions() -> tuple[Condition, ...]:
     predictor = ("predictor.dynamics", "predictor.wind_map", "predictor.trim")
     head = ("reconstruction.head",)
     return (
-        _path("correct", "Correct inputs", ()),
-        _path("predictor", "Predictor only", predictor),
-        _path("reconstruction", "Reconstruction only", head),
-        _path("shared", "Shared fault", (*predictor, *head)),
+        _condition("correct", "Correct inputs", ()),
+        _condition("predictor", "Predictor only", predictor),
+        _condition("reconstruction", "Reconstruction only", head),
+        _condition("shared", "Shared fault", (*predictor, *head)),
     )
 
 
-def _path(name: str, title: str, readers: tuple[str, ...]) -> Path:
+def _condition(name: str, title: str, readers: tuple[str, ...]) -> Condition:
     faulted = _faulted(*readers)
-    return Path(
+    return Condition(
         name=name,
         title=title,
         readers=readers,
@@ -200,13 +200,15 @@ def _rows(
         for index in range(n_scenes):
             rng = np.random.default_rng([seed, index])
             hard = 0.8 * np.random.default_rng([99, index]).random() + 0.2 * rng.random()
-            for path, chances in law.items():
+            for condition, chances in law.items():
                 for variant, chance in zip((BASELINE, REPAIR), chances, strict=True):
-                    at = (seed, index, path, variant)
+                    at = (seed, index, condition, variant)
                     failed = void and at == (seeds[0], 17, "shared", REPAIR)
                     draw = hard + 0.11 * rng.standard_normal()
-                    outcome = _outcome(index, seed, draw < chance, failed, path != "correct", rng)
-                    yield Trial(variant, path, seed, index, TOPOLOGIES[index % 5], outcome)
+                    outcome = _outcome(
+                        index, seed, draw < chance, failed, condition != "correct", rng
+                    )
+                    yield Trial(variant, condition, seed, index, TOPOLOGIES[index % 5], outcome)
 
 
 def _outcome(

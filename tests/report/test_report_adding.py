@@ -31,8 +31,8 @@ def heard(one_seed: ReportInput) -> ReportInput:
     scene, seed = choose(one_seed.record, pairs_of(one_seed))[0]
     asked = one_seed.record.question
     signals = {
-        TrialAddress(variant, path, seed, scene): errors(*sizes)
-        for path, sizes in SIZES.items()
+        TrialAddress(variant, condition, seed, scene): errors(*sizes)
+        for condition, sizes in SIZES.items()
         for variant in (asked.baseline, asked.repair)
     }
     return replace(one_seed, signals=signals)
@@ -42,11 +42,11 @@ def pairs_of(source: ReportInput):
     return read_pairs(source.trials, source.record)
 
 
-def test_the_first_scene_shows_both_errors_and_their_sum_on_every_path(heard) -> None:
+def test_the_first_scene_shows_both_errors_and_their_sum_on_every_condition(heard) -> None:
     shown = adding(heard, pairs_of(heard))
     assert shown is not None
-    assert len(shown.paths) == len(SIZES)
-    for (one, other), (_, variants) in zip(SIZES.values(), shown.paths, strict=True):
+    assert len(shown.conditions) == len(SIZES)
+    for (one, other), (_, variants) in zip(SIZES.values(), shown.conditions, strict=True):
         for variant in variants:
             assert variant.sizes == pytest.approx((abs(one), abs(other), abs(one + other)))
     assert "under the shared fault" in shown.caption

@@ -98,7 +98,7 @@ def test_a_cell_leads_to_its_trial_and_the_address_brings_it_back(page: Page) ->
     grid = page.locator("[data-pairs] svg").nth(1)
     cell = grid.locator("a").nth(1).get_attribute("href")
     assert cell.startswith("#scene=")
-    assert cell.endswith("&path=predictor")
+    assert cell.endswith("&condition=predictor")
     grid.locator("a").nth(1).click()
     if page.viewport_size and page.viewport_size["width"] < 400:  # cells are less than 24 px there
         around = page.locator("#cells a")
@@ -111,12 +111,12 @@ def test_a_cell_leads_to_its_trial_and_the_address_brings_it_back(page: Page) ->
     scene = page.evaluate("decodeURIComponent(location.hash.slice(7).split('&')[0])")
     assert scene in page.locator("#viewer-scene option:checked").inner_text()
     chosen = page.locator("#viewer-across .chosen")
-    assert chosen.get_attribute("data-path") == "predictor"
+    assert chosen.get_attribute("data-condition") == "predictor"
     page.goto(page.url.partition("#")[0] + cell.replace("predictor", "shared") + "&t=0.20")
     expect(page.locator("#viewer-clock")).to_have_text("0.20 s")
-    assert chosen.get_attribute("data-path") == "shared"
+    assert chosen.get_attribute("data-condition") == "shared"
     page.goto(page.url.partition("#")[0] + "#scene=no&seed=%E0%A4%A")
-    assert chosen.get_attribute("data-path") == "shared"
+    assert chosen.get_attribute("data-condition") == "shared"
 
 
 def test_the_list_of_scenes_is_filtered_by_who_succeeds(page: Page) -> None:
@@ -168,7 +168,7 @@ def test_a_trial_that_was_not_recorded_shows_its_end_and_how_to_run_it_again(
         "replay",
         str(tmp_path / "a run"),
         "--scene=it's <here>",
-        "--path=shared",
+        "--condition=shared",
     ]
     dialog.get_by_role("button", name="Close").click()
     expect(dialog).not_to_be_visible()

@@ -13,16 +13,17 @@ from faultpath.report.inputs import ReportInput
 from faultpath.report.viewer import viewer_data
 from faultpath.trials import Status
 
-PATHS = ("correct", "predictor", "reconstruction", "shared")
+CONDITIONS = ("correct", "predictor", "reconstruction", "shared")
 LETTERS = {"b": (True, True), "r": (False, True), "l": (True, False), "n": (False, False)}
 """Who succeeds: both, only the repair, only the baseline, neither."""
 
 
 def scenes(source: ReportInput, *patterns: str, ends: Mapping[int, Status] = {}) -> list[Pair]:
-    """Return the pairs of scenes that went so on the four paths; `ends` is how failures ended."""
+    """Return the pairs of scenes that went so on the four conditions; `ends` is how failures
+    ended."""
 
     def went(pair: Pair) -> Pair:
-        baseline, repair = LETTERS[patterns[pair.index][PATHS.index(pair.path)]]
+        baseline, repair = LETTERS[patterns[pair.index][CONDITIONS.index(pair.condition)]]
         lost = ends.get(pair.index, Status.CRASH)
         trials = ((pair.baseline, baseline), (pair.repair, repair))
         one, two = (
@@ -39,7 +40,7 @@ def announcing(source: ReportInput, **signs: int) -> DecisionRecord:
     """Return the record as if it announced these signs, and what follows from them."""
     record = source.record
     effects = tuple(
-        effect.model_copy(update={"sign": signs.get(effect.path, 0), "rates": (50.0, 50.0)})
+        effect.model_copy(update={"sign": signs.get(effect.condition, 0), "rates": (50.0, 50.0)})
         for effect in record.effects
     )
     changes = tuple(
@@ -78,16 +79,16 @@ def test_a_reversal_is_shown_by_a_scene_that_has_both_sides(one_seed: ReportInpu
 
 
 @pytest.mark.parametrize(
-    ("signs", "path"),
+    ("signs", "condition"),
     [({"reconstruction": 1}, "reconstruction"), ({"reconstruction": 1, "shared": -1}, "shared")],
 )
-def test_the_path_that_is_shown_first_was_announced(
-    one_seed: ReportInput, signs: dict[str, int], path: str
+def test_the_condition_that_is_shown_first_was_announced(
+    one_seed: ReportInput, signs: dict[str, int], condition: str
 ) -> None:
     record, pairs = announcing(one_seed, **signs), scenes(one_seed, "bbrb", "bbrl", "bbbb")
     viewer = viewer_data(replace(one_seed, record=record), pairs)
     assert viewer is not None
-    assert unpack(viewer.packed)[0]["path"] == path
+    assert unpack(viewer.packed)[0]["condition"] == condition
 
 
 @pytest.mark.parametrize("sign", [0, 1])
@@ -105,7 +106,7 @@ def test_what_is_decided_at_the_floor_announces_nothing(one_seed: ReportInput, s
 
 def test_void_scenes_are_neither_shown_nor_counted(one_seed: ReportInput) -> None:
     pairs = scenes(one_seed, "bbrb", "bbrb", "bbbb", "bbbb")
-    dead = next(p for p in pairs if p.index == 0 and p.path == "shared")
+    dead = next(p for p in pairs if p.index == 0 and p.condition == "shared")
     assert dead.repair is not None
     died = replace(dead, repair=replace(dead.repair, status=Status.FAILED, error="no number"))
     voided = [died if p is dead else p for p in pairs]

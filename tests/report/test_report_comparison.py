@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
-from faultpath.decisions.model import Path as FaultPath
+from faultpath.decisions.model import Condition
 from faultpath.report.compared import Compared, differing, titles, together
 from faultpath.report.comparison import effects, facts_table, headline, page, sentences, shown
 from faultpath.report.inputs import ReportInput
@@ -28,10 +28,10 @@ def run(source: ReportInput, number: int, folder: str = "", **asked: object) -> 
     return Compared(number, folder or f"runs/{number}", replace(source, record=record))
 
 
-def signed(one: Compared, path: str, sign: int, **more: object) -> Compared:
+def signed(one: Compared, condition: str, sign: int, **more: object) -> Compared:
     changed = {"sign": sign, **more}
     told = tuple(
-        each.model_copy(update=changed) if each.path == path else each
+        each.model_copy(update=changed) if each.condition == condition else each
         for each in one.record.effects
     )
     return decided(one, effects=told)
@@ -147,18 +147,18 @@ def test_only_what_differs_is_told(one_seed: ReportInput) -> None:
     assert table.lines[at].entries[0].text == "2"
 
 
-def test_other_paths_are_blank_and_not_left_out(
+def test_other_conditions_are_blank_and_not_left_out(
     one_seed: ReportInput, make: Callable[..., ReportInput]
 ) -> None:
     lost = make(lost="predictor")
     first, second = run(lost, 1), run(one_seed, 2)
-    record, moved = second.record, {"path": "planner"}
-    planner = FaultPath(name="planner", title="Planner only", readers=(), baseline_readers=())
-    copied = [cell for cell in record.cells if cell.path == record.effects[1].path]
+    record, moved = second.record, {"condition": "planner"}
+    planner = Condition(name="planner", title="Planner only", readers=(), baseline_readers=())
+    copied = [cell for cell in record.cells if cell.condition == record.effects[1].condition]
     secondary = (*record.secondary, record.secondary[1].model_copy(update=moved))
     update = {
         "secondary": secondary,
-        "paths": (*record.paths, planner),
+        "conditions": (*record.conditions, planner),
         "effects": (*record.effects, record.effects[1].model_copy(update=moved)),
         "cells": (*record.cells, *(cell.model_copy(update=moved) for cell in copied)),
     }

@@ -77,13 +77,15 @@ def test_markdown_shows_any_text_as_it_is(name: str) -> None:
 def test_markdown_tables_hold_no_markup_of_a_user(name: str, one_seed: ReportInput) -> None:
     record = one_seed.record
     named = {"library": name, "fault": name, "system": name}
-    paths = tuple(path.model_copy(update={"title": name}) for path in record.paths)
+    conditions = tuple(
+        condition.model_copy(update={"title": name}) for condition in record.conditions
+    )
     question = record.question.model_copy(update=named)
     lines = (Line(label=name, entries=(Entry(text=name, published=name),)), Line(label=name))
     table = Table(name="table-9", title=name, columns=(name,), lines=lines, notes=(name,))
     claimed = ledger().model_copy(update={"library": name})
     for text in (
-        markdown_table(record.model_copy(update={"question": question, "paths": paths})),
+        markdown_table(record.model_copy(update={"question": question, "conditions": conditions})),
         table_markdown(table),
         ledger_markdown(claimed, "paper"),
     ):

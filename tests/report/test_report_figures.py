@@ -3,7 +3,7 @@
 import re
 from xml.etree import ElementTree
 
-from faultpath.decisions.model import PathBreakEven
+from faultpath.decisions.model import ConditionBreakEven
 from faultpath.decisions.pairs import read_pairs
 from faultpath.decisions.record import DecisionRecord
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, panel, shared_axis
@@ -59,8 +59,8 @@ def _panel(
         p_star=None, pieces=pieces, kind=kind, regions=regions, method="", estimand=""
     )
     curve = ((0.0, -10.0, -20.0, 0.0), (1.0, 10.0, 0.0, 20.0))
-    path = PathBreakEven(path="shared", result=result, curve=curve, words=words)
-    return frequency_panels(record.model_copy(update={"break_even": (path,)}))[0][0]
+    condition = ConditionBreakEven(condition="shared", result=result, curve=curve, words=words)
+    return frequency_panels(record.model_copy(update={"break_even": (condition,)}))[0][0]
 
 
 def test_the_curve_is_coloured_where_an_variant_is_decided(one_seed: ReportInput) -> None:

@@ -61,8 +61,8 @@ def test_a_cart_has_its_goal(
     folder = tmp_path / "my cart"
     opened.goto(write_report(flat, folder)[0].as_uri())
     opened.wait_for_selector("#viewer[data-ready]")
-    assert opened.locator(".v-goal").count() == len(source.record.paths)
-    assert opened.locator("#viewer text", has_text="goal").count() == len(source.record.paths)
+    assert opened.locator(".v-goal").count() == len(source.record.conditions)
+    assert opened.locator("#viewer text", has_text="goal").count() == len(source.record.conditions)
     opened.close()
 
 
@@ -87,7 +87,7 @@ def test_a_picture_moves_with_the_clock_and_lifts_its_pen(
     written = write_report(replace(source, signals=heard), tmp_path / "cart")
     opened.goto(f"{written[0].as_uri()}#scene={source.trials.scenes[0].id}&t=0")
     opened.wait_for_selector("#viewer[data-ready]")
-    line = opened.locator("#viewer-across .plan path.v-track").first
+    line = opened.locator("#viewer-across .plan condition.v-track").first
     began = line.get_attribute("d") or ""
     assert [began.count(letter) for letter in "ML"] == [2, 2]
     opened.locator("#viewer-time").fill("4")

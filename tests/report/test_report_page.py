@@ -58,26 +58,30 @@ def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
     pairs = read_pairs(source.trials, source.record)
     for effect in source.record.effects:
         for seed, (won, lost) in zip(source.record.question.seeds, effect.won, strict=True):
-            kinds = [p.kind for p in pairs if (p.path, p.seed) == (effect.path, seed)]
+            kinds = [p.kind for p in pairs if (p.condition, p.seed) == (effect.condition, seed)]
             assert kinds.count(PairKind.REPAIR_ONLY) == won
             assert kinds.count(PairKind.BASELINE_ONLY) == lost
-        kinds = [p.kind for p in pairs if p.path == effect.path]
+        kinds = [p.kind for p in pairs if p.condition == effect.condition]
         assert kinds.count(PairKind.VOID) == effect.void
-        scenes = {p.scene for p in pairs if p.path == effect.path and p.kind is not PairKind.VOID}
+        scenes = {
+            p.scene
+            for p in pairs
+            if p.condition == effect.condition and p.kind is not PairKind.VOID
+        }
         assert len(scenes) == effect.scenes
 
 
-def test_a_path_of_which_every_trial_failed_costs_the_others_nothing(
+def test_a_condition_of_which_every_trial_failed_costs_the_others_nothing(
     make: Callable[..., ReportInput],
 ) -> None:
     lost = "shared"
     source = make(void=False, n_scenes=40, lost=lost)
     page = Page(report_page(source))
-    assert f"40 of {40 * len(source.record.paths)} pairs are void." in page.text
+    assert f"40 of {40 * len(source.record.conditions)} pairs are void." in page.text
     assert "other pair" not in page.text
     assert page.text.count("no pair of trials is left to compare") == 2  # headline and finding
     pairs = read_pairs(source.trials, source.record)
-    assert PairKind.VOID not in {p.kind for p in pairs if p.path != lost}
+    assert PairKind.VOID not in {p.kind for p in pairs if p.condition != lost}
 
 
 def test_viewer_data_cannot_close_its_element(html: str) -> None:

@@ -4,19 +4,19 @@ import io
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path as FilePath
+from pathlib import Path
 
 import pytest
 from rich.console import Console
 
-from faultpath.decisions.model import Path
+from faultpath.decisions.model import Condition
 from faultpath.faults import Fault, Scale
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.taps import Fork, fork_panel, forks
 from faultpath.report.terminal import decision
 
-TOY = FilePath(__file__).resolve().parents[2] / "examples" / "toy.py"
+TOY = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
 IMPERATIVE = re.compile(r"\b(Ask|Do not|Don't|Choose|Prefer|Use|Take|Compare|Deploy|Keep)\b")
 EQUAL = dict.fromkeys(("correct", "predictor", "reconstruction", "shared"), (0.5, 0.5))
 
@@ -32,12 +32,12 @@ def states(fork: Fork) -> list[list[str]]:
     return [[f"{r.module}: {r.state}" for r in readers] for _, _, readers in fork.variants]
 
 
-def with_paths(source: ReportInput, change: Callable[[Path], Path]) -> ReportInput:
-    paths = tuple(map(change, source.record.paths))
-    return replace(source, record=source.record.model_copy(update={"paths": paths}))
+def with_conditions(source: ReportInput, change: Callable[[Condition], Condition]) -> ReportInput:
+    conditions = tuple(map(change, source.record.conditions))
+    return replace(source, record=source.record.model_copy(update={"conditions": conditions}))
 
 
-def test_each_path_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
+def test_each_condition_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
     told = {fork.title: fork for fork in forks(one_seed)}
     assert list(told) == ["Predictor only", "Reconstruction only", "Shared fault"]
     alone = ["predictor: correct readings", "reconstruction: wrong readings"]
@@ -88,14 +88,14 @@ def test_a_module_that_does_not_read_the_fault_is_grey_and_says_why(one_seed: Re
     variants = (baseline, repair.model_copy(update={"readers": kept}))
     blind = replace(one_seed, system=one_seed.system.model_copy(update={"variants": variants}))
 
-    def untouched(path: Path) -> Path:
+    def untouched(condition: Condition) -> Condition:
         update = {
-            "readers": tuple(c for c in path.readers if c in kept),
-            "faulted": tuple(tap for tap in path.faulted if tap.reader in kept),
+            "readers": tuple(c for c in condition.readers if c in kept),
+            "faulted": tuple(tap for tap in condition.faulted if tap.reader in kept),
         }
-        return path.model_copy(update=update)
+        return condition.model_copy(update=update)
 
-    blind = with_paths(blind, untouched)
+    blind = with_conditions(blind, untouched)
     (_, alone, shared) = forks(blind)
     assert states(alone)[1] == ["predictor: correct readings", "reconstruction: does not read it"]
     assert shared.everywhere
@@ -103,17 +103,17 @@ def test_a_module_that_does_not_read_the_fault_is_grey_and_says_why(one_seed: Re
 
 
 def test_receipts_decide_what_is_drawn_as_faulted(one_seed: ReportInput) -> None:
-    def silent(path: Path) -> Path:
-        taps = tuple(tap.model_copy(update={"altered_steps": 0}) for tap in path.faulted)
-        return path.model_copy(update={"faulted": taps[:3], "baseline_faulted": ()})
+    def silent(condition: Condition) -> Condition:
+        taps = tuple(tap.model_copy(update={"altered_steps": 0}) for tap in condition.faulted)
+        return condition.model_copy(update={"faulted": taps[:3], "baseline_faulted": ()})
 
-    shared = forks(with_paths(one_seed, silent))[-1]
+    shared = forks(with_conditions(one_seed, silent))[-1]
     assert not shared.everywhere
     assert states(shared) == [
         ["predictor: correct readings", "reconstruction: correct readings"],
         ["predictor: gets it unchanged", "reconstruction: correct readings"],
     ]
-    some = with_paths(one_seed, lambda p: p.model_copy(update={"faulted": p.faulted[:3]}))
+    some = with_conditions(one_seed, lambda p: p.model_copy(update={"faulted": p.faulted[:3]}))
     assert states(forks(some)[-1])[1][0] == "predictor: partly wrong"
 
 
@@ -127,12 +127,14 @@ def test_with_too_few_scenes_the_screen_says_so_and_asks_for_nothing(
     )
     said = screen(source)
     assert "Too few scenes" in said
-    assert said.count("too few scenes") == len(source.record.paths)
+    assert said.count("too few scenes") == len(source.record.conditions)
     assert "succeeds more often" not in said
     assert "What follows" not in said
     assert not IMPERATIVE.search(said)
 
 
-def test_without_a_pair_on_a_path_the_picture_says_so(make: Callable[..., ReportInput]) -> None:
+def test_without_a_pair_on_a_condition_the_picture_says_so(
+    make: Callable[..., ReportInput],
+) -> None:
     source = make(void=False, n_scenes=40, lost="shared")
     assert screen(source).count("no pair of trials to compare") == 1

@@ -19,7 +19,7 @@ def drawn(source: ReportInput, rng: np.random.Generator, sizes: int) -> list[Com
     for number in range(1, sizes + 1):
         told = []
         for effect in source.record.effects:
-            p = correct if effect.path == CORRECT else float(rng.random())
+            p = correct if effect.condition == CORRECT else float(rng.random())
             own = min(1.0, len(contrasts(source.record)) * p)
             sign = (1 if rng.random() < 0.5 else -1) if own <= 0.05 else 0
             changed = {"p_value": p, "corrected_p": own, "sign": sign}
@@ -49,7 +49,7 @@ def test_correct_inputs_that_are_the_same_trials_count_once(one_seed: ReportInpu
 
     def low(run: Compared) -> Compared:
         told = tuple(
-            each.model_copy(update={"p_value": lowest} if each.path == CORRECT else {})
+            each.model_copy(update={"p_value": lowest} if each.condition == CORRECT else {})
             for each in run.record.effects
         )
         record = run.record.model_copy(update={"effects": told})

@@ -12,13 +12,13 @@ from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import wording
 from faultpath.report.html import _finding, write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.report.tables import by_path, decided_for, markdown_table
+from faultpath.report.tables import by_condition, decided_for, markdown_table
 from faultpath.report.terminal import decision
 
 
 def _expected(record: DecisionRecord) -> dict[str, list[str]]:
     effects = record.effects
-    breaks = {b.path: wording.break_even(b.result) for b in record.break_even}
+    breaks = {b.condition: wording.break_even(b.result) for b in record.break_even}
     return {
         "gru (baseline)": [f"{e.rates[0]:.1f}" for e in effects],
         "gru-dcc (repair)": [f"{e.rates[1]:.1f}" for e in effects],
@@ -31,7 +31,7 @@ def _expected(record: DecisionRecord) -> dict[str, list[str]]:
         "80 % power, pp": [str(math.ceil(e.least_pp)) for e in effects],
         "Scenes": [str(e.scenes) for e in effects],
         "Void pairs": [str(e.void) for e in effects],
-        "Break-even, %": [breaks.get(e.path, "-") for e in effects],
+        "Break-even, %": [breaks.get(e.condition, "-") for e in effects],
     }
 
 
@@ -66,12 +66,12 @@ def test_markdown_has_the_numbers_of_the_record(source: ReportInput) -> None:
 
 def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportInput) -> None:
     record = one_seed.record
-    paths = tuple(
+    conditions = tuple(
         p.model_copy(update={"title": "[red]Shared[/]"}) if p.name == "shared" else p
-        for p in record.paths
+        for p in record.conditions
     )
     console = Console(file=io.StringIO(), width=160, force_terminal=False)
-    console.print(decision(record.model_copy(update={"paths": paths})))
+    console.print(decision(record.model_copy(update={"conditions": conditions})))
     text = console.file.getvalue().replace("−", "-")  # type: ignore[attr-defined] - a StringIO
     text = re.sub(" +", " ", text)
     assert "[red]Shared[/]" in text
@@ -97,7 +97,7 @@ def test_a_narrow_terminal_cuts_no_number(path: Path) -> None:
     with console.capture() as captured:
         console.print(decision(record))
     text = captured.get()
-    for row in by_path(record, ("break-even", "interval", "won"), "").lines:
+    for row in by_condition(record, ("break-even", "interval", "won"), "").lines:
         assert all(entry.text in text for entry in row.entries), text
 
 

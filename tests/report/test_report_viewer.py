@@ -27,7 +27,7 @@ def test_every_trial_is_there_to_the_centimetre(three_seeds: ReportInput) -> Non
     for scene in data["scenes"]:
         for pair in scene["pairs"]:
             for variant, variant in (("baseline", "gru"), ("repair", "gru-dcc")):
-                at = TrialAddress(variant, pair["path"], scene["seed"], scene["scene"])
+                at = TrialAddress(variant, pair["condition"], scene["seed"], scene["scene"])
                 place = pair[variant]["track"]
                 if place is None:
                     assert at not in traces
@@ -120,7 +120,7 @@ def test_signals_are_plotted_beside_what_they_are_compared_with(one_seed: Report
         {"title": "wind", "unit": "m/s", "lines": lines, "zero": False},
     ]
     shown = next(s for s in data["scenes"] if s["scene"] == scene)
-    trial = next(p for p in shown["pairs"] if p["path"] == "shared")["repair"]
+    trial = next(p for p in shown["pairs"] if p["condition"] == "shared")["repair"]
     assert trial["faulted"] == [[1, 3], [4, 5]]
     (_, _, place, low, level) = next(line for line in trial["lines"] if line[:2] == [1, 1])
     assert np.allclose(low + level * series[place], 1 + steps[:, 0] / 2, atol=1e-3)

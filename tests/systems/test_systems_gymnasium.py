@@ -257,7 +257,7 @@ def test_the_pendulums_repair_helps_against_the_isolated_fault_and_hurts_under_t
     )
     assert run.failed == 0
     assert run.record.findings == ()
-    effects = {effect.path: effect.value for effect in run.record.effects}
+    effects = {effect.condition: effect.value for effect in run.record.effects}
     assert effects["filter"] > 0 > effects["shared"]
-    metrics = {of.path: of.metrics["offset_m"] for of in run.record.secondary}
+    metrics = {of.condition: of.metrics["offset_m"] for of in run.record.secondary}
     assert metrics["filter"].value < 0 < metrics["shared"].value

@@ -40,7 +40,7 @@ def test_the_audit_that_a_template_suggests_shows_a_reversal(kind, tmp_path, mon
     name, *words = shlex.split(line.replace("--", ""))[2:]
     options = dict(zip(words[::2], words[1::2], strict=True))
     run = faultpath.audit(name, **options, scenes=16, workers=0, signals=False, progress=False)
-    decided = {each.path: each.sign for each in run.record.effects}
+    decided = {each.condition: each.sign for each in run.record.effects}
     assert decided["observer"] > 0 > decided["shared"]
 
 

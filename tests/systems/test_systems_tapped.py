@@ -177,8 +177,8 @@ def test_parts_inside_one_module_are_readers_of_their_own():
     made = system(fixed=drive(0.0), slow=drive(0.0, late=True))
     assert set(made.interface.channel("flux").readers) == {"observer.flux", "control.flux"}
     found = audit(made, baseline="fixed", repair="slow", fault="flux:scale=3", scenes=8)
-    paths = [path.name for path in found.record.paths]
-    assert paths == ["correct", "control", "observer", "shared"]
+    conditions = [condition.name for condition in found.record.conditions]
+    assert conditions == ["correct", "control", "observer", "shared"]
 
 
 def attempted(module, fault):

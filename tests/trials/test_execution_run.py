@@ -40,7 +40,7 @@ def _comparable(rows: tuple[Trial, ...]) -> list[tuple[object, ...]]:
 def test_rows_are_in_the_order_of_the_study_then_of_the_library(whole):
     result, _ = whole
     addresses = [(r.variant, r.condition, r.seed, r.outcome.scene) for r in result.trials]
-    assert addresses == [(r.variant, r.path, r.seed, s) for r in rows() for s in SCENES]
+    assert addresses == [(r.variant, r.condition, r.seed, s) for r in rows() for s in SCENES]
     assert result.blocks_computed == UNITS
     assert not result.failures
 
@@ -49,8 +49,8 @@ def test_the_fault_changes_what_it_should(whole):
     result, _ = whole
     table = result.trials
 
-    def distances(variant: str, path: str) -> list[float | None]:
-        return [o.metrics["distance"] for o in table.outcomes(variant, path, 0)]
+    def distances(variant: str, condition: str) -> list[float | None]:
+        return [o.metrics["distance"] for o in table.outcomes(variant, condition, 0)]
 
     assert distances("plain", "shared") == distances("plain", "planner")
     assert distances("plain", "shared") != distances("plain", "correct")
@@ -116,7 +116,7 @@ def test_every_row_brings_what_its_taps_did(whole):
     planner = TapCount("mass", "planner.thrust", every, faulted, faulted)
     struck = TapCount("mass", "observer.balance", every, faulted, faulted)
     spared = TapCount("mass", "observer.balance", every, 0, 0)
-    taps = {(row.variant, row.path, row.seed): row.taps for row in deliveries.rows}
+    taps = {(row.variant, row.condition, row.seed): row.taps for row in deliveries.rows}
     assert taps["observed", "planner", 1] == (planner, spared)
     assert taps["observed", "shared", 0] == (planner, struck)
     assert taps["plain", "shared", 0] == (planner,)
@@ -181,7 +181,10 @@ def _study_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Study:
 def test_an_audit_that_is_wrong_stops(tmp_path, variant, reader, error, workers):
     fault = FAULT.aimed_at(reader)
     row = Row(
-        variant=variant, path="p", seed=0, treatment=Treatment(variant=variant, faults=(fault,))
+        variant=variant,
+        condition="p",
+        seed=0,
+        treatment=Treatment(variant=variant, faults=(fault,)),
     )
     with pytest.raises(error, match=r"observer\.balance"):
         run_study(_study_of(row), tmp_path, workers=workers)
@@ -195,7 +198,7 @@ def test_an_audit_that_is_wrong_stops(tmp_path, variant, reader, error, workers)
         (study(()), "selects no scene"),
         (_study_of(rows()[0], rows()[0]), "two rows"),
         (
-            _study_of(Row(variant="x", path="p", seed=0, treatment=Treatment(variant="no"))),
+            _study_of(Row(variant="x", condition="p", seed=0, treatment=Treatment(variant="no"))),
             "no variant 'no'",
         ),
     ],

@@ -19,7 +19,9 @@ from faultpath.trials.store.tables import encode_shard
 
 
 def _manifest(name: str = "a", seed: int = 0, scenes: tuple[str, ...] = ("s0",)) -> Manifest:
-    row = Row(variant="v", path="correct", seed=seed, treatment=Treatment(variant="v", seed=seed))
+    row = Row(
+        variant="v", condition="correct", seed=seed, treatment=Treatment(variant="v", seed=seed)
+    )
     system = SystemSpec(name="quadrotor")
     study = Study(name=name, system=system, library="l", scenes=scenes, rows=(row,))
     return Manifest(faultpath_version="1", code=_code(), library_hash="h", study=study)

@@ -8,31 +8,33 @@ from faultpath.trials.plan import Row, Study, SystemSpec, Treatment
 SYSTEM = f"{Path(__file__).with_name('toy_system.py')}:create"
 SCENES = tuple(f"s{i:02d}" for i in range(10))
 FAULT = Fault(channel="mass", intervention=Scale(factor=0.6), onset_step=3)
-PATHS = {
+CONDITIONS = {
     "correct": (),
     "planner": (FAULT.aimed_at("planner.thrust"),),
     "shared": (FAULT.aimed_at("planner.thrust", "observer.balance"),),
 }
-UNITS = 2 * len(PATHS) * 2 * 3 - 2 * 3
-"""Variants, paths, seeds and blocks; `plain` has one treatment for two of the paths (see
+UNITS = 2 * len(CONDITIONS) * 2 * 3 - 2 * 3
+"""Variants, conditions, seeds and blocks; `plain` has one treatment for two of the conditions (see
 `rows`)."""
 
 
 def rows() -> tuple[Row, ...]:
-    """Every variant on every path; `plain` has no second reader, so `shared` is `planner`."""
+    """Every variant on every condition; `plain` has no second reader, so `shared` is `planner`."""
     return tuple(
         Row(
             variant=variant,
-            path=path,
+            condition=condition,
             seed=seed,
             treatment=Treatment(
                 variant=variant,
-                faults=PATHS["planner" if (variant, path) == ("plain", "shared") else path],
+                faults=CONDITIONS[
+                    "planner" if (variant, condition) == ("plain", "shared") else condition
+                ],
                 seed=seed,
             ),
         )
         for variant in ("plain", "observed")
-        for path in PATHS
+        for condition in CONDITIONS
         for seed in (0, 1)
     )
 
