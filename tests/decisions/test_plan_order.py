@@ -120,8 +120,8 @@ def test_wrong_errors_are_refused(text, said):
 UNSIZED = {"fault": "", "unsized": "declares none"}
 
 
-def candidate(name: str, readers: int, response: float | None = None, **more) -> Candidate:
-    readers = tuple(f"m{i}.x" for i in range(readers))
+def candidate(name: str, count: int, response: float | None = None, **more) -> Candidate:
+    readers = tuple(f"m{i}.x" for i in range(count))
     given = {"fault": f"{name}:scale=2"} | more
     same = {"sources": (name,), "channels": (name,), "readers": readers}
     return Candidate(name=name, response=response, **(same | given))
@@ -164,13 +164,13 @@ def test_the_recursion_takes_outputs_and_inputs_and_what_makes_them():
     toy = Declared()
     pair = [toy.variants[name] for name in ("calibrated", "blind")]
     assert makers(toy.interface, pair) == {"observer": ("observed_slope",)}
-    readers = {
+    readers_of = {
         "wind": ("planner.wind",),
         "drift": ("reconstruction.drift",),
         "imu": ("filter.imu", "planner.imu"),
         "goal": ("planner.goal",),
     }
-    every = [candidate(name, 0, readers=readers) for name, readers in readers.items()]
+    every = [candidate(name, 0, readers=readers) for name, readers in readers_of.items()]
     made_by = {"reconstruction": ("wind",), "filter": ("drift",), "other": ("nothing",)}
     assert recursion(every, made_by, ("planner", "reconstruction")) == {
         "wind": "output of reconstruction",

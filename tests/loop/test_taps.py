@@ -221,7 +221,7 @@ class TestGuard:
                 got = deliver(taps, torch.ones(2), step)
                 if step == 1:
                     got += 1.0
-            with pytest.raises(WrittenTo, match=re.escape("tap mass -> observer.model: the cons")):
+            with pytest.raises(WrittenTo, match=re.escape("tap mass -> observer.model: the read")):
                 taps.verify(2)
 
     @pytest.mark.parametrize("inference", [False, True])
