@@ -7,7 +7,6 @@ from faultpath.core.streams import generator
 from faultpath.decisions.family import decide_conditions
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.statistics.breakeven import break_even
-from faultpath.statistics.estimate import RULE
 from faultpath.statistics.power import detectable
 
 SUCCESS = {CORRECT: (0.59, 0.6), "observer": (0.6, 0.35), SHARED: (0.4, 0.6)}
@@ -40,10 +39,10 @@ def _tests(scenes: int) -> Side:
             condition: (repair[kept, None] * 1.0, baseline[kept, None] * 1.0)
             for condition, (repair, baseline) in outcomes.items()
         }
-        family = decide_conditions(success, rule=RULE)
+        family = decide_conditions(success)
         for effect in family.effects.values():
             assert effect.pairs is not None
-            detectable(effect.pairs, rule=RULE, on_top=True)
+            detectable(effect.pairs, graded=True, on_top=True)
         break_even(family.effects[CORRECT], family.effects[SHARED])
 
     return Side(work, scenes)

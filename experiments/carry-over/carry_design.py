@@ -115,7 +115,7 @@ class Design(Frozen):
 
         A capital is a bet against "this side is not ahead", and grows so far with a chance of at
         most its inverse, however often one looks. With two bets a cell, any wrong verdict among
-        the cells of a question on one path has a chance of at most `alpha`.
+        the cells of a question on one condition has a chance of at most `alpha`.
         """
         every = (q for levels, _ in self.settings() for q, _, _ in self.asked(levels))
         cells = Counter((q.baseline, q.repair) for q in every)
@@ -123,7 +123,7 @@ class Design(Frozen):
 
 
 class Cell(Frozen):
-    """Two arms in one setting under one fault, as they were flown."""
+    """Two variants in one setting under one fault, as they were flown."""
 
     levels: Levels
     baseline: str
@@ -165,6 +165,6 @@ class Flown(Frozen):
     """Options of the system that flew last, by which its code is known."""
     cells: tuple[Cell, ...]
     trials: int
-    """That the cells rest on; an arm of several cells counts once."""
+    """That the cells rest on; a variant of several cells counts once."""
     rounds: tuple[Round, ...]
     complete: bool

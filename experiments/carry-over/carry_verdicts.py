@@ -43,7 +43,7 @@ def lead(design: Design, cell: Cell) -> int:
 
 
 def reason(cell: Cell) -> str:
-    """Say what stands in the way of a decision: failed trials, or two arms at one end."""
+    """Say what stands in the way of a decision: failed trials, or two variants at one end."""
     if cell.void:
         return "void"
     rates = [letters.count("1") / len(letters) for letters in cell.ended if letters]
@@ -53,7 +53,7 @@ def reason(cell: Cell) -> str:
 
 
 def questions(flown: Flown) -> Iterator[tuple[Question, Reach, list[Cell]]]:
-    """Yield each question on each path, with its cells; none where nothing is shared."""
+    """Yield each question on each condition, with its cells; none where nothing is shared."""
     for question in flown.design.questions:
         for reach in get_args(Reach):
             key = (question.baseline, question.repair, reach)
@@ -222,7 +222,7 @@ def moved(moves: Sequence[Move]) -> str:
 
 
 def sentences(flown: Flown) -> list[str]:
-    """Return one paragraph a question and path: its verdict, and what changes it."""
+    """Return one paragraph a question and condition: its verdict, and what changes it."""
     every, paragraphs = moves(flown), list[str]()
     means = {(q.repair, q.baseline, reach): mean for q, reach, mean in overall(flown)}
     for question, reach, cells in questions(flown):

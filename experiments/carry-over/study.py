@@ -76,22 +76,25 @@ class Flight:
             )
             audit = plan_audit(self.system, self.spec, request, library)
             self.scenes = audit.study.scenes
-            for reach, path in (("isolated", question.isolated), ("shared", "shared")):
-                rows = [row for row in audit.study.rows if row.path == path]
-                named = [row.model_copy(update={"path": f"{fault} {path}"}) for row in rows]
-                arms = {"baseline": question.baseline, "repair": question.repair}
+            for reach, condition in (("isolated", question.isolated), ("shared", "shared")):
+                rows = [row for row in audit.study.rows if row.condition == condition]
+                named = [
+                    row.model_copy(update={"condition": f"{fault} {condition}"}) for row in rows
+                ]
+                variants = {"baseline": question.baseline, "repair": question.repair}
                 if rows:
                     self.rows.append(tuple(named))
-                    self.cells.append(Cell(levels=every, reach=reach, ended=("", ""), **arms))
+                    self.cells.append(Cell(levels=every, reach=reach, ended=("", ""), **variants))
                 elif reach == "isolated":
-                    raise UserError(f"{fault} does not reach {path}: name another module.")
+                    raise UserError(f"{fault} does not reach {condition}: name another module.")
 
     def trials(self, scenes: Callable[[Cell], int]) -> int:
-        """Return the trials behind the cells, if each takes so many scenes; an arm flies once."""
+        """Return the trials behind the cells, if each takes so many scenes; a treatment
+        runs once."""
         longest: dict[str, int] = {}
         for cell, rows in zip(self.cells, self.rows, strict=True):
-            for arm in (row.arm.key() for row in rows):
-                longest[arm] = max(longest.get(arm, 0), scenes(cell))
+            for treatment in (row.treatment.key() for row in rows):
+                longest[treatment] = max(longest.get(treatment, 0), scenes(cell))
         return sum(longest.values())
 
     def fly(
@@ -101,7 +104,7 @@ class Flight:
         design, waiting, rounds = self.design, list(range(len(self.cells))), list[Round]()
         place = folder / "flights" / self.name.replace(", ", "_").replace(" ", "-")
         for scenes in range(design.first, design.most + 1, design.look):
-            rows = {(row.variant, row.path): row for at in waiting for row in self.rows[at]}
+            rows = {(row.variant, row.condition): row for at in waiting for row in self.rows[at]}
             study = Study(
                 name=self.name,
                 system=self.spec,
@@ -132,12 +135,12 @@ class Flight:
 
 
 def _ended(cell: Cell, rows: Sequence[Row], result: RunResult, scenes: Sequence[str]) -> Cell:
-    groups = (Group(name, rows[0].path) for name in (cell.baseline, cell.repair))
+    groups = (Group(name, rows[0].condition) for name in (cell.baseline, cell.repair))
     pairs = pair(result.trials, *groups).whole()
     names = [scene.id for scene in pairs.scenes]
-    arms = [success[:, 0].astype(int) for success in pairs.ended(Status.SUCCESS)]
-    known = [dict(zip(names, arm, strict=True)) for arm in arms]
-    letters = tuple("".join(str(arm.get(scene, VOID)) for scene in scenes) for arm in known)
+    ends = [success[:, 0].astype(int) for success in pairs.ended(Status.SUCCESS)]
+    known = [dict(zip(names, end, strict=True)) for end in ends]
+    letters = tuple("".join(str(of.get(scene, VOID)) for scene in scenes) for of in known)
     return cell.model_copy(update={"ended": letters})
 
 

@@ -13,7 +13,7 @@ from faultpath import open_run
 def row(folder: str) -> dict:
     """Return what one audit came to; `until` is what it was to stop at."""
     record = open_run(folder).record
-    shares = {share.path: share.words for share in record.break_even}
+    shares = {share.condition: share.words for share in record.break_even}
     return {
         "repair": record.question.repair,
         "until": record.question.stop.when,

@@ -20,7 +20,7 @@ import latent_camera as camera
 
 from faultpath.faults import at_readers
 from faultpath.loop import Batch
-from faultpath.trials import Arm
+from faultpath.trials import Treatment
 from faultpath.trials.attempt import taps_of
 
 SCENE, ERROR = "selection/000", 0.85
@@ -41,7 +41,7 @@ def flown(variant: str, where: str) -> list[tuple[np.ndarray, float]]:
     if where:
         fault = system.fault(f"exposure:scale={ERROR}{where.removeprefix('shared')}")
         faults = at_readers(fault, readers)
-    taps = taps_of(system, Arm(variant=variant, faults=faults, seed=0), (SCENE,))
+    taps = taps_of(system, Treatment(variant=variant, faults=faults, seed=0), (SCENE,))
     loop = system.loop(variant, seed=0).execute(Batch((SCENE,), 0, system.control_dt_s), taps)
     states = [instant.state for instant in loop]
     pictures = [(states[0][1], ERROR if where == "shared" else 1.0)]

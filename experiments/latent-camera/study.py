@@ -2,8 +2,8 @@
 
     python experiments/latent-camera/study.py DESIGN.yaml --library selection --scenes 40
 
-Everything is kept in --out and the same command resumes: an arm that one repair needs is there for
-the next. Writes what was decided to `<design>-<library>.json` there.
+Everything is kept in --out and the same command resumes: a treatment that one repair needs is there
+for the next. Writes what was decided to `<design>-<library>.json` there.
 """
 
 import argparse
@@ -14,16 +14,25 @@ from pathlib import Path
 import yaml
 
 from faultpath.decisions.compared import compared
-from faultpath.decisions.family import Family, decide_paths
+from faultpath.decisions.family import Family, decide_conditions
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.faults import at_readers
-from faultpath.statistics.estimate import RULE
-from faultpath.trials import Arm, Group, Row, Status, Study, SystemSpec, Trials, load_system, pair
+from faultpath.trials import (
+    Group,
+    Row,
+    Status,
+    Study,
+    SystemSpec,
+    Treatment,
+    Trials,
+    load_system,
+    pair,
+)
 from faultpath.trials.execution.runner import run_study
 
 ROOT = Path(__file__).resolve().parents[2]
 OBSERVATION, GOAL = "observation", "goal"
-PATHS = (OBSERVATION, GOAL, SHARED)
+CONDITIONS = (OBSERVATION, GOAL, SHARED)
 
 
 @dataclass(frozen=True)
@@ -55,19 +64,21 @@ def _frozen(value):
 
 
 def study(design: Design, repair: str, library: str, scenes: tuple[str, ...]) -> Study:
-    """Return the arms of the baseline and one repair under every fault."""
+    """Return the treatments of the baseline and one repair under every fault."""
     system, rows = load_system(design.spec), []
     for seed in design.seeds:
         for variant in (design.baseline, repair):
             readers = system.variants[variant].readers
-            paths: dict[str, tuple] = {CORRECT: ()}
+            conditions: dict[str, tuple] = {CORRECT: ()}
             for name, text in design.faults.items():
-                for path in PATHS:
-                    fault = system.fault(text if path == SHARED else f"{text}@{path}")
-                    paths[f"{name}/{path}"] = at_readers(fault, readers)
-            for path, faults in paths.items():
-                arm = Arm(variant=variant, faults=faults, seed=seed)
-                rows.append(Row(variant=variant, path=path, seed=seed, arm=arm))
+                for condition in CONDITIONS:
+                    fault = system.fault(text if condition == SHARED else f"{text}@{condition}")
+                    conditions[f"{name}/{condition}"] = at_readers(fault, readers)
+            for condition, faults in conditions.items():
+                treatment = Treatment(variant=variant, faults=faults, seed=seed)
+                rows.append(
+                    Row(variant=variant, condition=condition, seed=seed, treatment=treatment)
+                )
     return Study(
         name="latent-camera",
         system=design.spec,
@@ -81,11 +92,13 @@ def decided(design: Design, repair: str, table: Trials) -> list[dict]:
     """Return the audit of a repair under each fault; a design errs in at most 5 %."""
     found = []
     for fault in design.faults:
-        paths = {CORRECT: CORRECT} | {path: f"{fault}/{path}" for path in PATHS}
-        outcomes = compared(repair, design.baseline, paths.values(), table).success
-        success = {name: outcomes[path] for name, path in paths.items()}
+        conditions = {CORRECT: CORRECT} | {
+            condition: f"{fault}/{condition}" for condition in CONDITIONS
+        }
+        outcomes = compared(repair, design.baseline, conditions.values(), table).success
+        success = {name: outcomes[condition] for name, condition in conditions.items()}
         alpha = 0.05 / (len(design.faults) * len(design.repairs))
-        family = decide_paths(success, rule=RULE, alpha=alpha)
+        family = decide_conditions(success, alpha=alpha)
         found.append({"fault": fault, "repair": repair, **_said(success, family)})
     return found
 
@@ -100,7 +113,7 @@ def cancelled(design: Design, table: Trials) -> list[dict]:
             Group(design.baseline, f"{fault}/{OBSERVATION}"),
         )
         success[fault] = both.whole().ended(Status.SUCCESS)
-    said = _said(success, decide_paths(success, rule=RULE))
+    said = _said(success, decide_conditions(success))
     return [
         {"fault": fault, "success": said["success"][fault], "effect": said["effects"][fault]}
         for fault in success
@@ -109,7 +122,10 @@ def cancelled(design: Design, table: Trials) -> list[dict]:
 
 def _said(success, family: Family) -> dict:
     return {
-        "success": {name: [float(arm.mean()) for arm in arms] for name, arms in success.items()},
+        "success": {
+            name: [float(treatment.mean()) for treatment in treatments]
+            for name, treatments in success.items()
+        },
         "effects": {
             name: [round(effect.value, 2), *(round(end, 2) for end in effect.interval), effect.sign]
             for name, effect in family.effects.items()

@@ -15,7 +15,7 @@ THERE = Path(__file__).parents[2] / "docs" / "reference" / "map-quadrotor"
 def trials(folder):
     """Return the trials of a run by variant, errors, scene and seed."""
     rows = parquet.read_table(folder / "outcomes.parquet").to_pylist()
-    return {(row["variant"], row["path"], row["scene"], row["seed"]): row for row in rows}
+    return {(row["variant"], row["condition"], row["scene"], row["seed"]): row for row in rows}
 
 
 def read(folder, name):

@@ -24,11 +24,11 @@ from faultpath.api.display import Display, SafeConsole
 from faultpath.api.systems import executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.decisions.compared import compared
-from faultpath.decisions.family import decide_paths
+from faultpath.decisions.family import decide_conditions
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.faults import Address, at_readers, encode_record
 from faultpath.faults.recorded import decode_record
-from faultpath.trials import Arm, Row, Study, Trials, library_of, load_system
+from faultpath.trials import Row, Study, Treatment, Trials, library_of, load_system
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import run_study
 from faultpath.trials.store.atomic import make_folder, write, write_text
@@ -97,10 +97,12 @@ def study_of(design: Design, system, scenes: Sequence[str], files: Files) -> Stu
             texts = {CORRECT: "", f"{fault}/{SHARED}": design.faults[fault]}
             texts |= {f"{fault}/{name}": f"{errors}@{at}" for name, at in design.modules.items()}
             readers = system.variants[variant].readers
-            for path, text in texts.items():
+            for condition, text in texts.items():
                 faults = at_readers(system.fault(text), readers) if text else ()
-                arm = Arm(variant=variant, faults=faults, seed=design.seed)
-                rows[variant, path] = Row(variant=variant, path=path, seed=design.seed, arm=arm)
+                treatment = Treatment(variant=variant, faults=faults, seed=design.seed)
+                rows[variant, condition] = Row(
+                    variant=variant, condition=condition, seed=design.seed, treatment=treatment
+                )
     return Study(
         name="state-errors",
         system=design.spec,
@@ -114,12 +116,14 @@ def decided(design: Design, table: Trials) -> tuple[Audit, ...]:
     """Return what is significant in each audit; all of them err in one of twenty studies."""
     audits = list[Audit]()
     for fault, repair in design.audits:
-        paths = {name: f"{fault}/{name}" for name in (SHARED, *design.modules)} | {CORRECT: CORRECT}
+        conditions = {name: f"{fault}/{name}" for name in (SHARED, *design.modules)} | {
+            CORRECT: CORRECT
+        }
         outcomes = compared(
-            design.repairs[repair][0], design.baseline, paths.values(), table
+            design.repairs[repair][0], design.baseline, conditions.values(), table
         ).success
-        success = {name: outcomes[path] for name, path in paths.items()}
-        family = decide_paths(success, rule="unconditional", alpha=0.05 / len(design.audits))
+        success = {name: outcomes[condition] for name, condition in conditions.items()}
+        family = decide_conditions(success, alpha=0.05 / len(design.audits))
         audits.append(
             Audit(
                 fault=fault,
@@ -170,7 +174,7 @@ def fly(
     make_folder(folder / "errors")
     files = recorded(design, chosen, folder / "errors", workers, show)
     study = study_of(design, system, chosen, files)
-    show.say(f"{len(study.arms()) * len(chosen)} trials.")
+    show.say(f"{len(study.treatments()) * len(chosen)} trials.")
     with executor_of(system, workers) as force, show.progress("Flying") as move:
         result = run_study(
             study, folder / "run", progress=move, notice=show.say, system=system, executor=force

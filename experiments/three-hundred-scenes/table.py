@@ -11,18 +11,18 @@ import pyarrow.parquet as parquet
 
 HERE = Path(__file__).parent
 AUDIT = HERE.parents[1] / "docs" / "reference" / "quadrotor-L3-confirmation"
-PATHS = {"correct": "Correct", "reconstruction": "Reconstruction only", "shared": "Shared"}
+CONDITIONS = {"correct": "Correct", "reconstruction": "Reconstruction only", "shared": "Shared"}
 
 
 def success(file):
-    """Return success [scenes, seeds] by variant and path."""
-    arms = {}
+    """Return success [scenes, seeds] by variant and condition."""
+    variants = {}
     for row in parquet.read_table(file).to_pylist():
-        where = arms.setdefault((row["variant"], row["path"]), {})
+        where = variants.setdefault((row["variant"], row["condition"]), {})
         where.setdefault(row["scene"], {})[row["seed"]] = row["status"] == "success"
     return {
         at: np.array([[ended[s] for s in sorted(ended)] for _, ended in sorted(scenes.items())])
-        for at, scenes in arms.items()
+        for at, scenes in variants.items()
     }
 
 
@@ -37,10 +37,14 @@ def shown(difference, stream):
 
 ours = success(AUDIT / "outcomes.parquet")
 ours |= {at: one for at, one in success(HERE / "dob.parquet").items() if at[0] == "dob"}
-print("| | " + " | ".join(PATHS.values()) + " |\n| :-- |" + " --: |" * len(PATHS))
+print("| | " + " | ".join(CONDITIONS.values()) + " |\n| :-- |" + " --: |" * len(CONDITIONS))
 for name in ("gru", "gru+dcc", "dob"):
-    print(f"| {name}, % | " + " | ".join(f"{100 * ours[name, p].mean():.1f}" for p in PATHS) + " |")
+    print(
+        f"| {name}, % | "
+        + " | ".join(f"{100 * ours[name, p].mean():.1f}" for p in CONDITIONS)
+        + " |"
+    )
 for one, two in (("gru+dcc", "gru"), ("dob", "gru"), ("dob", "gru+dcc")):
     stream = np.random.default_rng(0)
-    cells = [shown(ours[one, p].astype(float) - ours[two, p], stream) for p in PATHS]
+    cells = [shown(ours[one, p].astype(float) - ours[two, p], stream) for p in CONDITIONS]
     print(f"| {one} minus {two}, pp | " + " | ".join(cells) + " |")

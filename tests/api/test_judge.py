@@ -239,18 +239,6 @@ def test_a_damaged_file_is_one_sentence(name: str, data: bytes, says: str, tmp_p
         judged(tmp_path / name, tmp_path / "run")
 
 
-def test_the_same_results_keep_their_tests_and_others_take_todays(tmp_path: Path) -> None:
-    folder = tmp_path / "run"
-    fewer = {variant: won[:9] for variant, won in WON.items()}
-    judged(table(tmp_path / "all.csv", {"nominal": WON}), folder)
-    record = json.loads((folder / "record.json").read_text("utf-8"))
-    record["question"]["rule"] = "exact"
-    for variants, rule in ((WON, "exact"), (fewer, "graded")):
-        (folder / "record.json").write_text(json.dumps(record), "utf-8")
-        results = table(tmp_path / "all.csv", {"nominal": variants})
-        assert judged(results, folder).record.question.rule == rule
-
-
 @pytest.mark.parametrize("stored", ["", "{}", '{"format": 2}'])
 def test_an_earlier_result_that_cannot_be_read_is_not_taken_for_none(
     stored: str, tmp_path: Path

@@ -103,8 +103,7 @@ def run(
                 if how == "void" and variant == REPAIR and condition == over[-1]:
                     ends[0] = Status.FAILED
                 out += rows(variant, condition, ends, seed=seed, altered=0 if idle else None)
-    decided_by = "exact" if trained else "graded"
-    asked = question(n, seeds).model_copy(update={"trained": trained, "rule": decided_by})
+    asked = question(n, seeds).model_copy(update={"trained": trained})
     if rule:
         when, margin, most = RULES[rule]
         stop = StopRule(when=when, margin_pp=margin, order=(), order_seed=0, look=5, trials=8)
@@ -123,7 +122,7 @@ def sentences(made: DecisionRecord) -> Iterator[str]:
 def holm(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
     """Return p-values by Holm's procedure, weighted where the rule is."""
     primary = [isinstance(e, Effect) and e.condition == made.question.primary for e in tested]
-    weighted = made.question.rule != "exact" and any(primary)
+    weighted = any(primary)
     weights = [max(1, len(tested) - 1) if weighted and it else 1 for it in primary]
     order = sorted(range(len(tested)), key=lambda i: tested[i].p_value / weights[i])
     adjusted, worst = [0.0] * len(tested), 0.0

@@ -144,7 +144,7 @@ def test_what_follows_says_who_is_ahead_where_and_what_sharing_does() -> None:
 
 
 def test_an_interval_that_leaves_out_0_undetected_has_its_p_and_the_reason() -> None:
-    it = record({CORRECT: (50, 3, 3), "a": (40, 30, 2), "b": (50, 3, 3), SHARED: (60, 1, 8)})
+    it = record({CORRECT: (50, 3, 3), "a": (40, 30, 2), "b": (50, 3, 3), SHARED: (60, 1, 7)})
     shared = it.effects[-1]
     assert (shared.high or 0.0) < 0
     assert not shared.significant

@@ -31,7 +31,7 @@ def test_counts_make_the_effect_and_the_p_value(counts):
     assert effect.won == ((wins, losses),)
     assert effect.scenes == 100
     assert made.secondary[0].joint_successes == both
-    assert effect.p_value == pytest.approx(exact_p(wins, losses), rel=1e-9)
+    assert effect.mcnemar_p == pytest.approx(exact_p(wins, losses), rel=1e-9)
     low, high = effect.low, effect.high
     assert low <= effect.value <= high
     assert high - low > 2, "no interval is without width"
@@ -85,11 +85,11 @@ def test_break_even_follows_from_the_two_effects(correct, fault, p_star, signs):
     assert ((in_piece == touches) | near_end).all()
 
 
-@pytest.mark.parametrize(("n", "enough"), [(3, False), (7, False), (8, True)])
+@pytest.mark.parametrize(("n", "enough"), [(3, False), (6, False), (8, True)])
 def test_too_few_scenes_decide_nothing_and_the_number_that_would_is_known(n, enough):
     made = record({CORRECT: (0, n, 0), "a": (0, n, 0), "b": (0, n, 0), SHARED: (0, 0, n)}, n=n)
     assert made.hypotheses == 6
-    assert made.scenes_needed == 8  # 2 / 2^8 <= 0.05 / 6 < 2 / 2^7
+    assert made.scenes_needed == 7  # 2 / 2^7 <= 0.05 / 2 < 2 / 2^6
     assert all(effect.significant == enough for effect in made.effects)
     assert [change.turn for change in made.changes] == ["reversal" if enough else "none"] * 2
 
@@ -117,7 +117,7 @@ def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_conditions_noth
     assert correct.won[0][0] == 20
     assert observer.won[0][1] == 29
     assert observer.value == pytest.approx(100 * (10 - 29) / 99)
-    assert correct.p_value == pytest.approx(exact_p(20, 10))
+    assert correct.mcnemar_p == pytest.approx(exact_p(20, 10))
     cells = {(cell.variant, cell.condition): cell for cell in made.cells}
     assert cells[REPAIR, "observer"].failed == 1
     assert cells[REPAIR, "observer"].trials == 100
@@ -143,7 +143,7 @@ def test_several_seeds_are_averaged_within_each_scene():
     assert effect.value == pytest.approx((15 + 5) / 2)
     assert effect.won == ((20, 5), (10, 5))
     assert effect.scenes == 100
-    assert "sign test" in effect.test
+    assert "score of scenes" in effect.test
     assert len(effect.per_seed) == 2
 
 

@@ -55,7 +55,7 @@ def raises_on_its_failures(stream: np.random.Generator) -> tuple[Ends, Ends]:
 
 
 @pytest.mark.parametrize("case", [dies_in_hard_scenes, raises_on_its_failures])
-def test_an_variant_whose_bad_trials_fail_is_not_announced(case):
+def test_a_variant_whose_bad_trials_fail_is_not_announced(case):
     stream = np.random.default_rng(11)
     made = [audit(case(stream)) for _ in range(20)]
     assert sum("new is ahead" in each.headline for each in made) == 0

@@ -146,7 +146,7 @@ def effect(n: int, wins: int, losses: int) -> Contrast:
     """Return the tested difference of one seed with so many scenes won and lost."""
     scene = np.arange(n)
     variants = scene < wins, (scene >= wins) & (scene < wins + losses)
-    return with_test(success_effect(*variants, Resamples.draw("turn", n, n_resamples=10)), "exact")
+    return with_test(success_effect(*variants, Resamples.draw("turn", n, n_resamples=10)))
 
 
 N = 40

@@ -101,7 +101,7 @@ def test_a_design_with_an_unknown_level_is_refused(tmp_path):
         Design.read(tmp_path / "design.yaml")
 
 
-def test_what_is_stopped_resumes_and_an_variant_of_two_questions_flies_once(tmp_path, monkeypatch):
+def test_what_is_stopped_resumes_and_a_variant_of_two_questions_flies_once(tmp_path, monkeypatch):
     monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 3)
     monkeypatch.chdir(ROOT)
     asked = design(2).restricted({"planner": ("mppi",), "wind": ("L3",), "sign": ("+",)})

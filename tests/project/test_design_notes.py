@@ -104,7 +104,7 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("perception", "a code of # numbers", "faultpath_quadrotor.perception.clearance:CODE"),
     ("perception", "fixed groups of #", "faultpath_quadrotor.perception.clearance:_GROUP"),
     ("plant", "# kg, ", "faultpath_quadrotor.vehicle:NOMINAL_MASS_KG"),
-    ("plant", "# m variants", "faultpath_quadrotor.vehicle:ARM_LENGTH_M"),
+    ("plant", "# m arms", "faultpath_quadrotor.vehicle:ARM_LENGTH_M"),
     ("plant", "# N a motor", "faultpath_quadrotor.vehicle:MOTOR_THRUST_MAX_N"),
     ("plant", "thrust-to-weight #.", lambda: round(VehicleParameters().thrust_to_weight, 2)),
     ("plant", "ranges has #,", lightest),

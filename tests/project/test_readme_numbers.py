@@ -4,7 +4,6 @@ import os
 import re
 import subprocess
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -74,8 +73,7 @@ def plan(record: DecisionRecord) -> Audit:
     system = load_system(spec)
     same = {name: getattr(asked, name) for name in ("baseline", "repair", "fault", "seeds")}
     question = AuditQuestion(**same, scenes=asked.n_scenes)
-    audit = plan_audit(system, spec, question, system.library(asked.library))
-    return replace(audit, question=audit.question.by_the_rule_of(asked))
+    return plan_audit(system, spec, question, system.library(asked.library))
 
 
 def recipe(target: str, given: str = "") -> list[str]:

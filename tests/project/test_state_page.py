@@ -17,7 +17,7 @@ def audit(scenes: int, alone: int, shared: int) -> dict:
         return won, lost
 
     success = {"correct": variants(0), "observer": variants(alone), "shared": variants(shared)}
-    family = decide_conditions(success, rule="unconditional")
+    family = decide_conditions(success)
     effects = {
         n: [e.value, *(e.interval or (-100, 100)), e.sign] for n, e in family.effects.items()
     }

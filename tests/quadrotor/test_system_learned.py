@@ -13,7 +13,7 @@ LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
 pytestmark = pytest.mark.usefixtures("short")
 
 
-def test_an_variants_seed_chooses_the_training_of_what_its_variant_names():
+def test_a_variants_seed_chooses_the_training_of_what_its_variant_names():
     found = {each.name: each for each in setups(quadrotor(**LEARNED).options)}
     assert found["gru"].load_reconstruction(2) is reconstruction("gru", 2)
     assert found["gru"].load_predictor(2) is predictor("wm-a-wind", 0)

@@ -63,7 +63,7 @@ def _panel(
     return frequency_panels(record.model_copy(update={"break_even": (condition,)}))[0][0]
 
 
-def test_the_curve_is_coloured_where_an_variant_is_decided(one_seed: ReportInput) -> None:
+def test_the_curve_is_coloured_where_a_variant_is_decided(one_seed: ReportInput) -> None:
     record = one_seed.record
     regions = (Region(low=0.0, high=0.3, sign=-1), Region(low=0.7, high=1.0, sign=1))
     drawn = _panel(record, "a is ahead", ((0.3, 0.7),), *regions)

@@ -87,7 +87,7 @@ def test_a_picture_moves_with_the_clock_and_lifts_its_pen(
     written = write_report(replace(source, signals=heard), tmp_path / "cart")
     opened.goto(f"{written[0].as_uri()}#scene={source.trials.scenes[0].id}&t=0")
     opened.wait_for_selector("#viewer[data-ready]")
-    line = opened.locator("#viewer-across .plan condition.v-track").first
+    line = opened.locator("#viewer-across .plan path.v-track").first
     began = line.get_attribute("d") or ""
     assert [began.count(letter) for letter in "ML"] == [2, 2]
     opened.locator("#viewer-time").fill("4")

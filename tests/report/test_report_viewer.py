@@ -26,9 +26,9 @@ def test_every_trial_is_there_to_the_centimetre(three_seeds: ReportInput) -> Non
     traces, seen = traces_of(three_seeds.trials), 0
     for scene in data["scenes"]:
         for pair in scene["pairs"]:
-            for variant, variant in (("baseline", "gru"), ("repair", "gru-dcc")):
+            for role, variant in (("baseline", "gru"), ("repair", "gru-dcc")):
                 at = TrialAddress(variant, pair["condition"], scene["seed"], scene["scene"])
-                place = pair[variant]["track"]
+                place = pair[role]["track"]
                 if place is None:
                     assert at not in traces
                     continue

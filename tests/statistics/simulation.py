@@ -18,12 +18,11 @@ from faultpath.decisions.compared import Outcomes as Variants
 from faultpath.decisions.contrasts import alpha_shares
 from faultpath.decisions.family import Family, decide_conditions
 from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.statistics.estimate import ALPHA, RULE, RULES
+from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.power import detectable, detected, rule_power
-from faultpath.statistics.score import degrees_interval, degrees_rejects, reach
+from faultpath.statistics.score import degrees_interval, degrees_rejects
 
 Floats = NDArray[np.float64]
-PRIOR = RULES[RULE].prior
 RATES = (0.005, 0.02, 0.05, 0.1, 0.3, 0.5)
 LEANS = {0.0: "even", 0.5: "three to one", 1.0: "one-sided"}
 CONDITIONS = (CORRECT, "reconstruction", "predictor", SHARED)
@@ -115,11 +114,10 @@ def powered(seeds: int, scenes: int = 100, runs: int = 20_000) -> float:
     trials favour one variant and .6 % the other."""
     truth = Population(0.06, 0.8, seeds, 0.5)
     if seeds == 1:
-        return rule_power(scenes, truth.rate, truth.mean, rule=RULE)
+        return rule_power(scenes, truth.rate, truth.mean, graded=True)
     stream = generator("statistics", f"power {scenes} {truth}", 0)
     counts = stream.multinomial(scenes, truth.chances(), size=runs).astype(np.float64)
-    far = reach(truth.sizes, counts, 1.0, PRIOR)
-    return float(detected(truth.sizes, counts, far, ALPHA, RULE).mean())
+    return float(detected(truth.sizes, counts, ALPHA, graded=True).mean())
 
 
 def tables(n: int) -> Floats:
@@ -186,7 +184,7 @@ def equal_variants(scenes: int, truth: Population, together: float, runs: int = 
     stream = generator("statistics", f"equal variants {scenes} {truth} {together}", 0)
     conditions = dict.fromkeys(CONDITIONS, truth)
     audits = (audit_of(stream, scenes, conditions, together) for _ in range(runs))
-    return sum(announces(decide_conditions(variants, rule=RULE)) for variants in audits) / runs
+    return sum(announces(decide_conditions(variants)) for variants in audits) / runs
 
 
 def failing(
@@ -225,7 +223,7 @@ def reversals(
         variants = audit_of(stream, scenes, conditions, 0.3)
         if failed:
             variants = failing(stream, variants, dict.fromkeys(conditions, failed))
-        family = decide_conditions(variants, rule=RULE)
+        family = decide_conditions(variants)
         announced += "reversal" in family.turns.values()
     return announced / runs
 
@@ -239,7 +237,7 @@ def beside_failures(failed: float, runs: int = 600) -> float:
     significant = 0
     for _ in range(runs):
         variants = audit_of(stream, 60, conditions, 0.3)
-        family = decide_conditions(failing(stream, variants, {SHARED: failed}), rule=RULE)
+        family = decide_conditions(failing(stream, variants, {SHARED: failed}))
         significant += family.effects["reconstruction"].sign == 1
     return significant / runs
 
@@ -261,7 +259,7 @@ def trainings(
         easy = stream.random((scenes, 1))
         noise = stream.normal(0.0, 0.15, size=(2, scenes, seeds))
         variants = (easy + noise[0] < 0.5 + shift, easy + noise[1] < 0.5)
-        announced += announces(decide_conditions({CORRECT: variants}, rule=RULE, models=models))
+        announced += announces(decide_conditions({CORRECT: variants}, models=models))
     return announced / runs
 
 
@@ -272,16 +270,16 @@ def detection(scenes: int, truth: Population, alpha: float, runs: int = 20) -> f
     shares: list[float] = []
     for _ in range(runs):
         difference = truth.outcomes(stream.random((scenes, truth.seeds + 2)))
-        least = detectable(difference, rule=RULE, alpha=alpha)
+        least = detectable(difference, graded=True, alpha=alpha)
         if least is None:
             continue
         rate = max(truth.rate, least / 100.0)
         true = replace(truth, rate=rate, lean=min(1.0, least / 100.0 / rate))
         if truth.seeds == 1:
-            shares.append(rule_power(scenes, rate, least / 100.0, alpha, rule=RULE))
+            shares.append(rule_power(scenes, rate, least / 100.0, alpha, graded=True))
             continue
         counts = stream.multinomial(scenes, true.chances(), size=400).astype(np.float64)
-        shares.append(float(detected(true.sizes, counts, 1.0, alpha, RULE).mean()))
+        shares.append(float(detected(true.sizes, counts, alpha, graded=True).mean()))
     return float(np.mean(shares))
 
 
@@ -301,7 +299,6 @@ def any_look(scenes: int, truth: Population, together: float, runs: int = 150) -
                         condition: (one[:look], two[:look])
                         for condition, (one, two) in variants.items()
                     },
-                    rule=RULE,
                     primary=SHARED,
                     shares=shares,
                 )

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.core.streams import generator
-from faultpath.statistics.estimate import ALPHA, RULE
+from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.power import detected
 from faultpath.statistics.score import degrees_interval
 
@@ -54,7 +54,7 @@ class Skewed(NamedTuple):
         counts = stream.multinomial(self.scenes, self.chances, size=runs).astype(np.float64)
         values = np.arange(-self.seeds, self.seeds + 1) / self.seeds
         counts, times = np.unique(counts, axis=0, return_counts=True)
-        significant = times * detected(values, counts, np.ones(len(counts)), ALPHA, RULE)
+        significant = times * detected(values, counts, ALPHA, graded=True)
         first = float(significant[counts @ values > 0.0].sum()) / runs
         both = float(significant.sum()) / runs
         return both, max(first, both - first)

@@ -17,7 +17,7 @@ from faultpath.statistics.resamples import Resamples
 
 def effect(first, second):
     resamples = Resamples.draw("betting", len(first), n_resamples=1)
-    return with_test(success_effect(first, second, resamples, sequential=True), "exact")
+    return with_test(success_effect(first, second, resamples, sequential=True))
 
 
 def variants(wins: int, losses: int, n: int):
@@ -86,7 +86,7 @@ def test_swapping_the_variants_mirrors_and_copying_a_seed_changes_nothing(seed, 
 
 def test_each_contrast_stands_at_its_own_share():
     one, two = effect(*variants(9, 0, 40)), effect(*variants(0, 9, 40))
-    family = {"one": one, "two": two, "change": with_test(change(one, two), "exact")}
+    family = {"one": one, "two": two, "change": with_test(change(one, two))}
     shares = {"one": 0.5, "two": 0.1, "change": 0.1}
     decided = decide_family(family, 0.05, shares)
     for name, each in decided.items():

@@ -131,7 +131,7 @@ def test_a_resampled_mean_of_zero_is_exactly_zero():
 
 def test_resampled_it_has_the_percentile_interval_and_else_stays():
     first, second = np.arange(N) < 12, np.arange(N) < 5
-    found = with_test(success_effect(first, second, RESAMPLES), "exact")
+    found = with_test(success_effect(first, second, RESAMPLES))
     as_draws = found.resampled()
     assert as_draws.interval == percentile_interval(found.draws) != found.interval
     for name in ("value", "test", "won"):

@@ -35,7 +35,7 @@ def test_effects_and_changes_are_tested_by_the_signs_of_scenes():
         (one, first, "sign test on scene means"),
         (change(one, two), second - first, "sign test on scene differences"),
     ):
-        test = with_test(contrasted, "exact").test
+        test = with_test(contrasted).test
         sums = difference.sum(axis=1)
         wins, losses = int((sums > 0).sum()), int((sums < 0).sum())
         assert (test.name, test.leans) == (name, np.sign(wins - losses))
@@ -51,7 +51,7 @@ def test_interval_and_test_have_to_point_the_same_way():
     difference = np.zeros((N, 5), int)
     difference[:30, 0] = 1
     difference[30:] = -1
-    found = with_test(success_effect(difference > 0, difference < 0, RESAMPLES), "exact")
+    found = with_test(success_effect(difference > 0, difference < 0, RESAMPLES))
     assert found.test.rejects()
     assert found.test.leans == 1
     assert found.value < 0
@@ -66,7 +66,7 @@ def test_what_has_no_test_is_refused():
     metres = mean_effect(np.ones(N), np.zeros(N), RESAMPLES, "m")
     for untested in (metres, success_rate(np.ones(N), RESAMPLES)):
         with pytest.raises(ValueError, match="has no test"):
-            with_test(untested, "exact")
+            with_test(untested)
 
 
 @settings(deadline=None)
@@ -139,7 +139,7 @@ def test_newly_trained_models_are_tested_by_the_seeds_effects():
     rng = np.random.default_rng(3)
     first, second = rng.random((2, N, 4)) < [[[0.8]], [[0.4]]]
     effect = success_effect(first, second, RESAMPLES, models=True)
-    found = with_test(effect, "exact")
+    found = with_test(effect)
     assert found.test.name == "t test of the seeds' effects"
     assert found.test.p_value == pytest.approx(ttest_1samp(effect.per_seed, 0).pvalue)
     assert found.test.leans == 1
@@ -152,9 +152,9 @@ def test_trainings_that_agree_to_the_digit_are_not_certain():
     difference = np.zeros((N, 2))
     difference[:10] = 1
     effect = success_effect(difference, 0 * difference, RESAMPLES, models=True)
-    assert 0.005 < with_test(effect, "exact").test.p_value < 0.05
+    assert 0.005 < with_test(effect).test.p_value < 0.05
     none = success_effect(0 * difference, 0 * difference, RESAMPLES, models=True)
-    assert with_test(none, "exact").test.p_value == 1.0
+    assert with_test(none).test.p_value == 1.0
 
 
 def test_newly_trained_models_are_not_told_apart_by_six_single_wins():
@@ -162,9 +162,9 @@ def test_newly_trained_models_are_not_told_apart_by_six_single_wins():
     wins = np.zeros((100, 3))
     wins[np.arange(6), np.arange(6) % 3] = 1
     resamples = Resamples.draw("hundred", 100, n_resamples=2000)
-    found = with_test(success_effect(wins, 0 * wins, resamples, models=True), "exact")
+    found = with_test(success_effect(wins, 0 * wins, resamples, models=True))
     assert found.test.rejects()
     assert found.test.leans == 1
     assert found.detected == 0
     wins[:12] = 1
-    assert with_test(success_effect(wins, 0 * wins, resamples, models=True), "exact").detected == 1
+    assert with_test(success_effect(wins, 0 * wins, resamples, models=True)).detected == 1

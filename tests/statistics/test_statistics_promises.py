@@ -10,7 +10,6 @@ from simulation_skewed import skewed_coverage
 from faultpath.statistics import unconditional
 from faultpath.statistics.breakeven import break_even
 from faultpath.statistics.effects import success_effect
-from faultpath.statistics.estimate import RULE
 from faultpath.statistics.resamples import Resamples
 
 ALPHA = 0.05
@@ -48,7 +47,7 @@ def test_exact_coverage_is_that_of_the_intervals_themselves():
             chance /= float(np.prod(np.arange(1, count + 1)))
         scene = np.arange(6)
         variants = scene < first, (scene >= first) & (scene < first + second)
-        low, high = success_effect(*variants, resamples, rule=RULE).interval
+        low, high = success_effect(*variants, resamples, graded=True).interval
         expected += chance * (low <= 100 * population.mean <= high)
     assert simulated.interval_coverage(6, population) == pytest.approx(expected)
 
@@ -62,7 +61,7 @@ def test_break_even_coverage_is_that_of_the_sets_themselves():
     for _ in range(400):
         kinds = rng.choice(9, size=40, p=chances)
         ends = [
-            success_effect(difference > 0, difference < 0, resamples, rule=RULE)
+            success_effect(difference > 0, difference < 0, resamples, graded=True)
             for difference in (kinds // 3 - 1, kinds % 3 - 1)
         ]
         covered += any(low <= p <= high for low, high in break_even(*ends).pieces)

@@ -90,14 +90,14 @@ def test_mcnemar_p_values_of_table_6(row):
     first_only, second_only = split(row["counts"])
     assert round(sign_p_value(first_only, second_only), 3) == row["p"]
     assert first_only - second_only == row["success"][0] - row["success"][1]
-    found = with_test(widest([row["counts"]]), "exact")
+    found = with_test(widest([row["counts"]]))
     assert wording.won(found.won) == row["counts"]
     assert found.test.p_value == sign_p_value(first_only, second_only)
 
 
 def test_state_noise_cost_is_detected():
     row = PUBLISHED["state_noise"]
-    found = with_test(widest([row["counts"]]), "exact")
+    found = with_test(widest([row["counts"]]))
     assert found.test.rejects() is row["detected"]
     assert found.value == pytest.approx(row["success"][0] - row["success"][1])
 

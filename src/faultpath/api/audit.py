@@ -138,8 +138,8 @@ def carry_out(audit: Audit, job: Job) -> Run:
 def concluded(
     folder: Path, question: Question, conclude: Callable[[Question], DecisionRecord]
 ) -> DecisionRecord:
-    """Return what is concluded of a question, by the rule of the record that the folder holds of
-    these trials, if any, which stands in the new one: see `with_earlier_analyses`.
+    """Return what is concluded of a question; a record that the folder holds of these trials
+    stands in it: see `with_earlier_analyses`.
 
     `UserError` for a record that cannot be read: taken for none, earlier analyses would be lost.
     """
@@ -148,7 +148,7 @@ def concluded(
     before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
     if before.question.library_hash != question.library_hash:  # other results
         return conclude(question)
-    return with_earlier_analyses(conclude(question.by_the_rule_of(before.question)), (before,))
+    return with_earlier_analyses(conclude(question), (before,))
 
 
 def _kept_signals(folder: Path, result: RunResult) -> Signals:

@@ -10,7 +10,6 @@ from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.statistics.contrast import Contrast, change
 from faultpath.statistics.decisions import with_test
 from faultpath.statistics.effects import success_effect
-from faultpath.statistics.estimate import RuleName
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.resamples import Resamples
 
@@ -19,7 +18,6 @@ from faultpath.statistics.resamples import Resamples
 class Measure:
     """How success under one condition becomes a contrast."""
 
-    rule: RuleName
     models: bool
     sequential: bool
 
@@ -34,7 +32,7 @@ class Measure:
             resamples,
             models=self.models,
             sequential=self.sequential,
-            rule=self.rule,
+            graded=True,
         )
 
     def together(self, one: Outcomes, two: Outcomes) -> tuple[Contrast, Contrast] | None:
@@ -62,7 +60,7 @@ class Measure:
 
     def tested(self, contrasts: Iterator[tuple[str, Contrast]]) -> dict[str, Contrast]:
         """Return contrasts by name, each with its test."""
-        return {name: with_test(contrast, self.rule) for name, contrast in contrasts}
+        return {name: with_test(contrast) for name, contrast in contrasts}
 
 
 def default_primary(primary: str, conditions: Collection[str]) -> str:

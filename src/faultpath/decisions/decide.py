@@ -157,7 +157,7 @@ def _effect(
     # that stops where it has decided.
     level, least = effect.test.critical_p, None
     if level and question.generalise == "scenes" and question.stop is None:
-        least = detectable(effect.pairs, rule=question.rule, alpha=level, on_top=True)
+        least = detectable(effect.pairs, graded=True, alpha=level, on_top=True)
     return Effect(
         condition=condition,
         **_difference(effect),

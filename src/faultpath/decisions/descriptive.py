@@ -145,7 +145,7 @@ def _at_threshold(
         for metric, crash in zip(values, crashed, strict=True)
     )
     sequential = question.stop is not None
-    difference = success_effect(new, old, resamples, sequential=sequential, rule=question.rule)
+    difference = success_effect(new, old, resamples, sequential=sequential, graded=True)
     return AtThreshold(
         threshold=threshold,
         baseline_percent=percent(old.astype(np.float64)),

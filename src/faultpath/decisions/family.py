@@ -29,7 +29,7 @@ from faultpath.decisions.question import Question
 from faultpath.statistics import betting
 from faultpath.statistics.contrast import Contrast, ordered_sum
 from faultpath.statistics.decisions import Turn, decide_family, turn, with_test
-from faultpath.statistics.estimate import ALPHA, RULES, RuleName
+from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.power import fewest_scenes
 from faultpath.trials.question import FEWEST_TRAININGS
 from faultpath.trials.trials import Trials
@@ -96,7 +96,6 @@ def family_of(
             )
     family = decide_conditions(
         comparison.success,
-        rule=question.rule,
         primary=question.primary,
         models=question.generalise == "models",
         untested=untested,
@@ -108,7 +107,6 @@ def family_of(
 def decide_conditions(
     success: Mapping[str, Outcomes],
     *,
-    rule: RuleName,
     primary: str = "",
     models: bool = False,
     untested: Collection[str] = (),
@@ -132,11 +130,11 @@ def decide_conditions(
         condition: (np.asarray(one, np.float64), np.asarray(two, np.float64))
         for condition, (one, two) in success.items()
     }
-    measure = Measure(rule, models, shares is not None)
+    measure = Measure(models, shares is not None)
     tested = [condition for condition in success if condition not in untested]
     family = measure.tested(measure.contrasts(success, success, tested))
     parts = alpha_shares(tested, default_primary(primary, success))
-    weights = {name: parts[name] for name in family} if RULES[rule].weighted else None
+    weights = {name: parts[name] for name in family}
     decide: Decide = partial(decide_family, alpha=alpha, shares=shares, weights=weights)
     decided = decide(family)
     fills, unsettled = dict[str, tuple[Contrast, Contrast]](), list[str]()
@@ -160,7 +158,7 @@ def decide_conditions(
     }
     decided |= {name: _with_sign_0(decided[name]) for name in unsettled}
     effects = {
-        condition: decided.get(effect_name(condition)) or with_test(measure.effect(*pair), rule)
+        condition: decided.get(effect_name(condition)) or with_test(measure.effect(*pair))
         for condition, pair in success.items()
     }
     changes = {
@@ -169,10 +167,7 @@ def decide_conditions(
         if change_name(condition) in decided
     }
     lopsided = [condition for condition, pair in success.items() if uneven(pair)]
-    largest = (
-        max(weights.values()) / ordered_sum(weights.values()) if weights else 1.0 / len(family)
-    )
-    needed = fewest_scenes(alpha * largest)
+    needed = fewest_scenes(alpha * max(weights.values()) / ordered_sum(weights.values()))
     if shares is not None:
         needed = betting.fewest_scenes(alpha * max(shares.values()))
     return Family(

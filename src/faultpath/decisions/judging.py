@@ -14,7 +14,6 @@ from faultpath.decisions.judging_table import Address, Key, table_of, units_of
 from faultpath.decisions.model import AS_RUN, CORRECT, SHARED, Condition
 from faultpath.decisions.question import JudgedTrials, Question, resolve
 from faultpath.decisions.sentences.wording import capital, counted, where
-from faultpath.statistics.estimate import RULE
 from faultpath.trials import Library, SystemSpec, Trials
 from faultpath.trials.deliveries import unproven
 from faultpath.trials.outcome import Metric, Status
@@ -80,7 +79,6 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
         trained=request.generalise == "models",
         ends={Status.TIMEOUT.value: "no success"} if dull else {},
         metrics=_metrics(request),
-        rule=RULE,
         judged=JudgedTrials(pairing="hashes" if hashed else "keys", unit=request.cluster),
     )
     longer = [unit for unit, members in units.labels.items() if len(members) > len(units.seeds)]

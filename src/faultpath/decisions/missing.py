@@ -88,7 +88,7 @@ def repairs_needed(
         still = [np.where(part & ~ran(some), np.nan, 0.0) for part in lost]
         if not paired_scenes(*left).any() or uneven((still[0], still[1])):
             return False
-        contrast = with_test(measure.effect(*left), measure.rule)
+        contrast = with_test(measure.effect(*left))
         return decide({**decided, name: contrast})[name].sign == sign
 
     low, high = 0, len(places)

@@ -18,7 +18,6 @@ from faultpath.decisions.stopping import stops
 from faultpath.faults import Fault, at_readers, describe
 from faultpath.interface import module_of
 from faultpath.loop import TapCount
-from faultpath.statistics.estimate import RULE
 from faultpath.trials import (
     Deliveries,
     Library,
@@ -147,7 +146,6 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         metrics=dict(system.metrics),
         thresholds=tuple(sorted(set(request.thresholds))),
         stop=stop,
-        rule=RULE,
     )
     named = [study.name, str(request.fault), PurePath(library.name).stem]
     if request.stop_when is not None:

@@ -6,7 +6,7 @@ from pydantic import Field
 
 from faultpath.core.results import Frozen, Result
 from faultpath.faults import Fault
-from faultpath.statistics.estimate import RULES, RuleName
+from faultpath.statistics.estimate import TESTS
 from faultpath.trials import Library, SystemSpec
 from faultpath.trials.outcome import VEHICLE, Metric, MetricName
 from faultpath.trials.question import Asked, Generalise, StopWhen
@@ -93,9 +93,6 @@ class Question(Resolved):
     """Thresholds of that metric at which success is counted anew."""
     stop: StopRule | None = None
     """Rule of a sequential audit, of which `n_scenes` is the most that it takes."""
-    rule: RuleName = "exact"
-    """By which it is decided, then and ever after; records that do not say were by the first. A
-    sequential audit is decided by bets, whatever the rule."""
     judged: JudgedTrials | None = None
     """Facts about results that other tools wrote."""
 
@@ -107,13 +104,7 @@ class Question(Resolved):
     @property
     def tests(self) -> str:
         """How effects are tested and adjusted, in words; empty for a sequential audit."""
-        return "" if self.stop else RULES[self.rule].tests
-
-    def by_the_rule_of(self, earlier: "Question") -> "Question":
-        """Return the question by the rule that answered it before: none is answered by two."""
-        if self.stop or earlier.stop:
-            return self
-        return self.model_copy(update={"rule": earlier.rule})
+        return "" if self.stop else TESTS
 
 
 class EarlierLook(Result):
@@ -123,4 +114,3 @@ class EarlierLook(Result):
     """`None` of a sequential audit, which allows for its number."""
     primary: str
     generalise: str = "scenes"
-    rule: RuleName = "exact"

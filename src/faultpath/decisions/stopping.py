@@ -68,7 +68,6 @@ def with_earlier_analyses(
             scenes=None if question.stop else question.n_scenes,
             primary=question.primary,
             generalise="scenes" if question.stop else question.generalise,
-            rule="exact" if question.stop else question.rule,
         )
 
     known: list[EarlierLook] = []

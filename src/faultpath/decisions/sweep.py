@@ -5,7 +5,7 @@ from collections.abc import Collection, Sequence
 from faultpath.decisions.contrasts import alpha_shares, change_name, effect_name
 from faultpath.decisions.record import DecisionRecord
 from faultpath.statistics.decisions import holm
-from faultpath.statistics.estimate import ALPHA, RULES, Sign
+from faultpath.statistics.estimate import ALPHA, Sign
 
 
 def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
@@ -15,8 +15,7 @@ def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
     p_values |= {change_name(change.isolated): change.p_value for change in record.changes}
     question = record.question
     parts = alpha_shares([effect.condition for effect in tested], question.primary)
-    weighted = RULES[question.rule].weighted or question.stop is not None
-    return {name: (p, parts[name] if weighted else 1.0) for name, p in p_values.items()}
+    return {name: (p, parts[name]) for name, p in p_values.items()}
 
 
 def decide_sizes(

@@ -182,27 +182,27 @@ def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[s
     shares = record.break_even_beta if beta else record.break_even
     noun = "beta" if beta else "frequency"
     over = "faults that are common cause" if beta else "episodes with the fault"
-    with_curve = [condition for condition in shares if condition.curve]
+    with_curve = [share for share in shares if share.curve]
     vertical = covering(
-        (v for condition in with_curve for _, *ends in condition.curve for v in ends), 0.06, 10
+        (v for share in with_curve for _, *ends in share.curve for v in ends), 0.06, 10
     )
     panels: list[tuple[str, str]] = []
-    for condition in with_curve:
-        title, result = titles.get(condition.condition, condition.condition), condition.result
-        words = f"{condition.words or f'No {noun} is significant'}."
+    for share in with_curve:
+        title, result = titles.get(share.condition, share.condition), share.result
+        words = f"{share.words or f'No {noun} is significant'}."
         svg = Svg(290, 248, f"{title}: expected success difference, share of {over}", words)
         svg.text(0, 14, title, "head", room=285)
         svg.text(0, 32, "expected difference in success, pp", "small soft")
         x, y = Axis(0.0, 100.0, 34, 280), vertical.at(208, 42)
         draw_axes(svg, x, y, 5, (0, 25, 50, 75, 100))
         svg.text(x(50), y.start + 34, f"share of {over}, %", "small soft", "middle")
-        upper = [(x(100 * p), y(high)) for p, _, _, high in condition.curve]
-        lower = [(x(100 * p), y(low)) for p, _, low, _ in condition.curve]
+        upper = [(x(100 * p), y(high)) for p, _, _, high in share.curve]
+        lower = [(x(100 * p), y(low)) for p, _, low, _ in share.curve]
         svg.polygon([*upper, *reversed(lower)], "fan")
         sides = {1: "curve repair", -1: "curve baseline"}
-        pieces = [(low, high, "curve") for low, high in result.pieces if condition.words]
-        pieces += [(r.low, r.high, sides[r.sign]) for r in result.regions if condition.words]
-        first, last = condition.curve[0][1], condition.curve[-1][1]
+        pieces = [(low, high, "curve") for low, high in result.pieces if share.words]
+        pieces += [(r.low, r.high, sides[r.sign]) for r in result.regions if share.words]
+        first, last = share.curve[0][1], share.curve[-1][1]
         for low, high, cls in pieces or [(0.0, 1.0, "curve")]:
             line = [(x(100 * p), y((1 - p) * first + p * last)) for p in (low, high)]
             svg.polyline(line, cls)

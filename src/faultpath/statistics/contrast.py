@@ -166,7 +166,7 @@ class Contrast:
         None where no difference would, or where 0 is not what it is set against.
         """
         if self.pairs is not None:
-            return detectable(self.pairs, rule="exact")
+            return detectable(self.pairs)
         if not (self.against_zero and self.enough and self.interval):
             return None
         half_width = normal_quantile(0.975)  # of a 95 % interval, in standard errors

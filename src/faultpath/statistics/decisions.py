@@ -6,32 +6,31 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from faultpath.statistics import betting, score, signflip, unconditional
+from faultpath.statistics import betting, score, unconditional
 from faultpath.statistics.contrast import Contrast, ordered_sum
 from faultpath.statistics.distributions import sign_p_value, t_p_value
 from faultpath.statistics.estimate import (
     ALPHA,
     DEGREES,
     EM,
-    FLIPS,
     SCENES_AND_SEEDS,
     PairedTest,
-    RuleName,
 )
 
 Turn: TypeAlias = Literal["reversal", "interaction", "none"]
 
 
-def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
+def with_test(contrast: Contrast) -> Contrast:
     """Return a contrast with its test: the one place where that is chosen.
 
-    For given models and one seed: the E+M test, or by the ``exact`` rule McNemar's. Else, of what
-    scenes differ by: the test of degrees (`score`), or by earlier rules sign flips with the score,
-    and the sign test. For newly trained models: the t test of the seeds' effects. For a sequential
-    audit: bets on the mean. ``ValueError`` for contrasts that have no test, as those of unbounded
-    outcomes.
+    For given models and one seed: the E+M test, or where its scenes are not graded McNemar's. Else,
+    of what scenes differ by: the test of degrees (`score`), or the sign test. For newly trained
+    models: the t test of the seeds' effects. For a sequential audit: bets on the mean.
+    ``ValueError`` for contrasts that have no test, as those of unbounded outcomes.
     """
     scenes, seeds, ahead = contrast.scenes, contrast.n_seeds, contrast.value
+    one_seed = contrast.pairs is not None and seeds == 1
+    first, second = contrast.ahead
     if contrast.estimand == SCENES_AND_SEEDS:
         name = "t test of the seeds' effects"
         p = t_p_value(np.asarray(contrast.per_seed), contrast.rounding)
@@ -40,22 +39,16 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
     elif scenes.sequential:
         name = "bets on the mean"
         p, ahead = betting.p_value(*scenes.kinds(), scenes.bound)
-    elif scenes.graded and (contrast.pairs is None or seeds > 1):
+    elif scenes.graded and one_seed:
+        name = EM + unconditional.approximation(contrast.n_scenes)
+        p, ahead = unconditional.p_value(first, second, contrast.n_scenes), first - second
+    elif scenes.graded:
         name = DEGREES + unconditional.approximation(contrast.n_scenes)
         p = score.degrees_p_value(*scenes.kinds(), scenes.bound)
-    elif rule != "exact" and (contrast.pairs is None or seeds > 1):
-        name = FLIPS
-        p = max(signflip.p_value(scenes.values, seeds), score.p_value(*scenes.kinds(), scenes.far))
     else:
-        first, second = contrast.ahead
-        ahead = first - second
-        if rule != "exact":
-            name = EM + unconditional.approximation(contrast.n_scenes)
-            p = unconditional.p_value(first, second, contrast.n_scenes)
-        else:
-            name = "exact McNemar" if seeds == 1 else "sign test on scene means"
-            name = "sign test on scene differences" if contrast.pairs is None else name
-            p = sign_p_value(first, second)
+        name = "exact McNemar" if one_seed else "sign test on scene means"
+        name = "sign test on scene differences" if contrast.pairs is None else name
+        p, ahead = sign_p_value(first, second), first - second
     leans = 1 if ahead > 0 else -1 if ahead < 0 else 0
     return replace(contrast, test=PairedTest(name, p, leans))
 

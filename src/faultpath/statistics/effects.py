@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from faultpath.statistics.contrast import Contrast
-from faultpath.statistics.estimate import RULES, SCENES, SCENES_AND_SEEDS, RuleName
+from faultpath.statistics.estimate import SCENES, SCENES_AND_SEEDS
 from faultpath.statistics.inputs import Floats, Numbers, by_scene_and_seed, paired
 from faultpath.statistics.resamples import Resamples, quantiles
 from faultpath.statistics.score import SceneValues
@@ -22,7 +22,7 @@ def success_effect(
     *,
     models: bool = False,
     sequential: bool = False,
-    rule: RuleName = "exact",
+    graded: bool = False,
 ) -> Contrast:
     """Return the difference in success in percentage points, from binary [scenes, seeds].
 
@@ -30,7 +30,8 @@ def success_effect(
     mean over the seeds that it has, and scenes without any do not count. ``resamples`` are of those
     that do. ``models`` speaks of newly trained ones as well, of which each seed is one.
     ``sequential`` says that the number of scenes was not fixed beforehand: its interval and test
-    hold at whatever scene one stops. A ``rule`` says how far the unseen may lie, of several seeds.
+    hold at whatever scene one stops. ``graded`` takes the test by which audits are decided, and its
+    interval, in the place of the paper's.
     """
     one, two = paired(first, second, binary=True)
     pairs = one - two
@@ -41,7 +42,7 @@ def success_effect(
         pairs = pairs[:, ~np.isnan(pairs).all(axis=0)]
     # Summed first, so that wins and losses of a scene cancel exactly.
     values = seed_sums(pairs) / pairs.shape[1]
-    scenes = SceneValues.paired(values, 1.0, 100.0, sequential, RULES[rule])
+    scenes = SceneValues.paired(values, 1.0, 100.0, sequential, graded)
     return replace(_mean(pairs, resamples, "pp", scenes, models), pairs=pairs)
 
 

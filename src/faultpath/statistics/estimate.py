@@ -96,30 +96,9 @@ class BreakEven(Frozen, allow_inf_nan=False):
     estimand: str
 
 
-RuleName: TypeAlias = Literal["exact", "unconditional", "graded"]
-
-
-class DecisionRule(NamedTuple):
-    """How effects are tested and adjusted for each other."""
-
-    tests: str
-    """In words."""
-    weighted: bool
-    """Whether half of the error rate is the primary contrast's, and the others share the rest."""
-    prior: float
-    """For `score.reach`: scenes of the largest possible difference that several seeds are given."""
-    graded: bool = False
-    """Whether several seeds and changes take the test of degrees (`score`)."""
-
-
-RULES: dict[RuleName, DecisionRule] = {
-    "exact": DecisionRule("exact McNemar or sign test and Holm", False, 3.0),
-    "unconditional": DecisionRule("E+M, sign flips and weighted Holm", True, 12.0),
-    "graded": DecisionRule("E+M test and weighted Holm", True, 12.0, graded=True),
-}
-RULE: RuleName = "graded"
-"""By which audits are decided; the others decided earlier ones, and still do."""
+TESTS = "E+M test and weighted Holm"
+"""How the effects of an audit are tested and adjusted, in words."""
 EM = "E+M (Lloyd)"
 """Name of the test of one seed."""
-DEGREES, FLIPS = "E+M and score of scenes", "sign flips and score of scenes"
-"""Names of that of several seeds, and of changes, by this rule and the one before."""
+DEGREES = "E+M and score of scenes"
+"""Name of that of several seeds, and of changes."""

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.core.streams import generator
-from faultpath.statistics import signflip, unconditional
+from faultpath.statistics import unconditional
 from faultpath.statistics.distributions import binomial_cdf, binomial_pmf, likely
-from faultpath.statistics.estimate import ALPHA, RULES, RuleName
+from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.inputs import Floats, Numbers, by_scene_and_seed
 from faultpath.statistics.score import degrees_rejects, quantile, reach, rejects
 
@@ -41,7 +41,7 @@ def rule_power(
     difference: float,
     alpha: float = ALPHA,
     *,
-    rule: RuleName,
+    graded: bool = False,
 ) -> float:
     """Return the exact power of one seed's test at ``alpha`` together with Tango's 95 % interval.
 
@@ -58,7 +58,7 @@ def rule_power(
         return 0.0
     first, last = likely(n_scenes, discordant_rate, discordant_rate)
     discordants = np.arange(first, last + 1)
-    critical = _critical(n_scenes, alpha, rule)[discordants]
+    critical = _critical(n_scenes, alpha, graded)[discordants]
     favour = 0.5 * (1.0 + abs(difference) / discordant_rate)
     detects = binomial_cdf(critical, discordants, favour)
     detects = detects + binomial_cdf(critical, discordants, 1.0 - favour)
@@ -66,13 +66,10 @@ def rule_power(
 
 
 @lru_cache(maxsize=64)
-def _critical(n_scenes: int, alpha: float, rule: RuleName) -> NDArray[np.int64]:
+def _critical(n_scenes: int, alpha: float, graded: bool) -> NDArray[np.int64]:
     """Return per number of discordants the largest smaller count that detects; -1: none does."""
     total = np.arange(n_scenes + 1)
-    if rule == "exact":
-        tested = _sign_critical(total, alpha)
-    else:
-        tested = unconditional.critical(n_scenes, alpha)[1]
+    tested = unconditional.critical(n_scenes, alpha)[1] if graded else _sign_critical(total, alpha)
     # Tango's statistic of no difference is (first - second)^2 / discordants.
     excluded = np.ceil((total - quantile(LEVEL) * np.sqrt(total)) / 2.0) - 1.0
     return np.minimum(tested, np.maximum(excluded, -1.0).astype(np.int64))
@@ -96,7 +93,7 @@ def _sign_critical(total: NDArray[np.int64], alpha: float) -> NDArray[np.int64]:
 
 
 def simulated_power(
-    n_scenes: int, seeds: int, rate: float, lean: float, alike: float, alpha: float, rule: RuleName
+    n_scenes: int, seeds: int, rate: float, lean: float, alike: float, alpha: float, graded: bool
 ) -> float:
     """Return the power of several seeds' test and score interval, from `AUDITS` simulated audits.
 
@@ -114,34 +111,30 @@ def simulated_power(
     values, chances = np.arange(-seeds, seeds + 1) / seeds, np.maximum(chances, 0.0) / chances.sum()
     stream = generator("detectable", "", n_scenes)
     counts = stream.multinomial(n_scenes, chances, size=AUDITS).astype(np.float64)
-    far = reach(values, counts, 1.0, RULES[rule].prior)
-    return float(detected(values, counts, far, alpha, rule).mean())
+    return float(detected(values, counts, alpha, graded).mean())
 
 
 def detected(
-    values: Floats, counts: Floats, far: Floats, alpha: float, rule: RuleName
+    values: Floats, counts: Floats, alpha: float, graded: bool = False
 ) -> NDArray[np.bool_]:
     """Return [audits]: whether test and interval of several seeds agree.
 
     ``counts`` [audits, values] says how many scenes differ by each of ``values``.
     """
-    if RULES[rule].graded:
+    if graded:
         return degrees_rejects(values, counts, 1.0, alpha)
-    if rule != "exact":
-        beyond = rejects(values, counts, 0.0, far, quantile(max(LEVEL, 1.0 - alpha)))
-        beyond[beyond] = signflip.p_values(values, counts[beyond]) <= alpha
-        return beyond
     first = counts[:, values > 0].sum(axis=1)
     second = counts[:, values < 0].sum(axis=1)
     tested = 2.0 * binomial_cdf(np.minimum(first, second), first + second, 0.5) <= alpha
     same = np.sign(counts @ values) == np.sign(first - second)
+    far = reach(values, counts, 1.0)
     return tested & same & rejects(values, counts, 0.0, far, quantile(LEVEL))
 
 
 def detectable(
     pairs: Numbers,
     *,
-    rule: RuleName,
+    graded: bool = False,
     alpha: float = ALPHA,
     power: float = 0.8,
     on_top: bool = False,
@@ -181,9 +174,9 @@ def detectable(
     def reached(difference: float) -> float:
         share = min(1.0, rate + difference if on_top else max(rate, difference))
         if alike == 1.0:
-            return rule_power(n_scenes, share, difference, alpha, rule=rule)
+            return rule_power(n_scenes, share, difference, alpha, graded=graded)
         lean = difference / share
-        return simulated_power(n_scenes, n_seeds, share, lean, alike, alpha, rule)
+        return simulated_power(n_scenes, n_seeds, share, lean, alike, alpha, graded)
 
     if reached(1.0) < power:
         return None

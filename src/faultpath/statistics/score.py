@@ -20,14 +20,13 @@ from numpy.typing import NDArray
 
 from faultpath.statistics import betting, unconditional
 from faultpath.statistics.distributions import normal_p_value, normal_quantile
-from faultpath.statistics.estimate import RULES, DecisionRule
 from faultpath.statistics.inputs import Floats
 
 _HALVINGS = 44
 _DIGITS = 9
 """Digits of a combined value, so that values which cancel leave exactly 0."""
 PRIOR = 3.0
-"""Scenes of the largest possible difference that `reach` adds, where a rule has not its own."""
+"""Scenes of the largest possible difference that `reach` adds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,20 +54,20 @@ class SceneValues:
         bound: float,
         scale: float = 1.0,
         sequential: bool = False,
-        rule: DecisionRule = RULES["exact"],
+        graded: bool = False,
     ) -> "SceneValues":
         """Return differences between two variants.
 
-        A difference that was not observed may lie anywhere within the bound; by rules that are not
-        graded it lies within `reach`, unless the audit was ``sequential``.
+        A difference that was not observed may lie anywhere within the bound where the test of
+        degrees is taken or the audit was ``sequential``, and else within `reach`.
         """
-        if sequential or rule.graded:
+        if sequential or graded:
             return cls(values, bound, bound, scale, sequential=sequential, graded=not sequential)
         scenes = cls(values, bound, bound, scale)
         kinds, often = scenes.kinds()
         # Summed in both orders, since swapping the variants turns the order round.
         orders = ((kinds, often), (kinds[::-1], often[::-1]))
-        return replace(scenes, far=float(max(reach(*pair, bound, rule.prior) for pair in orders)))
+        return replace(scenes, far=float(max(reach(*pair, bound) for pair in orders)))
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Return the interval of the mean, in the unit of the effect: by score, or by betting."""
@@ -112,18 +111,18 @@ def quantile(level: float) -> float:
     return normal_quantile((1.0 + level) / 2.0)
 
 
-def reach(values: Floats, counts: Floats, bound: Floats | float, prior: float = PRIOR) -> Floats:
+def reach(values: Floats, counts: Floats, bound: Floats | float) -> Floats:
     """Return [...]: how far from 0 a value that was not observed is taken to lie.
 
     ``values`` and ``counts`` are [..., values]. With one seed a scene differs wholly or not, and
     this is ``bound``. With several it lies nearer to the size of the differing scenes that were
     seen, never below the largest of them: the mean size, each scene weighted by its size, after
-    ``prior`` scenes of the largest possible size.
+    `PRIOR` scenes of the largest possible size.
     """
     size = np.abs(values)
     seen = (counts * size).sum(axis=-1)
     squares = (counts * size * size).sum(axis=-1)
-    shrunk = (squares + prior * np.square(bound)) / (seen + prior * np.asarray(bound))
+    shrunk = (squares + PRIOR * np.square(bound)) / (seen + PRIOR * np.asarray(bound))
     largest = np.where(counts > 0, size, 0.0).max(axis=-1)
     return np.asarray(np.clip(shrunk, largest, bound), dtype=np.float64)
 

@@ -24,7 +24,7 @@ def ended(status: Status) -> Effect:
     """Return the difference in how many trials end in a way, with the paper's test."""
 
     def effect(pairs: Pairs, resamples: Resamples) -> Contrast:
-        return with_test(success_effect(*pairs.ended(status), resamples), "exact")
+        return with_test(success_effect(*pairs.ended(status), resamples))
 
     return effect
 

@@ -8,7 +8,7 @@ for (const grids of document.querySelectorAll("[data-pairs]")) {
   const entry = (cell, condition) => {
     const item = make("li", cell.querySelector("title").textContent), link = cell.getAttribute("href");
     if (link) item.append(make("a", "See both trials", { href: link }));
-    else if ("replay" in grids.dataset) item.append(make("code", `faultpath replay ${quoted(run)} --scene=${quoted(cell.dataset.scene)} --path=${quoted(condition)}`));
+    else if ("replay" in grids.dataset) item.append(make("code", `faultpath replay ${quoted(run)} --scene=${quoted(cell.dataset.scene)} --condition=${quoted(condition)}`));
     return item;
   };
   grids.addEventListener("click", (event) => {
