@@ -46,19 +46,17 @@ def policy_of(model, seed, rectifies):
     return policy
 
 
+@writes("command", of=policy_of)
+def planner(policy, picture, goal_picture):
+    seen = {"pixels": picture[None, None], "goal": goal_picture[None, None]}
+    with redirect_stdout(StringIO()):  # their solver prints how long it took
+        return policy.get_action(seen | {"action": np.zeros((1, 1, 2))})[0]
+
+
 def modules(name, rectifies=False):
-    def made(seed):
-        model = fitted(name, seed)
-
-        @writes("command", of=lambda: policy_of(model, seed or 0, rectifies))
-        def planner(policy, picture, goal_picture):
-            seen = {"pixels": picture[None, None], "goal": goal_picture[None, None]}
-            with redirect_stdout(StringIO()):  # their solver prints how long it took
-                return policy.get_action(seen | {"action": np.zeros((1, 1, 2))})[0]
-
-        return [planner]
-
-    return made
+    return lambda seed: [
+        planner.given(model=fitted(name, seed), seed=seed or 0, rectifies=rectifies)
+    ]
 
 
 # --- scenes ---

@@ -54,7 +54,7 @@ def odometry(estimator, time, turned, gyro, sighting, diameter, gyro_scale, gyro
 
 
 @writes("command", of=lambda tolerance, effort: LTVUnicycleController(tolerance, effort, DT_S))
-def drive(follower, time, pose, reference, diameter, track):
+def drive(follower, time, pose, reference, diameter, track):  # time: delivered in stored runs
     speeds = follower.calculate(Pose2d(*pose), Pose2d(*reference[:3]), *reference[3:])
     rims = DifferentialDriveKinematics(track).toWheelSpeeds(speeds)
     return np.array([rims.left, rims.right]) * 2 / diameter

@@ -4,7 +4,7 @@ import inspect
 
 import numpy as np
 import pytest
-from foreign_trials import ROOT, attempted, faulted, loaded
+from foreign_trials import ROOT, attempted, faulted, lines, loaded
 
 pytest.importorskip("wpimath", reason="robotpy-wpimath is not installed")
 
@@ -139,9 +139,3 @@ def test_faultpath_takes_few_lines_beside_a_teams_own_code():
     assert 0 < ours - theirs <= 15
     page = " ".join((ROOT / "docs" / "wpilib.md").read_text("utf-8").split())
     assert f"{ours} lines of code; a team's own code with the same calls takes {theirs}" in page
-
-
-def lines(text):
-    """Return how many lines have code in them."""
-    words = [line.strip() for line in text.splitlines()]
-    return sum(bool(line) and not line.startswith(("#", '"""')) for line in words)

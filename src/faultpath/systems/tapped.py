@@ -40,9 +40,10 @@ class Reads:
             return self.own[name]
         if self.inputs is None:
             raise SystemMistake(
-                f"'{self.at}' read '{name}' of {self.kind} while it was made, or outside of a step, "
-                "where nothing is delivered and no fault would reach what it keeps: tap the object "
-                f"that keeps the copy, or let the function that makes it take {name} as an argument"
+                f"'{self.at}' read '{name}' of {self.kind} while it was made, or outside of a "
+                "step, where nothing is delivered and no fault would reach what it keeps: tap the "
+                f"object that keeps the copy, or let the function that makes it take {name} as an "
+                "argument"
             )
         return self.inputs[self.ports[name]][self.row]
 
