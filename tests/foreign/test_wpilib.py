@@ -14,6 +14,9 @@ from wpimath.geometry import Pose2d, Rotation2d, Transform2d
 from wpimath.kinematics import DifferentialDriveKinematics
 
 from faultpath import audit, generator
+from faultpath.core.errors import SystemMistake
+from faultpath.loop import Inputs, Port
+from faultpath.systems import tapped, writes
 
 EXAMPLE = ROOT / "examples" / "wpilib_wheels.py"
 SCENE, STEPS = "seed/3", 120
@@ -109,6 +112,19 @@ def test_a_fault_at_one_reader_reaches_that_reader_alone(wheels, fault, changes)
     channel, _, reader = fault.replace("@", ":").split(":")
     assert faulted(trial) == {f"{reader}.{channel}": STEPS}
     assert (trial.outcomes[0].metrics != exact.outcomes[0].metrics) is changes
+
+
+def test_compiled_code_is_tapped_where_it_is_called_by_the_name_of_an_argument():
+    def made_with(argument):
+        module = writes("track", of=lambda: tapped(DifferentialDriveKinematics, argument, at="a"))(
+            lambda kinematics: kinematics().trackWidth
+        )
+        reads = {Port(argument, f"a.{argument.lower()}"): np.array([0.7])}
+        return module.step(Inputs("module", 0, reads, {}), [None])[0]["track"]
+
+    assert made_with("trackWidth") == [0.7]
+    with pytest.raises(SystemMistake, match="calls DifferentialDriveKinematics, which is compiled"):
+        made_with("track")
 
 
 def test_it_is_audited_at_odometry_and_wheel_command(wheels):

@@ -130,6 +130,19 @@ MISTAKES = {
 }
 
 
+def test_a_stand_in_that_calls_the_method_of_the_object_itself_is_refused() -> None:
+    def make():
+        own = Filter()
+        stand_in = tapped(own, "share", at="part")
+        stand_in.update = tapped(own.update, "speed", at="part")
+        return stand_in
+
+    with pytest.raises(
+        SystemMistake, match=r"past its taps: Filter\.update\..* is the Filter that"
+    ):
+        writes("out", of=make)(lambda made: made.update(0.0))
+
+
 @pytest.mark.parametrize("sentence", MISTAKES)
 def test_a_mistake_is_one_sentence(sentence) -> None:
     with pytest.raises(SystemMistake, match=sentence):
