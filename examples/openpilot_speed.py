@@ -70,6 +70,7 @@ def arrived(o, speed, speed_2, yaw, angle):
 
 
 # --- modules ---
+@writes("message", of=objects, past="sent")
 def controller(o, speed, speed_2, yaw, angle, plan, sent, version):
     """Let their controller answer the car; return the steering message that it sends, if any."""
     state = o.car.update([(o.i * 10**7, arrived(o, speed, speed_2, yaw, angle))])
@@ -91,6 +92,7 @@ def controller(o, speed, speed_2, yaw, angle, plan, sent, version):
     return [len(data), *data.ljust(8, b"\0")]
 
 
+@writes("sent", of=objects, before=(0.0, 0.0))
 def firmware(o, speed, speed_2, yaw, angle, message, version):
     """Let their firmware pass or block a message; return 1 or -1 and the order, 0 without one."""
     less = 0.75 if version == "narrow" else 0.0  # m/s, of the 1 m/s in its code
@@ -140,10 +142,8 @@ def create(
         metrics={"blocked": Measure(Metric(unit="%", better="less"), blocked), "off_m": off_m},
     )
     # --- glue ---
-    limits = writes("message", of=partial(objects, car), past="sent")(controller)
-    checks = writes("sent", of=partial(objects, car), before=(0.0, 0.0))(firmware)
     variants = {
-        name: Parts(text, [limits.given(version=name), checks.given(version=name)])
+        name: Parts(text, [part.given(car=car, version=name) for part in (controller, firmware)])
         for name, text in VERSIONS.items()
     }
     units |= dict.fromkeys(("message", "sent"), "1")

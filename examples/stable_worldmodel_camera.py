@@ -9,12 +9,13 @@ state to the other. An error of the camera may strike the observation, the goal,
 """
 
 from contextlib import redirect_stdout
+from functools import partial
 from io import StringIO
 from types import SimpleNamespace
 
 import gymnasium
 import numpy as np
-from stable_worldmodel_model import SCALER, SIDE, WEIGHTS, Camera, fitted, scaled, swm, two_room
+from stable_worldmodel_model import SCALER, SIDE, WEIGHTS, camera, fitted, scaled, swm, two_room
 
 from faultpath.systems import ComposedSystem, Measure, Parts, tapped, writes
 from faultpath.systems.gymnasium import GymnasiumPlant
@@ -31,10 +32,11 @@ SPACES = SimpleNamespace(num_envs=1, action_space=MANY, single_action_space=ONE)
 
 
 def policy_of(model, seed, rectifies):
-    """Return their policy; an audit delivers exposure and shift to each of its two cameras."""
+    """Return their policy; an audit delivers exposure and shift where it takes its two pictures."""
+    live = partial(camera, rectifies=rectifies)
     process = {
-        "pixels": tapped(Camera(rectifies), "exposure", "shift", at="observation"),
-        "goal": tapped(Camera(), "exposure", "shift", at="goal"),
+        "pixels": SimpleNamespace(transform=tapped(live, "exposure", "shift", at="observation")),
+        "goal": SimpleNamespace(transform=tapped(camera, "exposure", "shift", at="goal")),
         "action": SCALER,
     }
     transform = dict.fromkeys(("pixels", "goal"), scaled)
@@ -44,19 +46,17 @@ def policy_of(model, seed, rectifies):
     return policy
 
 
+@writes("command", of=policy_of)
+def planner(policy, picture, goal_picture):
+    seen = {"pixels": picture[None, None], "goal": goal_picture[None, None]}
+    with redirect_stdout(StringIO()):  # their solver prints how long it took
+        return policy.get_action(seen | {"action": np.zeros((1, 1, 2))})[0]
+
+
 def modules(name, rectifies=False):
-    def made(seed):
-        model = fitted(name, seed)
-
-        @writes("command", of=lambda: policy_of(model, seed or 0, rectifies))
-        def planner(policy, picture, goal_picture):
-            seen = {"pixels": picture[None, None], "goal": goal_picture[None, None]}
-            with redirect_stdout(StringIO()):  # their solver prints how long it took
-                return policy.get_action(seen | {"action": np.zeros((1, 1, 2))})[0]
-
-        return [planner]
-
-    return made
+    return lambda seed: [
+        planner.given(model=fitted(name, seed), seed=seed or 0, rectifies=rectifies)
+    ]
 
 
 # --- scenes ---

@@ -88,22 +88,15 @@ def empty_rooms():
     return shifts, photographed(red.expand(len(shifts), -1, -1, -1), torch.ones(1), shifts)
 
 
-class Camera:
-    """One of the policy's `process`: pictures `[n, 64, 64, 3]` as a camera takes them."""
-
-    exposure, shift = 1.0, np.zeros(2)
-
-    def __init__(self, rectifies=False):
-        self.rectifies = rectifies
-
-    def transform(self, pictures):
-        seen = torch.tensor(pictures).movedim(3, 1) / 255
-        exposure, shift = np.array(self.exposure, ndmin=1), np.array(self.shift, ndmin=2)
-        seen = photographed(seen, torch.tensor(exposure).float(), torch.tensor(shift).float())
-        seen = (255 * seen).round() / 255
-        if self.rectifies:
-            seen = rectified(seen)
-        return (255 * seen).round().byte().movedim(1, 3).numpy()
+def camera(pictures, exposure, shift, rectifies=False):
+    """Return pictures `[n, 64, 64, 3]` as a camera takes them."""
+    seen = torch.tensor(pictures).movedim(3, 1) / 255
+    exposure, shift = np.array(exposure, ndmin=1), np.array(shift, ndmin=2)
+    seen = photographed(seen, torch.tensor(exposure).float(), torch.tensor(shift).float())
+    seen = (255 * seen).round() / 255
+    if rectifies:
+        seen = rectified(seen)
+    return (255 * seen).round().byte().movedim(1, 3).numpy()
 
 
 def rectified(picture):

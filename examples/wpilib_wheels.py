@@ -31,28 +31,31 @@ def vision(_, camera, time, mount, latency):
     return [*array(Pose2d(*camera[:3]) + Transform2d(*mount).inverse()), time - latency, camera[3]]
 
 
-@writes("pose", of=dict)
-def odometry(
-    robot, time, turned, gyro, sighting, reference,
+def heading(time, gyro, gyro_scale, gyro_drift):
+    return Rotation2d((gyro - gyro_drift * time) * gyro_scale)
+
+
+def estimator(  # theirs takes constants once, when the robot starts
+    time, turned, gyro, reference,
     diameter, track, gyro_scale, gyro_drift, state_std, vision_std, trust,
 ):  # fmt: skip
-    left, right = turned * diameter / 2
-    heading = Rotation2d((gyro - gyro_drift * time) * gyro_scale)
-    if time == 0:  # their objects take constants once, when the robot starts
-        robot["kinematics"] = DifferentialDriveKinematics(track)
-        known = robot["kinematics"], heading, left, right, Pose2d(*reference[:3])
-        robot["estimator"] = DifferentialDrivePoseEstimator(*known, state_std, vision_std / trust)
-    robot["estimator"].updateWithTime(time, heading, left, right)
+    angle, rolled = heading(time, gyro, gyro_scale, gyro_drift), turned * diameter / 2
+    at = DifferentialDriveKinematics(track), angle, *rolled, Pose2d(*reference[:3])
+    return DifferentialDrivePoseEstimator(*at, state_std, vision_std / trust)
+
+
+@writes("pose", of=estimator)
+def odometry(estimator, time, turned, gyro, sighting, diameter, gyro_scale, gyro_drift):
+    angle, rolled = heading(time, gyro, gyro_scale, gyro_drift), turned * diameter / 2
+    estimator.updateWithTime(time, angle, *rolled)
     if sighting[4]:
-        robot["estimator"].addVisionMeasurement(Pose2d(*sighting[:3]), sighting[3])
-    return array(robot["estimator"].getEstimatedPosition())
+        estimator.addVisionMeasurement(Pose2d(*sighting[:3]), sighting[3])
+    return array(estimator.getEstimatedPosition())
 
 
-@writes("command", of=dict)
-def drive(robot, time, pose, reference, diameter, track, tolerance, effort):
-    if time == 0:
-        robot["follower"] = LTVUnicycleController(tolerance, effort, DT_S)
-    speeds = robot["follower"].calculate(Pose2d(*pose), Pose2d(*reference[:3]), *reference[3:])
+@writes("command", of=lambda tolerance, effort: LTVUnicycleController(tolerance, effort, DT_S))
+def drive(follower, time, pose, reference, diameter, track):  # time: delivered in stored runs
+    speeds = follower.calculate(Pose2d(*pose), Pose2d(*reference[:3]), *reference[3:])
     rims = DifferentialDriveKinematics(track).toWheelSpeeds(speeds)
     return np.array([rims.left, rims.right]) * 2 / diameter
 

@@ -26,3 +26,9 @@ def attempted(system: System, variant: str, scenes: Sequence[str], fault: str = 
 def faulted(trial: Any) -> dict[str, int]:
     """Return in how many steps the fault acted, by the readers in which it did."""
     return {tap.reader: tap.faulted_steps for tap in trial.taps if tap.faulted_steps}
+
+
+def lines(text: str) -> int:
+    """Return how many lines have code in them."""
+    words = [line.strip() for line in text.splitlines()]
+    return sum(bool(line) and not line.startswith(("#", '"""')) for line in words)

@@ -101,12 +101,11 @@ def test_the_cost_of_plans_gets_the_pictures_that_the_taps_struck(example, monke
 
 
 def test_a_calibrated_camera_changes_no_pixel_and_a_rectified_picture_is_its(example, model):
-    camera = model.Camera(rectifies=True)
     picture = example.Rooms().reset(seed=20)[0]["picture"][None]
-    assert np.array_equal(model.Camera().transform(picture), picture)
-    assert np.array_equal(camera.transform(picture), picture)
-    camera.exposure, camera.shift = 0.7, np.array([2.0, -1.0])
-    apart = np.abs(camera.transform(picture).astype(int) - picture)
+    assert np.array_equal(model.camera(picture, 1.0, np.zeros(2)), picture)
+    assert np.array_equal(model.camera(picture, 1.0, np.zeros(2), rectifies=True), picture)
+    shown = model.camera(picture, 0.7, np.array([2.0, -1.0]), rectifies=True)
+    apart = np.abs(shown.astype(int) - picture)
     assert apart[:, 4:-4, 4:-4].max() <= 1  # what left the picture is lost
 
 

@@ -4,7 +4,7 @@ import inspect
 
 import numpy as np
 import pytest
-from foreign_trials import ROOT, attempted, faulted, loaded
+from foreign_trials import ROOT, attempted, faulted, lines, loaded
 
 pytest.importorskip("wpimath", reason="robotpy-wpimath is not installed")
 
@@ -14,6 +14,9 @@ from wpimath.geometry import Pose2d, Rotation2d, Transform2d
 from wpimath.kinematics import DifferentialDriveKinematics
 
 from faultpath import audit, generator
+from faultpath.core.errors import SystemMistake
+from faultpath.loop import Inputs, Port
+from faultpath.systems import tapped, writes
 
 EXAMPLE = ROOT / "examples" / "wpilib_wheels.py"
 SCENE, STEPS = "seed/3", 120
@@ -111,6 +114,19 @@ def test_a_fault_at_one_reader_reaches_that_reader_alone(wheels, fault, changes)
     assert (trial.outcomes[0].metrics != exact.outcomes[0].metrics) is changes
 
 
+def test_compiled_code_is_tapped_where_it_is_called_by_the_name_of_an_argument():
+    def made_with(argument):
+        module = writes("track", of=lambda: tapped(DifferentialDriveKinematics, argument, at="a"))(
+            lambda kinematics: kinematics().trackWidth
+        )
+        reads = {Port(argument, f"a.{argument.lower()}"): np.array([0.7])}
+        return module.step(Inputs("module", 0, reads, {}), [None])[0]["track"]
+
+    assert made_with("trackWidth") == [0.7]
+    with pytest.raises(SystemMistake, match="calls DifferentialDriveKinematics, which is compiled"):
+        made_with("track")
+
+
 def test_it_is_audited_at_odometry_and_wheel_command(wheels):
     question = {"baseline": "default", "repair": "trusting", "fault": FAULT}
     how = {"scenes": 2, "workers": 0, "signals": False}
@@ -139,9 +155,3 @@ def test_faultpath_takes_few_lines_beside_a_teams_own_code():
     assert 0 < ours - theirs <= 15
     page = " ".join((ROOT / "docs" / "wpilib.md").read_text("utf-8").split())
     assert f"{ours} lines of code; a team's own code with the same calls takes {theirs}" in page
-
-
-def lines(text):
-    """Return how many lines have code in them."""
-    words = [line.strip() for line in text.splitlines()]
-    return sum(bool(line) and not line.startswith(("#", '"""')) for line in words)

@@ -1,6 +1,7 @@
 """A function as a module: its arguments are what it reads."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -68,6 +69,30 @@ def test_a_module_with_a_number_that_writes_into_its_input_is_not_told_of_the_nu
     inputs = Inputs("scaled", 0, {Port("now", "now"): now}, {}, np.ones(3, bool))
     with pytest.raises(ValueError, match=r"^output array is read-only$"):
         scaled.given(scale=1.0).step(inputs, None)
+
+
+class Gain:
+    """An object that takes its constants once."""
+
+    def __init__(self, gain, offset, start=0.0):
+        self.gain, self.offset, self.sum = gain, offset, start
+
+    def update(self, now):
+        self.sum += self.gain * now + self.offset
+        return self.sum
+
+
+def test_objects_are_made_of_the_first_reading_and_of_what_is_given():
+    module = writes("sum", of=Gain)(lambda made, now: made.update(now)).given(offset=0.5)
+    assert module.reads == {Port("now", "now"), Port("gain", "gain")}
+    memory, sums = module.begin(Batch(("a", "b"), 0, 0.1)), []
+    for step, gains in enumerate([[1.0, 2.0], [9.0, 9.0]]):
+        rows = {Port("now", "now"): np.ones(2), Port("gain", "gain"): np.array(gains)}
+        outputs, memory = module.step(Inputs("module", step, rows, {}), memory)
+        sums.append(outputs["sum"].tolist())
+    assert sums == [[1.5, 2.5], [3.0, 5.0]]
+    for make in (dict, SimpleNamespace, lambda share=0.5, *more, **options: share):
+        assert writes("sum", of=make)(lambda made, now: now).reads == {Port("now", "now")}
 
 
 def test_rows_are_computed_one_at_a_time():

@@ -58,14 +58,14 @@ def test_what_is_read_is_delivered_and_all_else_stays_shared():
     module = writes("voltage", of=make)(lambda control, current: control.command(current))
     assert module.reads == {Port("flux", "control.flux"), Port("current", "current")}
     assert module.reader(Port("flux", "control.flux")) == "control.flux"
+    given = delivered(current=("current", [0.0, 1.0]), flux=("control.flux", [1.0, 2.0]))
     memory = module.begin(Batch(("a", "b"), 0, 0.1))
+    outputs, memory = module.step(Inputs("module", 0, given, {}), memory)
+    assert outputs["voltage"].tolist() == [0.25 * 1.0, 0.25 * 2.1]
     stand_in = memory[0].objects.par
     assert isinstance(stand_in, Parameters)
     par.resistance = 3.0
     assert stand_in.resistance == 3.0
-    given = delivered(current=("current", [0.0, 1.0]), flux=("control.flux", [1.0, 2.0]))
-    outputs, _ = module.step(Inputs("module", 0, given, {}), memory)
-    assert outputs["voltage"].tolist() == [0.25 * 1.0, 0.25 * 2.1]
     assert par.flux == 0.5
     small = writes("out", of=lambda: tapped({"c_Dx": 1.0}, c_Dx="drag", at="filter"))
     assert small(lambda par: par["c_Dx"]).reads == {Port("drag", "filter.c_dx")}

@@ -1,6 +1,7 @@
 """Functions as modules: what one is called with is what it reads."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from inspect import Parameter, signature, unwrap
 from typing import Any, cast
 
@@ -23,7 +24,7 @@ def writes(
     *,
     past: str | Sequence[str] = (),
     before: Any = None,
-    of: Callable[[], Any] | None = None,
+    of: Callable[..., Any] | None = None,
     name: str = "",
 ) -> Callable[[Callable[..., Any]], "FunctionModule"]:
     """Make a function a module that writes `source`: `@writes("push")` above its `def`.
@@ -37,16 +38,20 @@ def writes(
     axis, and only while the scene runs. Where these objects are `faultpath.systems.tapped`, what
     is read there are ports too.
 
+    Objects are made at a scene's first step. What the function that makes them cannot be called
+    without are arguments like the others: channels, of which it gets the first reading.
+
     Args:
         source: Source that it writes.
         past: Arguments that get the value of the step before.
         before: Value of `source` before the first step, of one scene, for readers of its past.
-        of: Makes the objects of one scene.
+        of: Makes the objects of one scene, of readings too.
         name: Name of the module; default the function's. An audit faults modules of one name
             together: give it to a function that takes another's place in a variant.
 
     Raises:
-        SystemMistake: The function takes no names, or has no such argument.
+        SystemMistake: The function takes no names, or has no such argument; `of` makes objects of
+            readings and taps some of these objects.
     """
     late = (past,) if isinstance(past, str) else tuple(past)
     return lambda function: FunctionModule(
@@ -64,7 +69,7 @@ class FunctionModule(Module):
         past: Sequence[str],
         before: Any,
         values: dict[str, Any],
-        of: Callable[[], Any] | None,
+        of: Callable[..., Any] | None,
         name: str,
     ) -> None:
         self.name, self.writes = name, (source,)
@@ -73,9 +78,13 @@ class FunctionModule(Module):
         parameters = dict(signature(function).parameters)
         if of is not None:  # the first argument are the objects
             parameters.pop(next(iter(parameters), ""), None)
-            sample = Made(of)
-            sample.check()
-            self.at_read = sample.ports
+            self._called_with, made_of = tuple(parameters), _required(of)
+            self._made_of = tuple(made_of)
+            parameters |= made_of
+            if made_of.keys() <= values.keys():
+                sample = self._make(values)
+                sample.check()
+                self.at_read = sample.ports
             if MEMORY in parameters:
                 raise SystemMistake(
                     f"module '{self.name}' has objects and a memory: let the objects keep it"
@@ -99,6 +108,11 @@ class FunctionModule(Module):
         self.reads_past = frozenset(port for port in read if port.channel in past)
         self.reads = frozenset(read - self.reads_past) | self.at_read
         self._handed_over = tuple(sorted(read))
+
+    def _make(self, row: Mapping[str, Any]) -> Made:
+        """Return the objects of a scene, made of a row of readings and values."""
+        of = cast("Callable[..., Any]", self._of)
+        return Made(partial(of, **{name: row[name] for name in self._made_of}))
 
     def given(self, **values: Any) -> "FunctionModule":
         """Return it with other values for some arguments, which it then reads no more.
@@ -149,18 +163,34 @@ class FunctionModule(Module):
 
     @override
     def begin(self, batch: Batch) -> Memory:
-        return [Made(self._of) for _ in batch.scenes] if self._of else None
+        return [None] * len(batch.scenes) if self._of else None
+
+    def _step_scene(self, inputs: Inputs, i: int, scene: Made | None) -> Made:
+        """Let the objects of one scene make a step, after they are made at the first."""
+        rows = {port.channel: inputs[port][i] for port in self._handed_over} | self._values
+        if scene is None:
+            scene = self._make(rows)
+            if scene.ports - self.at_read:
+                raise SystemMistake(
+                    f"module '{self.name}' taps objects that are made of readings: let the "
+                    "function that makes them take no readings, or tap none of them"
+                )
+        with scene.reading(inputs, i) as objects:
+            arguments = {name: rows[name] for name in self._called_with}
+            scene.last = np.array(self._function(objects, **arguments))
+        return scene
 
     @override
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
-        rows = {port.channel: inputs[port] for port in self._handed_over}
         if self._of:
-            for i, scene in enumerate(cast("list[Made]", memory)):
-                if inputs.running is None or inputs.running[i]:
-                    row = {name: value[i] for name, value in rows.items()} | self._values
-                    with scene.reading(inputs, i) as objects:
-                        scene.last = np.array(self._function(objects, **row))
+            memory = [
+                self._step_scene(inputs, i, scene)
+                if inputs.running is None or inputs.running[i]
+                else scene
+                for i, scene in enumerate(cast("list[Made]", memory))
+            ]
             return {self.writes[0]: np.stack([scene.last for scene in memory])}, memory
+        rows = {port.channel: inputs[port] for port in self._handed_over}
         more = {MEMORY: memory} if self._remembers else {}
         try:
             pair: Any = self._function(**rows, **self._values, **more)
@@ -181,6 +211,20 @@ class FunctionModule(Module):
             )
         value, memory = cast("tuple[Any, Any]", pair)
         return {self.writes[0]: value}, memory
+
+
+def _required(make: Callable[..., Any]) -> dict[str, Parameter]:
+    """Return the arguments that a function cannot be called without."""
+    try:
+        parameters = signature(make).parameters
+    except ValueError:  # such as that of `dict`
+        return {}
+    several = (Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD)
+    return {
+        name: parameter
+        for name, parameter in parameters.items()
+        if parameter.default is Parameter.empty and parameter.kind not in several
+    }
 
 
 def row_wise(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -1,13 +1,16 @@
-"""Taps on other people's objects: an attribute or a key is delivered each time it is read."""
+"""Taps on other people's objects: what is read there, or called with, is delivered each time."""
 
 from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import partial, wraps
+from inspect import isroutine, signature
 from types import new_class
 from typing import Any, TypeVar, cast
 
+from faultpath.core.error_source import described
 from faultpath.core.errors import SystemMistake
-from faultpath.core.text import unknown
+from faultpath.core.text import listed, unknown
 from faultpath.loop import Inputs, Port
 from faultpath.systems.sharing import Walk
 
@@ -21,7 +24,8 @@ class Reads:
     """The reads of one stand-in, and what delivers them at present."""
 
     def __init__(self, at: str, what: Any, channels: Mapping[str, str]) -> None:
-        self.at, self.what, self.kind = at, what, type(what).__name__
+        self.at, self.what = at, what
+        self.kind = _called(what) if _is_called(what) else type(what).__name__
         # Readers are in small letters, which attributes need not be.
         self.ports = {n: Port(channel, f"{at}.{n.lower()}") for n, channel in channels.items()}
         self.own: dict[str, Any] = {}
@@ -36,9 +40,10 @@ class Reads:
             return self.own[name]
         if self.inputs is None:
             raise SystemMistake(
-                f"'{self.at}' read '{name}' of {self.kind} while it was made, before anything is "
-                "delivered, and no fault would reach what it keeps: make it of the object itself, "
-                "and tap the object that keeps the copy"
+                f"'{self.at}' read '{name}' of {self.kind} while it was made, or outside of a "
+                "step, where nothing is delivered and no fault would reach what it keeps: tap the "
+                f"object that keeps the copy, or let the function that makes it take {name} as an "
+                "argument"
             )
         return self.inputs[self.ports[name]][self.row]
 
@@ -73,35 +78,47 @@ class _Keys(dict[Any, Any]):
 
 
 def tapped(what: T, *names: str, at: str, **channels: str) -> T:
-    """Return a stand-in for an object of which some attributes or keys are delivered at each read.
+    """Return a stand-in that gets some attributes, keys or arguments delivered at each read.
 
-    Each of them is a channel, by default of the same name, with the reader `at.name` in small
+    Each of them is a channel, by default of the same name, and its reader is `at.name` in small
     letters. All else is the object's own and stays shared with it: the stand-in is of a class made
     from the object's, and has the object's own attributes. Once its reader writes into a tapped
     attribute, the reader gets what it wrote, and no fault reaches it there any more.
+
+    A function, a method or a class is tapped where it is called: what is delivered takes the place
+    of these arguments, whether its caller passes them or leaves them out. Put the stand-in where
+    the caller looks: `part.filter.update = tapped(part.filter.update, "speed", at="filter")`.
 
     Make stand-ins in the function that `writes(..., of=make)` calls for each scene. An object that
     has handed out its own methods leads past its taps; `writes` refuses it and says where.
 
     Args:
-        what: An object with attributes that Python keeps, or a dict.
-        names: Attributes or keys that are channels of the same name.
+        what: An object with attributes that Python keeps, a dict, or what is called.
+        names: Attributes, keys or arguments that are channels of the same name.
         at: Who reads them there.
-        channels: Attribute or key to channel, for other names.
+        channels: Attribute, key or argument to channel, for other names.
 
     Raises:
-        SystemMistake: There is no such attribute or key, or the object keeps its attributes where
-            no stand-in can be: in slots, a tuple or compiled code. When it is read: nothing is
-            delivered yet, because the reader is still being made.
+        SystemMistake: There is no such attribute, key or argument, an attribute is a method, or the
+            object keeps its attributes where no stand-in can be: in slots, a tuple or compiled
+            code. When it is read: nothing is delivered yet, because the reader is still being made,
+            or compiled code does not take the arguments by name.
     """
     kind = cast("type[Any]", type(what))
     reads = Reads(at, what, {name: name for name in names} | channels)
+    if _is_called(what):
+        return _collected(reads, _tapped_call(what, reads))
     keyed = isinstance(what, dict)
     known = list(cast("dict[Any, Any]", what)) if keyed else dir(what)
     for name in reads.ports:
         if name not in known:
             word = "key" if keyed else "attribute"
             raise SystemMistake(f"tapped {kind.__name__}: {unknown(word, name, map(str, known))}")
+        if not keyed and isroutine(getattr(kind, name, None)):
+            raise SystemMistake(
+                f"tapped {kind.__name__}: '{name}' is a method: tap what it is called with, "
+                f"x.{name} = tapped(x.{name}, 'its argument', at='{at}')"
+            )
     if keyed:
         stand_in: Any = type(kind.__name__, (_Keys,), {"reads": reads})()
         cast("Any", dict).update(stand_in, what)
@@ -117,9 +134,64 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
                 "code, where no stand-in can be: tap the object that holds it, or hand the value "
                 "over as an argument of the module"
             ) from error
+    return _collected(reads, stand_in)
+
+
+def _collected(reads: Reads, stand_in: Any) -> Any:
     if (collected := _MADE.get()) is not None:
         collected.append(reads)
     return stand_in
+
+
+def _is_called(what: Any) -> bool:
+    return isroutine(what) or isinstance(what, type | partial)
+
+
+def _called(what: Any) -> str:
+    """Return what messages call a function, method or class."""
+    return getattr(what.func if isinstance(what, partial) else what, "__qualname__", "a function")
+
+
+def _tapped_call(what: Any, reads: Reads) -> Any:
+    """Return a function that calls `what` with arguments that are delivered."""
+    places = _places(what, reads)
+
+    @wraps(what, updated=())
+    def stand_in(*positional: Any, **named: Any) -> Any:
+        values = {name: reads.read(name) for name in reads.ports}
+        arguments = list(positional)
+        for index, name in enumerate(places or ()):
+            if name in values and index < len(arguments):
+                arguments[index] = values.pop(name)
+        try:
+            return what(*arguments, **named | values)
+        except TypeError as error:
+            if places is not None:
+                raise
+            raise SystemMistake(
+                f"'{reads.at}' calls {reads.kind}, which is compiled, with {listed(values)} by "
+                f"name, and it refuses ({described(error)}): tap arguments under the names that it "
+                "has for them, and leave them out where it is called"
+            ) from error
+
+    return stand_in
+
+
+def _places(what: Any, reads: Reads) -> list[str] | None:
+    """Return the arguments that a caller may pass without their name; `None`: nobody knows.
+
+    Raises `SystemMistake` for a tapped argument that there is not.
+    """
+    try:
+        parameters = tuple(signature(what).parameters.values())
+    except ValueError:  # compiled code need not say
+        return None
+    known = [p.name for p in parameters if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)]
+    takes_any = any(p.kind is p.VAR_KEYWORD for p in parameters)
+    for name in reads.ports:
+        if name not in known and not takes_any:
+            raise SystemMistake(f"tapped {reads.kind}: {unknown('argument', name, known)}")
+    return [p.name for p in parameters if p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
 
 
 def _delivered(reads: Reads, name: str) -> property:
