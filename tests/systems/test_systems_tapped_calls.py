@@ -13,7 +13,7 @@ from faultpath.core.errors import SystemMistake
 from faultpath.faults import parse_fault
 from faultpath.loop import Batch, Inputs, NotDelivered, Port
 from faultpath.systems import ComposedSystem, tapped, writes
-from faultpath.trials import Arm
+from faultpath.trials import Treatment
 from faultpath.trials.attempt import Wrong, attempt
 
 
@@ -192,7 +192,7 @@ def test_calls_between_their_parts_are_readers_of_their_own() -> None:
 def test_a_fault_stops_where_the_method_is_never_called() -> None:
     made = system(one=cruise(limits=False))
     faults = parse_fault("speed:scale=3", made.interface, {}, 0.1)
-    reply = attempt(made, Arm(variant="one", faults=faults), ("seed/1",))
+    reply = attempt(made, Treatment(variant="one", faults=faults), ("seed/1",))
     assert isinstance(reply, Wrong)
     assert isinstance(reply.error, NotDelivered)
     assert "speed -> limits.speed" in str(reply.error)
