@@ -17,7 +17,7 @@ Key = tuple[str, str]
 """Key of a trial within its variant and condition: its scene or task, and which of its trials it
 is."""
 Address = tuple[str, str, Key]
-"""Arm, condition and key."""
+"""Variant, condition and key."""
 
 
 @dataclass(frozen=True)
