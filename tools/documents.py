@@ -78,7 +78,6 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
 PICTURES: Mapping[str, Callable[..., Picture]] = {
     "map:picture": run_blocks.map_picture_of,
     "paper:picture": paper_blocks.picture,
-    "state:picture": state_blocks.picture,
 }
 """Functions that return the picture that a block shows."""
 
