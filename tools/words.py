@@ -47,7 +47,7 @@ HOUSE = {
 FIELD = {
     "arm": r"lerobot\.md",
     "flight": r"(?:quadrotor|paper)/|docs/(?:quadrotor|state-errors|rotorpy"
-    r"|basilisk|reproduction|carry-over|reversal-map|learning-quality|bring-your-own-model)",
+    r"|basilisk|reproduction|carry-over|reversal-map|bring-your-own-model)",
 }
 """Files on robots, aircraft and spacecraft, by the word that has its plain meaning there."""
 HOUSE_WORD = re.compile(
