@@ -214,15 +214,10 @@ def _flown_again() -> str:
 
 
 def facts_in_short() -> str:
-    """Return how the project stands to the facts, and every one that is otherwise."""
+    """Return in a sentence how the project stands to the facts, with the numbers of the others."""
+    others = ", ".join(str(fact.number) for fact in facts() if fact.state == "otherwise")
     where = f"{{reference}}/{FACTS.relative_to(REFERENCE)}"
-    items = [
-        f"- **{fact.number}.** *The paper:* {markdown(fact.fact)} *Here:* {markdown(fact.ours)}"
-        for fact in facts()
-        if fact.state == "otherwise"
-    ]
-    title = f"{_facts_in_words()} [All, with their places in the code]({where}). Otherwise:"
-    return "\n\n".join([title, "\n".join(items)])
+    return f"{_facts_in_words()} [The list]({where}) says why, of numbers {others}."
 
 
 def _facts_in_words() -> str:
