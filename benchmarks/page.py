@@ -4,7 +4,7 @@ As in every document, `tools/documents.py` fills the blocks that are marked in i
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from statistics import median
 from typing import Any
 
@@ -109,41 +109,54 @@ def waits() -> str:
 
 
 def gpu() -> str:
-    """Return what `device.json` holds of each GPU: steps of a flight, an audit, the paper."""
+    """Return what `device.json` holds: steps of a trial on each GPU, an audit, the paper."""
     machines = json.loads(DEVICE.read_text())
-    return "\n\n".join(_gpu(name, figures) for name, figures in machines.items())
+    columns = ("a scene", "one core", "ratio", "kernels a step", "computing, %")
+    lines = [entry for name, figures in machines.items() for entry in _steps(name, figures)]
+    origins = "; ".join(
+        f"{name} on {figures['date']}, torch {figures['torch']}, one core with kernels "
+        f"`{figures['kernels']}`"
+        for name, figures in machines.items()
+    )
+    commands = ", ".join(dict.fromkeys(f"`{figures['command']}`" for figures in machines.values()))
+    parts = [
+        grid(Table(corner="Control step", columns=columns, lines=tuple(lines))),
+        f"Measured by {commands}: {origins}.",
+    ]
+    return "\n\n".join(
+        [*parts, *(text for figures in machines.values() for text in _runs(figures))]
+    )
 
 
-def _gpu(name: str, figures: dict[str, Any]) -> str:
+def _steps(name: str, figures: dict[str, Any]) -> list[Line]:
+    """Return a row for each size of block on a GPU."""
     core, *blocks = figures["steps"]
     alone = [taken / core["scenes"] for taken in core["step_ms"]]
-    records = []
+    lines: list[Line] = []
     for block in blocks:
         busy = 100 * block["busy_ms"] / median(block["step_ms"])
         scenes = [taken / block["scenes"] for taken in block["step_ms"]]
-        row = f"Control step of a scene, blocks of {block['scenes']}"
-        note = f"{block['kernels']} kernels a step, computed in {number(busy)} % of the time"
-        measured = record(row, "ms", scenes, alone, "one core")
-        records.append(measured.model_copy(update={"note": note}))
-    parts = [
-        f"Measured on {figures['date']} by `{figures['command']}`: {name}, torch "
-        f"{figures['torch']}; one core with kernels `{figures['kernels']}`.",
-        rows(records),
-    ]
+        taken = record(name, "ms", scenes, alone, "one core")
+        times = (f"{number(value)} ms" for value in (taken.ours, taken.peer) if value is not None)
+        size = f"{name}, blocks of {block['scenes']}"
+        lines.append(line(size, *times, _ratio(taken), str(block["kernels"]), number(busy)))
+    return lines
+
+
+def _runs(figures: dict[str, Any]) -> Iterator[str]:
+    """Yield sentences on whole runs on the GPU of a machine and on its cores."""
     if audits := figures.get("audits"):
         here, there = audits["successes"]
-        parts.append(
-            f"Of {audits['trials']} trials of `make audit` on that machine, {audits['alike']} end "
-            f"alike on both; {here} succeed on the processor and {there} on the GPU. The audit "
-            f"finds the same on both, significant or not, on {audits['decided_alike']} of "
+        yield (
+            f"Of {audits['trials']} trials of `make audit`, {audits['alike']} end alike on the "
+            f"processor and the GPU; {here} succeed on the first and {there} on the second. The "
+            f"audit finds the same on both, significant or not, on {audits['decided_alike']} of "
             f"{audits['conditions']} conditions (`{audits['command']}`)."
         )
     if paper := figures.get("paper"):
         origin = paper.get("by_hand") or f"`{paper['command']}`"
-        parts.append(
+        yield (
             f"`{paper['runs']}`, {paper['trials']} trials, took {paper['cpu_s']:.0f} s with "
-            f"`--workers {paper['cores']}` on the {paper['cores']} cores of that machine and "
-            f"{paper['gpu_s']:.0f} s with `--device cuda` on its GPU "
-            f"({origin})."
+            f"`--workers {paper['cores']}` on {paper['cores']} cores and {paper['gpu_s']:.0f} s "
+            f"with `--device cuda` ({origin})."
         )
-    return "\n\n".join(parts)

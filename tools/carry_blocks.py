@@ -1,18 +1,18 @@
-"""Blocks of the page about the carry-over of verdicts."""
+"""Blocks of the page on results under other conditions."""
 
-from itertools import product
+from collections.abc import Sequence
 
 from blocks import load
-from carry_design import Cell, Flown
+from carry_design import Cell
 from carry_verdicts import Mean, hours, lead, moves, overall, questions, reason, sentences, title
 
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.wording import counted
-from faultpath.decisions.tables import Entry, Line, Table, line
+from faultpath.decisions.tables import MISSING, Entry, Table, line
 from faultpath.decisions.tables.markdown import grid
 
 NODES = 10
-MARKS = {1: "repair", -1: "baseline", 0: "·"}
+SIDES = {1: "repair", -1: "baseline"}
 
 
 def verdicts(name: str) -> str:
@@ -20,73 +20,46 @@ def verdicts(name: str) -> str:
     return "\n".join(f"- {sentence}" for sentence in sentences(load(name).record))
 
 
-def matrix(name: str) -> str:
-    """Return a table per question and condition: planner, estimator and plant down, the rest
-    across."""
+def table(name: str) -> str:
+    """Return in how many cells who is ahead, the mean, and what each factor changes of it.
+
+    A column is a question with the fault at one place.
+    """
     flown = load(name).record
-    parts: list[str] = []
-    means = {(q.repair, q.baseline, reach): mean for q, reach, mean in overall(flown)}
-    for question, reach, cells in questions(flown):
-        if not cells:
-            continue
-        used = {
-            factor: [level for level in levels if any(c.levels[factor] == level for c in cells)]
-            for factor, levels in flown.design.factors.items()
-        }
-        down, across = list(used)[:3], list(used)[3:]
-        by_levels = {tuple(cell.levels[factor] for factor in used): cell for cell in cells}
-        columns = list(product(*(used[factor] for factor in across)))
-        table = Table(
-            columns=tuple(" ".join((*column[:-2], "".join(column[-2:]))) for column in columns),
-            lines=tuple(
-                line(", ".join(row), *(_entry(flown, by_levels.get((*row, *c))) for c in columns))
-                for row in product(*(used[factor] for factor in down))
-            ),
-            corner=", ".join(down),
-            words=(),
-        )
-        mean = means[question.repair, question.baseline, reach]
-        whole = f"Mean over its cells, first {flown.design.first} scenes: {_shown(mean)} pp."
-        parts += [f"**{title(question, reach)}**", grid(table), whole]
-    return "\n\n".join(parts)
+    cells = {title(q, reach): cells for q, reach, cells in questions(flown) if cells}
+    leads = {head: [lead(flown.design, cell) for cell in cells[head]] for head in cells}
+    means = {title(question, reach): mean for question, reach, mean in overall(flown)}
+    changes: dict[str, dict[str, Mean | None]] = {}
+    for move in moves(flown):
+        row = changes.setdefault(f"{move.factor} {' → '.join(move.levels)}", {})
+        row[title(move.question, move.reach)] = move.change
+
+    ahead = [
+        line(f"{name} ahead in", *(str(leads[head].count(side)) for head in cells))
+        for side, name in SIDES.items()
+    ]
+    factors = [
+        line(factor, *(_entry(row.get(head)) for head in cells)) for factor, row in changes.items()
+    ]
+    lines = (
+        line("cells", *(str(len(of)) for of in cells.values())),
+        *ahead,
+        line("floor or ceiling in", *(str(_at_an_end(of)) for of in cells.values())),
+        line("mean difference, pp", *(_entry(means[head]) for head in cells)),
+        *factors,
+    )
+    return grid(Table(columns=tuple(cells), lines=lines, corner="", words=()))
 
 
-def _entry(flown: Flown, cell: Cell | None) -> Entry:
-    if cell is None:
-        return Entry(text="–")
-    side = lead(flown.design, cell)
-    return Entry(text=MARKS[side], detected=bool(side), aside="" if side else reason(cell))
+def _at_an_end(cells: Sequence[Cell]) -> int:
+    return sum(reason(cell) in ("floor", "ceiling") for cell in cells)
 
 
-def _shown(mean: Mean | None) -> str:
+def _entry(mean: Mean | None) -> Entry:
     if mean is None:
-        return "–"
+        return Entry(text=MISSING)
     ends = f"[{wording.plain(mean.low_pp)}, {wording.plain(mean.high_pp)}]"
-    return f"{wording.signed(mean.value_pp)} {ends}"
-
-
-def factors(name: str) -> str:
-    """Return what each factor changes, question by question."""
-    flown = load(name).record
-    lines: list[Line] = []
-    all_moves = moves(flown)
-    for question, reach, _ in questions(flown):
-        own = [move for move in all_moves if (move.question, move.reach) == (question, reach)]
-        lines += [Line(label=title(question, reach))] if own else []
-        for move in own:
-            counts = (move.same, move.opposite, move.one, move.neither)
-            lines.append(
-                line(
-                    f"{move.factor} {' → '.join(move.levels)}",
-                    *map(str, counts),
-                    Entry(
-                        text=_shown(move.change),
-                        detected=move.change is not None and bool(move.change.sign),
-                    ),
-                )
-            )
-    columns = ("Same side", "Opposite", "At one level", "At neither", "Mean change, pp")
-    return grid(Table(columns=columns, lines=tuple(lines), corner="Pairs of cells"))
+    return Entry(text=f"{wording.signed(mean.value_pp)} {ends}", detected=bool(mean.sign))
 
 
 def cost(name: str) -> str:

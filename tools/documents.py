@@ -59,8 +59,7 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
     "paper:facts": paper_blocks.facts_in_short,
     "paper:origin": paper_blocks.origin,
     "carry:said": carry_blocks.verdicts,
-    "carry:matrix": carry_blocks.matrix,
-    "carry:factors": carry_blocks.factors,
+    "carry:table": carry_blocks.table,
     "carry:cost": carry_blocks.cost,
     "state:reading": state_blocks.reading,
     "state:effects": state_blocks.effects,
@@ -79,7 +78,6 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
 PICTURES: Mapping[str, Callable[..., Picture]] = {
     "map:picture": run_blocks.map_picture_of,
     "paper:picture": paper_blocks.picture,
-    "state:picture": state_blocks.picture,
 }
 """Functions that return the picture that a block shows."""
 

@@ -13,9 +13,9 @@ from faultpath.decisions.sentences import wording
 
 WORLD_MODEL = "stable-worldmodel"
 PAGES = {
-    "quadrotor-L3-decision": ("Quadrotor, 400 scenes", "quadrotor-results"),
-    "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor-results"),
-    "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor-results"),
+    "quadrotor-L3-decision": ("Quadrotor, 400 scenes", "quadrotor"),
+    "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor"),
+    "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor"),
     "toy": ("Cart", "tutorial"),
     "dock": ("Docking rover", "own-loop"),
     "pendulum": ("Pendulum of Gymnasium", "gymnasium"),

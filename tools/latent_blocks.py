@@ -37,7 +37,6 @@ COMPARED = {
     -1: "significantly less often",
     0: "without a significant difference",
 }
-SIDES = {1: "ahead", -1: "behind", 0: "no significant difference"}
 
 
 def _read(name: str) -> Any:
@@ -75,23 +74,30 @@ def success(rooms: str) -> str:
     return words_grid("error of the camera", ("in", "plain", *repairs), lines)
 
 
-def cancelled(rooms: str) -> str:
+def cancelled(*names: str) -> str:
     """Return whether an error in both pictures costs the baseline less than in the live one."""
     lines: list[Line] = []
-    for row in _read(f"{rooms}-held-out")["baseline"]:
-        rates = map(_percent, reversed(row["success"]))
-        lines.append(line(FAULTS[row["fault"]], *rates, effect_entry(row["effect"])))
-    columns = (f"{CONDITIONS[ALONE]}, %", f"{CONDITIONS[SHARED]}, %", "difference, pp")
+    for name in names:
+        for row in _read(f"{name}-held-out")["baseline"]:
+            rates = map(_percent, reversed(row["success"]))
+            lines.append(line(_error(row, name), *rates, effect_entry(row["effect"])))
+    columns = (f"{PATHS[ALONE]}, %", f"{PATHS[SHARED]}, %", "difference, pp")
     return words_grid("error of the camera", columns, lines)
 
 
-def effects(rooms: str) -> str:
-    """Return repair minus baseline, audit by audit and condition by condition."""
+def effects(*names: str) -> str:
+    """Return repair minus baseline, study by study, audit by audit and condition by condition."""
     lines: list[Line] = []
-    for audit in audits_of(rooms):
-        differences = (effect_entry(audit["effects"][condition]) for condition in CONDITIONS)
-        lines.append(line(audit["repair"], FAULTS[audit["fault"]], *differences))
-    return words_grid("repair", ("error of the camera", *CONDITIONS.values()), lines)
+    for name in names:
+        for audit in audits_of(name):
+            differences = (effect_entry(audit["effects"][path]) for path in PATHS)
+            lines.append(line(audit["repair"], _error(audit, name), *differences))
+    return words_grid("repair", ("error of the camera", *PATHS.values()), lines)
+
+
+def _error(row: Mapping[str, Any], study: str) -> str:
+    """Return the error of the camera in words, with the rooms where they are not the usual ones."""
+    return f"{FAULTS[row['fault']]}{', blank rooms' * (study == 'blank')}"
 
 
 def answer(*names: str) -> str:
@@ -122,44 +128,6 @@ def _reversals(audits: Sequence[Mapping[str, Any]]) -> str:
 def _of_sign(rows: Sequence[Mapping[str, Any]], sign: int) -> list[str]:
     """Return the errors whose effect on the baseline, both pictures against one, has this sign."""
     return [FAULTS[row["fault"]] for row in rows if row["effect"][3] == sign]
-
-
-def said(rooms: str) -> str:
-    """Return what the audits show, in sentences."""
-    study = _read(f"{rooms}-held-out")
-    audits = study["audits"]
-    less, more = (_of_sign(study["baseline"], sign) for sign in (1, -1))
-    sentences = [_reversals(audits)]
-    for names, word in ((less, "more"), (more, "less")):
-        if names:
-            sentences.append(
-                f"`plain` succeeds significantly {word} often with the error in both pictures than "
-                f"in the live one alone: {wording.series(names)}."
-            )
-    if not less and not more:
-        sentences.append(
-            "Of `plain`, no difference between the error in both pictures and in the live one "
-            "alone is significant."
-        )
-    alike: dict[str, list[str]] = {}
-    for audit in audits:
-        alike.setdefault(_sentence(audit), []).append(FAULTS[audit["fault"]])
-    for sentence, faults in alike.items():
-        sentences.append(sentence.format(wording.series(faults)))
-    return "\n".join(f"- {sentence}" for sentence in sentences)
-
-
-def _sentence(audit: Mapping[str, Any]) -> str:
-    """Return what an audit shows, with braces where its fault is to stand."""
-    sides = {condition: SIDES[effect[3]] for condition, effect in audit["effects"].items()}
-    text = f"`{audit['repair']}`, {{}}: {sides[SHARED]} with the error in both"
-    text += f" pictures, {sides[ALONE]} with it in the live one alone."
-    turn = audit["turns"].get(ALONE, "none")
-    words = {
-        "reversal": "The ranking reverses.",
-        "interaction": "The two effects differ significantly.",
-    }
-    return f"{text} {words[turn]}" if turn in words else text
 
 
 def stops(library: str) -> str:
@@ -218,7 +186,6 @@ KIND = {
     "success": success,
     "cancelled": cancelled,
     "effects": effects,
-    "said": said,
     "flown": flown,
     "stops": stops,
     "moves": moves,

@@ -214,30 +214,32 @@ def _flown_again() -> str:
 
 
 def facts_in_short() -> str:
-    """Return the counts by section, and every fact that is otherwise with its reason."""
-    otherwise = [fact for fact in facts() if fact.state == "otherwise"]
-    items = [
-        f"- **{fact.number}.** *The paper:* {markdown(fact.fact)} *Here:* {markdown(fact.ours)}"
-        for fact in otherwise
-    ]
+    """Return in a sentence how the project stands to the facts, with the numbers of the others."""
+    others = ", ".join(str(fact.number) for fact in facts() if fact.state == "otherwise")
     where = f"{{reference}}/{FACTS.relative_to(REFERENCE)}"
-    title = f"Otherwise ([all {len(facts())} facts]({where}), with their places in the code):"
-    return "\n\n".join([grid(counted()), title, "\n".join(items)])
+    return f"{_facts_in_words()} [The list]({where}) says why, of numbers {others}."
+
+
+def _facts_in_words() -> str:
+    words = ", ".join(
+        f"{sum(fact.state == state for fact in facts())} {state}" for state in STANDINGS
+    )
+    return (
+        f"{len(facts())} facts: {words}. *As written*: what the paper says. *Our reading*: the "
+        "paper is silent there, or can be read in several ways. *Otherwise*: something else."
+    )
 
 
 def fact_page() -> Mapping[Path, str]:
     """Return the page with every fact, by its path."""
-    words = ", ".join(
-        f"{sum(fact.state == state for fact in facts())} {state}" for state in STANDINGS
-    )
     parts = [
         "# What the paper states, fact by fact",
-        f"{len(facts())} facts: {words}. *As written*: what the paper says. *Our reading*: the "
-        "paper is silent there, or can be read in several ways. *Otherwise*: something else. "
+        f"{_facts_in_words()} "
         "Places are files of `quadrotor/src/faultpath_quadrotor`, or of `src` from `faultpath/` "
         "on and of `paper/src` from `faultpath_paper/` on, each with a name in the file. `make "
         "docs` makes this page from `paper/src/faultpath_paper/data/facts.yaml`.",
     ]
+    parts.append(grid(counted()))
     for section, title in SECTIONS.items():
         parts += [f"## {title}", grid(listed(section))]
     return {FACTS: "\n\n".join(parts) + "\n"}

@@ -16,7 +16,6 @@ from faultpath.report.terminal import decision
 
 MAP_PICTURES = {"map": map_picture, "correlation": correlation_picture}
 PARTS: dict[str, tuple[str, str]] = {
-    "verdict": ("Result", ".masthead, #verdict > *"),
     "interface": ("Who gets the fault", "#interface > *"),
     "readers": ("Who gets the fault", ".forks .panels"),
     "effects": ("Effects of the repair", "#effects"),
@@ -35,10 +34,9 @@ def table(name: str) -> str:
         [
             grid(table),
             f"{question.n_scenes} scenes of `{question.library}`, {wording.seeds(question.seeds)}, "
-            f"fault `{question.fault}`. Bold: significant (interval and test agree after Holm's "
-            f"correction for {record.hypotheses} contrasts). Floor, ceiling: both below 10 % or "
-            f"above 90 %, no headline. Break-even: the fault frequency at which neither is ahead, "
-            f"estimated, and those at which neither is significantly ahead. Intervals are for "
+            f"fault `{question.fault}`. Bold: significant after Holm's correction for "
+            f"{record.hypotheses} contrasts. [What each row says]({{docs}}/reading-a-report.md). "
+            f"Intervals are for "
             f"{phrases.estimand(question)}. Void pairs: "
             f"{sum(effect.void for effect in record.effects)}.{tests} {run.flown}",
         ]

@@ -1,19 +1,17 @@
-"""Blocks and picture of the page about sensors' faults."""
+"""Blocks of the page about sensors' faults."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from blocks import Picture, effect_entry, load, words_grid
+from blocks import effect_entry, load, words_grid
 
 from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.wording import counted
 from faultpath.decisions.tables import line
-from faultpath.report.svg import Svg, covering, tick_label
 
 STUDY = "state-errors"
 UNITS = {"position": "m", "velocity": "m/s", "attitude": "deg", "body_rate": "rad/s"}
-_WIDTH, _LEFT, _TOP, _PITCH = 820.0, 420.0, 30.0, 24.0
 
 
 def audits_of() -> list[dict[str, Any]]:
@@ -100,35 +98,6 @@ def _isolated(audits: Sequence[Mapping[str, Any]], module: str) -> str:
     return (
         f"a test {title(module)} alone shows {same or 'none'} "
         f"(significantly different from the shared effect: {differ or 'none'})"
-    )
-
-
-def picture() -> Picture:
-    """Return the picture of the audits."""
-    audits = audits_of()
-    rows = [(audit, name) for audit in audits for name in conditions(audits)[1:]]
-    ends = [end for audit, name in rows for end in audit["effects"][name][:3]]
-    bottom = _TOP + _PITCH * len(rows)
-    svg = Svg(_WIDTH, bottom + 40, "Repairs under faults of sensors", reading())
-    axis = covering(ends, least=10.0).at(_LEFT, _WIDTH - 8)
-    svg.text(axis(0.0) - 8, 14, "← baseline better", "small baseline", "end")
-    svg.text(axis(0.0) + 8, 14, "repair better →", "small repair", "start")
-    for tick in axis.ticks(8):
-        svg.line((axis(tick), _TOP - 6), (axis(tick), bottom), "axis" if tick else "zero")
-        svg.text(axis(tick), bottom + 16, tick_label(tick), "small soft", "middle")
-    svg.text((axis.start + axis.end) / 2, bottom + 34, "success, pp", "small soft", "middle")
-    for index, (audit, name) in enumerate(rows):
-        y = _TOP + _PITCH * index + 10
-        value, low, high, sign = audit["effects"][name]
-        if name == SHARED:
-            svg.text(0, y + 4, f"{audit['repair']}, {audit['fault']}", "bold")
-        soft = "small" if name == SHARED else "small soft"
-        svg.text(_LEFT - 10, y + 4, title(name), soft, "end")
-        side = {1: " repair", -1: " baseline", 0: ""}[sign]
-        svg.line((axis(low), y), (axis(high), y), f"range{side}")
-        svg.circle((axis(value), y), 4.5, f"dot{side}" if side else "dot open")
-    return Picture(
-        f"{STUDY}.svg", "Repairs under faults of sensors", svg.render(standalone=True) + "\n"
     )
 
 

@@ -3,7 +3,7 @@
     python experiments/carry-over/study.py [--out FOLDER] [--quick] [--workers N] [--executor ray]
 
 The same command resumes. Arms that several questions share fly once. What the folder holds then,
-`tools/documents.py --take carry-over=FOLDER` makes the tables of docs/carry-over.md from.
+`tools/documents.py --take carry-over=FOLDER` makes the table of docs/carry-over.md from.
 """
 
 import argparse

@@ -65,7 +65,7 @@ def test_that_nothing_else_is_significant_is_only_said_by_results(page: Path) ->
 )
 def test_sentences_that_deny_an_effect_are_known(sentence: str, states: bool) -> None:
     assert bool(nulls(sentence)) == states
-    generated = f"<!-- begin:latent:said:marked -->\n{sentence}\n<!-- end:latent:said:marked -->"
+    generated = f"<!-- begin:latent:effects:x -->\n{sentence}\n<!-- end:latent:effects:x -->"
     assert nulls(generated) == []
 
 

@@ -8,7 +8,7 @@ import faultpath
 from faultpath.systems import ComposedSystem, writes
 from faultpath.systems.gymnasium import GymnasiumPlant
 
-PAGE = (Path(__file__).resolve().parents[2] / "docs" / "policies.md").read_text("utf-8")
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "torch.md").read_text("utf-8")
 POLE = slice(2, 4)
 
 
