@@ -81,7 +81,7 @@ def cancelled(*names: str) -> str:
         for row in _read(f"{name}-held-out")["baseline"]:
             rates = map(_percent, reversed(row["success"]))
             lines.append(line(_error(row, name), *rates, effect_entry(row["effect"])))
-    columns = (f"{PATHS[ALONE]}, %", f"{PATHS[SHARED]}, %", "difference, pp")
+    columns = (f"{CONDITIONS[ALONE]}, %", f"{CONDITIONS[SHARED]}, %", "difference, pp")
     return words_grid("error of the camera", columns, lines)
 
 
@@ -90,9 +90,9 @@ def effects(*names: str) -> str:
     lines: list[Line] = []
     for name in names:
         for audit in audits_of(name):
-            differences = (effect_entry(audit["effects"][path]) for path in PATHS)
+            differences = (effect_entry(audit["effects"][condition]) for condition in CONDITIONS)
             lines.append(line(audit["repair"], _error(audit, name), *differences))
-    return words_grid("repair", ("error of the camera", *PATHS.values()), lines)
+    return words_grid("repair", ("error of the camera", *CONDITIONS.values()), lines)
 
 
 def _error(row: Mapping[str, Any], study: str) -> str:
