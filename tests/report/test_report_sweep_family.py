@@ -44,7 +44,8 @@ def test_the_family_is_that_of_all_sizes(one_seed: ReportInput, sizes: int) -> N
 
 def test_correct_inputs_that_are_the_same_trials_count_once(one_seed: ReportInput) -> None:
     runs = drawn(one_seed, np.random.default_rng(0), 3)
-    own = len(contrasts(runs[0].record))
+    weights = {name: weight for name, (_, weight) in contrasts(runs[0].record).items()}
+    once = weights["effect/correct"]
     lowest = 1e-30
 
     def low(run: Compared) -> Compared:
@@ -57,4 +58,4 @@ def test_correct_inputs_that_are_the_same_trials_count_once(one_seed: ReportInpu
 
     first = together([low(run) for run in runs])[0].family
     assert first is not None
-    assert first[CORRECT][1] == pytest.approx((3 * own - 2) * lowest, abs=0)
+    assert first[CORRECT][1] == pytest.approx((3 * sum(weights.values()) / once - 2) * lowest, abs=0)
