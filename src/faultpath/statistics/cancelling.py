@@ -73,7 +73,8 @@ class Pair(NamedTuple):
     regained: float | None
     """Share of the worse one's loss that both together have not; None where it lost nothing."""
     p_value: float
-    """One-sided, of "both together beat the worse of them alone"."""
+    """One-sided, of "both together beat the worse of them alone"; doubled, since that one is chosen
+    by the data."""
     corrected_p: float | None
     """Holm's, over the pairs of which both errors hurt alone; None for others."""
     covers_p: float | None
@@ -125,11 +126,15 @@ def cancelling(
     ties = rates[1] == rates[2]
     second = (rates[1] > rates[2]) | (ties & (beats[1] > beats[0]))
     worse = {key: key[int(place)] for key, place in zip(keys, second, strict=True)}
-    p_values = dict(zip(keys, map(float, np.where(second, *beats[::-1])), strict=True))
+    # Twice the p, since the data choose the worse one.
+    doubled = (min(1.0, 2.0 * float(beats[int(place), at])) for at, place in enumerate(second))
+    p_values = dict(zip(keys, doubled, strict=True))
 
     hurt = [key for key in keys if all(alone[error].kind == "hurts" for error in key)]
     corrected = _holm({key: p_values[key] for key in hurt})
-    covers = _holm({key: max(p_values[key], alone[worse[key]].p_value) for key in same_source})
+    covers = _holm(
+        {key: max(p_values[key], 2.0 * alone[worse[key]].p_value) for key in same_source}
+    )
     behind = ahead(singles, none) > alpha
 
     decided: dict[Key, Pair] = {}
@@ -158,7 +163,7 @@ def cancelling(
 
 def fewest_scenes(n_singles: int, n_pairs: int) -> int:
     """Return with how many scenes a scan can say anything of each error and each pair at all."""
-    return power.fewest_scenes(ALPHA / max(n_singles, n_pairs, 1))  # two-sided: half of alpha
+    return power.fewest_scenes(ALPHA / max(n_singles, 2 * n_pairs, 1))  # two-sided: half of alpha
 
 
 def ahead(first: Floats, second: Floats) -> Floats:
