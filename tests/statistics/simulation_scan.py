@@ -27,12 +27,12 @@ ERRORS = (4, 8, 12)
 TRIALS, OTHERS = (4000, 6000, 8000), (0.0, 0.05, 0.1, 0.15)
 """Of scans with a planted pair: trials of both stages, and what the other errors cost."""
 TRUTHS = {
-    "no effects": "none",
-    "harms add up": "add",
-    "half of the readers' errors help, and they add up": "help",
-    "each error leaves 1 % success": "floor",
-    "the worse of two errors dominates": "dominate",
-    "the same, errors of equal cost": "equal",
+    "none": "no effects",
+    "add": "harms add up",
+    "help": "errors of half of the readers help; all add up",
+    "floor": "each error leaves 1 % success",
+    "dominate": "the worse of two errors dominates",
+    "equal": "the same, errors of equal cost",
 }
 PLANTED = (0, 5)
 """Errors that cancel: of two sources."""
