@@ -58,4 +58,6 @@ def test_correct_inputs_that_are_the_same_trials_count_once(one_seed: ReportInpu
 
     first = together([low(run) for run in runs])[0].family
     assert first is not None
-    assert first[CORRECT][1] == pytest.approx((3 * sum(weights.values()) / once - 2) * lowest, abs=0)
+    assert first[CORRECT][1] == pytest.approx(
+        (3 * sum(weights.values()) / once - 2) * lowest, abs=0
+    )
