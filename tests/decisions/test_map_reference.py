@@ -13,7 +13,7 @@ from faultpath.trials.question import MapQuestion
 from faultpath.trials.store.folder import read_outcomes
 
 ROOT = Path(__file__).resolve().parents[2]
-MAPS = sorted(condition.parent for condition in (ROOT / "docs" / "reference").glob("*/map.json"))
+MAPS = sorted(path.parent for path in (ROOT / "docs" / "reference").glob("*/map.json"))
 
 
 @pytest.mark.parametrize("folder", MAPS, ids=lambda condition: condition.name)
