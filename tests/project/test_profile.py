@@ -1,8 +1,8 @@
-"""A profile of the toy's audit: what becomes of a fault's text on its way to the taps."""
+"""A profile of the toy's audit: what a fault's text, an effect and a question pass on their way."""
 
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -16,29 +16,35 @@ from faultpath.trials.question import AuditQuestion
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = str(ROOT / "src" / "faultpath")
+SCENES = 23
+"""So many that an effect is a number which nothing else is."""
 QUESTIONS = (AuditQuestion, Question)
 """They keep the text and the faults for whoever reads the run."""
 READ, RESOLVED = FaultText.read.__func__.__code__, resolve.__code__  # pyright: ignore[reportFunctionMemberAccess]
 
 
 class Profile:
-    """Classes of instances that are, or hold, a fault or its text; and calls of what makes them."""
+    """Classes of instances that carry something, and calls of functions."""
 
-    def __init__(self) -> None:
+    def __init__(self, carries: Callable[[Any], bool], rooms: tuple[str, ...]) -> None:
+        self.carries, self.rooms = carries, tuple(f"{SOURCE}/{room}" for room in rooms)
         self.classes: set[type] = set()
         self.calls = Counter[object]()
 
     def __call__(self, frame: FrameType, event: str, result: Any) -> None:
-        if not frame.f_code.co_filename.startswith(SOURCE):
+        if not frame.f_code.co_filename.startswith(self.rooms):
             return
         if event == "call":
             self.calls[frame.f_code] += 1
         elif event == "return":
             for value in (frame.f_locals.get("self"), *members(result)):
-                kind = type(value)
-                ours = kind.__module__.startswith("faultpath") and not isinstance(value, type)
-                if ours and kind not in self.classes and carries(value):
-                    self.classes.add(kind)
+                if is_ours(value) and type(value) not in self.classes and self.carries(value):
+                    self.classes.add(type(value))
+
+
+def is_ours(value: Any) -> bool:
+    """Return whether a value is an instance of a class of faultpath."""
+    return type(value).__module__.startswith("faultpath") and not isinstance(value, type)
 
 
 def members(value: Any) -> Iterator[Any]:
@@ -46,11 +52,57 @@ def members(value: Any) -> Iterator[Any]:
     yield from value if isinstance(value, tuple) else (value,)
 
 
-def carries(value: Any) -> bool:
-    own = [getattr(value, slot, None) for slot in getattr(type(value), "__slots__", ())]
-    fields = (value, *own, *getattr(value, "__dict__", {}).values())
-    parts = (part for field in fields for part in members(field))
+def fields(value: Any) -> list[Any]:
+    """Return what an instance holds."""
+    slots = (getattr(value, slot, None) for slot in getattr(type(value), "__slots__", ()))
+    entries = value if isinstance(value, tuple) else ()
+    return [*slots, *getattr(value, "__dict__", {}).values(), *entries]
+
+
+def numbers(value: Any, depth: int = 0) -> Iterator[float]:
+    """Yield the numbers in a value, however deep in other instances of ours."""
+    if isinstance(value, float):
+        yield value
+    elif depth < 7:
+        inside = fields(value) if is_ours(value) else ()
+        inside = value.values() if isinstance(value, Mapping) else inside
+        inside = value if isinstance(value, list | tuple) and not is_ours(value) else inside
+        for part in list(inside)[:200]:
+            yield from numbers(part, depth + 1)
+
+
+def carries_fault(value: Any) -> bool:
+    parts = (part for field in (value, *fields(value)) for part in members(field))
     return any(isinstance(part, Fault | FaultText | Intervention) for part in parts)
+
+
+def is_question(value: Any) -> bool:
+    names = getattr(value, "__dict__", {})
+    return (names.get("baseline"), names.get("repair")) == ("calibrated", "blind")
+
+
+def profiled(carries: Callable[[Any], bool], folder: Path, *rooms: str, **question: Any) -> Profile:
+    """Run the toy's audit with its report, and return the profile of functions of these rooms, by
+    default of all."""
+    profile = Profile(carries, rooms or ("",))
+    sys.setprofile(profile)
+    try:
+        runs = faultpath.api.audits(
+            f"{ROOT / 'examples' / 'toy.py'}:create",
+            baseline="calibrated",
+            repair="blind",
+            library="carts",
+            workers=0,
+            progress=False,
+            signals=False,
+            folder=folder,
+            **question,
+        )
+        for run in runs:
+            run.report()
+    finally:
+        sys.setprofile(None)
+    return profile
 
 
 @pytest.mark.parametrize(
@@ -63,26 +115,37 @@ def carries(value: Any) -> bool:
 def test_a_fault_s_text_is_read_once_resolved_once_and_passes_five_classes(
     fault: str, audits: int, interventions: int, tmp_path: Path
 ) -> None:
-    profile = Profile()
-    sys.setprofile(profile)
-    try:
-        faultpath.api.audits(
-            f"{ROOT / 'examples' / 'toy.py'}:create",
-            baseline="calibrated",
-            repair="blind",
-            library="carts",
-            fault=fault,
-            scenes=2,
-            workers=0,
-            progress=False,
-            signals=False,
-            folder=tmp_path,
-        )
-    finally:
-        sys.setprofile(None)
+    profile = profiled(carries_fault, tmp_path, fault=fault, scenes=2)
     assert profile.calls[READ] == 1
     assert profile.calls[RESOLVED] == audits
     kinds = {kind for kind in profile.classes if issubclass(kind, Intervention)}
     assert len(kinds) == interventions
     others = profile.classes - kinds - {*QUESTIONS}
     assert len(others) + 1 <= 5, others
+
+
+def test_an_effect_passes_eight_classes_and_a_question_four(tmp_path: Path) -> None:
+    """From the outcomes to the page, those included that hold what holds it."""
+    asked: dict[str, Any] = {"fault": "gain:scale=0.6", "scenes": SCENES}
+    run = faultpath.audit(
+        f"{ROOT / 'examples' / 'toy.py'}:create",
+        baseline="calibrated",
+        repair="blind",
+        library="carts",
+        workers=0,
+        progress=False,
+        folder=tmp_path / "first",
+        **asked,
+    )
+    (value,) = (effect.value for effect in run.record.effects if effect.condition == "observer")
+    rooms = ("statistics", "decisions", "report", "api", "cli")
+    effect = profiled(lambda part: value in numbers(part), tmp_path / "effect", *rooms, **asked)
+    assert {"Contrast", "Effect", "DecisionRecord"} <= {kind.__name__ for kind in effect.classes}
+    assert len(effect.classes) <= 8, effect.classes
+
+    def question(holder: Any) -> bool:
+        return any(is_question(part) for part in (holder, *fields(holder)))
+
+    questions = profiled(question, tmp_path / "question", *rooms, **asked)
+    assert {AuditQuestion, Question} <= questions.classes
+    assert len(questions.classes) <= 4, questions.classes
