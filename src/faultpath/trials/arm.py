@@ -49,6 +49,9 @@ class Row(Frozen):
     path: str
     seed: int
     arm: Arm
+    scenes: tuple[str, ...] = ()
+    """Those of the study in which it runs; empty: all of them. Two rows of an arm have the same
+    scenes, or none in common."""
 
 
 class Study(Frozen):
@@ -66,3 +69,10 @@ class Study(Frozen):
     def arms(self) -> tuple[Arm, ...]:
         """Return each distinct arm once, in the order of the rows."""
         return tuple({row.arm.key(): row.arm for row in self.rows}.values())
+
+    def parts(self) -> dict[tuple[str, ...], tuple[Arm, ...]]:
+        """Return the distinct arms that run in the same scenes, by what their rows say of these."""
+        parts: dict[tuple[str, ...], dict[str, Arm]] = {}
+        for row in self.rows:
+            parts.setdefault(row.scenes, {})[row.arm.key()] = row.arm
+        return {scenes: tuple(arms.values()) for scenes, arms in parts.items()}

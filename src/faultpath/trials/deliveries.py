@@ -2,12 +2,16 @@
 declarations."""
 
 from collections.abc import Iterable, Mapping
-from typing import Literal, Self
+from typing import Literal, Self, TypeAlias
 
 from faultpath.core.results import Result
 from faultpath.loop import TapCount, added
 from faultpath.trials.arm import Study
 from faultpath.trials.trials import Trials
+
+
+ArmPart: TypeAlias = tuple[str, tuple[str, ...]]
+"""Key of an arm, and what its rows say of their scenes."""
 
 
 class RowDeliveries(Result):
@@ -34,18 +38,21 @@ class Deliveries(Result):
     def of(
         cls,
         study: Study,
-        arms: Mapping[str, tuple[TapCount, ...]],
+        arms: Mapping[ArmPart, tuple[TapCount, ...]],
         trials: Trials,
         findings: tuple[str, ...],
         repeats: bool = True,
     ) -> Self:
-        """Lay the counts, by arm key, out in the order of the study's rows.
+        """Lay the counts out in the order of the study's rows.
 
         To `findings` it adds what counts and outcomes show of the declarations.
         """
         rows = tuple(
             RowDeliveries(
-                variant=r.variant, path=r.path, seed=r.seed, taps=arms.get(r.arm.key(), ())
+                variant=r.variant,
+                path=r.path,
+                seed=r.seed,
+                taps=arms.get((r.arm.key(), r.scenes), ()),
             )
             for r in study.rows
         )

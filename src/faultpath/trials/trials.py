@@ -225,13 +225,13 @@ def selected(study: Study, library: Library) -> tuple[SceneRef, ...]:
 def check_rows(rows: Iterable[Row], variants: Iterable[str]) -> None:
     """Raise `UserError` for a row without a known variant, or for two rows at one address."""
     known = tuple(variants)
-    addresses: set[tuple[str, str, int]] = set()
+    addresses: set[tuple[str, str, int, tuple[str, ...]]] = set()
     for row in rows:
         if row.arm.variant not in known:
             raise UserError(
                 f"the system has no variant {row.arm.variant!r}: choose from {', '.join(known)}"
             )
-        address = (row.variant, row.path, row.seed)
+        address = (row.variant, row.path, row.seed, row.scenes)
         if address in addresses:
             raise UserError(
                 f"two rows of the study are both called variant {row.variant!r}, path "
@@ -245,5 +245,6 @@ def assemble(study: Study, library: Library, outcomes: Mapping[tuple[str, str], 
     scenes, trials = selected(study, library), list[Trial]()
     for row in study.rows:
         where, key = (row.variant, row.path, row.seed), row.arm.key()
-        trials += [Trial(*where, s.index, s.topology, outcomes[key, s.id]) for s in scenes]
+        here = [scene for scene in scenes if scene.id in row.scenes] if row.scenes else scenes
+        trials += [Trial(*where, s.index, s.topology, outcomes[key, s.id]) for s in here]
     return Trials.of(trials)

@@ -22,6 +22,8 @@ class Unit:
     """That of `arm`, which a model computes anew each time."""
     block: int
     scenes: tuple[str, ...]
+    part: tuple[str, ...] = ()
+    """What its rows say of their scenes."""
 
 
 def plan(
@@ -31,6 +33,7 @@ def plan(
     library: Library,
     fingerprint: str,
     look: int = 0,
+    part: tuple[str, ...] = (),
 ) -> tuple[Unit, ...]:
     """Return every unit: block by block, in each the arms in order.
 
@@ -53,7 +56,7 @@ def plan(
                 "library": library.content_hash,
             }
             key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
-            units.append(Unit(key, arm, arm_key, block, tuple(ids)))
+            units.append(Unit(key, arm, arm_key, block, tuple(ids), part))
     return tuple(units)
 
 
