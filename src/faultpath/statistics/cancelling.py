@@ -1,0 +1,229 @@
+"""Errors that cancel: each alone costs success, both together do not.
+
+Outcomes are success by scene, a mean over seeds where there are several, and not a number where a
+trial has none: a scene counts in a comparison where both of its sides have one. Errors are named by
+their places in ``singles``, pairs by those of both.
+
+Nothing is tested about errors that add up. On the scale of success rates harms that are additive
+inside look like interactions, because of floor and ceiling.
+"""
+
+from collections.abc import Mapping, Set
+from typing import Literal, NamedTuple, TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.statistics import power, score
+from faultpath.statistics.decisions import holm
+from faultpath.statistics.distributions import binomial_cdf
+from faultpath.statistics.estimate import ALPHA
+from faultpath.statistics.inputs import Floats
+
+LEVEL, MOST = 0.1, 10
+"""Level at which an error goes on to the second stage, and how many do at most."""
+REGAINED = 0.5
+"""Share of its loss that the worse error has to regain."""
+_DIGITS = 9
+"""Digits of means over seeds, so that those which are equal leave exactly 0."""
+Key: TypeAlias = tuple[int, int]
+Name = TypeVar("Name", int, Key)
+
+
+class StageOne(NamedTuple):
+    """Errors alone in the first stage, and which of them go on."""
+
+    p_values: Floats
+    """[errors]: one-sided, not corrected, of "it hurts"."""
+    losses: Floats
+    """[errors]: percentage points that it cost."""
+    hurting: tuple[int, ...]
+    """Those that go on, the worst first."""
+
+
+class Single(NamedTuple):
+    """An error alone, in the scenes that have an outcome with it and without any."""
+
+    kind: Literal["hurts", "helps"] | None
+    none: float
+    """Success without an error, in percent."""
+    alone: float
+    scenes: int
+    p_value: float
+    """One-sided, of "it hurts"."""
+    corrected_p: float
+    """Holm's, over all errors."""
+    helps_p: float
+    """The same of "it helps"."""
+
+
+class Pair(NamedTuple):
+    """Two errors, in the scenes that have all four outcomes; success in percent."""
+
+    kind: Literal["cancel", "covers"] | None
+    covering: int | None
+    """The error that covers for the other one."""
+    worse: int
+    """The error that alone left less success."""
+    none: float
+    first: float
+    second: float
+    both: float
+    scenes: int
+    regained: float | None
+    """Share of the worse one's loss that both together have not; None where it lost nothing."""
+    p_value: float
+    """One-sided, of "both together beat the worse of them alone"."""
+    corrected_p: float | None
+    """Holm's, over the pairs of which both errors hurt alone; None for others."""
+    covers_p: float | None
+    """Holm's, over pairs of one source, of "the worse one hurts, and both together beat it"."""
+
+
+class Cancelling(NamedTuple):
+    """Errors of a scan, alone and in pairs."""
+
+    singles: tuple[Single, ...]
+    pairs: dict[Key, Pair]
+
+
+def stage_one(none: Floats, singles: Floats) -> StageOne:
+    """Return which errors go on, of outcomes without an error [scenes] and with each alone
+    [errors, scenes]."""
+    p_values = ahead(none, singles)
+    losses = 100.0 * _means(none - singles)
+    order = np.argsort(-losses, kind="stable")
+    hurting = [int(error) for error in order if p_values[error] < LEVEL]
+    return StageOne(p_values, losses, tuple(hurting[:MOST]))
+
+
+def cancelling(
+    none: Floats,
+    singles: Floats,
+    pairs: Mapping[Key, Floats],
+    same_source: Set[Key],
+    alpha: float = ALPHA,
+) -> Cancelling:
+    """Return what the errors did alone and in pairs, from [scenes] without an error, [errors,
+    scenes] with each alone and [scenes] with each pair.
+
+    A pair cancels if each error alone hurts, at half of ``alpha``, and both together beat the worse
+    one, at the other half, and regain half of its loss. In a pair of ``same_source`` one covers for
+    the other if that one hurts, both together beat it and regain half of its loss, and the first
+    alone is not ahead of no error.
+    """
+    if unknown := same_source - pairs.keys():
+        raise ValueError(f"pairs of one source have no outcomes: {sorted(unknown)}")
+    alone = _singles(none, singles, alpha / 2.0)
+    if not pairs:
+        return Cancelling(alone, {})
+    keys = list(pairs)
+    both = np.stack([pairs[key] for key in keys])
+    parts = singles[np.array(keys).T]  # [2, pairs, scenes]
+    rates, scenes = _joint_rates(none, parts, both)
+    beats = ahead(both, parts)
+    ties = rates[1] == rates[2]
+    second = (rates[1] > rates[2]) | (ties & (beats[1] > beats[0]))
+    worse = {key: key[int(place)] for key, place in zip(keys, second, strict=True)}
+    p_values = dict(zip(keys, map(float, np.where(second, *beats[::-1])), strict=True))
+
+    hurt = [key for key in keys if all(alone[error].kind == "hurts" for error in key)]
+    corrected = _holm({key: p_values[key] for key in hurt})
+    covers = _holm({key: max(p_values[key], alone[worse[key]].p_value) for key in same_source})
+    behind = ahead(singles, none) > alpha
+
+    decided: dict[Key, Pair] = {}
+    for key, percent, known in zip(keys, (100.0 * rates.T).tolist(), scenes.tolist(), strict=True):
+        lost, left = percent[0] - min(percent[1:3]), percent[0] - percent[3]
+        enough = lost > 0.0 and left <= (1.0 - REGAINED) * lost + 10.0**-_DIGITS
+        other = key[0] if worse[key] == key[1] else key[1]
+        cancels = enough and corrected.get(key, 1.0) <= alpha / 2.0
+        covered = enough and covers.get(key, 1.0) <= alpha and bool(behind[other])
+        decided[key] = Pair(
+            kind="cancel" if cancels else "covers" if covered else None,
+            covering=other if covered and not cancels else None,
+            worse=worse[key],
+            none=percent[0],
+            first=percent[1],
+            second=percent[2],
+            both=percent[3],
+            scenes=known,
+            regained=1.0 - left / lost if lost > 0.0 else None,
+            p_value=p_values[key],
+            corrected_p=corrected.get(key),
+            covers_p=covers.get(key),
+        )
+    return Cancelling(alone, decided)
+
+
+def fewest_scenes(n_singles: int, n_pairs: int) -> int:
+    """Return with how many scenes a scan can say anything of each error and each pair at all."""
+    return power.fewest_scenes(ALPHA / max(n_singles, n_pairs, 1))  # two-sided: half of alpha
+
+
+def ahead(first: Floats, second: Floats) -> Floats:
+    """Return [...]: the one-sided p of "``first`` succeeds more than ``second``" [..., scenes].
+
+    Where scenes differ wholly or not it is exact McNemar's. Else scenes that differ by ``y`` are
+    worth ``(sum |y|)^2 / sum y^2`` that differ wholly, and it is the larger of McNemar's among
+    these and of the score's, as for audits of several seeds (`score.degrees_p_value`).
+    """
+    differences = np.asarray(first - second).round(_DIGITS)
+    values = np.nan_to_num(differences)
+    total, size = values.sum(axis=-1), np.abs(values).sum(axis=-1)
+    squares = np.maximum(np.square(values).sum(axis=-1), np.finfo(np.float64).tiny)
+    fewer = np.maximum(0.5 * size * (size - total) / squares, 0.0)
+    p_values = binomial_cdf(fewer, size * size / squares, 0.5)
+    by_degrees = (np.abs(values) != np.rint(np.abs(values))).any(axis=-1) & (total > 0.0)
+    for at in map(tuple, np.argwhere(by_degrees)):
+        kinds, counts = np.unique(differences[at], return_counts=True)
+        known = ~np.isnan(kinds)
+        two_sided = score.p_value(kinds[known], counts[known].astype(np.float64), 1.0)
+        p_values[at] = max(p_values[at], 0.5 * two_sided)
+    return p_values
+
+
+def _singles(none: Floats, singles: Floats, alpha: float) -> tuple[Single, ...]:
+    hurts, helps = ahead(none, singles), ahead(singles, none)
+    corrected, helping = (_holm(dict(enumerate(map(float, p)))) for p in (hurts, helps))
+    known = ~np.isnan(none - singles)
+    means = (
+        _means(np.where(known, values, np.nan))
+        for values in (np.broadcast_to(none, known.shape), singles)
+    )
+    return tuple(
+        Single(
+            kind="hurts"
+            if corrected[error] <= alpha
+            else "helps"
+            if helping[error] <= alpha
+            else None,
+            none=100.0 * float(rates[0]),
+            alone=100.0 * float(rates[1]),
+            scenes=int(known[error].sum()),
+            p_value=float(hurts[error]),
+            corrected_p=corrected[error],
+            helps_p=helping[error],
+        )
+        for error, rates in enumerate(zip(*means, strict=True))
+    )
+
+
+def _joint_rates(none: Floats, parts: Floats, both: Floats) -> tuple[Floats, NDArray[np.int64]]:
+    """Return success [none, first, second or both; pairs] in the scenes [pairs] that have all."""
+    outcomes = np.stack([np.broadcast_to(none, both.shape), *parts, both])
+    known = ~np.isnan(outcomes.sum(axis=0))
+    return _means(np.where(known, outcomes, np.nan)).round(_DIGITS), known.sum(axis=-1)
+
+
+def _means(values: Floats) -> Floats:
+    """Return the mean [...] of those of [..., scenes] that are numbers; NaN without any."""
+    known = ~np.isnan(values)
+    with np.errstate(invalid="ignore"):
+        return np.nansum(values, axis=-1) / known.sum(axis=-1)
+
+
+def _holm(p_values: Mapping[Name, float]) -> dict[Name, float]:
+    names = {str(name): p for name, p in p_values.items()}
+    adjusted = holm(names, dict.fromkeys(names, 1.0))
+    return {name: adjusted[str(name)] for name in p_values}
