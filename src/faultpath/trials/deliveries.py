@@ -9,7 +9,6 @@ from faultpath.loop import TapCount, added
 from faultpath.trials.arm import Study
 from faultpath.trials.trials import Trials
 
-
 ArmPart: TypeAlias = tuple[str, tuple[str, ...]]
 """Key of an arm, and what its rows say of their scenes."""
 

@@ -245,6 +245,7 @@ def assemble(study: Study, library: Library, outcomes: Mapping[tuple[str, str], 
     scenes, trials = selected(study, library), list[Trial]()
     for row in study.rows:
         where, key = (row.variant, row.path, row.seed), row.arm.key()
-        here = [scene for scene in scenes if scene.id in row.scenes] if row.scenes else scenes
+        part = frozenset(row.scenes or study.scenes)
+        here = (scene for scene in scenes if scene.id in part)
         trials += [Trial(*where, s.index, s.topology, outcomes[key, s.id]) for s in here]
     return Trials.of(trials)

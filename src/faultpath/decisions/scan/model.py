@@ -1,0 +1,163 @@
+"""The question and the result of a scan, in numbers."""
+
+from typing import Literal
+
+from faultpath.core.results import Result
+from faultpath.decisions.model import Invalid
+from faultpath.decisions.question import Resolved
+from faultpath.decisions.scan.sources import Ranking
+from faultpath.statistics.estimate import Sign
+
+
+class ResolvedScan(Resolved):
+    """The question of a scan, as its result keeps it."""
+
+    variant: str
+    repair: str = ""
+    """Another variant that is scanned with the same errors; empty for none."""
+    fault: tuple[str, ...] = ()
+    """Sizes in place of the declared ones."""
+    library: str
+    library_hash: str
+    n_scenes: int | None
+    """Scenes of the library that it may use; `None`: all, as far as the trials of a scan go."""
+    seeds: tuple[int, ...]
+    trained: bool = False
+    other: str = ""
+    """The only other variant of the system; empty where there are none or several."""
+
+    @property
+    def variants(self) -> tuple[str, ...]:
+        """The variants that are scanned."""
+        return (self.variant, self.repair) if self.repair else (self.variant,)
+
+
+class ScanError(Result, allow_inf_nan=False):
+    """An error of one source at one reader, of one sign."""
+
+    source: str
+    reader: str
+    """The module that gets it."""
+    at: tuple[str, ...]
+    """Where its fault acts: the module, or some of the places at which that reads."""
+    fault: str
+    """With its size, without readers."""
+    sign: Sign
+    """That of the first number of its change that is not 0."""
+    change: tuple[float, ...]
+    """Added to the reading, or fractions of it where `relative`; one number, or a vector."""
+    relative: bool
+    unit: str
+    """Of the change where that is not relative; empty where the system's preset has one."""
+    halvings: int = 0
+    """How often the size was halved."""
+
+    @property
+    def text(self) -> str:
+        """The fault with its readers."""
+        return f"{self.fault}@{'+'.join(self.at)}"
+
+
+class FirstStage(Result, allow_inf_nan=False):
+    """What an error alone did in the first stage; success in percent."""
+
+    error: ScanError
+    """With the size that was run."""
+    none: float
+    alone: float
+    loss: float
+    """Percentage points, in the scenes that have an outcome with and without it."""
+    p_value: float
+    """One-sided, not corrected, of "it hurts"."""
+
+
+class SecondStage(Result, allow_inf_nan=False):
+    """What an error alone did in the second stage; success in percent."""
+
+    error: int
+    """Its place among the errors of the scan."""
+    kind: Literal["hurts", "helps"] | None
+    none: float
+    alone: float
+    scenes: int
+    p_value: float
+    corrected_p: float
+    helps_p: float
+
+
+class ScannedPair(Result, allow_inf_nan=False):
+    """What two errors did alone and together in the second stage; success in percent."""
+
+    errors: tuple[int, int]
+    kind: Literal["cancel", "covers"] | None
+    covering: int | None
+    """The error that covers for the other one."""
+    worse: int
+    none: float
+    first: float
+    second: float
+    both: float
+    scenes: int
+    regained: float | None
+    """Share of the worse one's loss that both together have not."""
+    p_value: float
+    corrected_p: float | None
+    covers_p: float | None
+
+    @property
+    def gain(self) -> float:
+        """Success with both minus success with the worse one alone, percentage points."""
+        return self.both - min(self.first, self.second)
+
+
+class Together(Result, allow_inf_nan=False):
+    """What a source did at all of its readers, or at all but one; success in percent."""
+
+    errors: tuple[int, ...]
+    """One a reader that gets it."""
+    left_out: str
+    """The reader that does not; empty at all of them, as in deployment."""
+    none: float
+    success: float
+    scenes: int
+
+
+class ScannedVersion(Result):
+    """What a scan found in one variant; each is tested by itself."""
+
+    variant: str
+    first: tuple[FirstStage, ...]
+    """Every size that was run."""
+    singles: tuple[SecondStage, ...]
+    pairs: tuple[ScannedPair, ...]
+    together: tuple[Together, ...]
+
+    @property
+    def listed(self) -> tuple[ScannedPair, ...]:
+        """The pairs that cancel, and those in which one error covers for the other."""
+        kinds = ("cancel", "covers")
+        return tuple(
+            p for p in sorted(self.pairs, key=lambda p: kinds.index(p.kind or "covers")) if p.kind
+        )
+
+
+class ScanResult(Result):
+    """What a scan found; written as `scan.json`."""
+
+    format: Literal[1] = 1
+    question: ResolvedScan
+    ranking: Ranking
+    """All sources that may err, those without a size included."""
+    errors: tuple[ScanError, ...]
+    """Of every source and reader, with the size of the second stage."""
+    chosen: tuple[int, ...]
+    """Errors that hurt in the first stage and went on, the worst first."""
+    scenes: tuple[int, int]
+    """Of the first and of the second stage."""
+    trials: int
+    versions: tuple[ScannedVersion, ...]
+    invalid: Invalid | None = None
+    """Why no result follows from these trials."""
+    failed: int
+    """Trials in which the program raised an error."""
+    findings: tuple[str, ...] = ()
