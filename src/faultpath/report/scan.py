@@ -2,86 +2,102 @@
 
 from pathlib import Path
 
+from markupsafe import Markup
+
+from faultpath.decisions.scan.model import ScannedVersion, SecondStage
 from faultpath.decisions.scan.record import ScanRecord
 from faultpath.decisions.scan.sources import Candidate, Ranking
 from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.scan import named, size
+from faultpath.decisions.sentences.scan import in_words, named, of_pair, size
 from faultpath.decisions.tables import Entry, Line, Table, line
+from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
-from faultpath.report.frame import write_pages
+from faultpath.report.frame import render, write_pages
+from faultpath.report.scan_pictures import letters, strip, triangle
 from faultpath.trials.provenance import RunProvenance
 
 
 def tables(record: ScanRecord) -> tuple[Table, ...]:
-    """Return the errors alone, those of a source at all of its readers, and the ranking."""
+    """Return the errors alone, those of a source at several readers, and the ranking."""
     together = (_together(record),) if record.versions[0].together else ()
     return _alone(record), *together, ranking_table(record.ranking)
 
 
 def _alone(record: ScanRecord) -> Table:
     """Return success with each error alone, in the first stage and in the second."""
-    columns: list[str] = []
-    for version in record.versions:
-        before = f"{version.variant}: " if len(record.versions) > 1 else ""
-        columns += [f"{before}none, %", "alone, %", "second stage, %", "p, Holm"]
-    lines: list[Line] = []
+    versions = record.versions
+    none = [
+        entry
+        for version in versions
+        for entry in (_percent(version.first[0].none), _percent(_none(version)), "")
+    ]
+    lines = [line("no error", *none)]
     for place, error in enumerate(record.errors):
         entries: list[Entry] = []
-        for version in record.versions:
+        for version in versions:
             first = next(f for f in version.first if f.error.text == error.text)
             second = next((s for s in version.singles if s.error == place), None)
-            entries += [Entry(text=f"{first.none:.0f}"), Entry(text=f"{first.alone:.0f}")]
-            if second is None:
-                entries += [Entry(text="not run"), Entry(text="")]
-            else:
-                detected = second.kind is not None
-                p = second.helps_p if second.kind == "helps" else second.corrected_p
-                rates = f"{second.alone:.0f}"
-                entries += [Entry(text=rates, detected=detected), Entry(text=wording.p_value(p))]
+            entries += [Entry(text=_percent(first.alone)), *_second(second)]
         lines.append(line(named(error), *entries))
-    first, second = record.scenes
     return Table(
         name="errors",
-        title="Success with each error alone",
+        title="Success with each error alone, %",
         corner="Error",
-        columns=tuple(columns),
+        columns=_of_versions(record, "first stage", "second stage", "p, Holm"),
         lines=tuple(lines),
         notes=(
-            f"The first stage has {wording.counted(first, 'scene')}, the second "
-            f"{second} others. p: one-sided, that the error costs success; bold below 2.5 %.",
+            f"The first stage has {wording.counted(record.scenes[0], 'scene')}, the second "
+            f"{record.scenes[1]} others. p: one-sided, that the error costs success, or raises it "
+            "where it is bold and above no error; bold below 0.025.",
         ),
     )
 
 
+def _second(single: SecondStage | None) -> tuple[Entry, Entry]:
+    if single is None:
+        return Entry(text="not run"), Entry(text="")
+    p = single.helps_p if single.kind == "helps" else single.corrected_p
+    text = Entry(text=_percent(single.alone), detected=single.kind is not None)
+    return text, Entry(text=wording.p_value(p))
+
+
+def _none(version: ScannedVersion) -> float | None:
+    rates = [part.none for part in (*version.singles, *version.together)]
+    return rates[0] if rates else None
+
+
+def _percent(rate: float | None) -> str:
+    return "not run" if rate is None else f"{rate:.0f}"
+
+
+def _of_versions(record: ScanRecord, *columns: str) -> tuple[str, ...]:
+    """Return columns for each version, under its name where there are two."""
+    if len(record.versions) == 1:
+        return columns
+    return tuple(f"{of.variant}: {column}" for of in record.versions for column in columns)
+
+
 def _together(record: ScanRecord) -> Table:
-    """Return success with a source wrong at all of its readers, as in deployment."""
+    """Return success with a source wrong at several readers at once."""
     lines: list[Line] = []
     for at, together in enumerate(record.versions[0].together):
         errors = [record.errors[place] for place in together.errors]
         sizes = " and ".join(dict.fromkeys(map(size, errors)))
-        where = f"all but {together.left_out}" if together.left_out else "all readers"
-        entries: list[str] = []
-        for version in record.versions:
-            alone = {single.error: single.alone for single in version.singles}
-            rates = [
-                f"{alone[place]:.0f}" if place in alone else "not run" for place in together.errors
-            ]
-            of = version.together[at]
-            entries += [f"{of.none:.0f}", ", ".join(rates), f"{of.success:.0f}"]
-        readers = ", ".join(error.reader for error in errors)
-        lines.append(line(f"{errors[0].source} {sizes}", f"{where} ({readers})", *entries))
-    columns = ["at"]
-    for version in record.versions:
-        before = f"{version.variant}: " if len(record.versions) > 1 else ""
-        columns += [f"{before}none, %", "each alone, %", "together, %"]
+        where = f"all but {together.left_out}" if together.left_out else "all"
+        rates = [
+            _percent(rate)
+            for version in record.versions
+            for rate in (version.together[at].none, version.together[at].success)
+        ]
+        lines.append(line(f"{in_words(errors[0].source)} {sizes}", where, *rates))
     return Table(
         name="together",
-        title="Success with one source wrong at several readers",
+        title="Success with one source wrong at several readers, %",
         corner="Source",
-        columns=tuple(columns),
-        words=("at",),
+        columns=("readers", *_of_versions(record, "no error", "wrong there")),
+        words=("readers",),
         lines=tuple(lines),
-        notes=("At all readers is how deployment has an error of the source. No test.",),
+        notes=("All readers is how deployment has an error of the source. Not tested.",),
     )
 
 
@@ -123,17 +139,45 @@ def _ranking_notes(ranking: Ranking) -> tuple[str, ...]:
 
 
 def write_scan(record: ScanRecord, provenance: RunProvenance, folder: Path) -> list[Path]:
-    """Write `report.html`, `scan.svg` and `table.md`; return their paths."""
-    pages = {
-        "report.html": page(record, provenance),
-        "table.md": table_markdown(record),
-    }
+    """Write `report.html`, `scan.svg`, `scan-2.svg` of a repair, and `table.md`; return their
+    paths."""
+    pages = {"report.html": page(record, provenance)}
+    for number, version in enumerate(record.versions, 1):
+        if version.singles:
+            name = "scan.svg" if number == 1 else f"scan-{number}.svg"
+            pages[name] = triangle(record, version).render(standalone=True) + "\n"
+    pages["table.md"] = table_markdown(record)
     return write_pages(pages, folder)
 
 
 def page(record: ScanRecord, provenance: RunProvenance) -> str:
     """Return the scan as one page that opens without a network."""
-    return "<html>"
+    letter = [letters(version) for version in record.versions]
+    versions = [
+        {
+            "name": version.variant,
+            "triangle": Markup(triangle(record, version).render()) if version.singles else "",
+            "strips": [
+                {
+                    "letters": " and ".join(names[place] for place in pair.errors),
+                    "words": of_pair(record, pair),
+                    "picture": Markup(strip(record, version, pair).render()),
+                }
+                for pair in version.listed
+            ],
+        }
+        for version, names in zip(record.versions, letter, strict=True)
+    ]
+    every = tables(record)
+    return render(
+        "scan.html.j2",
+        record=record,
+        asked=record.question,
+        provenance=provenance,
+        n_trials=record.trials,
+        versions=versions,
+        tables=[(table, Markup(html(table, caption=False))) for table in every],
+    )
 
 
 def table_markdown(record: ScanRecord) -> str:

@@ -1,16 +1,11 @@
 """Sentences on a scan: which errors cancel, what that means, and what was left out."""
 
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from faultpath.decisions.scan.model import (
-    ScanError,
-    ScannedPair,
-    ScannedVersion,
-    ScanResult,
-)
+from faultpath.decisions.scan.model import ScanError, ScannedPair, ScannedVersion, ScanResult
 from faultpath.decisions.sentences.phrases import NO_RESULT
-from faultpath.decisions.sentences.wording import MINUS, capital, counted, series
+from faultpath.decisions.sentences.wording import MINUS, capital, counted, series, unit
 
 ANY_REPAIR = "REPAIR"
 """Stands in a command for the name of a variant that only its reader knows."""
@@ -18,19 +13,24 @@ ANY_REPAIR = "REPAIR"
 
 def size(error: ScanError) -> str:
     """Return the size of an error: `+20 %`, `−0.1 m`, or `(+1, 0, 0) m`."""
-    factor, unit = (100.0, " %") if error.relative else (1.0, f" {error.unit}")
+    factor, ending = (100.0, " %") if error.relative else (1.0, f" {unit(error.unit)}")
     numbers = [f"{factor * part:+.3g}" if part else "0" for part in error.change]
     text = numbers[0] if len(numbers) == 1 else f"({', '.join(numbers)})"
-    return f"{text}{unit}".replace("-", MINUS).removesuffix(" 1").rstrip()
+    return f"{text}{ending}".replace("-", MINUS).removesuffix(" 1").rstrip()
+
+
+def in_words(name: str) -> str:
+    """Return the name of a source as part of a sentence."""
+    return name.replace("_", " ")
 
 
 def named(error: ScanError) -> str:
     """Return an error in words: `gain at controller (+20 %)`."""
-    return f"{error.source} at {error.reader} ({size(error)})"
+    return f"{in_words(error.source)} at {error.reader} ({size(error)})"
 
 
-def whole(percent: float) -> str:
-    """Return a success rate."""
+def rate(percent: float) -> str:
+    """Return a success rate: `79 %`."""
     return f"{percent:.0f} %"
 
 
@@ -46,18 +46,18 @@ def headline(record: ScanResult) -> str:
 
 
 def _in_short(record: ScanResult, version: ScannedVersion) -> str:
-    cancelling = [pair for pair in version.listed if pair.kind == "cancel"]
-    covering = [pair for pair in version.listed if pair.kind == "covers"]
-    if cancelling:
-        best = max(cancelling, key=lambda pair: pair.gain)
-        count = "" if len(cancelling) == 1 else f"{len(cancelling)} pairs of errors cancel: "
-        text = f"{count}{_both(record, best)}"
-        text += f" cancel: {_rates(best)}" if not count else f" most, {_rates(best)}"
-        return text
-    if covering:
-        best = max(covering, key=lambda pair: pair.gain)
+    listed = version.listed
+    if not listed:
+        return "no pair of errors is shown to cancel"
+    cancelling = [pair for pair in listed if pair.kind == "cancel"]
+    best = max(cancelling or listed, key=lambda pair: pair.gain)
+    if not cancelling:
         return f"no pair of errors is shown to cancel, but {_covers(record, best)}"
-    return "no pair of errors is shown to cancel"
+    if len(cancelling) == 1:
+        return f"{_both(record, best)} cancel: {_rates(best)}"
+    return (
+        f"{len(cancelling)} pairs of errors cancel, such as {_both(record, best)}: {_rates(best)}"
+    )
 
 
 def sentences(record: ScanResult) -> tuple[str, ...]:
@@ -68,34 +68,32 @@ def sentences(record: ScanResult) -> tuple[str, ...]:
 
 
 def _found(record: ScanResult) -> Iterator[str]:
-    several = len(record.versions) > 1
     for version in record.versions:
-        before = f"{version.variant}: " if several else ""
+        before = f"In {version.variant}: " if len(record.versions) > 1 else ""
         for pair in version.listed:
-            yield before + in_words(record, pair)
+            yield before + of_pair(record, pair)
         for kind, verb in (("hurts", "cost success"), ("helps", "raise success")):
             names = [
-                f"{named(record.errors[single.error])} {whole(single.alone)}"
-                for single in version.singles
+                f"{named(record.errors[single.error])} {rate(single.alone)}"
+                for single in sorted(version.singles, key=lambda single: single.alone)
                 if single.kind == kind
             ]
             if names:
-                without = whole(version.singles[0].none)
-                yield before + f"Alone, these {verb} ({without} without an error): {series(names)}."
+                none = rate(version.singles[0].none)
+                yield before + f"Alone, these {verb} ({none} without an error): {series(names)}."
 
 
-def in_words(record: ScanResult, pair: ScannedPair) -> str:
+def of_pair(record: ScanResult, pair: ScannedPair) -> str:
     """Return what two errors do to each other, and what follows for who corrects them."""
     if pair.kind == "covers":
         return f"{capital(_covers(record, pair))}."
     first, second = (record.errors[place] for place in pair.errors)
+    one, other = f"only the {in_words(first.source)}", f"only the {in_words(second.source)}"
     if first.source == second.source:
-        short = [f"{error.source} only at {error.reader}" for error in (first, second)]
-    else:
-        short = [f"only {error.source}" for error in (first, second)]
+        one, other = (f"it only at {error.reader}" for error in (first, second))
     return (
-        f"{capital(_both(record, pair))} cancel: {_rates(pair)}. Correct {short[0]}: "
-        f"{whole(pair.second)}. Correct {short[1]}: {whole(pair.first)}. Correct both together."
+        f"{capital(_both(record, pair))} cancel: {_rates(pair)}. Correct {one}: "
+        f"{rate(pair.second)}. Correct {other}: {rate(pair.first)}. Correct both together."
     )
 
 
@@ -105,45 +103,55 @@ def _both(record: ScanResult, pair: ScannedPair) -> str:
 
 
 def _rates(pair: ScannedPair) -> str:
-    return f"{whole(pair.both)} with both, {whole(pair.none)} with neither"
+    return f"{rate(pair.both)} with both, {rate(pair.none)} with neither"
 
 
 def _covers(record: ScanResult, pair: ScannedPair) -> str:
-    at = pair.errors.index(pair.worse)
-    worse, other = (record.errors[pair.errors[place]] for place in (at, 1 - at))
-    alone = (pair.first, pair.second)
+    rates = dict(zip(pair.errors, (pair.first, pair.second), strict=True))
+    (covering,) = {*pair.errors} - {pair.worse}
+    worse, other = record.errors[pair.worse], record.errors[covering]
     return (
-        f"{named(other)} covers for {named(worse)}: {_rates(pair)}, {whole(alone[at])} with "
-        f"{worse.source} wrong at {worse.reader} alone, {whole(alone[1 - at])} at {other.reader} "
+        f"{named(other)} covers for {named(worse)}: {_rates(pair)}, {rate(rates[pair.worse])} with "
+        f"the one at {worse.reader} alone, {rate(rates[covering])} with the one at {other.reader} "
         "alone"
     )
 
 
 def _halved(record: ScanResult) -> Iterator[str]:
-    texts: list[str] = []
+    """Say which sizes were halved, those of a source together where they are equal."""
+    sizes: dict[str, list[str]] = {}
     for error in record.errors:
         if error.halvings:
-            before = error.model_copy(
-                update={"change": tuple(part * 2**error.halvings for part in error.change)}
-            )
-            texts.append(f"{error.source} at {error.reader} from {size(before)} to {size(error)}")
-    if texts:
+            alike = [other for other in record.errors if other.source == error.source]
+            same = len({tuple(map(abs, other.change)) for other in alike}) == 1
+            place = in_words(error.source) + ("" if same else f" at {error.reader}")
+            shown = size(error)
+            opposite = {size(other) for other in alike if other.sign != error.sign}
+            if same and len(error.change) == 1 and opposite:
+                shown = f"±{shown[1:]}"
+            if shown not in sizes.setdefault(place, []):
+                sizes[place].append(shown)
+    if sizes:
+        texts = [f"{place} to {' and '.join(shown)}" for place, shown in sizes.items()]
         yield (
-            "Halved, because a size of the source cost more than 50 percentage points: "
-            f"{series(texts)}."
+            "Errors that cost more than 50 percentage points were halved, at all readers of the "
+            f"source: {series(texts)}."
         )
 
 
 def _counts(record: ScanResult) -> str:
     chosen, total = len(record.chosen), len(record.errors)
     first, second = record.scenes
-    text = f"Of {counted(total, 'error')}, each alone in {counted(first, 'scene')}, "
     if not chosen:
-        return f"{text}none cost success there, so no pair was tested."
+        return (
+            f"Of {counted(total, 'error')}, each run alone in {counted(first, 'scene')}, none is "
+            "seen to cost success, so no pair was tested."
+        )
     pairs = len(record.versions[0].pairs)
     return (
-        f"{text}{chosen} cost success there and {total - chosen} were left out; "
-        f"{counted(pairs, 'pair')} of those tested in {counted(second, 'other scene')}."
+        f"Of {counted(total, 'error')}, each run alone in {counted(first, 'scene')}, {chosen} went "
+        f"on and {total - chosen} were left out; {counted(pairs, 'pair')} ran in {second} other "
+        "scenes."
     )
 
 
@@ -151,8 +159,8 @@ def _limits(record: ScanResult) -> str:
     models = ", for these trained models" if record.question.trained else ""
     apart = " Versions are tested separately." if len(record.versions) > 1 else ""
     return (
-        f"What is listed holds for new scenes like these{models}, at these sizes. Of other pairs "
-        f"nothing is claimed, and of no pair that its errors add up.{apart}"
+        f"What is listed holds for new scenes like these{models}, at these sizes. Nothing is "
+        f"claimed of other pairs, nor that any errors add up.{apart}"
     )
 
 
@@ -164,17 +172,16 @@ def commands(record: ScanResult) -> tuple[str, ...]:
     listed = {pair.errors for version in record.versions for pair in version.listed}
     repair = question.repair or question.other or ANY_REPAIR
     options = [f"--set={key}={value}" for key, value in question.options.items()]
-    lines: list[str] = []
-    for places in sorted(listed):
-        words = ["faultpath", "audit", question.system, *options, "--baseline", question.variant]
-        words += ["--repair", repair, "--fault", _fault(record, places)]
-        lines.append(shlex.join(words))
-    return tuple(lines)
+    words = ["faultpath", "audit", question.system, *options]
+    words += ["--baseline", question.variant, "--repair", repair, "--fault"]
+    return tuple(shlex.join([*words, _fault(record, places)]) for places in sorted(listed))
 
 
-def _fault(record: ScanResult, places: tuple[int, int]) -> str:
-    """Return both errors as one fault: at both readers where their size is the same."""
+def _fault(record: ScanResult, places: Sequence[int]) -> str:
+    """Return both errors as one fault; it names no readers where it reaches all of them."""
     first, second = (record.errors[place] for place in places)
-    if first.fault == second.fault:
-        return f"{first.fault}@{'+'.join((*first.at, *second.at))}"
-    return f"{first.text} & {second.text}"
+    if first.fault != second.fault:
+        return f"{first.text} & {second.text}"
+    alike = [e for e in record.errors if (e.source, e.sign) == (first.source, first.sign)]
+    whole = len(alike) == 2 and all(error.at == (error.reader,) for error in alike)
+    return first.fault if whole else f"{first.fault}@{'+'.join((*first.at, *second.at))}"
