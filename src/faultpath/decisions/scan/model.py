@@ -1,6 +1,8 @@
 """The question and the result of a scan, in numbers."""
 
-from typing import Literal
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
 
 from faultpath.core.results import Result
 from faultpath.decisions.model import Invalid
@@ -44,7 +46,7 @@ class ScanError(Result, allow_inf_nan=False):
     """With its size, without readers."""
     sign: Sign
     """That of the first number of its change that is not 0."""
-    change: tuple[float, ...]
+    change: Annotated[tuple[float, ...], Field(min_length=1)]
     """Added to the reading, or fractions of it where `relative`; one number, or a vector."""
     relative: bool
     unit: str
@@ -135,10 +137,7 @@ class ScannedVersion(Result):
     @property
     def listed(self) -> tuple[ScannedPair, ...]:
         """The pairs that cancel, and those in which one error covers for the other."""
-        kinds = ("cancel", "covers")
-        return tuple(
-            p for p in sorted(self.pairs, key=lambda p: kinds.index(p.kind or "covers")) if p.kind
-        )
+        return tuple(p for kind in ("cancel", "covers") for p in self.pairs if p.kind == kind)
 
 
 class ScanResult(Result):
@@ -155,9 +154,31 @@ class ScanResult(Result):
     scenes: tuple[int, int]
     """Of the first and of the second stage."""
     trials: int
-    versions: tuple[ScannedVersion, ...]
+    versions: Annotated[tuple[ScannedVersion, ...], Field(min_length=1)]
     invalid: Invalid | None = None
     """Why no result follows from these trials."""
     failed: int
     """Trials in which the program raised an error."""
     findings: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        known = frozenset(range(len(self.errors)))
+        texts = {error.text for error in self.errors}
+        for version in self.versions:
+            together = {place for of in version.together for place in of.errors}
+            paired = {place for pair in version.pairs for place in pair.errors}
+            alone = {single.error for single in version.singles}
+            if not {*self.chosen, *together, *alone} <= known or not paired <= alone:
+                raise ValueError("names errors that it does not have")
+            if not texts <= {first.error.text for first in version.first}:
+                raise ValueError("leaves an error out of the first stage")
+            if not all({pair.worse} < {*pair.errors} for pair in version.pairs):
+                raise ValueError("has a pair of one error")
+        if tuple(version.variant for version in self.versions) != self.question.variants:
+            raise ValueError("has other versions than its question")
+        if len({tuple(of.errors for of in version.together) for version in self.versions}) > 1:
+            raise ValueError("has other conditions in one version than in the other")
+        if not all(of.errors for of in self.versions[0].together):
+            raise ValueError("has a source that is wrong nowhere")
+        return self

@@ -149,7 +149,7 @@ def _given(system: System, variants: Sequence[Variant], fault: FaultText) -> Can
             "SOURCE:scale=1.2, SOURCE:offset=0.1, or a preset of the system with its size."
         )
     if len(fault.sizes) != 1:
-        raise UserError(f"fault '{fault}': a scan takes one size, and runs it with both signs.")
+        raise UserError(f"fault '{fault}': a scan needs one size, which it runs with both signs.")
     channels = tuple(dict.fromkeys(part.channel for part in system.fault(fault)))
     sources = {bound(variant, system.interface, c): None for variant in variants for c in channels}
     candidate = _candidate(system, variants, fault.name, tuple(sources), channels, str(fault))
