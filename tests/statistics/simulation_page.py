@@ -1,15 +1,14 @@
 """The page of `make statistics`: every promise of the statistics, measured."""
 
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
-from hashlib import sha256
 from itertools import product, repeat
 from pathlib import Path
-from typing import TypeAlias
 
+import simulation_scan as scans
 from simulation import (
     LEANS,
     RATES,
@@ -27,28 +26,12 @@ from simulation import (
 from simulation_blanks import BLANKS, blanks
 from simulation_many import LEVELS, SCENES, largest_level
 from simulation_skewed import skewed, skewed_coverage
+from simulation_tables import Section, kept, markdown, share, written
 
-import faultpath
 from faultpath.decisions.family import ALPHA
-from faultpath.trials.store.atomic import write_file
 
 LOST = (0.005, 0.01, 0.02, 0.05)
 """Shares of scenes that lose all seeds."""
-Section: TypeAlias = tuple[str, str, Callable[[], str]]
-"""Title, note and what measures the table."""
-
-
-def share(rates: Iterable[float]) -> str:
-    """Return `.950`, or the least and the greatest of several rates."""
-    texts = [f"{r:.3f}".removeprefix("0") if r < 0.9995 else "1" for r in sorted(rates)]
-    return texts[0] if texts[0] == texts[-1] else f"{texts[0]}–{texts[-1]}"
-
-
-def markdown(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """Return a Markdown table."""
-    lines = [list(heads), *map(list, rows)]
-    lines.insert(1, [":--", *["--:"] * (len(lines[0]) - 1)])
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
 def sections() -> Iterator[Section]:
@@ -257,6 +240,7 @@ def sections() -> Iterator[Section]:
             ),
         ),
     )
+    yield from scans.sections()
 
 
 def announced(found: Callable[[int, Population, float], float]) -> str:
@@ -285,22 +269,10 @@ def missing(runs: int = 2000) -> Iterator[tuple[float, float]]:
         yield from pool.map(blanks, *zip(*BLANKS, strict=True), repeat(runs))
 
 
-def kept(title: str, measured: Callable[[], str]) -> str:
-    """Return a table, from `build/statistics` where the same code has measured it before."""
-    package = Path(faultpath.__file__).parent
-    rooms = (package / "statistics", package / "decisions")
-    files = [file for room in rooms for file in room.rglob("*.py")]
-    files += Path(__file__).parent.glob("simulation*.py")
-    code = sha256(b"".join(file.read_bytes() for file in sorted(files))).hexdigest()[:16]
-    path = Path("build/statistics") / code / f"{title}.md"
-    if not path.is_file():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_file(path, measured().encode())
-    return path.read_text("utf-8")
-
-
 def main() -> None:
-    """Write the page; its path is the argument."""
+    """Write the page; its path is the argument. With titles of sections behind it, measure these
+    alone and leave the others as they are on the page."""
+    page, *titles = sys.argv[1:]
     lines = [
         "# What the statistics keep",
         "",
@@ -311,10 +283,16 @@ def main() -> None:
         "[design/statistics.md](design/statistics.md).",
         "",
     ]
+    measured_before = written(Path(page)) if titles else {}
+    if unknown := set(titles) - {title for title, *_ in sections()}:
+        sys.exit(f"No section of the page is called {min(unknown)!r}: name one by its heading.")
     for title, note, measured in sections():
+        if title in measured_before and title not in titles:
+            lines += [measured_before[title], ""]
+            continue
         print(title, file=sys.stderr, flush=True)
         lines += [f"## {title}", "", note, "", kept(title, measured), ""]
-    Path(sys.argv[1]).write_text("\n".join(lines).rstrip() + "\n", "utf-8")
+    Path(page).write_text("\n".join(lines).rstrip() + "\n", "utf-8")
 
 
 if __name__ == "__main__":

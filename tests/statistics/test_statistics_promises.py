@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import simulation as simulated
+import simulation_page
 from simulation import Population, kept
 from simulation_blanks import blanks
 from simulation_skewed import skewed_coverage
@@ -136,3 +137,24 @@ def test_missing_trials_announce_nothing_and_move_no_break_even(kind, seeds):
     announced, wrong = blanks(kind, seeds, 25)
     assert kept(announced, 25, most=ALPHA)
     assert kept(wrong, 25, most=ALPHA)
+
+
+def test_one_section_is_measured_alone_and_others_stay_to_the_byte(tmp_path, monkeypatch):
+    page = tmp_path / "page.md"
+    tables = {"One": "| 1 |", "Two": "| 2 |"}
+    monkeypatch.setattr(
+        simulation_page,
+        "sections",
+        lambda: [(title, f"Of {title}.", str) for title in tables],
+    )
+    monkeypatch.setattr(simulation_page, "kept", lambda title, measured: tables[title])
+    monkeypatch.setattr("sys.argv", ["", str(page)])
+    simulation_page.main()
+    before = page.read_text("utf-8")
+    tables |= {"One": "| 3 |", "Two": "| 4 |"}
+    monkeypatch.setattr("sys.argv", ["", str(page), "Two"])
+    simulation_page.main()
+    assert page.read_text("utf-8") == before.replace("| 2 |", "| 4 |")
+    monkeypatch.setattr("sys.argv", ["", str(page), "Three"])
+    with pytest.raises(SystemExit, match="'Three'"):
+        simulation_page.main()

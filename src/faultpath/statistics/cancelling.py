@@ -12,7 +12,6 @@ from collections.abc import Mapping, Set
 from typing import Literal, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faultpath.statistics import power, score
 from faultpath.statistics.decisions import holm
@@ -60,24 +59,25 @@ class Single(NamedTuple):
 class Pair(NamedTuple):
     """Two errors, in the scenes that have all four outcomes; success in percent."""
 
-    kind: Literal["cancel", "covers"] | None
-    covering: int | None
-    """The error that covers for the other one."""
-    worse: int
-    """The error that alone left less success."""
     none: float
     first: float
     second: float
     both: float
     scenes: int
+    worse: int
+    """The error that alone left less success."""
     regained: float | None
     """Share of the worse one's loss that both together have not; None where it lost nothing."""
     p_value: float
-    """One-sided, of "both together beat the worse of them alone"."""
-    corrected_p: float | None
+    """One-sided, of "both together beat the worse of them alone"; doubled, since that one is chosen
+    by the data."""
+    corrected_p: float | None = None
     """Holm's, over the pairs of which both errors hurt alone; None for others."""
-    covers_p: float | None
+    covers_p: float | None = None
     """Holm's, over pairs of one source, of "the worse one hurts, and both together beat it"."""
+    kind: Literal["cancel", "covers"] | None = None
+    covering: int | None = None
+    """The error that covers for the other one."""
 
 
 class Cancelling(NamedTuple):
@@ -115,50 +115,34 @@ def cancelling(
     if unknown := same_source - pairs.keys():
         raise ValueError(f"pairs of one source have no outcomes: {sorted(unknown)}")
     alone = _singles(none, singles, alpha / 2.0)
-    if not pairs:
-        return Cancelling(alone, {})
-    keys = list(pairs)
-    both = np.stack([pairs[key] for key in keys])
-    parts = singles[np.array(keys).T]  # [2, pairs, scenes]
-    rates, scenes = _joint_rates(none, parts, both)
-    beats = ahead(both, parts)
-    ties = rates[1] == rates[2]
-    second = (rates[1] > rates[2]) | (ties & (beats[1] > beats[0]))
-    worse = {key: key[int(place)] for key, place in zip(keys, second, strict=True)}
-    p_values = dict(zip(keys, map(float, np.where(second, *beats[::-1])), strict=True))
-
-    hurt = [key for key in keys if all(alone[error].kind == "hurts" for error in key)]
-    corrected = _holm({key: p_values[key] for key in hurt})
-    covers = _holm({key: max(p_values[key], alone[worse[key]].p_value) for key in same_source})
-    behind = ahead(singles, none) > alpha
-
+    compared = _compared(none, singles, pairs) if pairs else {}
+    hurt = [key for key in compared if all(alone[error].kind == "hurts" for error in key)]
+    corrected = _holm({key: compared[key].p_value for key in hurt})
+    covers = _holm(
+        {
+            key: max(compared[key].p_value, 2.0 * alone[compared[key].worse].p_value)
+            for key in same_source
+        }
+    )
     decided: dict[Key, Pair] = {}
-    for key, percent, known in zip(keys, (100.0 * rates.T).tolist(), scenes.tolist(), strict=True):
-        lost, left = percent[0] - min(percent[1:3]), percent[0] - percent[3]
-        enough = lost > 0.0 and left <= (1.0 - REGAINED) * lost + 10.0**-_DIGITS
-        other = key[0] if worse[key] == key[1] else key[1]
+    for key, pair in compared.items():
+        (other,) = set(key) - {pair.worse}
+        enough = pair.regained is not None and pair.regained >= REGAINED
         cancels = enough and corrected.get(key, 1.0) <= alpha / 2.0
-        covered = enough and covers.get(key, 1.0) <= alpha and bool(behind[other])
-        decided[key] = Pair(
-            kind="cancel" if cancels else "covers" if covered else None,
-            covering=other if covered and not cancels else None,
-            worse=worse[key],
-            none=percent[0],
-            first=percent[1],
-            second=percent[2],
-            both=percent[3],
-            scenes=known,
-            regained=1.0 - left / lost if lost > 0.0 else None,
-            p_value=p_values[key],
+        gains = alone[other].alone > alone[other].none
+        covered = enough and not cancels and covers.get(key, 1.0) <= alpha and not gains
+        decided[key] = pair._replace(
             corrected_p=corrected.get(key),
             covers_p=covers.get(key),
+            kind="cancel" if cancels else "covers" if covered else None,
+            covering=other if covered else None,
         )
     return Cancelling(alone, decided)
 
 
 def fewest_scenes(n_singles: int, n_pairs: int) -> int:
     """Return with how many scenes a scan can say anything of each error and each pair at all."""
-    return power.fewest_scenes(ALPHA / max(n_singles, n_pairs, 1))  # two-sided: half of alpha
+    return power.fewest_scenes(ALPHA / max(n_singles, 2 * n_pairs, 1))  # two-sided: half of alpha
 
 
 def ahead(first: Floats, second: Floats) -> Floats:
@@ -191,29 +175,44 @@ def _singles(none: Floats, singles: Floats, alpha: float) -> tuple[Single, ...]:
         _means(np.where(known, values, np.nan))
         for values in (np.broadcast_to(none, known.shape), singles)
     )
-    return tuple(
-        Single(
-            kind="hurts"
-            if corrected[error] <= alpha
-            else "helps"
-            if helping[error] <= alpha
-            else None,
-            none=100.0 * float(rates[0]),
-            alone=100.0 * float(rates[1]),
+    results: list[Single] = []
+    for error, (without, alone) in enumerate(zip(*means, strict=True)):
+        hurt, helped = corrected[error] <= alpha, helping[error] <= alpha
+        single = Single(
+            kind="hurts" if hurt else "helps" if helped else None,
+            none=100.0 * float(without),
+            alone=100.0 * float(alone),
             scenes=int(known[error].sum()),
             p_value=float(hurts[error]),
             corrected_p=corrected[error],
             helps_p=helping[error],
         )
-        for error, rates in enumerate(zip(*means, strict=True))
-    )
+        results.append(single)
+    return tuple(results)
 
 
-def _joint_rates(none: Floats, parts: Floats, both: Floats) -> tuple[Floats, NDArray[np.int64]]:
-    """Return success [none, first, second or both; pairs] in the scenes [pairs] that have all."""
+def _compared(none: Floats, singles: Floats, pairs: Mapping[Key, Floats]) -> dict[Key, Pair]:
+    """Return what the pairs did beside their errors alone, not yet decided."""
+    both = np.stack(list(pairs.values()))
+    parts = singles[np.array(list(pairs)).T]  # [2, pairs, scenes]
     outcomes = np.stack([np.broadcast_to(none, both.shape), *parts, both])
     known = ~np.isnan(outcomes.sum(axis=0))
-    return _means(np.where(known, outcomes, np.nan)).round(_DIGITS), known.sum(axis=-1)
+    percent = 100.0 * _means(np.where(known, outcomes, np.nan))
+    beats = ahead(both, parts)
+    compared: dict[Key, Pair] = {}
+    for at, key in enumerate(pairs):
+        rates = percent[:, at].round(_DIGITS).tolist()
+        second = rates[1] > rates[2] or (rates[1] == rates[2] and beats[1, at] > beats[0, at])
+        least = min(rates[1:3])
+        lost, won = rates[0] - least, rates[3] - least
+        compared[key] = Pair(
+            *rates,
+            scenes=int(known[at].sum()),
+            worse=key[int(second)],
+            regained=round(won / lost, _DIGITS) if lost > 0.0 else None,
+            p_value=min(1.0, 2.0 * float(beats[int(second), at])),
+        )
+    return compared
 
 
 def _means(values: Floats) -> Floats:
