@@ -11,6 +11,7 @@ import pytest
 from cli_runs import HERE, TOY, edit, faultpath, flags, shards, start, until
 
 import faultpath as library
+from faultpath.decisions.scan.record import ScanRecord
 
 SLOW = f"{HERE / 'systems' / 'slow_toy.py'}:create"
 
@@ -44,8 +45,14 @@ class _Texts(HTMLParser):
         self.texts.append(" ".join(data.split()))
 
 
-def test_the_toys_shared_gain_cancels_and_the_repair_has_no_such_pair(run: Path) -> None:
+def _record(run: Path) -> ScanRecord:
     record = library.open_run(run).record
+    assert isinstance(record, ScanRecord)
+    return record
+
+
+def test_the_toys_shared_gain_cancels_and_the_repair_has_no_such_pair(run: Path) -> None:
+    record = _record(run)
     calibrated, blind = record.versions
     pairs = [tuple(record.errors[e].text for e in pair.errors) for pair in calibrated.listed]
     assert pairs == [
@@ -57,7 +64,7 @@ def test_the_toys_shared_gain_cancels_and_the_repair_has_no_such_pair(run: Path)
 
 
 def test_the_page_shows_every_listed_pair_and_nothing_moves_sideways(run: Path) -> None:
-    record = library.open_run(run).record
+    record = _record(run)
     page = (run / "report.html").read_text()
     texts = " ".join(_Texts(page).texts)
     assert record.headline in page

@@ -248,8 +248,8 @@ class ScanRequest(Request):
     variant: str = Field(
         description="Variant to scan, or your file.py:factory where the system takes one."
     )
-    repair: str | None = Field(
-        default=None, description="Another variant, to scan with the same errors beside it."
+    repair: str = Field(
+        default="", description="Another variant, to scan with the same errors beside it."
     )
     fault: Annotated[tuple[FaultText, ...], BeforeValidator(several), Flag(several=True)] = Field(
         default=(),

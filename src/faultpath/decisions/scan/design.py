@@ -33,11 +33,11 @@ from faultpath.trials import (
 from faultpath.trials.question import ScanQuestion
 
 FIRST_SCENES = 50
-"""Of the first stage."""
+"""Scenes of the first stage."""
 TRIALS = 8000
 """That a scan runs where nobody says in how many scenes; at least as many as it needs."""
 COSTLY_PP = 50.0
-"""An error that costs more is halved: where all fail, nothing can be told from anything."""
+"""An error that costs more is halved: where all fail, no error can be compared."""
 HALVINGS = 3
 """An error is halved so often at most."""
 
@@ -194,7 +194,6 @@ def plan_scan(
         request,
         spec,
         library,
-        repair=request.repair or "",
         fault=tuple(map(str, request.fault)),
         n_scenes=request.scenes,
         trained=system.trained,

@@ -12,7 +12,7 @@ from faultpath.trials import System
 
 
 class Scanned(NamedTuple):
-    """What came of the rounds: the errors, and which of them ran alone and together."""
+    """Errors of a scan, with the choices that its rounds led to."""
 
     tried: tuple[ScanError, ...]
     """With every size that was run in the first stage."""

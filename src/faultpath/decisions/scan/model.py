@@ -50,7 +50,7 @@ class ScanError(Result, allow_inf_nan=False):
     """Added to the reading, or fractions of it where `relative`; one number, or a vector."""
     relative: bool
     unit: str
-    """Of the change where that is not relative; empty where the system's preset has one."""
+    """Unit of a change that is not relative; empty for a preset of the system."""
     halvings: int = 0
     """How often the size was halved."""
 
@@ -61,7 +61,7 @@ class ScanError(Result, allow_inf_nan=False):
 
 
 class FirstStage(Result, allow_inf_nan=False):
-    """What an error alone did in the first stage; success in percent."""
+    """Effect of an error alone in the first stage; success in percent."""
 
     error: ScanError
     """With the size that was run."""
@@ -74,7 +74,7 @@ class FirstStage(Result, allow_inf_nan=False):
 
 
 class SecondStage(Result, allow_inf_nan=False):
-    """What an error alone did in the second stage; success in percent."""
+    """Effect of an error alone in the second stage; success in percent."""
 
     error: int
     """Its place among the errors of the scan."""
@@ -88,7 +88,7 @@ class SecondStage(Result, allow_inf_nan=False):
 
 
 class ScannedPair(Result, allow_inf_nan=False):
-    """What two errors did alone and together in the second stage; success in percent."""
+    """Effects of two errors, alone and together, in the second stage; success in percent."""
 
     errors: tuple[int, int]
     kind: Literal["cancel", "covers"] | None
@@ -113,7 +113,7 @@ class ScannedPair(Result, allow_inf_nan=False):
 
 
 class Together(Result, allow_inf_nan=False):
-    """What a source did at all of its readers, or at all but one; success in percent."""
+    """Effect of a source that is wrong at all of its readers, or at all but one, in percent."""
 
     errors: tuple[int, ...]
     """One a reader that gets it."""
@@ -125,7 +125,7 @@ class Together(Result, allow_inf_nan=False):
 
 
 class ScannedVersion(Result):
-    """What a scan found in one variant; each is tested by itself."""
+    """Results of a scan in one variant; each variant is tested by itself."""
 
     variant: str
     first: tuple[FirstStage, ...]
@@ -141,18 +141,18 @@ class ScannedVersion(Result):
 
 
 class ScanResult(Result):
-    """What a scan found; written as `scan.json`."""
+    """Result of a scan in numbers; written as `scan.json`."""
 
     format: Literal[1] = 1
     question: ResolvedScan
     ranking: Ranking
     """All sources that may err, those without a size included."""
     errors: tuple[ScanError, ...]
-    """Of every source and reader, with the size of the second stage."""
+    """The errors of every source and reader, with the size of the second stage."""
     chosen: tuple[int, ...]
     """Errors that hurt in the first stage and went on, the worst first."""
     scenes: tuple[int, int]
-    """Of the first and of the second stage."""
+    """Numbers of scenes of the first and of the second stage."""
     trials: int
     versions: Annotated[tuple[ScannedVersion, ...], Field(min_length=1)]
     invalid: Invalid | None = None

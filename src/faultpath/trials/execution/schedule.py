@@ -23,7 +23,7 @@ class Unit:
     block: int
     scenes: tuple[str, ...]
     part: tuple[str, ...] = ()
-    """What its rows say of their scenes."""
+    """Scenes that its rows name; empty where they name none."""
 
 
 def plan(
