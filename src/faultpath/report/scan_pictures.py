@@ -68,8 +68,8 @@ def _cell(
         return
     with svg.group(tip=_tip(record, pair)):
         shade = next((shade for least, shade in _SHADES if abs(pair.gain) >= least), "0")
-        svg.path(square, "better" if pair.gain > 0 else "worse", fill_opacity=shade)
-        svg.path(square, "outline" if pair.kind else "inner")
+        svg.path(square, "repair-only" if pair.gain > 0 else "baseline-only", fill_opacity=shade)
+        svg.path(square, "term both" if pair.kind else "inner")
         if pair.kind:
             text = wording.signed(pair.gain, 0)
             svg.text(left + _CELL / 2, top + 19, text, "small", "middle")
@@ -93,8 +93,8 @@ def _key(svg: Svg, hatch: str, width: float) -> None:
     """Draw the scale, and what else a cell may be."""
     svg.text(0, 13, "Success with both errors minus success", "head")
     svg.text(0, 29, "with the worse one alone, percentage points", "head")
-    steps = [("worse", shade) for _, shade in _SHADES]
-    steps += [("better", shade) for _, shade in reversed(_SHADES)]
+    steps = [("baseline-only", shade) for _, shade in _SHADES]
+    steps += [("repair-only", shade) for _, shade in reversed(_SHADES)]
     for column, (side, shade) in enumerate(steps):
         svg.path(f"M{column * 40} 38h40v12h-40Z", side, fill_opacity=shade)
     for column, value in enumerate((-30, -10, 0, 10, 30), 1):
@@ -102,7 +102,7 @@ def _key(svg: Svg, hatch: str, width: float) -> None:
     svg.path("M1 74h22v12h-22Z", "", fill=hatch)
     svg.path("M1 74h22v12h-22Z", "inner")
     svg.text(29, 84, "not run", "small")
-    svg.path("M91 74h22v12h-22Z", "outline")
+    svg.path("M91 74h22v12h-22Z", "term both")
     svg.text(119, 84, "listed", "small")
     svg.text(1, 105, "−12", "small soft")
     svg.text(29, 105, "on the diagonal: change by that error alone", "small", room=width - 29)
