@@ -44,6 +44,7 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
     "times": run_blocks.times,
     "map:command": run_blocks.command,
     "map:said": run_blocks.sentences,
+    "wpilib:pairs": run_blocks.wpilib_pairs,
     "scan:said": run_blocks.sentences,
     "scan:command": run_blocks.command,
     "scan:audits": run_blocks.scan_commands,

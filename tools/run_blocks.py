@@ -4,7 +4,18 @@ import re
 import shlex
 from pathlib import Path
 
-from blocks import ROOT, Picture, Run, Wrong, difference, fence, load, pipes, printed
+from blocks import (
+    ROOT,
+    Picture,
+    Run,
+    Wrong,
+    difference,
+    fence,
+    figures_of,
+    load,
+    pipes,
+    printed,
+)
 
 from faultpath.decisions.effects import Difference
 from faultpath.decisions.sentences import phrases, wording
@@ -162,6 +173,21 @@ def scan_picture_of(name: str) -> Picture:
 def scan_commands(name: str) -> str:
     """Return the commands that audit the pairs that a scan listed."""
     return fence("text", "\n".join(load(name).record.commands))
+
+
+def wpilib_pairs() -> str:
+    """Return the pairs of errors that WPILib's design names, at its own sizes, one a row."""
+    rows = [
+        (
+            f"`{pair['diameter']}`",
+            f"`{pair['latency']}`",
+            *(f"{pair[name]:.0f}" for name in ("none", "first", "second", "both")),
+            "cancel" if pair["kind"] == "cancel" else "",
+        )
+        for pair in figures_of("wpilib", "pairs.json")
+    ]
+    heads = ("Diameter", "Latency", "neither", "diameter", "latency", "both", "")
+    return pipes(heads, rows, words=(0, 1, 6))
 
 
 def code(place: str, part: str, *words: str) -> str:

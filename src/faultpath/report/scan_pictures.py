@@ -52,7 +52,7 @@ def triangle(record: ScanRecord, version: ScannedVersion) -> Svg:
         svg.text(left + _CELL / 2, top + 19, loss, "small soft", "middle")
     for row, error in enumerate(places):
         text = f"{named(record.errors[error])}: {rate(singles[error].alone)} alone"
-        svg.text(0, names_top + 14 + 17 * row, letter[error], "bold")
+        svg.text(4, names_top + 14 + 17 * row, letter[error], "bold")
         svg.text(_LEFT, names_top + 14 + 17 * row, text, room=width - _LEFT)
     return svg
 
