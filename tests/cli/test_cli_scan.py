@@ -85,7 +85,7 @@ def test_the_page_shows_every_listed_pair_and_nothing_moves_sideways(run: Path) 
 
 def test_a_scan_that_is_killed_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
     (gate := tmp_path / "gate").touch()
-    options = {"system": SLOW, "set": f"gate={gate}", "scenes": 58, "fault": "gain:scale=1.4"}
+    options = {"system": SLOW, "set": f"gate={gate}", "scenes": 59, "fault": "gain:scale=1.4"}
     run, whole = tmp_path / "run", tmp_path / "whole"
     for count, stop in ((2, signal.SIGKILL), (130, signal.SIGINT)):
         process = start(tmp_path / "words", *line(tmp_path, **options))

@@ -57,6 +57,15 @@ def test_what_is_listed_is_said_with_all_four_rates_and_what_follows():
     assert words[-1] == "a:offset=-0.4@one & b:offset=0.4@two"
 
 
+def test_an_error_that_raises_success_is_said_and_goes_no_further():
+    record, scan, _ = scanned(Planted(lambda at: 0.4 - 0.4 * bool(at.get("one.a")), ("a", "b")))
+    assert scan.chosen == ()
+    assert (
+        "Alone, these raised success in the first stage (58 % without an error): a at one "
+        "(−0.4 m) 100 % and a at one (+0.4 m) 100 %." in record.sentences
+    )
+
+
 def test_an_error_that_hides_another_covers_for_it():
     record, scan, _ = scanned(Planted(covered, ("a", "pair")))
     assert listed(record) == [
@@ -147,7 +156,7 @@ def test_at_most_ten_errors_go_on_and_the_worst_first():
 @pytest.mark.parametrize(
     ("arguments", "parts"),
     [
-        ({"scenes": 55}, ("55 scenes of 'selection' are too few", "so 58 would do")),
+        ({"scenes": 55}, ("55 scenes of 'selection' are too few", "so 59 would do")),
         ({"scenes": 500}, ("cannot run 500 scenes", "choose 1 to 400")),
         ({"variant": "hole"}, ("unknown variant 'hole'", "did you mean 'whole'")),
         ({"repair": "whole"}, ("both 'whole'",)),
@@ -155,7 +164,7 @@ def test_at_most_ten_errors_go_on_and_the_worst_first():
         ({"fault": "a:offset=0"}, ("changes nothing",)),
         ({"fault": "a:offset"}, ("needs one size",)),
         ({"fault": ("a:offset=1", "a:scale=2")}, ("given an error already",)),
-        ({"seeds": tuple(range(40))}, ("trials at least, and 8000 are run", "--scenes 58")),
+        ({"seeds": tuple(range(40))}, ("trials at least, and 8000 are run", "--scenes 59")),
     ],
 )
 def test_a_mistake_is_one_sentence(arguments: dict[str, Any], parts: tuple[str, ...]):

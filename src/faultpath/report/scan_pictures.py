@@ -1,5 +1,6 @@
 """Pictures of a scan: the triangle of pairs, and success with none, each and both of a pair."""
 
+from itertools import product
 from string import ascii_uppercase
 
 from faultpath.decisions.scan.model import ScannedPair, ScannedVersion
@@ -18,7 +19,7 @@ _LEAST = 364.0
 def letters(version: ScannedVersion) -> dict[int, str]:
     """Return a letter for each error that ran in the second stage, in the order of the errors."""
     places = sorted(single.error for single in version.singles)
-    names = [*ascii_uppercase, *(f"A{letter}" for letter in ascii_uppercase)]
+    names = (*ascii_uppercase, *map("".join, product(ascii_uppercase, repeat=2)))
     return dict(zip(places, names, strict=False))
 
 

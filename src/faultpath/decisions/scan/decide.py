@@ -141,6 +141,7 @@ def _first_stage(tried: Sequence[ScanError], success: Successes) -> tuple[FirstS
     none = success[CORRECT]
     alone = [success[label([error])] for error in tried]
     stage = stage_one(none, np.stack(alone))
+    tested = cancelling(none, np.stack(alone), {}, set()).singles
     return tuple(
         FirstStage(
             error=error,
@@ -148,6 +149,7 @@ def _first_stage(tried: Sequence[ScanError], success: Successes) -> tuple[FirstS
             alone=100.0 * float(np.nanmean(values)),
             loss=float(stage.losses[place]),
             p_value=float(stage.p_values[place]),
+            helps_p=tested[place].helps_p,
         )
         for place, (error, values) in enumerate(zip(tried, alone, strict=True))
     )

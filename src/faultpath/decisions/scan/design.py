@@ -86,10 +86,14 @@ class ScanPlan(Analysis[Scanned]):
 
     def expected(self) -> int:
         """Return about how many trials there will be."""
-        errors = min(MOST, len(self.errors))
-        second = (1 + errors + errors * (errors - 1) // 2) * len(self.others)
-        most = self.per_scene * ((1 + len(self.errors)) * len(self.first) + second)
+        most = self.trials(len(self.others))
         return most if self.request.scenes is not None else min(TRIALS, most)
+
+    def trials(self, second: int) -> int:
+        """Return the trials of a scan with so many scenes in its second stage, at most, without
+        those of halved sizes."""
+        first = (1 + len(self.errors)) * len(self.first)
+        return self.per_scene * (first + most_conditions(self.errors)[2] * second)
 
     def costly(self, errors: Sequence[ScanError], trials: Trials) -> set[tuple[str, int]]:
         """Return the sources and signs of which an error costs too much in some variant."""
@@ -169,6 +173,18 @@ class ScanPlan(Analysis[Scanned]):
         return concluded(self.question, self.ranking, items, trials, deliveries)
 
 
+def most_conditions(errors: Sequence[ScanError]) -> tuple[int, int, int]:
+    """Return the most errors, pairs and conditions that a second stage may have."""
+    groups = sorted(map(len, by_source(errors).values()), reverse=True)
+    chosen = min(MOST, len(errors))
+    singles = min(len(errors), sum(groups[:chosen]))
+    allowed = sum(_different(errors, pair) for pair in combinations(range(len(errors)), 2))
+    alike = sum(n * (n - 1) // 2 for n in groups[:chosen])
+    pairs = min(allowed, chosen * (chosen - 1) // 2 + alike)
+    together = sum(n > 1 for n in groups) + sum(n for n in groups if n > 2)
+    return singles, pairs, 1 + singles + pairs + together
+
+
 def _different(errors: Sequence[ScanError], pair: tuple[int, int]) -> bool:
     """Return whether two errors may act together: of two sources, or of one and of one sign."""
     one, two = (errors[place] for place in pair)
@@ -231,18 +247,16 @@ def ranked_sources(system: System, request: ScanQuestion, library: Library) -> R
 
 def _check_scenes(plan: ScanPlan) -> None:
     """Raise `UserError` where scenes or trials are fewer than the correction needs."""
-    errors = min(MOST, len(plan.errors))
-    pairs = errors * (errors - 1) // 2
+    errors, pairs, _ = most_conditions(plan.errors)
     least = fewest_scenes(errors, pairs)
     needed = FIRST_SCENES + least
     if len(plan.others) < least:
         raise UserError(
             f"{len(plan.first) + len(plan.others)} scenes of '{plan.question.library}' are too few "
             f"for a scan of {len(plan.errors)} errors: {FIRST_SCENES} choose errors and {least} "
-            f"others test {pairs} pairs, so {needed} would do."
+            f"others test up to {pairs} pairs, so {needed} would do."
         )
-    first = (1 + len(plan.errors)) * FIRST_SCENES
-    trials = plan.per_scene * (first + (1 + errors + pairs) * least)
+    trials = plan.trials(least)
     if plan.request.scenes is None and trials > TRIALS:
         raise UserError(
             f"a scan of {len(plan.errors)} errors takes {trials} trials at least, and {TRIALS} are "

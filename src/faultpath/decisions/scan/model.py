@@ -71,6 +71,8 @@ class FirstStage(Result, allow_inf_nan=False):
     """Percentage points, in the scenes that have an outcome with and without it."""
     p_value: float
     """One-sided, not corrected, of "it hurts"."""
+    helps_p: float = 1.0
+    """Holm's, over all sizes that were run, of "it helps"."""
 
 
 class SecondStage(Result, allow_inf_nan=False):

@@ -6,7 +6,10 @@ from collections.abc import Iterator, Sequence
 from faultpath.decisions.scan.model import ScanError, ScannedPair, ScannedVersion, ScanResult
 from faultpath.decisions.sentences.phrases import NO_RESULT
 from faultpath.decisions.sentences.wording import MINUS, capital, counted, series, unit
+from faultpath.statistics.estimate import ALPHA
 
+HELPS = ALPHA / 2
+"""Level at which an error raises success."""
 ANY_REPAIR = "REPAIR"
 """Stands in a command for the name of a variant that only its reader knows."""
 
@@ -64,23 +67,30 @@ def sentences(record: ScanResult) -> tuple[str, ...]:
     """Return what the scan found, sentence by sentence, then what it left out."""
     if record.invalid:
         return ()
-    return (*_found(record), *_halved(record), _counts(record), _limits(record))
+    results = (*_results(record), *_halved(record), _counts(record))
+    return (*results, *_failed(record), _limits(record))
 
 
-def _found(record: ScanResult) -> Iterator[str]:
+def _results(record: ScanResult) -> Iterator[str]:
     for version in record.versions:
         before = f"In {version.variant}: " if len(record.versions) > 1 else ""
         for pair in version.listed:
             yield before + of_pair(record, pair)
-        for kind, verb in (("hurts", "cost success"), ("helps", "raise success")):
+        hurting = [single for single in version.singles if single.kind == "hurts"]
+        if hurting:
             names = [
                 f"{named(record.errors[single.error])} {rate(single.alone)}"
-                for single in sorted(version.singles, key=lambda single: single.alone)
-                if single.kind == kind
+                for single in sorted(hurting, key=lambda single: single.alone)
             ]
-            if names:
-                none = rate(version.singles[0].none)
-                yield before + f"Alone, these {verb} ({none} without an error): {series(names)}."
+            none = rate(hurting[0].none)
+            yield f"{before}Alone, these cost success ({none} without an error): {series(names)}."
+        if helping := [stage for stage in version.first if stage.helps_p <= HELPS]:
+            names = [f"{named(stage.error)} {rate(stage.alone)}" for stage in helping]
+            none = rate(helping[0].none)
+            yield (
+                f"{before}Alone, these raised success in the first stage ({none} without an "
+                f"error): {series(names)}."
+            )
 
 
 def of_pair(record: ScanResult, pair: ScannedPair) -> str:
@@ -153,6 +163,15 @@ def _counts(record: ScanResult) -> str:
         f"on and {total - chosen} were left out; {counted(pairs, 'pair')} ran in {second} other "
         "scenes."
     )
+
+
+def _failed(record: ScanResult) -> Iterator[str]:
+    if record.failed:
+        yield (
+            f"{counted(record.failed, 'trial')} failed and left their scenes out of what they are "
+            "part of: what is listed holds if failing has nothing to do with how they would have "
+            "ended."
+        )
 
 
 def _limits(record: ScanResult) -> str:
