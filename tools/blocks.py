@@ -13,9 +13,18 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel, ValidationError
 from rich.console import Console, RenderableType
 
-from faultpath.api.folders import MADE_FROM, MAP, MAP_MADE_FROM, OUTCOMES, RECORD
+from faultpath.api.folders import (
+    MADE_FROM,
+    MAP,
+    MAP_MADE_FROM,
+    OUTCOMES,
+    RECORD,
+    SCAN,
+    SCAN_MADE_FROM,
+)
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.record import DecisionRecord
+from faultpath.decisions.scan.record import ScanRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.tables import Entry, Line, Table
 from faultpath.decisions.tables.markdown import grid
@@ -37,6 +46,7 @@ REPEATS = "repeats.json"
 RUNS: dict[str, tuple[type[BaseModel], tuple[str, ...]]] = {
     RECORD: (DecisionRecord, (*MADE_FROM, PROVENANCE, "report.html", "table.md")),
     MAP: (MapRecord, (*MAP_MADE_FROM, PROVENANCE, "table.md")),
+    SCAN: (ScanRecord, (*SCAN_MADE_FROM, PROVENANCE, "report.html", "table.md")),
     CELLS: (Flown, (CELLS, PROVENANCE)),
     AUDITS: (SensorAudits, (AUDITS, OUTCOMES, PROVENANCE)),
 }

@@ -12,7 +12,7 @@ from faultpath_paper.reproduction import write_pages
 from faultpath_paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
 
-from faultpath.api.folders import MAP, RECORD, as_text
+from faultpath.api.folders import MAP, RECORD, SCAN, as_text
 from faultpath.api.replaying import shown_first
 from faultpath.api.runs import open_run
 from faultpath.decisions.decide import decide
@@ -22,6 +22,9 @@ from faultpath.decisions.map.study import plan_map
 from faultpath.decisions.model import Condition
 from faultpath.decisions.question import Question
 from faultpath.decisions.record import DecisionRecord
+from faultpath.decisions.scan.decide import concluded
+from faultpath.decisions.scan.errors import Scanned
+from faultpath.decisions.scan.record import ScanRecord
 from faultpath.decisions.tables import Table
 from faultpath.report.map import table_markdown
 from faultpath.trials import Deliveries, SystemSpec, Trials, library_of, load_system
@@ -39,6 +42,8 @@ def conclude_all(tell: Callable[[str], None]) -> None:
         tell(f"{folder.name}: {before.get('headline')}\n    now: {record.headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
         tell(f"{folder.name}: {reversal_map(folder).headline}")
+    for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{SCAN}")):
+        tell(f"{folder.name}: {scan(folder).headline}")
     for line in paper(RUN, PLACE):
         tell(f"the paper: {line}")
 
@@ -90,6 +95,32 @@ def reversal_map(folder: Path) -> MapRecord:
     (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     (folder / "table.md").write_text(table_markdown(record), "utf-8")
     _reseal(folder)
+    load.cache_clear()
+    return record
+
+
+def scan(folder: Path) -> ScanRecord:
+    """Decide a reference scan anew from its trials; write its result, tables and page."""
+    before = parsed(folder / SCAN, ScanRecord)
+    trials = read_outcomes(folder / OUTCOMES)
+    version, first = before.versions[0], before.scenes[0]
+    scenes = tuple(scene.id for scene in trials.scenes)
+    scanned = Scanned(
+        tried=tuple(stage.error for stage in version.first),
+        errors=before.errors,
+        chosen=before.chosen,
+        singles=tuple(single.error for single in version.singles),
+        pairs=tuple(pair.errors for pair in version.pairs),
+        together=tuple(together.errors for together in version.together),
+        first=scenes[:first],
+        second=scenes[first:],
+    )
+    repeats = before.invalid != "unrepeatable"
+    deliveries = Deliveries(rows=(), findings=before.findings, repeats=repeats)
+    record = concluded(before.question, before.ranking, scanned, trials, deliveries)
+    (folder / SCAN).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
+    _reseal(folder)
+    open_run(folder).report()
     load.cache_clear()
     return record
 

@@ -43,7 +43,11 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
     "picture": run_blocks.picture,
     "times": run_blocks.times,
     "map:command": run_blocks.command,
-    "map:said": run_blocks.map_sentences,
+    "map:said": run_blocks.sentences,
+    "wpilib:pairs": run_blocks.wpilib_pairs,
+    "scan:said": run_blocks.sentences,
+    "scan:command": run_blocks.command,
+    "scan:audits": run_blocks.scan_commands,
     "code": run_blocks.code,
     "template": run_blocks.template,
     "found": found_blocks.table,
@@ -77,6 +81,7 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
 
 PICTURES: Mapping[str, Callable[..., Picture]] = {
     "map:picture": run_blocks.map_picture_of,
+    "scan:picture": run_blocks.scan_picture_of,
     "paper:picture": paper_blocks.picture,
 }
 """Functions that return the picture that a block shows."""

@@ -1,14 +1,14 @@
 """Whether the code that is here repeats the trials of a stored run: a fixed sample of them.
 
-The sample is drawn by a hash over scenes and seeds, with every version and condition; of a map,
-which has hundreds of conditions, over these as well. A trial repeats where its status and all its
+The sample is drawn by a hash over scenes and seeds, with every version and condition; of a map
+or scan, which has many conditions, over these as well. A trial repeats where its status and all its
 numbers are equal to the bit, and the hash of its trajectory where the run kept one. The quadrotor's
 arithmetic is its own and has to repeat; NumPy and torch choose by processor and get a tolerance.
 """
 
 import hashlib
 from collections.abc import Sequence
-from contextlib import chdir
+from contextlib import chdir, suppress
 from typing import Any
 
 from blocks import OUTCOMES, REFERENCE, REPEATS, ROOT, Repeats, Run
@@ -18,16 +18,28 @@ from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.study import plan_map
 from faultpath.decisions.planning import plan_audit
-from faultpath.trials import Outcome, Study, System, SystemSpec, Treatment, library_of, load_system
+from faultpath.decisions.record import DecisionRecord
+from faultpath.decisions.scan.design import ScanPlan, plan_scan
+from faultpath.decisions.scan.record import ScanRecord
+from faultpath.trials import (
+    Outcome,
+    Study,
+    System,
+    SystemSpec,
+    Treatment,
+    Trials,
+    library_of,
+    load_system,
+)
 from faultpath.trials.attempt import Done, attempt
-from faultpath.trials.question import AuditQuestion, MapQuestion
+from faultpath.trials.question import AuditQuestion, MapQuestion, ScanQuestion
 from faultpath.trials.store.folder import read_outcomes
 from faultpath.trials.store.tables import TrialAddress
 
 SECONDS = 3.0
 """About how long a sample may take; a scene with all versions and conditions is the least."""
 _CONDITIONS = 8
-"""Conditions of a map that are sampled."""
+"""Conditions of a map or scan that are sampled."""
 _NEAR = 1e-3
 """Share by which a number of a trial may differ where libraries choose how to compute it."""
 
@@ -61,14 +73,18 @@ def repeat(run: Run) -> Repeats:
 
 
 def planned(run: Run) -> tuple[System, Study]:
-    """Return the system and the trials of a stored audit or map, as the code here plans them."""
+    """Return system and trials of a stored audit, map or scan, as the code here plans them."""
     question: Any = run.record.question
     spec = SystemSpec(name=question.system, options=question.options)
     system = load_system(spec)
     library = library_of(system, question.library)
-    kind = MapQuestion if isinstance(run.record, MapRecord) else AuditQuestion
+    kinds = {MapRecord: MapQuestion, ScanRecord: ScanQuestion}
+    kind = kinds.get(type(run.record), AuditQuestion)
     fields = {n: v for n in kind.model_fields if (v := getattr(question, n, None)) is not None}
     request: Any = kind(**{**fields, "scenes": question.n_scenes})
+    if isinstance(run.record, ScanRecord):
+        plan = plan_scan(system, spec, request, library)
+        return system, study_of(plan, read_outcomes(REFERENCE / run.name / OUTCOMES))
     if not isinstance(run.record, MapRecord):
         return system, plan_audit(system, spec, request, library).study
     points = [
@@ -78,13 +94,24 @@ def planned(run: Run) -> tuple[System, Study]:
     return system, plan_map(system, spec, request, library).study(points)
 
 
+def study_of(plan: ScanPlan, trials: Trials) -> Study:
+    """Return the study of the last round of a scan, whose choices follow from its trials."""
+    rounds = plan.rounds()
+    study = next(rounds).study
+    with suppress(StopIteration):
+        while True:
+            study = rounds.send(trials).study
+    return study
+
+
 def sample(
     run: Run, study: Study, before: dict[TrialAddress, Outcome]
 ) -> Sequence[tuple[TrialAddress, Treatment]]:
     """Return the trials to repeat, always the same of the same run."""
     treatments = {(row.variant, row.condition, row.seed): row.treatment for row in study.rows}
     conditions = sorted({condition for _, condition, _ in treatments}, key=_hash_order)
-    conditions = conditions[:_CONDITIONS] if isinstance(run.record, MapRecord) else conditions
+    if not isinstance(run.record, DecisionRecord):
+        conditions = conditions[:_CONDITIONS]
     seeds = {seed for _, _, seed in treatments}
     places = sorted(
         {(at.scene, at.seed) for at in before if at.seed in seeds},

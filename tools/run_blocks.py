@@ -1,16 +1,28 @@
-"""Blocks about reference runs of `faultpath audit` and `faultpath map`, and about example files."""
+"""Blocks about reference runs of `faultpath audit`, `map` and `scan`, and about example files."""
 
 import re
 import shlex
 from pathlib import Path
 
-from blocks import ROOT, Picture, Run, Wrong, difference, fence, load, pipes, printed
+from blocks import (
+    ROOT,
+    Picture,
+    Run,
+    Wrong,
+    difference,
+    fence,
+    figures_of,
+    load,
+    pipes,
+    printed,
+)
 
 from faultpath.decisions.effects import Difference
 from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.tables import Table, line
 from faultpath.decisions.tables.markdown import grid
 from faultpath.report.map_pictures import correlation_picture, map_picture
+from faultpath.report.scan_pictures import triangle
 from faultpath.report.tables import DIFFERENCE, by_quantity
 from faultpath.report.terminal import decision
 
@@ -136,8 +148,8 @@ def duration(run: Run) -> str:
     return f"{minutes} min {seconds:02d} s" if minutes else f"{seconds} s"
 
 
-def map_sentences(name: str) -> str:
-    """Return headline and sentences of a map as a quotation, and how it was flown."""
+def sentences(name: str) -> str:
+    """Return headline and sentences of a map or scan as a quotation, and how it was run."""
     run = load(name)
     lines = [f"> **{run.record.headline}**", *(f"> {text}" for text in run.record.sentences)]
     return "\n>\n".join(lines) + f"\n\nProcessor: {run.processor}. {run.flown}"
@@ -148,6 +160,33 @@ def map_picture_of(name: str, part: str) -> Picture:
     record = load(name).record
     svg = MAP_PICTURES[part](record).render(standalone=True) + "\n"
     return Picture(f"{name}-{part}.svg", record.headline, svg)
+
+
+def scan_picture_of(name: str) -> Picture:
+    """Return the triangle of pairs of the first variant of a scan."""
+    record = load(name).record
+    svg = triangle(record, record.versions[0]).render(standalone=True) + "\n"
+    return Picture(f"{name}-pairs.svg", record.headline, svg)
+
+
+def scan_commands(name: str) -> str:
+    """Return the commands that audit the pairs that a scan listed."""
+    return fence("text", "\n".join(load(name).record.commands))
+
+
+def wpilib_pairs() -> str:
+    """Return the pairs of errors that WPILib's design names, at its own sizes, one a row."""
+    rows = [
+        (
+            f"`{pair['diameter']}`",
+            f"`{pair['latency']}`",
+            *(f"{pair[name]:.0f}" for name in ("none", "first", "second", "both")),
+            "cancel" if pair["kind"] == "cancel" else "",
+        )
+        for pair in figures_of("wpilib", "pairs.json")
+    ]
+    heads = ("Diameter", "Latency", "neither", "diameter", "latency", "both", "")
+    return pipes(heads, rows, words=(0, 1, 6))
 
 
 def code(place: str, part: str, *words: str) -> str:

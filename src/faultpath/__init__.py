@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from faultpath.api.designs import map
     from faultpath.api.judging import judge
     from faultpath.api.runs import Run, open_run
+    from faultpath.api.scanning import scan
     from faultpath.api.systems import load_system
     from faultpath.core.errors import UserError
     from faultpath.core.streams import generator
@@ -37,6 +38,7 @@ __all__ = [
     "load_system",
     "map",
     "open_run",
+    "scan",
 ]
 
 _HOMES = {
@@ -51,6 +53,7 @@ _HOMES = {
     "load_system": "faultpath.api.systems",
     "map": "faultpath.api.designs",
     "open_run": "faultpath.api.runs",
+    "scan": "faultpath.api.scanning",
 }
 
 

@@ -63,7 +63,8 @@ COMMANDS = {
 def bases(folder: Path, kinds: tuple[str, ...]) -> None:
     """Make a run of each kind."""
     (folder / "all.csv").write_bytes(_csv().encode())
-    shutil.copytree(ROOT / "docs" / "reference" / "map-toy", folder / "map")
+    for kind in ("map", "scan"):
+        shutil.copytree(ROOT / "docs" / "reference" / f"{kind}-toy", folder / kind)
     for kind in kinds:
         line = [folder / part if part == "all.csv" else part for part in COMMANDS[kind]]
         ended = faultpath(*line, "--out", folder / kind)
@@ -134,6 +135,6 @@ def replay(base: Path, here: Path, rng: Random) -> list[object]:
 CASES: dict[str, Case] = {
     **{f"judge {suffix}": partial(judge_table, suffix) for suffix in ("csv", "jsonl", "parquet")},
     **{f"judge {k}": partial(judge_tool, k) for k in ("episodes", "tasks", "inspect", "lm-eval")},
-    **{f"report {kind}": partial(report, kind) for kind in ("audit", "judge", "map")},
+    **{f"report {kind}": partial(report, kind) for kind in ("audit", "judge", "map", "scan")},
     "replay": replay,
 }

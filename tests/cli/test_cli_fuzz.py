@@ -31,6 +31,7 @@ RIGHT = {
     "init": ["my_rover"],
     "judge": ["results.csv", "--baseline", "old", "--repair", "new"],
     "map": [TOY, *ARMS, "--fault", "gain", "--against", "controller", "--workers", "0"],
+    "scan": [TOY, "--variant", "calibrated", "--scenes", "1", "--workers", "0"],
     "replay": ["folder"],
     "report": ["folder"],
     "reproduce": ["table-99"],

@@ -51,6 +51,7 @@ COMMANDS = {
     "judge": ["judge", "all.csv", "--baseline", "old", "--repair", "new"],
 }
 COMMANDS["map"] += [*ARMS, "--workers", 0]
+COMMANDS["scan"] = f"scan {TOY} --variant calibrated --fault gain:scale=1.2 --workers 0".split()
 OUTPUTS = {
     "report --out": ["report", REFERENCE / "toy", REFERENCE / "dock", "--out"],
     "audit --junit": [*COMMANDS["audit"], "--junit"],
@@ -68,7 +69,7 @@ def test_what_the_same_verb_wrote_is_replaced(option: str, tmp_path: Path) -> No
         assert place.stat().st_size > 100
 
 
-@pytest.mark.parametrize("command", ["audit", "map", "reproduce", "train"])
+@pytest.mark.parametrize("command", ["audit", "map", "scan", "reproduce", "train"])
 def test_a_run_goes_into_a_folder_and_a_page_into_a_file(command: str, tmp_path: Path) -> None:
     os.mkfifo(place := tmp_path / "place")
     faultpath(*COMMANDS[command], "--out", place).refused(str(place))
@@ -93,6 +94,7 @@ def test_pages_do_not_follow_a_link_out_of_the_run_folder(tmp_path: Path):
     [
         ("audit", "report.html", "<html>mine"),
         ("map", "map.svg", "mine"),
+        ("scan", "scan.svg", "mine"),
         ("judge", "record.json", "{}"),
     ],
 )

@@ -85,6 +85,12 @@ def test_time_and_readers(text: str) -> None:
     )
 
 
+def test_joined_faults_reach_each_its_own_readers() -> None:
+    mass, wind = parse("mass:scale=1.1@observer & wind:freeze@predictor")
+    assert mass.readers == ("observer.wind_map",)
+    assert {reader.partition(".")[0] for reader in wind.readers} == {"predictor"}
+
+
 def test_joined_faults_have_one_cause_and_each_its_loading() -> None:
     text = "mass:bias=0.1,relative,loading=-0.7,onset=3 & wind:bias=0.5 & calibration=0.2"
     faults = parse(text)
@@ -137,7 +143,7 @@ def test_joined_faults_have_one_cause_and_each_its_loading() -> None:
         ("mass:freeze@a,onset=1@b", "'@' appears twice"),
         ("wind:freeze@observer", "'observer' does not read it; its readers: predictor"),
         ("wind:freeze@predict", "unknown reader 'predict'; did you mean 'predictor'?"),
-        ("mass:freeze & wind:freeze@predictor", "joined faults reach every reader; leave '@' out"),
+        ("mass:freeze & wind:freeze@observer", "'observer' does not read it"),
         ("mass:freeze &", "something is missing beside '&'"),
         ("mass:bias=1,2 & wind:bias=1", "joined faults take one size each"),
         ("mass:bias=1,loading=2 & wind:bias=1", "a loading is a number from -1 to 1"),

@@ -26,6 +26,17 @@ def test_a_run_decided_anew_is_still_enough_for_report(tmp_path: Path) -> None:
     assert before["traces.parquet"] == traces
 
 
+def test_a_scan_decided_anew_from_its_trials_is_the_stored_one(tmp_path: Path) -> None:
+    for place in sorted(REFERENCE.glob("*/scan.json")):
+        scan = Path(shutil.copytree(place.parent, tmp_path / place.parent.name))
+        before = {path.name: path.read_bytes() for path in scan.iterdir()}
+        record = json.loads(before["scan.json"])
+        record["versions"][0]["pairs"][0]["both"] = 12.345
+        (scan / "scan.json").write_text(json.dumps(record))
+        conclude.scan(scan)
+        assert {name: (scan / name).read_bytes() for name in before} == before
+
+
 def test_every_reference_folder_with_receipts_is_enough_for_report(tmp_path: Path) -> None:
     for place in sorted(REFERENCE.glob("*/provenance.json")):
         if "deliveries.json" in json.loads(place.read_bytes()).get("files", {}):

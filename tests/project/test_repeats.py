@@ -9,7 +9,7 @@ HERE = [
     name for name, run in references.by_time().items() if references.environment(run) == ".venv"
 ]
 """Runs whose packages are those of the tests; `make test-foreign` asks the others."""
-OWN = {"toy", "dock", "map-toy"}
+OWN = {"toy", "dock", "map-toy", "scan-toy"}
 """Runs whose arithmetic is the same on every processor, as the quadrotor's is."""
 
 

@@ -9,10 +9,12 @@ from playwright.sync_api import Browser, Page
 from faultpath.api.folders import read_run
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.pairs import Pair
+from faultpath.decisions.scan.record import ScanRecord
 from faultpath.report.frame import STYLES
 from faultpath.report.html import report_page
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.pair_grid import pair_grid
+from faultpath.report.scan_pictures import strip, triangle
 from faultpath.report.svg import template
 from faultpath.trials import Outcome, Status
 
@@ -98,6 +100,17 @@ def test_every_picture_of_a_report_holds_its_parts_and_dashes_the_baseline_alone
     for table in page.locator("div.scroll:has-text('–')").all():
         note = table.locator("+ p")
         assert note.text_content() == "A dash: there is nothing to compute this from."
+    page.close()
+
+
+@pytest.mark.parametrize("run", ["scan-toy", "scan-wpilib"])
+def test_the_marks_and_words_of_a_scan_keep_apart(browser: Browser, run: str) -> None:
+    record = ScanRecord.model_validate_json((REFERENCE / run / "scan.json").read_bytes())
+    (version,) = record.versions
+    strips = [strip(record, version, pair).render() for pair in version.listed]
+    page = shown(browser, pictures(triangle(record, version).render(), *strips))
+    assert page.evaluate(OUTSIDE) == []
+    assert page.evaluate(TOUCHING, "text") == []
     page.close()
 
 

@@ -99,7 +99,8 @@ def test_a_picture_moves_with_the_clock_and_lifts_its_pen(
     opened.close()
 
 
-PAGES = {run: _report(run) for run in ("toy", "quadrotor-L3", "map-toy")} | {"side": _comparison}
+RUNS = ("toy", "quadrotor-L3", "map-toy", "scan-wpilib")
+PAGES = {run: _report(run) for run in RUNS} | {"side": _comparison}
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -165,6 +165,26 @@ def test_bookkeeping_grows_with_the_rows_and_not_with_rows_times_blocks(tmp_path
     assert counts[0] == counts[1]
 
 
+def test_rows_of_one_condition_may_have_scenes_of_their_own(tmp_path: Path) -> None:
+    """As if it were one row with all of them; each has its own deliveries."""
+    early, late = Treatment(variant="observed"), Treatment(variant="plain")
+    rows = [
+        Row(variant="observed", condition="correct", seed=0, treatment=early, scenes=SCENES[:2]),
+        Row(variant="observed", condition="correct", seed=0, treatment=early, scenes=SCENES[2:]),
+        Row(variant="plain", condition="correct", seed=0, treatment=late, scenes=SCENES[2:]),
+    ]
+    parts = run_study(_study_of(*rows), tmp_path / "parts", workers=0)
+    whole = run_study(
+        _study_of(Row(variant="observed", condition="correct", seed=0, treatment=early)),
+        tmp_path / "whole",
+        workers=0,
+    )
+    ends = [run.trials.outcomes("observed", "correct", 0) for run in (parts, whole)]
+    assert [o.trajectory_hash for o in ends[0]] == [o.trajectory_hash for o in ends[1]]
+    assert [o.scene for o in parts.trials.outcomes("plain", "correct", 0)] == [*SCENES[2:]]
+    assert parts.deliveries.at("observed", "correct") == whole.deliveries.at("observed", "correct")
+
+
 def _study_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Study:
     return study().model_copy(update={"rows": rows, "scenes": scenes})
 

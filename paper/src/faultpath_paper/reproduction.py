@@ -49,7 +49,7 @@ class ReproductionRun(FinishedRun):
         """How many claims are confirmed, in one sentence."""
         return f"{headline(self.record.ledger, self.record.profile)}."
 
-    def report(self) -> NoReturn:
+    def report(self, folder: str | PathLike[str] | None = None) -> NoReturn:
         """Raise `UserError`: the pages of a reproduction are written when it is carried out."""
         raise UserError(f"the pages of the reproduction in {self.folder} stand there already.")
 

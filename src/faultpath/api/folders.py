@@ -24,11 +24,13 @@ from faultpath.trials.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, r
 from faultpath.trials.store.signals import SIGNALS, decode_signals
 from faultpath.trials.store.tables import decode_outcomes, decode_traces
 
-RECORD, SYSTEM, MAP = "record.json", "system.json", "map.json"
+RECORD, SYSTEM, MAP, SCAN = "record.json", "system.json", "map.json", "scan.json"
 MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES)
 """The files of an audit's folder that its pages are made from, and checked against."""
 MAP_MADE_FROM = (MAP, OUTCOMES)
 """Those of a map's."""
+SCAN_MADE_FROM = (SCAN, OUTCOMES)
+"""Those of a scan's."""
 
 _Model = TypeVar("_Model", bound=BaseModel)
 _Table = TypeVar("_Table")

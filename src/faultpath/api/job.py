@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from faultpath.api.display import Display, Show, display
-from faultpath.api.runs import MapRun, Run
+from faultpath.api.runs import FinishedRun
 from faultpath.api.systems import Chosen, choose, executor_of
 from faultpath.core.errors import UserError
 from faultpath.decisions.analysis import Analysis, Items
@@ -22,15 +22,15 @@ from faultpath.trials.code import system_code
 from faultpath.trials.execution.provenance import run_provenance
 from faultpath.trials.execution.runner import Failure, RunResult, run_study
 from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.question import Asked, Request, Running, ask
+from faultpath.trials.question import Asked, Request, Running, ScanQuestion, ask
 from faultpath.trials.store.folder import keyed
 from faultpath.trials.work.executor import Executor, Progress
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
 _Asked = TypeVar("_Asked", bound=Request)
-_Request = TypeVar("_Request", bound=Running)
+_Request = TypeVar("_Request", bound=Running | ScanQuestion)
 _Plan = TypeVar("_Plan", bound=Analysis[Any])
-_Finished = TypeVar("_Finished", bound=Run | MapRun)
+_Finished = TypeVar("_Finished", bound=FinishedRun)
 
 _ERRORS_SHOWN = 5
 _LONGEST_NAME = 180
@@ -219,7 +219,7 @@ def run(
     return finished
 
 
-def run_folder(question: Running, chosen: Chosen, named: Sequence[str]) -> Path:
+def run_folder(question: Running | ScanQuestion, chosen: Chosen, named: Sequence[str]) -> Path:
     """Return the folder of a run.
 
     Without a folder of the caller's it is named after everything that makes it another study,

@@ -3,7 +3,7 @@
 from importlib.metadata import entry_points
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import pyarrow as pa
 
@@ -11,6 +11,8 @@ from faultpath.api.folders import (
     MAP,
     MAP_MADE_FROM,
     RECORD,
+    SCAN,
+    SCAN_MADE_FROM,
     parsed,
     read_provenance,
     read_run,
@@ -20,9 +22,11 @@ from faultpath.core.files.parquet import read_table
 from faultpath.decisions.gate import Answer, Ask, found, holds_when_shared
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.record import DecisionRecord
+from faultpath.decisions.scan.record import ScanRecord
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.map import write_map
+from faultpath.report.scan import write_scan
 from faultpath.report.tables import markdown_table
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store.folder import AGAIN, OUTCOMES, unseal
@@ -46,6 +50,10 @@ class FinishedRun:
     def __repr__(self) -> str:
         """Return kind, folder and headline."""
         return f"<{type(self).__name__} in {self.folder}: {self.headline}>"
+
+    def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
+        """Write its pages into a folder, by default that of the run, and return their paths."""
+        raise NotImplementedError
 
 
 class Run(FinishedRun):
@@ -125,8 +133,20 @@ class MapRun(FinishedRun):
         return write_map(self.record, self.provenance, place)
 
 
-def open_run(folder: str | PathLike[str]) -> "Run | MapRun | Any":
-    """Open the folder of a finished audit or map, one's own or anybody's.
+class ScanRun(FinishedRun):
+    """A finished scan: its result, and where its files are."""
+
+    record: ScanRecord
+    """`headline`, `sentences` and `commands` in words; `errors`, `versions`, ... in numbers."""
+
+    def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
+        """Write report.html, scan.svg and table.md, and return their paths."""
+        place = self.folder if folder is None else Path(folder)
+        return write_scan(self.record, self.provenance, place)
+
+
+def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ScanRun | Any":
+    """Open the folder of a finished audit, map or scan, one's own or anybody's.
 
     It is taken for data: no code that it names is run, and every file is compared with its digest.
     What an installed distribution leaves behind is opened by it: an entry point in the group
@@ -136,16 +156,28 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | Any":
     place = Path(folder)
     provenance = read_provenance(place)
     if MAP in provenance.files:
-        contents = unseal(place, provenance.files, MAP_MADE_FROM)
-        record = parsed(contents[MAP], place / MAP, MapRecord)
-        if (provenance.files[OUTCOMES], provenance.library_hash) != (
-            provenance.outcomes_sha256,
-            record.question.library_hash,
-        ):
-            raise UserError(f"the files of {place} do not belong together: {AGAIN}.")
-        return MapRun(place, record, provenance)
+        return MapRun(place, _record(place, provenance, MAP_MADE_FROM, MapRecord), provenance)
+    if SCAN in provenance.files:
+        return ScanRun(place, _record(place, provenance, SCAN_MADE_FROM, ScanRecord), provenance)
     if RECORD not in provenance.files:
         for point in entry_points(group="faultpath.runs"):
             if point.name in provenance.files:
                 return point.load()(place)
     return Run(place, read_run(place))
+
+
+_Record = TypeVar("_Record", MapRecord, ScanRecord)
+
+
+def _record(
+    folder: Path, provenance: RunProvenance, names: tuple[str, str], model: type[_Record]
+) -> _Record:
+    """Return the result of a map or scan, after comparing its files with their digests."""
+    contents = unseal(folder, provenance.files, names)
+    record = parsed(contents[names[0]], folder / names[0], model)
+    if (provenance.files[OUTCOMES], provenance.library_hash) != (
+        provenance.outcomes_sha256,
+        record.question.library_hash,
+    ):
+        raise UserError(f"the files of {folder} do not belong together: {AGAIN}.")
+    return record

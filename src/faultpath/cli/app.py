@@ -76,6 +76,13 @@ _PANELS = {
             of_a_system=True,
         ),
         Command(
+            "scan",
+            designs.scan,
+            f"{_TOY} --variant calibrated --fault gain:scale=1.2 --library carts",
+            "Find which errors of a system's inputs cancel.",
+            of_a_system=True,
+        ),
+        Command(
             "replay",
             replay.replay,
             "runs/mine --scene cart/003 --signals",

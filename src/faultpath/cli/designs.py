@@ -1,4 +1,4 @@
-"""`faultpath map`: many errors of one source."""
+"""`faultpath map` and `scan`: many errors of one source, and of all."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import FOUND, Json, SystemName, display
-from faultpath.trials.question import MapQuestion
+from faultpath.trials.question import MapQuestion, ScanQuestion
 
 
 @takes(MapQuestion)
@@ -27,3 +27,32 @@ def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) ->
         console.print(conclusion(run.record, tables(run.record)))
         console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
     return FOUND if run.record.failed else 0
+
+
+@takes(ScanQuestion)
+def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
+    """Find which errors of a system's inputs cancel: each alone costs success, both together do
+    not, so that correcting one of them alone does harm."""
+    from faultpath.api.display import SafeConsole
+    from faultpath.api.scanning import scan
+    from faultpath.decisions.scan.sources import Ranking
+    from faultpath.decisions.tables.terminal import Parted
+    from faultpath.report.scan import ranking_table, tables
+    from faultpath.report.terminal import conclusion
+
+    result = scan(system, **arguments, progress=display(as_json))
+    record = result if isinstance(result, Ranking) else result.record
+    console = SafeConsole()
+    if as_json:
+        typer.echo(record.model_dump_json(indent=1))
+    elif isinstance(result, Ranking):
+        table = ranking_table(result)
+        console.print(Parted(table))
+        for note in table.notes:
+            console.print(note, markup=False)
+    else:
+        console.print(conclusion(result.record, tables(result.record)))
+        for command in result.record.commands:
+            console.print(f"Next: {command}", markup=False, soft_wrap=True)
+        console.print(f"Report: {result.folder / 'report.html'}", markup=False, soft_wrap=True)
+    return 0 if isinstance(result, Ranking) or not result.record.failed else FOUND

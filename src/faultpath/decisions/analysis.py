@@ -1,4 +1,4 @@
-"""Parts that audit and map share: rounds of trials, and a record."""
+"""Parts that audit, map and scan share: rounds of trials, and a record."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Generator
@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
 from faultpath.decisions.question import Resolved
 from faultpath.trials import Deliveries, Study, System, Trials
 from faultpath.trials.execution.state import Stop
-from faultpath.trials.question import Running
+from faultpath.trials.question import Running, ScanQuestion
 
 Items = TypeVar("Items")
 
@@ -39,7 +39,7 @@ class Analysis(ABC, Generic[Items]):
     noun: ClassVar[str] = ""
     """Plural of that which rounds add; empty for an analysis of one round."""
 
-    request: Running
+    request: Running | ScanQuestion
     question: Resolved
     system: System
     named: tuple[str, ...]

@@ -59,10 +59,11 @@ def parse_fault(
             )
             if "loading" in update and not all(f.intervention.is_random() for f in declared):
                 raise UserError(_LOADING)
-            faults += [
+            stated = [
                 fault.model_copy(update={"cause": fault.cause or parsed.cause, **update})
                 for fault in declared
             ]
+            faults += resolve(stated, interface) if part.readers else stated
         return resolve(faults, interface)
     except UserError as error:
         raise UserError(f"fault '{parsed}': {error}") from None

@@ -56,8 +56,6 @@ class FaultText:
             parts = text.split("&")
             if len(parts) == 1:
                 return cls._read(text)
-            if "@" in text:
-                raise UserError("joined faults reach every reader; leave '@' out")
             if not all(part.strip() for part in parts):
                 raise UserError("something is missing beside '&'; write a fault on either side")
             first, *others = (cls._read(part.strip()) for part in parts)

@@ -8,6 +8,7 @@ from rich.text import Text
 
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.record import DecisionRecord
+from faultpath.decisions.scan.record import ScanRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.sentences.phrases import (
@@ -66,8 +67,8 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     return Group(*parts)
 
 
-def conclusion(record: MapRecord, tables: Iterable[Table]) -> RenderableType:
-    """Return headline, sentences, findings and tables of a map."""
+def conclusion(record: MapRecord | ScanRecord, tables: Iterable[Table]) -> RenderableType:
+    """Return headline, sentences, findings and tables of a map or a scan."""
     parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
     parts += map(Text, record.sentences)
     parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in record.findings]

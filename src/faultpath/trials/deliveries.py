@@ -2,12 +2,15 @@
 declarations."""
 
 from collections.abc import Iterable, Mapping
-from typing import Literal, Self
+from typing import Literal, Self, TypeAlias
 
 from faultpath.core.results import Result
 from faultpath.loop import TapCount, added
 from faultpath.trials.plan import Study
 from faultpath.trials.trials import Trials
+
+TreatmentPart: TypeAlias = tuple[str, tuple[str, ...]]
+"""Key of a treatment, and what its rows say of their scenes."""
 
 
 class RowDeliveries(Result):
@@ -34,12 +37,12 @@ class Deliveries(Result):
     def of(
         cls,
         study: Study,
-        treatments: Mapping[str, tuple[TapCount, ...]],
+        treatments: Mapping[TreatmentPart, tuple[TapCount, ...]],
         trials: Trials,
         findings: tuple[str, ...],
         repeats: bool = True,
     ) -> Self:
-        """Lay the counts, by treatment key, out in the order of the study's rows.
+        """Lay the counts out in the order of the study's rows.
 
         To `findings` it adds what counts and outcomes show of the declarations.
         """
@@ -48,7 +51,7 @@ class Deliveries(Result):
                 variant=r.variant,
                 condition=r.condition,
                 seed=r.seed,
-                taps=treatments.get(r.treatment.key(), ()),
+                taps=treatments.get((r.treatment.key(), r.scenes), ()),
             )
             for r in study.rows
         )

@@ -50,6 +50,9 @@ class Row(Frozen):
     condition: str
     seed: int
     treatment: Treatment
+    scenes: tuple[str, ...] = ()
+    """Those of the study in which it runs; empty: all of them. Two rows of a treatment have the
+    same scenes, or none in common."""
 
 
 class Study(Frozen):
@@ -67,3 +70,11 @@ class Study(Frozen):
     def treatments(self) -> tuple[Treatment, ...]:
         """Return each distinct treatment once, in the order of the rows."""
         return tuple({row.treatment.key(): row.treatment for row in self.rows}.values())
+
+    def parts(self) -> dict[tuple[str, ...], tuple[Treatment, ...]]:
+        """Return the distinct treatments that run in the same scenes, by what their rows say of
+        these."""
+        parts: dict[tuple[str, ...], dict[str, Treatment]] = {}
+        for row in self.rows:
+            parts.setdefault(row.scenes, {})[row.treatment.key()] = row.treatment
+        return {scenes: tuple(treatments.values()) for scenes, treatments in parts.items()}

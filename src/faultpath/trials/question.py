@@ -15,7 +15,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.validation_messages import misfit_of
 from faultpath.faults.text import FaultText
-from faultpath.trials.texts import LARGEST, Names, Place, Seeds, Sizes
+from faultpath.trials.texts import LARGEST, Names, Place, Seeds, Sizes, several
 
 Generalise = Literal["scenes", "models"]
 FEWEST_TRAININGS = 5
@@ -143,8 +143,8 @@ class RepairQuestion(Request):
     seeds: Seeds = (0,)
 
 
-class Running(RepairQuestion):
-    """The same, with where and how it runs."""
+class Execution(Request):
+    """Where and how trials run."""
 
     panel: ClassVar[str] = "How it runs"
 
@@ -167,6 +167,10 @@ class Running(RepairQuestion):
         description="Seconds that a block of scenes may take; default what the system says, else "
         "3600.",
     )
+
+
+class Running(Execution, RepairQuestion):
+    """Two variants of a system, compared in scenes, with where and how it runs."""
 
 
 class AuditQuestion(Running):
@@ -234,3 +238,35 @@ class MapQuestion(Running):
         default=None,
         description="Correlation of the errors for which to report the expected difference.",
     )
+
+
+class ScanRequest(Request):
+    """A variant of a system, in scenes."""
+
+    panel: ClassVar[str] = "What is scanned"
+
+    variant: str = Field(
+        description="Variant to scan, or your file.py:factory where the system takes one."
+    )
+    repair: str = Field(
+        default="", description="Another variant, to scan with the same errors beside it."
+    )
+    fault: Annotated[tuple[FaultText, ...], BeforeValidator(several), Flag(several=True)] = Field(
+        default=(),
+        description="Size of a source's error in place of the declared one, for both signs: "
+        "`gain:scale=1.2`, `gain:offset=0.1@observer`, `calibration=0.1`.",
+    )
+    library: Scenes = "selection"
+    scenes: int | None = Field(
+        default=None,
+        description="Run only the first N scenes: 50 in the first stage, the others in the second; "
+        "default as many as 8000 trials allow.",
+    )
+    seeds: Seeds = (0,)
+    trials: bool = Field(
+        default=True, description="Run trials, after ranking the sources by their readers."
+    )
+
+
+class ScanQuestion(Execution, ScanRequest):
+    """Question that a scan answers."""

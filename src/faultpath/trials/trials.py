@@ -225,14 +225,14 @@ def selected(study: Study, library: Library) -> tuple[SceneRef, ...]:
 def check_rows(rows: Iterable[Row], variants: Iterable[str]) -> None:
     """Raise `UserError` for a row without a known variant, or for two rows at one address."""
     known = tuple(variants)
-    addresses: set[tuple[str, str, int]] = set()
+    addresses: set[tuple[str, str, int, tuple[str, ...]]] = set()
     for row in rows:
         if row.treatment.variant not in known:
             raise UserError(
                 f"the system has no variant {row.treatment.variant!r}: choose from "
                 f"{', '.join(known)}"
             )
-        address = (row.variant, row.condition, row.seed)
+        address = (row.variant, row.condition, row.seed, row.scenes)
         if address in addresses:
             raise UserError(
                 f"two rows of the study are both called variant {row.variant!r}, path "
@@ -246,5 +246,7 @@ def assemble(study: Study, library: Library, outcomes: Mapping[tuple[str, str], 
     scenes, trials = selected(study, library), list[Trial]()
     for row in study.rows:
         where, key = (row.variant, row.condition, row.seed), row.treatment.key()
-        trials += [Trial(*where, s.index, s.topology, outcomes[key, s.id]) for s in scenes]
+        part = frozenset(row.scenes or study.scenes)
+        here = (scene for scene in scenes if scene.id in part)
+        trials += [Trial(*where, s.index, s.topology, outcomes[key, s.id]) for s in here]
     return Trials.of(trials)

@@ -179,7 +179,11 @@ def _units(study: Study, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
     check_rows(study.rows, system.variants)
     fingerprint = f"{manifest.faultpath_version} {manifest.code.digest}"
     size = system.scenes_a_block(len(library.scenes))
-    return plan(study.treatments(), scenes, size, library, fingerprint, study.look)
+    units: list[Unit] = []
+    for part, treatments in study.parts().items():
+        chosen = [scene for scene in scenes if scene.id in part] if part else scenes
+        units += plan(treatments, chosen, size, library, fingerprint, study.look, part)
+    return tuple(units)
 
 
 def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:

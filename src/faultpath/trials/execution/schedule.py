@@ -22,6 +22,8 @@ class Unit:
     """That of `treatment`, which a model computes anew each time."""
     block: int
     scenes: tuple[str, ...]
+    part: tuple[str, ...] = ()
+    """Scenes that its rows name; empty where they name none."""
 
 
 def plan(
@@ -31,6 +33,7 @@ def plan(
     library: Library,
     fingerprint: str,
     look: int = 0,
+    part: tuple[str, ...] = (),
 ) -> tuple[Unit, ...]:
     """Return every unit: block by block, in each the treatments in order.
 
@@ -55,7 +58,7 @@ def plan(
                 "library": library.content_hash,
             }
             key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
-            units.append(Unit(key, treatment, treatment_key, block, tuple(ids)))
+            units.append(Unit(key, treatment, treatment_key, block, tuple(ids), part))
     return tuple(units)
 
 

@@ -10,6 +10,7 @@ from faultpath.core.text import one_line
 from faultpath.loop import TapCount, added
 from faultpath.trials.attempt import Died, Done, Raised, Reply, Wrong
 from faultpath.trials.declared import Library
+from faultpath.trials.deliveries import TreatmentPart
 from faultpath.trials.execution.schedule import Task, Unit
 from faultpath.trials.outcome import Outcome, failed_outcome
 from faultpath.trials.plan import Study
@@ -58,12 +59,12 @@ class RunState:
         self.kept = self.computed = 0
         """Units that were stored before, and those that this invocation ran."""
         self._study, self._library, self._units, self._folder = study, library, units, folder
-        self._rows = Counter(row.treatment.key() for row in study.rows)
+        self._rows = Counter((row.treatment.key(), row.scenes) for row in study.rows)
         self._taps: dict[str, tuple[TapCount, ...]] = {}
         self._partial: dict[str, _Partial] = {}
         self._began, self._ended = time.monotonic(), 0
         self._trials = sum(len(unit.scenes) for unit in units)
-        self._in_rows = sum(len(unit.scenes) * self._rows[unit.treatment_key] for unit in units)
+        self._in_rows = sum(len(u.scenes) * self._rows[u.treatment_key, u.part] for u in units)
         self._done = self._done_in_rows = 0
         """Trials with an outcome, and in how many of the rows' trials they stand."""
         self._failed, self._sound = 0, False
@@ -177,7 +178,7 @@ class RunState:
 
     def _count(self, unit: Unit, trials: int) -> None:
         self._done += trials
-        self._done_in_rows += trials * self._rows[unit.treatment_key]
+        self._done_in_rows += trials * self._rows[unit.treatment_key, unit.part]
 
     def enough(self) -> bool:
         """Take the looks whose trials are all there; return whether the study stops."""
@@ -202,11 +203,11 @@ class RunState:
         """The units whose trials count."""
         return tuple(unit for unit in self._units if not self._stop or unit.block < self._looks)
 
-    def taps(self) -> dict[str, tuple[TapCount, ...]]:
-        """Return what the taps did in the units that count, by the key of their treatment."""
-        counts: dict[str, list[TapCount]] = {}
+    def taps(self) -> dict[TreatmentPart, tuple[TapCount, ...]]:
+        """Return what the taps did in the units that count."""
+        counts: dict[TreatmentPart, list[TapCount]] = {}
         for unit in self.units:
-            counts.setdefault(unit.treatment_key, []).extend(self._taps[unit.key])
+            counts.setdefault((unit.treatment_key, unit.part), []).extend(self._taps[unit.key])
         return {key: added(taps) for key, taps in counts.items()}
 
     def progress(self) -> Progress:

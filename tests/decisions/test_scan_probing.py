@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from declared_toy import Declared
 
-from faultpath.decisions.plan.probing import command_responses
+from faultpath.decisions.scan.probing import command_responses
 from faultpath.faults import at_readers
 from faultpath.loop import Batch, Taps
 

@@ -1,21 +1,13 @@
-"""Which sources come first, and which others the same repair has to be audited against."""
-
-from pathlib import Path
+"""Which sources may err, by how much, and which of them comes first."""
 
 import pytest
-from declared_toy import Declared
 
-import faultpath
 from faultpath.core.errors import UserError
-from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_modules
-from faultpath.decisions.sources import Candidate, candidates
-from faultpath.faults import Fault, Scale
+from faultpath.decisions.scan.ranking import ranked
+from faultpath.decisions.scan.sources import Candidate, candidates
+from faultpath.faults import Fault, FaultText, Scale
 from faultpath.interface import read_interface
 from faultpath.trials import Library, SceneRef, System, Variant
-
-HERE = Path(__file__).resolve().parent
-DOCK = HERE.parents[1] / "examples" / "dock.py"
-
 
 FACTS = """
 name: sized
@@ -77,7 +69,10 @@ class Preset(Sized):
 
 def found(system: System, *given: str, variants=("less", "all")) -> dict[str, Candidate]:
     pair = [system.variants[name] for name in variants]
-    return {each.name: each for each in candidates(system, pair, given)}
+    return {
+        each.name: each
+        for each in candidates(system, pair, [FaultText.read(text) for text in given])
+    }
 
 
 def test_faults_are_as_large_as_what_is_declared():
@@ -95,6 +90,18 @@ def test_faults_are_as_large_as_what_is_declared():
     assert not {"unread", "goal", "truth"} & set(by_name)
 
 
+def test_a_size_at_one_reader_leaves_the_others_theirs():
+    by_name = found(Sized(), "calibration:scale=1.3@planner", "silent:offset=2@model")
+    assert by_name["calibration"].fault == "calibration:scale=1.1"
+    assert by_name["calibration"].at == {"planner": "calibration:scale=1.3@planner"}
+    assert (by_name["silent"].fault, [*by_name["silent"].at]) == ("", ["model"])
+    assert found(Sized(), "goal:offset=1@planner")["goal"].at == {
+        "planner": "goal:offset=1@planner"
+    }
+    with pytest.raises(UserError, match="at planner has been given an error already"):
+        found(Sized(), "mass:scale=1.2@planner", "mass:scale=1.3@planner.mass")
+
+
 def test_a_given_error_takes_the_place_of_a_declared_one():
     by_name = found(Sized(), "rate:scale=1.5", "silent:offset=3", "mass:scale=1.2")
     assert by_name["gyro"].fault == "rate:scale=1.5"
@@ -106,8 +113,10 @@ def test_a_given_error_takes_the_place_of_a_declared_one():
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("rate:scale=1.1,1.2", "takes one size"),
-        ("rate:scale=1.1@model", "faults every module by itself"),
+        ("rate:scale=1.1,1.2", "needs one size"),
+        ("rate:delay=2", "two signs"),
+        ("rate:scale=1.1 & mass:scale=1.1", "one source"),
+        ("place:scale=1.1@model", "does not read it"),
         ("unread:scale=2", "reaches no module"),
         ("rat:scale=2", "did you mean 'rate'"),
     ],
@@ -143,38 +152,3 @@ def test_readers_come_first_then_the_probe():
     assert list(ranks) == sorted(ranks, key=lambda name: ranks[name])
     order = ranked([candidate("late", 2, **UNSIZED), candidate("sized", 2)])
     assert [(each.name, each.rank) for each in order] == [("sized", 1), ("late", 1)]
-
-
-def test_the_repaired_module_is_told_from_what_differs():
-    toy, dock = Declared(), faultpath.load_system(DOCK)
-    pair = (toy.variants["calibrated"], toy.variants["blind"])
-    wheels = (dock.variants["wheels"], dock.variants["ranges"])
-    for system, variants, named, modules in (
-        (toy, pair, (), ("observer",)),
-        (toy, pair, ("controller",), ("controller",)),
-        (toy, (pair[0], pair[0]), (), ()),
-        (dock, wheels, (), ("speedometer",)),
-    ):
-        assert repaired_modules(system, *variants, named) == modules
-    with pytest.raises(UserError, match="did you mean 'observer'"):
-        repaired_modules(toy, *pair, ("obsever",))
-
-
-def test_the_recursion_takes_outputs_and_inputs_and_what_makes_them():
-    toy = Declared()
-    pair = [toy.variants[name] for name in ("calibrated", "blind")]
-    assert makers(toy.interface, pair) == {"observer": ("observed_slope",)}
-    readers_of = {
-        "wind": ("planner.wind",),
-        "drift": ("reconstruction.drift",),
-        "imu": ("filter.imu", "planner.imu"),
-        "goal": ("planner.goal",),
-    }
-    every = [candidate(name, 0, readers=readers) for name, readers in readers_of.items()]
-    made_by = {"reconstruction": ("wind",), "filter": ("drift",), "other": ("nothing",)}
-    assert recursion(every, made_by, ("planner", "reconstruction")) == {
-        "wind": "output of reconstruction",
-        "drift": "input of reconstruction, which makes wind",
-        "imu": "input of filter, which makes drift",
-    }
-    assert recursion(every, made_by, ("planner",)) == {}

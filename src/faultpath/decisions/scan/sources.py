@@ -1,11 +1,14 @@
-"""Uncertain sources, who reads them in the variants compared, and how large their errors are."""
+"""Uncertain sources, who reads them in the variants scanned, and how large their errors are."""
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from pydantic import Field
 
 from faultpath.core.errors import UserError
-from faultpath.core.results import Frozen
+from faultpath.core.results import Frozen, Result
 from faultpath.faults import FaultText, at_readers
-from faultpath.interface import Interface, Provenance, Source
+from faultpath.interface import Interface, Provenance, Source, module_of
 from faultpath.trials import System, Variant
 
 _UNCERTAIN = (Provenance.MEASURED, Provenance.ESTIMATED, Provenance.RECONSTRUCTED)
@@ -19,28 +22,45 @@ class Candidate(Frozen, allow_inf_nan=False):
     sources: tuple[str, ...]
     channels: tuple[str, ...]
     readers: tuple[str, ...]
-    """Places that read it in either variant: every use of a shared source counts."""
+    """Places that read it in one of the variants: every use of a shared source counts."""
     fault: str = ""
     """As large as its expected error; empty where that is not known."""
+    at: Mapping[str, str] = Field(default_factory=dict[str, str])
+    """Faults of another size, by the module that gets them."""
     unsized: str = ""
     """Why there is no fault."""
     note: str = ""
     response: float | None = None
-    """How far a probe moves the commands, see `probing`: the largest of both variants and all
-    conditions of the fault. Errors of several modules may cancel, and that is no reason to audit
-    their source last."""
+    """How far a probe moves the commands, see `probing`: the largest of all variants, modules alone
+    and all of them. Errors of several modules may cancel, and that is no reason to rank their
+    source last."""
     rank: int | None = None
     """Sources that nothing tells apart share one; `None` before they are ranked."""
 
+    @property
+    def modules(self) -> tuple[str, ...]:
+        """The modules that read it."""
+        return tuple(dict.fromkeys(map(module_of, self.readers)))
+
+
+class Ranking(Result):
+    """The sources of a system that may err, the first to look at in front."""
+
+    system: str
+    variants: tuple[str, ...]
+    sources: tuple[Candidate, ...]
+    probed: int
+    """Scenes of the probe; 0 where there was none."""
+
 
 def candidates(
-    system: System, variants: Sequence[Variant], faults: Sequence[str]
+    system: System, variants: Sequence[Variant], faults: Sequence[FaultText]
 ) -> tuple[Candidate, ...]:
     """Return the uncertain sources that a variant reads, in the order of declaration.
 
     Uncertain is what is measured, estimated or reconstructed, or declares an uncertainty. The
-    `faults` take the place of declared sizes. `UserError` for one that reaches no reader,
-    and for two of one source.
+    `faults` take the place of declared sizes, where they name readers at these alone. `UserError`
+    for one that reaches no reader, and for two at one of them.
     """
     interface = system.interface
     uncertain = (s for s in interface.sources if s.provenance in _UNCERTAIN or s.uncertainty)
@@ -52,17 +72,49 @@ def candidates(
         fault, unsized = expected(system.fault_presets, name, sources, channels)
         names = tuple(source.name for source in sources)
         listed.append(_candidate(system, variants, name, names, channels, fault, unsized))
-    for text in faults:
-        candidate = _given(system, variants, text)
+    texts = {str(fault) for fault in faults}
+    for fault in faults:
+        if fault.readers:
+            continue
+        candidate = _given(system, variants, fault)
         replaced = [other for other in listed if set(other.channels) <= set(candidate.channels)]
-        if any(other.fault in faults for other in replaced):
-            raise UserError(f"fault '{text}': {replaced[0].name} has been given an error already.")
+        if any(other.fault in texts for other in replaced):
+            raise UserError(f"fault '{fault}': {replaced[0].name} has been given an error already.")
         if len(replaced) == 1:
             candidate = candidate.model_copy(update={"name": replaced[0].name})
         at = listed.index(replaced[0]) if replaced else len(listed)
         listed.insert(at, candidate)
         listed = [other for other in listed if other not in replaced]
+    for fault in faults:
+        if fault.readers:
+            _size_at_readers(system, variants, fault, listed)
     return tuple(listed)
+
+
+def _size_at_readers(
+    system: System, variants: Sequence[Variant], fault: FaultText, listed: list[Candidate]
+) -> None:
+    """Give the modules that a fault names its size, in the list of sources."""
+    narrowed = _given(system, variants, fault)
+    channels = set(narrowed.channels)
+    place = next((i for i, other in enumerate(listed) if channels <= set(other.channels)), None)
+    if place is None:
+        whole = _given(system, variants, replace(fault, text=_whole(fault), readers=()))
+        unsized = f"has a size at {' and '.join(fault.readers)} alone"
+        listed.append(whole.model_copy(update={"fault": "", "unsized": unsized}))
+        place = len(listed) - 1
+    candidate = listed[place]
+    for module in narrowed.modules:
+        if module in candidate.at:
+            raise UserError(
+                f"fault '{fault}': {candidate.name} at {module} has been given an error already."
+            )
+    at = {**candidate.at, **dict.fromkeys(narrowed.modules, str(fault))}
+    listed[place] = candidate.model_copy(update={"at": at})
+
+
+def _whole(fault: FaultText) -> str:
+    return replace(fault, readers=()).at(fault.sizes[0]).text
 
 
 def groups_of(sources: Iterable[Source]) -> dict[str, list[Source]]:
@@ -90,18 +142,19 @@ def channels_of(interface: Interface, variants: Sequence[Variant], source: str) 
     return tuple(fed)
 
 
-def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
-    parsed = FaultText.read(text)
-    if len(parsed.sizes) > 1 or parsed.readers:
+def _given(system: System, variants: Sequence[Variant], fault: FaultText) -> Candidate:
+    if fault.joined or (fault.kind not in (None, "scale", "offset")):
         raise UserError(
-            f"fault '{text}': a ranking takes one size, and faults every module by itself: leave "
-            "further sizes and '@' out."
+            f"fault '{fault}': a scan takes errors of one source that have two signs: "
+            "SOURCE:scale=1.2, SOURCE:offset=0.1, or a preset of the system with its size."
         )
-    channels = tuple(dict.fromkeys(fault.channel for fault in system.fault(parsed)))
+    if len(fault.sizes) != 1:
+        raise UserError(f"fault '{fault}': a scan needs one size, which it runs with both signs.")
+    channels = tuple(dict.fromkeys(part.channel for part in system.fault(fault)))
     sources = {bound(variant, system.interface, c): None for variant in variants for c in channels}
-    candidate = _candidate(system, variants, parsed.name, tuple(sources), channels, text)
+    candidate = _candidate(system, variants, fault.name, tuple(sources), channels, str(fault))
     if not candidate.readers:
-        raise UserError(f"fault '{text}' reaches no module: neither version reads it there.")
+        raise UserError(f"fault '{fault}' reaches no module: no version reads it there.")
     return candidate
 
 
@@ -127,10 +180,10 @@ def _candidate(
         read = [c for channel in channels for c in interface.channel(channel).readers]
         reached = [c for c in read if any(c in variant.readers for variant in variants)]
     for channel in channels:
-        one, two = (bound(variant, interface, channel) for variant in variants)
-        if one != two:
+        fed = [bound(variant, interface, channel) for variant in variants]
+        if len(set(fed)) > 1:
             note = (
-                f"Channel '{channel}' is fed by {one} in {variants[0].name} and by {two} in "
+                f"Channel '{channel}' is fed by {fed[0]} in {variants[0].name} and by {fed[1]} in "
                 f"{variants[1].name}, so a fault on it alters another source in each."
             )
             break

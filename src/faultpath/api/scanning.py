@@ -1,0 +1,48 @@
+"""`faultpath.scan`: which errors of the inputs of a system cancel."""
+
+from os import PathLike
+from typing import Any
+
+from faultpath.api.display import Display
+from faultpath.api.folders import SCAN, SCAN_MADE_FROM
+from faultpath.api.job import Job, begin, run, with_question_signature
+from faultpath.api.runs import ScanRun
+from faultpath.decisions.scan.design import ScanPlan, plan_scan, ranked_sources
+from faultpath.decisions.scan.sources import Ranking
+from faultpath.trials import System
+from faultpath.trials.question import ScanQuestion
+from faultpath.trials.store.atomic import write_text
+
+
+@with_question_signature(ScanQuestion)
+def scan(
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
+) -> ScanRun | Ranking:
+    """Find which errors of a system's inputs cancel: each alone costs success, both do not.
+
+    Args:
+        system: As for `audit`.
+        progress: As for `audit`.
+        **arguments: ...
+
+    Without `trials` it returns the sources that may err, ranked, and runs no trial.
+
+    Raises:
+        UserError: What was asked cannot be done; the sentence says why, and what to do.
+        Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
+    """
+    if not arguments.get("trials", True):
+        question, chosen, library, _ = begin("scan", ScanQuestion, system, arguments, progress)
+        return ranked_sources(chosen.system, question, library)
+    return run("scan", ScanQuestion, plan_scan, _scan, system, arguments, progress)
+
+
+def _scan(plan: ScanPlan, job: Job) -> ScanRun:
+    """Run the trials of a scan, conclude, and write the result.
+
+    Raises `Stopped` on Ctrl-C, and `UserError` where the trials cannot be run.
+    """
+    scanned, result = job.trials(plan)
+    record = plan.conclude(result.trials, result.deliveries, scanned)
+    write_text(job.folder / SCAN, record.model_dump_json(indent=1) + "\n", job.folder)
+    return ScanRun(job.folder, record, job.finish(result, plan.system, SCAN_MADE_FROM))

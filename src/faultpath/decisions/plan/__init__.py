@@ -1,1 +1,0 @@
-"""The order in which uncertain sources are audited: ranks, and probes that break ties."""

@@ -1,0 +1,185 @@
+"""A scan as tables, pictures, terminal and page; all numbers are the result's."""
+
+from pathlib import Path
+
+from markupsafe import Markup
+
+from faultpath.decisions.scan.model import ScannedVersion, SecondStage
+from faultpath.decisions.scan.record import ScanRecord
+from faultpath.decisions.scan.sources import Candidate, Ranking
+from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.scan import in_words, named, of_pair, size
+from faultpath.decisions.tables import Entry, Line, Table, line
+from faultpath.decisions.tables.html import html
+from faultpath.decisions.tables.markdown import block
+from faultpath.report.frame import render, write_pages
+from faultpath.report.scan_pictures import letters, strip, triangle
+from faultpath.trials.provenance import RunProvenance
+
+
+def tables(record: ScanRecord) -> tuple[Table, ...]:
+    """Return the errors alone, those of a source at several readers, and the ranking."""
+    together = (_together(record),) if record.versions[0].together else ()
+    return _alone(record), *together, ranking_table(record.ranking)
+
+
+def _alone(record: ScanRecord) -> Table:
+    """Return success with each error alone, in the first stage and in the second."""
+    versions = record.versions
+    none = [
+        entry
+        for version in versions
+        for entry in (_percent(version.first[0].none), _percent(_none(version)), "")
+    ]
+    lines = [line("no error", *none)]
+    for place, error in enumerate(record.errors):
+        entries: list[Entry] = []
+        for version in versions:
+            first = next(f for f in version.first if f.error.text == error.text)
+            second = next((s for s in version.singles if s.error == place), None)
+            entries += [Entry(text=_percent(first.alone)), *_second(second)]
+        lines.append(line(named(error), *entries))
+    return Table(
+        name="errors",
+        title="Success with each error alone, %",
+        corner="Error",
+        columns=_of_versions(record, "first stage", "second stage", "p, Holm"),
+        lines=tuple(lines),
+        notes=(
+            f"The first stage has {wording.counted(record.scenes[0], 'scene')}, the second "
+            f"{record.scenes[1]} others. p: one-sided, that the error costs success, or raises it "
+            "where it is bold and above no error; bold below 0.025.",
+        ),
+    )
+
+
+def _second(single: SecondStage | None) -> tuple[Entry, Entry]:
+    if single is None:
+        return Entry(text="not run"), Entry(text="")
+    p = single.helps_p if single.kind == "helps" else single.corrected_p
+    text = Entry(text=_percent(single.alone), detected=single.kind is not None)
+    return text, Entry(text=wording.p_value(p))
+
+
+def _none(version: ScannedVersion) -> float | None:
+    rates = [part.none for part in (*version.singles, *version.together)]
+    return rates[0] if rates else None
+
+
+def _percent(rate: float | None) -> str:
+    return "not run" if rate is None else f"{rate:.0f}"
+
+
+def _of_versions(record: ScanRecord, *columns: str) -> tuple[str, ...]:
+    """Return columns for each version, under its name where there are two."""
+    if len(record.versions) == 1:
+        return columns
+    return tuple(f"{of.variant}: {column}" for of in record.versions for column in columns)
+
+
+def _together(record: ScanRecord) -> Table:
+    """Return success with a source wrong at several readers at once."""
+    lines: list[Line] = []
+    for at, together in enumerate(record.versions[0].together):
+        errors = [record.errors[place] for place in together.errors]
+        sizes = " and ".join(dict.fromkeys(map(size, errors)))
+        where = f"all but {together.left_out}" if together.left_out else "all"
+        rates = [
+            _percent(rate)
+            for version in record.versions
+            for rate in (version.together[at].none, version.together[at].success)
+        ]
+        lines.append(line(f"{in_words(errors[0].source)} {sizes}", where, *rates))
+    return Table(
+        name="together",
+        title="Success with one source wrong at several readers, %",
+        corner="Source",
+        columns=("readers", *_of_versions(record, "no error", "wrong there")),
+        words=("readers",),
+        lines=tuple(lines),
+        notes=("All readers is how deployment has an error of the source. Not tested.",),
+    )
+
+
+def ranking_table(ranking: Ranking) -> Table:
+    """Return the sources that may err in order."""
+    ranks = [source.rank for source in ranking.sources]
+    return Table(
+        name="ranking",
+        title="Sources that may err, by number of readers, then by probe response",
+        corner="Source",
+        columns=("read by", "error", "response"),
+        words=("read by", "error"),
+        lines=tuple(
+            line(
+                f"{source.rank}{'=' * (ranks.count(source.rank) > 1)} {source.name}",
+                ", ".join(source.readers),
+                _sizes(source),
+                "unknown" if source.response is None else f"{source.response:.2g}",
+            )
+            for source in ranking.sources
+        ),
+        notes=_ranking_notes(ranking),
+    )
+
+
+def _sizes(source: Candidate) -> str:
+    sizes = [source.fault or f"none: {source.unsized}"] if source.fault or not source.at else []
+    return ", ".join([*sizes, *source.at.values()])
+
+
+def _ranking_notes(ranking: Ranking) -> tuple[str, ...]:
+    order = "Ranks compare point estimates and are not tested; equal sources share one."
+    if not ranking.probed:
+        return (f"{order} The system shows no commands, so only readers count.",)
+    return (
+        f"{order} Response: median change of the command when the source errs, as a fraction of "
+        f"the command's root mean square, in {wording.counted(ranking.probed, 'scene')}.",
+    )
+
+
+def write_scan(record: ScanRecord, provenance: RunProvenance, folder: Path) -> list[Path]:
+    """Write `report.html`, `scan.svg`, `scan-2.svg` of a repair, and `table.md`; return their
+    paths."""
+    pages = {"report.html": page(record, provenance)}
+    for number, version in enumerate(record.versions, 1):
+        if version.singles:
+            name = "scan.svg" if number == 1 else f"scan-{number}.svg"
+            pages[name] = triangle(record, version).render(standalone=True) + "\n"
+    pages["table.md"] = table_markdown(record)
+    return write_pages(pages, folder)
+
+
+def page(record: ScanRecord, provenance: RunProvenance) -> str:
+    """Return the scan as one page that opens without a network."""
+    letter = [letters(version) for version in record.versions]
+    versions = [
+        {
+            "name": version.variant,
+            "triangle": Markup(triangle(record, version).render()) if version.singles else "",
+            "strips": [
+                {
+                    "letters": " and ".join(names[place] for place in pair.errors),
+                    "words": of_pair(record, pair),
+                    "picture": Markup(strip(record, version, pair).render()),
+                }
+                for pair in version.listed
+            ],
+        }
+        for version, names in zip(record.versions, letter, strict=True)
+    ]
+    every = tables(record)
+    return render(
+        "scan.html.j2",
+        record=record,
+        asked=record.question,
+        provenance=provenance,
+        n_trials=record.trials,
+        versions=versions,
+        tables=[(table, Markup(html(table, caption=False))) for table in every],
+    )
+
+
+def table_markdown(record: ScanRecord) -> str:
+    """Return all tables as Markdown."""
+    return "\n\n".join(map(block, tables(record))) + "\n"
