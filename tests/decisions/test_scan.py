@@ -2,13 +2,20 @@
 
 import json
 import shlex
+from pathlib import Path
 from typing import Any
 
 import pytest
 from scan_toy import Cost, Planted, names, planned, scanned
 
 from faultpath.core.errors import UserError
+from faultpath.decisions.scan.design import COSTLY_PP, FIRST_SCENES, HALVINGS, TRIALS
+from faultpath.decisions.scan.ranking import PROBED_SCENES
 from faultpath.decisions.scan.record import ScanRecord
+from faultpath.statistics.cancelling import LEVEL, MOST, REGAINED
+from faultpath.statistics.estimate import ALPHA
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def both(one: str, other: str, size: float = 1.0) -> Cost:
@@ -184,3 +191,20 @@ def test_a_system_that_says_no_size_is_asked_for_one():
 
     with pytest.raises(UserError, match=r"a declares no uncertainty.*--fault a:scale=1\.1"):
         planned(Unsized(lambda at: 0.0))
+
+
+def test_the_page_has_the_numbers_of_the_code():
+    page = " ".join((ROOT / "docs" / "scan.md").read_text().split())
+    count = {3: "three", 5: "five", 10: "ten"}
+    for words in (
+        f"**First stage**, {FIRST_SCENES} scenes",
+        f"costs more than {COSTLY_PP:g} percentage points is halved",
+        f"up to {count[HALVINGS]} times",
+        f"(p below {LEVEL:g}) go on, {count[MOST]} at most",
+        f"about {TRIALS:,} trials",
+        f"regain at least {'half' if REGAINED == 0.5 else REGAINED} of",
+        f"Holm's correction at {100 * ALPHA / 2:g} %",
+        f"Tested apart, at {100 * ALPHA:g} %",
+        f"in {count[PROBED_SCENES]} scenes",
+    ):
+        assert words in page, words

@@ -7,13 +7,15 @@ from faultpath.decisions.scan.model import ScannedPair, ScannedVersion
 from faultpath.decisions.scan.record import ScanRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.scan import named, rate
-from faultpath.report.svg import Axis, Svg, number, tick_label
+from faultpath.report.svg import Axis, Svg, number, text_width, tick_label
 
 _CELL, _LEFT, _TOP = 30.0, 24.0, 124.0
 _SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.5, "0.22"))
 """From which difference on, pp, a pair has which opacity."""
 _LEAST = 364.0
 """Width of the narrowest triangle, which its key needs."""
+_MOST = 440.0
+"""Width of the longest name."""
 
 
 def letters(version: ScannedVersion) -> dict[int, str]:
@@ -28,7 +30,10 @@ def triangle(record: ScanRecord, version: ScannedVersion) -> Svg:
     the losses of each alone on the diagonal, and the names of the errors below."""
     letter, count = letters(version), len(version.singles)
     side, names_top = count * _CELL, _TOP + count * _CELL + 26
-    width = max(_LEAST, _LEFT + side)
+    singles = {single.error: single for single in version.singles}
+    names = [f"{named(record.errors[at])}: {rate(singles[at].alone)} alone" for at in letter]
+    longest = max((text_width(name, 12) for name in names), default=0.0)
+    width = max(_LEAST, _LEFT + side, _LEFT + min(longest, _MOST))
     svg = Svg(
         width,
         names_top + 17 * count + 4,
@@ -38,7 +43,6 @@ def triangle(record: ScanRecord, version: ScannedVersion) -> Svg:
     hatch = svg.hatch("untested", "inner", 5)
     _key(svg, hatch, width)
     places, pairs = list(letter), {pair.errors: pair for pair in version.pairs}
-    singles = {single.error: single for single in version.singles}
     for row, error in enumerate(places):
         top = _TOP + row * _CELL
         svg.text(_LEFT - 8, top + 20, letter[error], "bold", "end")
@@ -51,10 +55,9 @@ def triangle(record: ScanRecord, version: ScannedVersion) -> Svg:
         left = _LEFT + row * _CELL
         svg.rect(left, top, _CELL, _CELL, "inner", tip=f"{named(record.errors[error])}: {loss} pp")
         svg.text(left + _CELL / 2, top + 19, loss, "small soft", "middle")
-    for row, error in enumerate(places):
-        text = f"{named(record.errors[error])}: {rate(singles[error].alone)} alone"
+    for row, (error, name) in enumerate(zip(places, names, strict=True)):
         svg.text(4, names_top + 14 + 17 * row, letter[error], "bold")
-        svg.text(_LEFT, names_top + 14 + 17 * row, text, room=width - _LEFT)
+        svg.text(_LEFT, names_top + 14 + 17 * row, name, room=width - _LEFT)
     return svg
 
 
