@@ -22,7 +22,7 @@ from faultpath.api.folders import (
     SCAN,
     SCAN_MADE_FROM,
 )
-from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.scan.record import ScanRecord
 from faultpath.decisions.sentences import wording

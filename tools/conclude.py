@@ -17,7 +17,7 @@ from faultpath.api.replaying import shown_first
 from faultpath.api.runs import open_run
 from faultpath.decisions.decide import decide
 from faultpath.decisions.map.lattice import UNITS
-from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.map.study import plan_map
 from faultpath.decisions.model import Condition
 from faultpath.decisions.question import Question

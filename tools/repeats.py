@@ -15,7 +15,7 @@ from blocks import OUTCOMES, REFERENCE, REPEATS, ROOT, Repeats, Run
 
 from faultpath.api.replaying import outcomes_at
 from faultpath.decisions.map.lattice import UNITS
-from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.map.study import plan_map
 from faultpath.decisions.planning import plan_audit
 from faultpath.decisions.record import DecisionRecord

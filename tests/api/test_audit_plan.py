@@ -8,6 +8,13 @@ from faultpath.core.files.plain import yaml_text
 from faultpath.decisions.planning import Audit
 from faultpath.interface import read_interface
 from faultpath.trials import Status, Variant
+from faultpath.trials.question import (
+    AuditQuestion,
+    CheckQuestion,
+    MapQuestion,
+    ScanQuestion,
+    TraceQuestion,
+)
 
 COST, LIMIT, MODEL = ("mass", "planner.cost"), ("mass", "planner.limit"), ("mass", "observer.model")
 LOG, HEAT = ("mass", "logger.file"), ("heat", "logger.file")
@@ -146,3 +153,10 @@ def test_newly_trained_models_need_trained_models_and_several_seeds(monkeypatch)
 def test_the_question_knows_what_the_system_calls_its_ends(monkeypatch):
     monkeypatch.setattr(Paper, "ends", {Status.TIMEOUT: "missed"})
     assert planned("plain", "observed", "mass:scale=2").question.ends == {"timeout": "missed"}
+
+
+def test_audits_and_maps_run_in_scenes_that_nothing_was_chosen_by() -> None:
+    """All else, in those of selection."""
+    questions = (AuditQuestion, MapQuestion, ScanQuestion, CheckQuestion, TraceQuestion)
+    libraries = [question.model_fields["library"].default for question in questions]
+    assert libraries == ["held-out", "held-out", "selection", "selection", "selection"]

@@ -7,7 +7,8 @@ from outcome_tables import question as audit
 
 from faultpath.decisions.map.decide import decided
 from faultpath.decisions.map.lattice import COARSE, UNITS, Point, lattice
-from faultpath.decisions.map.model import MapRecord, ResolvedMap
+from faultpath.decisions.map.model import ResolvedMap
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.map.surface import Differences, next_points
 
 MODULES = ("observer", "predictor")

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from faultpath.decisions.map.decide import decided
 from faultpath.decisions.map.joint import Errors, lattice_weights
 from faultpath.decisions.map.lattice import COARSE, SHOWN, UNITS, lattice, surface_weights
-from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.map.surface import Combined, Differences
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"

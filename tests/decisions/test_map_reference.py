@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from faultpath.decisions.map.lattice import UNITS
-from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.map.study import plan_map
 from faultpath.trials import Deliveries, SystemSpec, library_of, load_system
 from faultpath.trials.question import MapQuestion

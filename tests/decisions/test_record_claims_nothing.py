@@ -25,6 +25,7 @@ from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases, wording
 from faultpath.decisions.sentences.answers import answers
 from faultpath.decisions.sentences.phrases import in_short
+from faultpath.decisions.sentences.shares import ahead
 from faultpath.trials import Status, Trials
 from faultpath.trials.question import StopWhen
 
@@ -215,12 +216,13 @@ def check(made: DecisionRecord) -> None:
             assert claimed(short, who) == (effects.get(effect.condition, 0) == side)
     frequencies = [(item, CORRECT, item.condition) for item in made.break_even]
     for item, *at in (*frequencies, *((b, b.condition, SHARED) for b in made.break_even_beta)):
+        words = ahead(made.question, item, at[1] == SHARED)
         ends = {effects.get(condition, 0) for condition in at} - {0}
         for who, sign in SIDES:
-            assert not claimed(item.words, who) or sign in ends
+            assert not claimed(words, who) or sign in ends
         shown = wording.break_even(item.result)
-        part = " is ahead where " in item.words
-        assert (shown == "any") == (not item.words or part), (shown, item.words)
+        part = " is ahead where " in words
+        assert (shown == "any") == (not words or part), (shown, words)
         assert item.result.level >= 0.95 - 1e-12
     if made.question.primary not in {e.condition for e in made.effects}:
         assert "no pair of trials is left" in made.headline

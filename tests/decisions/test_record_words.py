@@ -11,6 +11,7 @@ from faultpath.decisions.model import CORRECT, SHARED
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import phrases
 from faultpath.decisions.sentences.phrases import in_short
+from faultpath.decisions.sentences.shares import ahead
 from faultpath.trials import Status, Trials
 
 LEVEL = (50, 5, 5)
@@ -87,7 +88,7 @@ def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
 def test_the_fault_frequency_is_said_where_it_is_decided(correct, fault, said):
     made = three(correct, fault, fault)
     assert [each.condition for each in made.break_even] == ["observer", SHARED]
-    assert all(re.search(said, each.words) for each in made.break_even)
+    assert all(re.search(said, ahead(made.question, each)) for each in made.break_even)
 
 
 def test_a_fault_that_never_acted_was_not_tested():

@@ -1,9 +1,10 @@
 """Pictures: well-formed, escaped, and coloured only where something is decided."""
 
 import re
+from typing import Literal
 from xml.etree import ElementTree
 
-from faultpath.decisions.model import ConditionBreakEven
+from faultpath.decisions.model import Ahead, ConditionBreakEven
 from faultpath.decisions.pairs import read_pairs
 from faultpath.decisions.record import DecisionRecord
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, panel, shared_axis
@@ -52,30 +53,34 @@ def test_only_what_is_decided_is_bold_and_filled(one_seed: ReportInput) -> None:
 
 
 def _panel(
-    record: DecisionRecord, words: str, pieces: tuple[tuple[float, float], ...], *regions: Region
+    record: DecisionRecord,
+    signs: tuple[Literal[-1, 1], ...],
+    pieces: tuple[tuple[float, float], ...],
+    *regions: Region,
 ) -> str:
     kind = "whole" if pieces == ((0.0, 1.0),) else "interval" if pieces else "empty"
     result = BreakEven(
         p_star=None, pieces=pieces, kind=kind, regions=regions, method="", estimand=""
     )
     curve = ((0.0, -10.0, -20.0, 0.0), (1.0, 10.0, 0.0, 20.0))
-    condition = ConditionBreakEven(condition="shared", result=result, curve=curve, words=words)
+    ahead = tuple(Ahead(sign=sign, where="many") for sign in signs)
+    condition = ConditionBreakEven(condition="shared", result=result, curve=curve, ahead=ahead)
     return frequency_panels(record.model_copy(update={"break_even": (condition,)}))[0][0]
 
 
 def test_the_curve_is_coloured_where_a_variant_is_decided(one_seed: ReportInput) -> None:
     record = one_seed.record
     regions = (Region(low=0.0, high=0.3, sign=-1), Region(low=0.7, high=1.0, sign=1))
-    drawn = _panel(record, "a is ahead", ((0.3, 0.7),), *regions)
+    drawn = _panel(record, (1,), ((0.3, 0.7),), *regions)
     assert drawn.count('class="curve baseline"') == drawn.count('class="curve repair"') == 1
     assert drawn.count('class="star-range"') == 1
     assert "share of episodes with the fault, %" in drawn
     assert "expected difference in success, pp" in drawn
-    silent = _panel(record, "", ((0.3, 0.7),), *regions)
+    silent = _panel(record, (), ((0.3, 0.7),), *regions)
     assert "curve baseline" not in silent
     assert "curve repair" not in silent
     assert "No frequency is significant." in silent
-    both = _panel(record, "b is ahead", ((0.0, 0.2), (0.6, 1.0)), Region(low=0.2, high=0.6, sign=1))
+    both = _panel(record, (1,), ((0.0, 0.2), (0.6, 1.0)), Region(low=0.2, high=0.6, sign=1))
     assert both.count('class="star-range"') == 2
 
 

@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from faultpath.api.folders import read_run
-from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.pairs import Pair
 from faultpath.decisions.scan.record import ScanRecord
 from faultpath.report.frame import STYLES

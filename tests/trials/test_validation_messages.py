@@ -10,7 +10,7 @@ from pydantic import PositiveFloat, TypeAdapter, ValidationError
 from faultpath.core.error_source import described
 from faultpath.core.results import Frozen
 from faultpath.core.validation_messages import Misfit, misfit_of
-from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.record import MapRecord
 from faultpath.faults import Fault, Scale
 from faultpath.trials import Deliveries
 

@@ -1,19 +1,22 @@
 """`faultpath.compare`: several finished audits side by side."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
-from faultpath.api.folders import as_text
 from faultpath.api.runs import Run, open_run
 from faultpath.core.errors import UserError
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.record import DecisionRecord
+from faultpath.decisions.scan.record import ScanRecord
 from faultpath.report.compared import Compared, differing, together
 from faultpath.report.comparison import headline, page, sentences
 from faultpath.report.frame import PAGE
 from faultpath.trials.store.atomic import check_output, write_text
+
+WORDS = ("headline", "sentences", "would_change", "commands")
+"""What results say, as far as one has it."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -60,14 +63,14 @@ class RunComparison:
         return f"<Comparison: {self.headline}>"
 
 
-def in_json(folder: str | Path, record: DecisionRecord) -> dict[str, object]:
-    """Return what `--json` prints of an audit, for `json.dumps`: its words, and its numbers."""
+def in_json(
+    folder: str | Path, record: DecisionRecord | MapRecord | ScanRecord
+) -> dict[str, object]:
+    """Return what `--json` prints of a result, for `json.dumps`: its words, and its numbers."""
     return {
         "folder": str(folder),
-        "headline": record.headline,
-        "sentences": record.sentences,
-        "would_change": record.would_change,
-        "record": json.loads(as_text(record)),
+        **{word: getattr(record, word) for word in WORDS if hasattr(record, word)},
+        "record": record.model_dump(mode="json"),
     }
 
 

@@ -4,7 +4,7 @@ from os import PathLike
 from typing import Any
 
 from faultpath.api.display import Display
-from faultpath.api.folders import MAP, MAP_MADE_FROM
+from faultpath.api.folders import MAP, MAP_MADE_FROM, as_text
 from faultpath.api.job import Job, run, with_question_signature
 from faultpath.api.runs import MapRun
 from faultpath.decisions.map.study import MapPlan, plan_map
@@ -40,5 +40,5 @@ def _map(plan: MapPlan, job: Job) -> MapRun:
     """
     points, result = job.trials(plan)
     record = plan.conclude(result.trials, result.deliveries, points)
-    write_text(job.folder / MAP, record.model_dump_json(indent=1) + "\n", job.folder)
+    write_text(job.folder / MAP, as_text(record), job.folder)
     return MapRun(job.folder, record, job.finish(result, plan.system, MAP_MADE_FROM))

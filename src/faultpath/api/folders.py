@@ -1,6 +1,5 @@
 """The folder of a finished run: its files, and whether they belong together."""
 
-import json
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from itertools import product
@@ -72,12 +71,9 @@ def read_provenance(folder: Path) -> RunProvenance:
     return parsed(read_regular(place), place, RunProvenance)
 
 
-def as_text(record: DecisionRecord) -> str:
-    """Return a record as its file holds it."""
-    data = record.model_dump(mode="json", exclude=set() if record.earlier else {"earlier"})
-    if data["question"]["judged"] is None:
-        del data["question"]["judged"]
-    return json.dumps(data, indent=2) + "\n"
+def as_text(record: BaseModel) -> str:
+    """Return a result as its file holds it."""
+    return record.model_dump_json(indent=1) + "\n"
 
 
 def parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:

@@ -20,7 +20,7 @@ from faultpath.api.folders import (
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import read_table
 from faultpath.decisions.gate import Answer, Ask, found, holds_when_shared
-from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.scan.record import ScanRecord
 from faultpath.report.html import write_report

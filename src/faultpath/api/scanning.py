@@ -4,7 +4,7 @@ from os import PathLike
 from typing import Any
 
 from faultpath.api.display import Display
-from faultpath.api.folders import SCAN, SCAN_MADE_FROM
+from faultpath.api.folders import SCAN, SCAN_MADE_FROM, as_text
 from faultpath.api.job import Job, begin, run, with_question_signature
 from faultpath.api.runs import ScanRun
 from faultpath.decisions.scan.design import ScanPlan, plan_scan, ranked_sources
@@ -44,5 +44,5 @@ def _scan(plan: ScanPlan, job: Job) -> ScanRun:
     """
     scanned, result = job.trials(plan)
     record = plan.conclude(result.trials, result.deliveries, scanned)
-    write_text(job.folder / SCAN, record.model_dump_json(indent=1) + "\n", job.folder)
+    write_text(job.folder / SCAN, as_text(record), job.folder)
     return ScanRun(job.folder, record, job.finish(result, plan.system, SCAN_MADE_FROM))

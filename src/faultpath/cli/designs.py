@@ -1,5 +1,6 @@
 """`faultpath map` and `scan`: many errors of one source, and of all."""
 
+import json
 from typing import Any
 
 import typer
@@ -13,12 +14,13 @@ from faultpath.trials.question import MapQuestion, ScanQuestion
 def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Map the success difference over the error at one module and that at another: where repair
     or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
+    from faultpath.api.comparing import in_json
     from faultpath.api.designs import map
     from faultpath.api.display import SafeConsole
 
     run = map(system, **arguments, progress=display(as_json))
     if as_json:
-        typer.echo(run.record.model_dump_json(indent=1))
+        typer.echo(json.dumps(in_json(run.folder, run.record), indent=1))
     else:
         from faultpath.report.map import tables
         from faultpath.report.terminal import conclusion
@@ -33,6 +35,7 @@ def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) ->
 def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Find which errors of a system's inputs cancel: each alone costs success, both together do
     not, so that correcting one of them alone does harm."""
+    from faultpath.api.comparing import in_json
     from faultpath.api.display import SafeConsole
     from faultpath.api.scanning import scan
     from faultpath.decisions.scan.sources import Ranking
@@ -41,18 +44,21 @@ def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     from faultpath.report.terminal import conclusion
 
     result = scan(system, **arguments, progress=display(as_json))
-    record = result if isinstance(result, Ranking) else result.record
     console = SafeConsole()
-    if as_json:
-        typer.echo(record.model_dump_json(indent=1))
-    elif isinstance(result, Ranking):
+    if isinstance(result, Ranking):
+        if as_json:
+            typer.echo(result.model_dump_json(indent=1))
+            return 0
         table = ranking_table(result)
         console.print(Parted(table))
         for note in table.notes:
             console.print(note, markup=False)
+        return 0
+    if as_json:
+        typer.echo(json.dumps(in_json(result.folder, result.record), indent=1))
     else:
         console.print(conclusion(result.record, tables(result.record)))
         for command in result.record.commands:
             console.print(f"Next: {command}", markup=False, soft_wrap=True)
         console.print(f"Report: {result.folder / 'report.html'}", markup=False, soft_wrap=True)
-    return 0 if isinstance(result, Ranking) or not result.record.failed else FOUND
+    return FOUND if result.record.failed else 0

@@ -21,12 +21,10 @@ from faultpath.decisions.model import (
 )
 from faultpath.decisions.question import Question
 from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.sentences import phrases, wording
-from faultpath.decisions.sentences.shares import BETA, FREQUENCY, Shares, shares
+from faultpath.decisions.sentences import phrases
+from faultpath.decisions.shares import between
 from faultpath.decisions.stopping import stopped
-from faultpath.statistics.breakeven import break_even, mixture_curve, only
 from faultpath.statistics.contrast import Contrast
-from faultpath.statistics.estimate import Region
 from faultpath.statistics.power import detectable
 from faultpath.trials.outcome import Status
 from faultpath.trials.pairing import mismatch_words
@@ -66,12 +64,10 @@ def decide(
         for condition in comparison.success
     }
 
-    def between(pairs: Sequence[tuple[str, str]], words: Shares) -> list[ConditionBreakEven]:
-        results = (
-            _break_even(question, comparison, family, (effects[none], effects[every]), words)
-            for none, every in pairs
-        )
-        return [result for result in results if result]
+    def even(ends: Sequence[tuple[str, str]], beta: bool) -> tuple[ConditionBreakEven, ...]:
+        pairs = ((effects[none], effects[every]) for none, every in ends)
+        results = (between(*pair, comparison, family, beta) for pair in pairs)
+        return tuple(result for result in results if result)
 
     faulted = [condition for condition in effects if condition not in (CORRECT, AS_RUN, *untested)]
     from_none = [(CORRECT, condition) for condition in faulted] if CORRECT in effects else []
@@ -90,8 +86,8 @@ def decide(
         secondary=tuple(
             secondary(condition, comparison.pairs[condition], question) for condition in effects
         ),
-        break_even=tuple(between(from_none, FREQUENCY)),
-        break_even_beta=tuple(between(from_one, BETA)),
+        break_even=even(from_none, beta=False),
+        break_even_beta=even(from_one, beta=True),
         scenes=max(effect.scenes for effect in effects.values()),
         invalid=invalid,
         scenes_needed=family.scenes_needed,
@@ -194,41 +190,3 @@ def _difference(contrast: Contrast) -> dict[str, Any]:
         "corrected_p": contrast.test.corrected_p,
         "sign": contrast.test.sign,
     }
-
-
-def _break_even(
-    question: Question,
-    comparison: ComparedTrials,
-    family: Family,
-    ends: tuple[Effect, Effect],
-    words: Shares,
-) -> ConditionBreakEven | None:
-    """Return where baseline and repair are even between the effects at two ends of a share, over
-    the scenes that both have, as a result of the condition with the fault, or of the one module."""
-    at_none, at_all = ends
-    tests = [family.effects[end.condition].test for end in ends]
-    level = 1.0 - min(test.critical_p for test in tests if test and test.critical_p is not None)
-    tested = family.measure.together(
-        comparison.success[at_none.condition], comparison.success[at_all.condition]
-    )
-    if tested is None:
-        return None
-    filled = [family.fills[end.condition] for end in ends if end.condition in family.fills]
-    # Both ends with what failed trials leave open against the repair, and for it.
-    fills = tuple(zip(*filled, strict=True)) if any(a.value != b.value for a, b in filled) else ()
-    result = break_even(*tested, level=level, fills=fills)
-    # What a table and a picture show is borne out by the effect at an end, and reaches it.
-    kept: list[Region] = []
-    for region in result.regions:
-        low = region.low > 0.0 or (at_none.leads and region.sign == at_none.sign)
-        high = region.high < 1.0 or (at_all.leads and region.sign == at_all.sign)
-        inner = region.low > 0.0 and region.high < 1.0
-        shown = wording.last(region.high) > 0 and wording.first(region.low) < 100
-        if low and high and shown and not inner:
-            kept.append(region)
-    return ConditionBreakEven(
-        condition=at_all.condition if words is FREQUENCY else at_none.condition,
-        result=only(result, kept),
-        curve=mixture_curve(*tested, level=level, fills=fills),
-        words=shares(question, result.regions, at_none, at_all, words),
-    )

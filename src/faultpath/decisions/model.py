@@ -60,6 +60,16 @@ class VariantCounts(Result):
     altered_trials: int
 
 
+class Ahead(Result):
+    """Where along a share, of faulty episodes or of common causes, a version is ahead."""
+
+    sign: Literal[-1, 1]
+    where: Literal["everywhere", "many", "few", "from", "up to"]
+    """`many` and `few`: at that end of the range, as far as is open."""
+    percent: int | None = None
+    """Whole percentage of `from` and `up to`."""
+
+
 class ConditionBreakEven(Result):
     """The shares at which neither variant is decided to be ahead, under one condition: of episodes
     with the fault, or of the module's faults that are common cause (beta)."""
@@ -69,8 +79,8 @@ class ConditionBreakEven(Result):
     curve: tuple[tuple[float, float, float, float], ...]
     """`(share, expected difference, low, high)` in fractions and percentage points. The band
     touches 0 exactly where the share is in the set of `result`."""
-    words: str
-    """Sentence part on it, without the condition; empty where no end has an effect that leads."""
+    ahead: tuple[Ahead, ...]
+    """What is said of it; empty where no end has an effect that leads."""
 
 
 class StoppedAudit(Result):
@@ -87,7 +97,7 @@ class StoppedAudit(Result):
 class AuditResult(Result):
     """The numbers that tables, pictures and the report show; written as `record.json`."""
 
-    format: Literal[4] = 4
+    format: Literal[5] = 5
     question: Question
     conditions: tuple[Condition, ...]
     cells: tuple[VariantCounts, ...]

@@ -63,8 +63,8 @@ def parse_fault(
                 fault.model_copy(update={"cause": fault.cause or parsed.cause, **update})
                 for fault in declared
             ]
-            faults += resolve(stated, interface) if part.readers else stated
-        return resolve(faults, interface)
+            faults += resolve(stated, interface)
+        return tuple(faults)
     except UserError as error:
         raise UserError(f"fault '{parsed}': {error}") from None
 

@@ -7,6 +7,7 @@ from faultpath.decisions.effects import Effect
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.phrases import in_short
+from faultpath.decisions.sentences.shares import ahead
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, shortened, text_width, tick_label
 
 _PITCH, _TOP, _NUMBERS = 48.0, 44.0, 146.0
@@ -189,8 +190,8 @@ def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[s
     panels: list[tuple[str, str]] = []
     for share in with_curve:
         title, result = titles.get(share.condition, share.condition), share.result
-        words = f"{share.words or f'No {noun} is significant'}."
-        svg = Svg(290, 248, f"{title}: expected success difference, share of {over}", words)
+        words = ahead(record.question, share, beta) or f"No {noun} is significant"
+        svg = Svg(290, 248, f"{title}: expected success difference, share of {over}", f"{words}.")
         svg.text(0, 14, title, "head", room=285)
         svg.text(0, 32, "expected difference in success, pp", "small soft")
         x, y = Axis(0.0, 100.0, 34, 280), vertical.at(208, 42)
@@ -200,8 +201,8 @@ def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[s
         lower = [(x(100 * p), y(low)) for p, _, low, _ in share.curve]
         svg.polygon([*upper, *reversed(lower)], "fan")
         sides = {1: "curve repair", -1: "curve baseline"}
-        pieces = [(low, high, "curve") for low, high in result.pieces if share.words]
-        pieces += [(r.low, r.high, sides[r.sign]) for r in result.regions if share.words]
+        pieces = [(low, high, "curve") for low, high in result.pieces if share.ahead]
+        pieces += [(r.low, r.high, sides[r.sign]) for r in result.regions if share.ahead]
         first, last = share.curve[0][1], share.curve[-1][1]
         for low, high, cls in pieces or [(0.0, 1.0, "curve")]:
             line = [(x(100 * p), y((1 - p) * first + p * last)) for p in (low, high)]

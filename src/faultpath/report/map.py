@@ -5,8 +5,9 @@ from pathlib import Path
 from markupsafe import Markup
 
 from faultpath.decisions.map.lattice import SHARED
-from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.sentences import wording
+from faultpath.decisions.sentences.maps import estimand
 from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
@@ -99,6 +100,7 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
         flips=Markup(html(turns[0])) if turns else "",
         flips_notes=turns[0].notes if turns else (),
         conditions=Markup(html(conditions)),
+        estimand=estimand(record.question),
         conditions_notes=conditions.notes,
     )
 

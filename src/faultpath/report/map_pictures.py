@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import pairwise, product
 
-from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.sentences import wording
 from faultpath.decisions.sentences.maps import at_point
 from faultpath.report.svg import (

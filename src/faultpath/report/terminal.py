@@ -6,7 +6,7 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.record import DecisionRecord
 from faultpath.decisions.scan.record import ScanRecord
 from faultpath.decisions.sentences import wording

@@ -143,7 +143,7 @@ class RepairQuestion(Request):
     seeds: Seeds = (0,)
 
 
-class Execution(Request):
+class Execution(Asked):
     """Where and how trials run."""
 
     panel: ClassVar[str] = "How it runs"

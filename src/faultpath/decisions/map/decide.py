@@ -15,7 +15,8 @@ from faultpath.decisions.map.lattice import (
     sizes,
     surface_weights,
 )
-from faultpath.decisions.map.model import Flip, MapPoint, MapRecord, MapSurface, ResolvedMap
+from faultpath.decisions.map.model import Flip, MapPoint, MapSurface, ResolvedMap
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.map.surface import (
     Combined,
     Differences,
@@ -24,7 +25,6 @@ from faultpath.decisions.map.surface import (
     simultaneous,
 )
 from faultpath.decisions.model import Invalid
-from faultpath.decisions.sentences import maps
 from faultpath.statistics.estimate import Sign
 
 
@@ -48,7 +48,7 @@ def decided(
     decided, shaded = (part.signs(z) * (invalid is None) for part in (at, surface))
     signs = dict(zip(differences.points, decided.tolist(), strict=True))
     side = 2 * UNITS // SHOWN + 1
-    record = MapRecord(
+    return MapRecord(
         question=question,
         scenes=differences.values.shape[1],
         invalid=invalid,
@@ -65,13 +65,8 @@ def decided(
         joint=joint(question, differences),
         critical=z,
         failed=failed,
-        estimand=maps.estimand(question),
-        headline="",
-        sentences=(),
         findings=tuple(findings),
     )
-    texts = {"headline": maps.headline(record), "sentences": maps.sentences(record)}
-    return record.model_copy(update=texts)
 
 
 def _points(

@@ -143,10 +143,10 @@ class JointErrors(Result, allow_inf_nan=False):
     critical: float
 
 
-class MapRecord(Result, allow_inf_nan=False):
-    """A map, decided."""
+class MapResult(Result, allow_inf_nan=False):
+    """The numbers of a map, decided; written as `map.json`."""
 
-    format: Literal[1] = 1
+    format: Literal[2] = 2
     question: ResolvedMap
     scenes: int
     """Compared: those without a void pair at any point."""
@@ -160,7 +160,4 @@ class MapRecord(Result, allow_inf_nan=False):
     """Critical value of a standard normal that holds over the whole map."""
     failed: int
     """Trials in which the program raised an error; each voids its scene at every point."""
-    estimand: str
-    headline: str
-    sentences: tuple[str, ...]
     findings: tuple[str, ...] = ()

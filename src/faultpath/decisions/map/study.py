@@ -13,7 +13,8 @@ from faultpath.decisions.analysis import Analysis, Round, Rounds
 from faultpath.decisions.compared import compared
 from faultpath.decisions.map.decide import decided
 from faultpath.decisions.map.lattice import COARSE, Point, lattice
-from faultpath.decisions.map.model import MapRecord, ResolvedMap
+from faultpath.decisions.map.model import ResolvedMap
+from faultpath.decisions.map.record import MapRecord
 from faultpath.decisions.map.surface import Differences, next_points
 from faultpath.decisions.model import CORRECT, Invalid
 from faultpath.decisions.planning import rows_of, scenes_of, two_variants

@@ -6,7 +6,7 @@ Whoever reads nothing else reads these, so what qualifies a decision is said her
 from collections.abc import Iterator
 
 from faultpath.decisions.model import CORRECT, SHARED, AuditResult, Invalid
-from faultpath.decisions.sentences import phrases
+from faultpath.decisions.sentences import phrases, shares
 from faultpath.decisions.sentences.headline import reversed_at
 from faultpath.decisions.sentences.phrases import margin, places
 from faultpath.decisions.sentences.wording import (
@@ -111,9 +111,9 @@ def _follows(record: AuditResult) -> Iterator[str]:
     if disagree and not turned:
         yield "Which is better depends on which fault occurs, and how often."
     for result in record.break_even if disagree else ():
-        if result.condition == record.question.primary and result.words:
-            place = where(result.condition)
-            yield f"Depending on how often the fault occurs, {place}: {result.words}."
+        if result.condition == record.question.primary and result.ahead:
+            place, words = where(result.condition), shares.ahead(record.question, result)
+            yield f"Depending on how often the fault occurs, {place}: {words}."
 
 
 def _unknown(record: AuditResult) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from faultpath.decisions.map.lattice import SHARED
-from faultpath.decisions.map.model import Flip, MapPoint, MapRecord, ResolvedMap
+from faultpath.decisions.map.model import Flip, MapPoint, MapResult, ResolvedMap
 from faultpath.decisions.sentences.phrases import NO_RESULT
 from faultpath.decisions.sentences.wording import MINUS, plain, series, signed
 from faultpath.statistics.contrast import MIN_SCENES
@@ -14,7 +14,7 @@ def estimand(question: ResolvedMap) -> str:
     return "new scenes like these" + (", for these trained models" if question.trained else "")
 
 
-def headline(record: MapRecord) -> str:
+def headline(record: MapResult) -> str:
     """Return at how many of the pairs of errors that were run who is ahead, or which of these show
     that sharing the error reverses the ranking."""
     question, run = record.question, len(record.points)
@@ -38,7 +38,7 @@ def headline(record: MapRecord) -> str:
     return f"{', '.join([text, *others])}; elsewhere neither is significantly ahead."
 
 
-def sentences(record: MapRecord) -> tuple[str, ...]:
+def sentences(record: MapResult) -> tuple[str, ...]:
     """Return what is significant and what it rests on, sentence by sentence."""
     question, run = record.question, len(record.points)
     if record.invalid:
@@ -47,7 +47,8 @@ def sentences(record: MapRecord) -> tuple[str, ...]:
         return (_distribution(record),)
     ahead = {sign: sum(point.sign == sign for point in record.points) for sign in (-1, 1)}
     return (
-        f"What is significant holds for {record.estimand}, at the pairs of errors that were run.",
+        f"What is significant holds for {estimand(question)}, at the pairs of errors that were "
+        "run.",
         f"Of {run} pairs of errors run, {question.baseline} is significantly ahead at {ahead[-1]} "
         f"and {question.repair} at {ahead[1]}; at {run - ahead[-1] - ahead[1]} neither.",
         *_reversals(record),
@@ -57,7 +58,7 @@ def sentences(record: MapRecord) -> tuple[str, ...]:
     )
 
 
-def _expected(record: MapRecord) -> str:
+def _expected(record: MapResult) -> str:
     """Say what the interpolated map averages to, from which nothing is concluded."""
     correlated = {0.0: "with independent errors", 1.0: "with fully correlated ones"}
     texts: list[str] = []
@@ -72,7 +73,7 @@ def _expected(record: MapRecord) -> str:
     )
 
 
-def _distribution(record: MapRecord) -> str:
+def _distribution(record: MapResult) -> str:
     question = record.question
     text = "Errors are taken to be Gaussian"
     for module, mean, spread in zip(
@@ -90,7 +91,7 @@ def _distribution(record: MapRecord) -> str:
     return text + (f" Without error: {', '.join(question.others)}." if question.others else "")
 
 
-def _turned(record: MapRecord) -> list[tuple[str, int, list[float]]]:
+def _turned(record: MapResult) -> list[tuple[str, int, list[float]]]:
     """Return the module, the side ahead with it alone wrong, and the sizes at which sharing the
     error reverses that."""
     of = {point.errors: point.sign for point in record.points}
@@ -108,7 +109,7 @@ def _sizes(question: ResolvedMap, values: Sequence[float]) -> str:
     return series([question.said(size) for size in values])
 
 
-def _reversals(record: MapRecord) -> Iterator[str]:
+def _reversals(record: MapResult) -> Iterator[str]:
     question = record.question
     for module, sign, values in _turned(record):
         yield (
