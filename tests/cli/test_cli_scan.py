@@ -66,8 +66,8 @@ def test_the_toys_shared_gain_cancels_and_the_repair_has_no_such_pair(run: Path)
 def test_the_page_shows_every_listed_pair_and_nothing_moves_sideways(run: Path) -> None:
     record = _record(run)
     page = (run / "report.html").read_text()
-    texts = " ".join(_Texts(page).texts)
-    assert record.headline in page
+    texts = " ".join(" ".join(_Texts(page).texts).split())
+    assert record.headline.split(", ")[1] in texts
     for version in record.versions:
         for pair in version.listed:
             assert f"{pair.both:.0f} % with both, {pair.none:.0f} % with neither" in texts

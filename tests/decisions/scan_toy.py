@@ -5,6 +5,7 @@ errors cost together. `a`, `b` and `c` have one reader each, `pair` two, `three`
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from faultpath.decisions.scan.design import Scanned, ScanPlan, plan_scan
@@ -21,7 +22,7 @@ from faultpath.trials import (
     Trials,
     Variant,
 )
-from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.outcome import Outcome, Status, failed_outcome
 from faultpath.trials.question import ScanQuestion, ask
 from faultpath.trials.trials import Trial
 
@@ -41,6 +42,9 @@ class Planted(System):
 
     def __init__(self, cost: Cost, sources: Sequence[str] = ("a", "b"), scenes: int = 400) -> None:
         self.cost, self.sources, self.scenes = cost, sources, scenes
+        self.failing: set[tuple[str, str]] = set()
+        self.unlike: set[tuple[str, str]] = set()
+        """Condition and scene of trials that fail, and of those that begin elsewhere."""
 
     @property
     def interface(self) -> Interface:
@@ -84,6 +88,10 @@ def trials_of(system: Planted, study: Study) -> Trials:
         for scene in row.scenes:
             status = Status.SUCCESS if difficulty(scene) >= cost else Status.TIMEOUT
             outcome = Outcome(scene, status, 1.0, scene, scene, "none")
+            if (row.condition, scene) in system.failing:
+                outcome = failed_outcome(scene, "no air")
+            elif (row.condition, scene) in system.unlike:
+                outcome = replace(outcome, initial_hash="another")
             trials.append(Trial(row.variant, row.condition, row.seed, int(scene[1:]), "", outcome))
     return Trials.of(trials)
 

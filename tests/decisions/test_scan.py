@@ -149,6 +149,32 @@ def test_a_repair_is_scanned_with_the_same_errors_and_tested_apart():
     assert record.headline.endswith("In deaf, no pair of errors is shown to cancel.")
 
 
+def test_seeds_count_as_one_scene_and_failed_trials_are_left_out():
+    system = Planted(both("one.a", "two.b"))
+    pair = "a:offset=-0.4@one & b:offset=0.4@two"
+    system.failing = {(pair, "s0060"), ("correct", "s0001")}
+    record, scan, _ = scanned(system, seeds=(0, 1))
+    assert len(listed(record)) == 2
+    assert [of.scenes for of in record.versions[0].listed] == [
+        len(scan.second) - 1,
+        len(scan.second),
+    ]
+    assert record.failed == 4
+    assert [text for text in record.sentences if text.startswith("4 trials failed")]
+    system.failing = {(pair, f"s{i:04d}") for i in range(400)}
+    with pytest.raises(UserError, match="is left, because all failed"):
+        scanned(system)
+
+
+def test_trials_that_are_no_pairs_give_no_result():
+    system = Planted(both("one.a", "two.b"))
+    system.unlike = {("a:offset=-0.4@one & b:offset=0.4@two", "s0060")}
+    record, *_ = scanned(system)
+    assert (record.invalid, listed(record), record.sentences) == ("unpaired", [], ())
+    assert "s0060" in record.findings[0]
+    assert record.commands == ()
+
+
 def test_at_most_ten_errors_go_on_and_the_worst_first():
     def cost(at: Any) -> float:
         return sum(0.05 * abs(size) * len(reader) for reader, size in at.items())

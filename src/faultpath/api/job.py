@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from faultpath.api.display import Display, Show, display
-from faultpath.api.runs import FinishedRun
+from faultpath.api.runs import MapRun, Run, ScanRun
 from faultpath.api.systems import Chosen, choose, executor_of
 from faultpath.core.errors import UserError
 from faultpath.decisions.analysis import Analysis, Items
@@ -30,7 +30,7 @@ _Call = TypeVar("_Call", bound=Callable[..., Any])
 _Asked = TypeVar("_Asked", bound=Request)
 _Request = TypeVar("_Request", bound=Running | ScanQuestion)
 _Plan = TypeVar("_Plan", bound=Analysis[Any])
-_Finished = TypeVar("_Finished", bound=FinishedRun)
+_Finished = TypeVar("_Finished", bound=Run | MapRun | ScanRun)
 
 _ERRORS_SHOWN = 5
 _LONGEST_NAME = 180

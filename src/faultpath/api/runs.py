@@ -51,10 +51,6 @@ class FinishedRun:
         """Return kind, folder and headline."""
         return f"<{type(self).__name__} in {self.folder}: {self.headline}>"
 
-    def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
-        """Write its pages into a folder, by default that of the run, and return their paths."""
-        raise NotImplementedError
-
 
 class Run(FinishedRun):
     """A finished audit: its result, from which trials, and where its files are.
