@@ -1,13 +1,13 @@
 """A fault of several sizes: an audit each."""
 
 import pytest
-from toy_audits import ARMS, TOY
+from toy_audits import TOY, VERSIONS
 
 import faultpath
 from faultpath.core.errors import UserError
 from faultpath.faults import FaultText
 
-ASKED = {**ARMS, "scenes": 4, "workers": 0, "progress": False, "signals": False}
+ASKED = {**VERSIONS, "scenes": 4, "workers": 0, "progress": False, "signals": False}
 
 
 @pytest.mark.parametrize(

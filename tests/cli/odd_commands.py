@@ -33,8 +33,8 @@ from judged_files import inspect_log, lerobot, lm_eval
 Case = Callable[[Path, Path, Random], list[object]]
 """Takes the bases, the folder and what is drawn; returns the line of a command."""
 
-ARMS = ["--baseline", "calibrated", "--repair", "blind", "--library", "carts"]
-RUN = [TOY, *ARMS, "--workers", 0]
+VERSIONS = ["--baseline", "calibrated", "--repair", "blind", "--library", "carts"]
+RUN = [TOY, *VERSIONS, "--workers", 0]
 JUDGE = ["--baseline", "old", "--repair", "new", "--out", "judged"]
 WON = {"old": [n % 3 > 0 for n in range(8)], "new": [n % 4 > 0 for n in range(8)]}
 ROWS: list[dict[str, Any]] = [

@@ -24,13 +24,13 @@ JUNK = (
     *("a=b=c", "@", "a:b", ":", "text.txt", "folder", "loop", "nowhere/x", "/dev/null", "0,٣"),
     *("a,,b", "a,a"),
 )
-ARMS = ["--baseline", "calibrated", "--repair", "blind", "--library", "carts", "--scenes", "1"]
+VERSIONS = ["--baseline", "calibrated", "--repair", "blind", "--library", "carts", "--scenes", "1"]
 RIGHT = {
-    "audit": [TOY, *ARMS, "--fault", "gain:scale=0.6", "--workers", "0", "--no-signals"],
+    "audit": [TOY, *VERSIONS, "--fault", "gain:scale=0.6", "--workers", "0", "--no-signals"],
     "check": [TOY, "--library", "carts", "--scenes", "1", "--workers", "0"],
     "init": ["my_rover"],
     "judge": ["results.csv", "--baseline", "old", "--repair", "new"],
-    "map": [TOY, *ARMS, "--fault", "gain", "--against", "controller", "--workers", "0"],
+    "map": [TOY, *VERSIONS, "--fault", "gain", "--against", "controller", "--workers", "0"],
     "scan": [TOY, "--variant", "calibrated", "--scenes", "1", "--workers", "0"],
     "replay": ["folder"],
     "report": ["folder"],

@@ -41,16 +41,16 @@ def test_a_path_that_names_nothing_is_refused(option: tuple[str, ...], tmp_path:
 
 REFERENCE = ROOT / "docs" / "reference"
 L3 = REFERENCE / "quadrotor-L3"
-ARMS = ["--baseline", "calibrated", "--repair", "blind", "--library", "carts", "--scenes", "2"]
+VERSIONS = ["--baseline", "calibrated", "--repair", "blind", "--library", "carts", "--scenes", "2"]
 FAULT = ["--fault", "gain:scale=0.6"]
 COMMANDS = {
-    "audit": ["audit", TOY, *ARMS, *FAULT, "--workers", 0],
+    "audit": ["audit", TOY, *VERSIONS, *FAULT, "--workers", 0],
     "map": f"map {TOY} --fault gain --against controller,observer --up-to 0.4 --points 25".split(),
     "reproduce": ["reproduce", "table-1", "--workers", 0],
     "train": ["train", "quadrotor", "wm-a"],
     "judge": ["judge", "all.csv", "--baseline", "old", "--repair", "new"],
 }
-COMMANDS["map"] += [*ARMS, "--workers", 0]
+COMMANDS["map"] += [*VERSIONS, "--workers", 0]
 COMMANDS["scan"] = f"scan {TOY} --variant calibrated --fault gain:scale=1.2 --workers 0".split()
 OUTPUTS = {
     "report --out": ["report", REFERENCE / "toy", REFERENCE / "dock", "--out"],

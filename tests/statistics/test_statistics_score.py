@@ -17,7 +17,7 @@ from faultpath.statistics.score import SceneValues, reach, rejects
 Z = float(norm.ppf(0.975))
 N = 30
 RESAMPLES = Resamples.draw("score", N, n_resamples=10)
-ARMS = hnp.arrays(np.bool_, st.tuples(st.just(2), st.just(N), st.integers(1, 4)))
+VERSIONS = hnp.arrays(np.bool_, st.tuples(st.just(2), st.just(N), st.integers(1, 4)))
 laws = settings(max_examples=60, deadline=None)
 
 
@@ -72,7 +72,7 @@ def test_sums_of_sizes_that_round_do_not_break_the_mirror():
 
 
 @laws
-@given(ARMS, st.sampled_from([0.5, 0.95, 0.999]))
+@given(VERSIONS, st.sampled_from([0.5, 0.95, 0.999]))
 def test_the_interval_holds_exactly_the_means_that_the_test_does_not_reject(variants, level):
     values = (variants[0].astype(float) - variants[1]).mean(axis=1)
     scenes = SceneValues.paired(values, 1.0)

@@ -44,7 +44,7 @@ def state_errors(
 
     An error is the difference between the filter's estimate and the one that the same filter would
     have made at that step of the same flight without faults: its usual errors are not part of it. A
-    scene's record ends with its flight. Deliver it with the fault `state:recorded=FILE@CONSUMER`.
+    scene's record ends with its flight. Deliver it with the fault `state:recorded=FILE@READER`.
 
     Raises `UserError` for a variant whose state no filter of ours estimates.
     """

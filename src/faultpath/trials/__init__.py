@@ -1,4 +1,4 @@
-"""Arms over identical scenes: systems, studies, outcomes and their pairing.
+"""Treatments over identical scenes: systems, studies, outcomes and their pairing.
 
 The names of `faultpath.trials.public` load when one is first used: a question needs none of them.
 """

@@ -1,4 +1,4 @@
-"""Arms over identical scenes, and the contrasts between them."""
+"""Treatments over identical scenes: what a study runs."""
 
 import hashlib
 import json

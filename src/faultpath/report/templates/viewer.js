@@ -25,7 +25,7 @@ for (const button of document.querySelectorAll("#why-play")) {
 
 // Every trial again: a scene on one clock, a column a condition; scene, condition and time are in the address.
 if (document.getElementById("viewer-data")) {
-  const ARMS = ["baseline", "repair"], SIGNS = { success: "✓", crash: "✕" };
+  const VERSIONS = ["baseline", "repair"], SIGNS = { success: "✓", crash: "✕" };
   const get = (id) => document.getElementById(`viewer-${id}`);
   const make = (tag, text = "", attributes = {}) => {
     const node = document.createElement(tag);
@@ -62,7 +62,7 @@ if (document.getElementById("viewer-data")) {
     const several = new Set(data.scenes.map((s) => s.seed)).size > 1;
     const state = { scene: data.picked[0] ?? 0, condition: data.condition, step: 0, plot: data.plot, playing: 0, last: 1, box: null, range: null };
     const current = () => data.scenes[state.scene];
-    const trials = (pair) => ARMS.filter((variant) => pair[variant]).map((variant) => ({ variant, ...pair[variant] }));
+    const trials = (pair) => VERSIONS.filter((variant) => pair[variant]).map((variant) => ({ variant, ...pair[variant] }));
     const track = ({ track: at }) => (at === null ? [] : series[at].map((x, i) => [x / 100, series[at + 1][i] / 100]));
     // What a system renders: at each step a line through points, broken where the pen is lifted.
     const drawn = ({ drawn: at }, step) => {

@@ -84,7 +84,7 @@ def run_study(
     """Run every treatment of a study over its scenes, keeping what `folder` already holds.
 
     Args:
-        study: Arms and scenes.
+        study: Treatments and scenes.
         folder: Run folder.
         workers: Worker processes; 0 runs in this one.
         progress: Called after each block and about twice a second.
