@@ -183,17 +183,6 @@ class WindowQuantiles:
         seen, drawn = self._quantiles(by_scene_and_seed(values), q)
         return self._effect(seen, drawn, unit, f"quantile {q:g} over windows")
 
-    def log_ratio(self, first: Numbers, second: Numbers, q: float) -> Contrast:
-        """Return the natural logarithm of the ratio of two quantiles, which must be positive.
-
-        Without a difference it is 0, as for other contrasts. Over seeds it is the mean logarithm.
-        """
-        one, two = (self._quantiles(array, q) for array in paired(first, second))
-        if not all((part > 0.0).all() for part in (*one, *two)):
-            raise ValueError("a ratio needs quantiles above 0 in every resample")
-        seen, drawn = (np.log(a) - np.log(b) for a, b in zip(one, two, strict=True))
-        return self._effect(seen, drawn, "log", f"log ratio of quantiles {q:g} over windows")
-
     def _quantiles(self, values: Floats, q: float) -> tuple[Floats, Floats]:
         """Return those of the scenes as they are [seeds], and the resampled [resamples, seeds]."""
         if not 0.0 < q < 1.0:
