@@ -60,7 +60,7 @@ def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None
     assert "Other tools ran the trials" in page
     assert "Only what a tap delivers" not in page
     assert str(results) in page
-    assert "judged" not in json.loads((tmp_path / "run" / "record.json").read_text())["question"]
+    assert json.loads((tmp_path / "run" / "record.json").read_text())["question"]["judged"] is None
 
 
 KINDS: dict[str, tuple[Callable[[Path, str, Any], str], str, dict[str, Any]]] = {

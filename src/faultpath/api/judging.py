@@ -9,6 +9,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from faultpath.api.audit import concluded
 from faultpath.api.display import Display, display
 from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text
@@ -112,8 +114,17 @@ def _system(question: Question) -> SystemShown:
 def _stored(folder: Path, laid: LaidOut, system: SystemShown) -> RunResult:
     """Write the trials and what else pages are made from."""
     question, trials = laid.question, laid.trials
-    rows = dict.fromkeys((t.variant, t.condition, t.seed) for t in trials)
-    taps = tuple(RowDeliveries(variant=v, condition=p, seed=s, taps=()) for v, p, s in rows)
+    kinds, first = np.unique(trials.places[:, :3], axis=0, return_index=True)
+    rows: list[list[int]] = kinds[np.argsort(first)].tolist()
+    taps = tuple(
+        RowDeliveries(
+            variant=trials.variants[variant],
+            condition=trials.conditions[condition],
+            seed=trials.seeds[seed],
+            taps=(),
+        )
+        for variant, condition, seed in rows
+    )
     deliveries = Deliveries(rows=taps, findings=laid.findings)
     outcomes = encode_outcomes(trials)
     write_file(folder / OUTCOMES, outcomes, folder)

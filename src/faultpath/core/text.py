@@ -21,7 +21,8 @@ _NUMPY = re.compile(
 def has_control_characters(text: str) -> bool:
     """Return whether text holds what no name needs: control characters, line separators, or lone
     surrogates, which are no text at all."""
-    return any(unicodedata.category(c) in ("Cc", "Cs", "Zl", "Zp") for c in text)
+    hidden = ("Cc", "Cs", "Zl", "Zp")
+    return not text.isprintable() and any(unicodedata.category(c) in hidden for c in text)
 
 
 def printable(text: str) -> str:

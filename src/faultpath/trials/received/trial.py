@@ -12,6 +12,7 @@ from faultpath.trials.declared import check_name, shown
 from faultpath.trials.outcome import Status
 from faultpath.trials.received.question import JudgeQuestion
 
+_ENDS = {status.value: status for status in Status}
 _TRUTH = {"true": True, "yes": True, "false": False, "no": False}
 NO_OUTCOME = "the results give no outcome"
 
@@ -130,8 +131,8 @@ def _status(cell: object, where: str, least: float | None) -> Status:
     if word is None or word == "" or word != word or word == "nan":
         return Status.FAILED
     if isinstance(word, str):
-        if word in set(Status):
-            return Status(word)
+        if word in _ENDS:
+            return _ENDS[word]
         word = _TRUTH.get(word, word)
     try:
         score = number_of(word)
