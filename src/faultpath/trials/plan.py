@@ -2,11 +2,14 @@
 
 import hashlib
 import json
+from collections.abc import Iterable
 
 from pydantic import Field
 
+from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.faults import Fault
+from faultpath.trials.declared import Library, SceneRef
 
 _OBJECT = " object"
 
@@ -78,3 +81,39 @@ class Study(Frozen):
         for row in self.rows:
             parts.setdefault(row.scenes, {})[row.treatment.key()] = row.treatment
         return {scenes: tuple(treatments.values()) for scenes, treatments in parts.items()}
+
+
+def selected(study: Study, library: Library) -> tuple[SceneRef, ...]:
+    """Return the scenes of a study by index; `UserError` for an unknown, repeated or absent one."""
+    known = {scene.id: scene for scene in library.scenes}
+    unknown = [scene for scene in study.scenes if scene not in known]
+    if unknown:
+        raise UserError(
+            f"library {library.name!r} has no scene {unknown[0]!r}: choose from its "
+            f"{len(known)} scenes, the first of which is {next(iter(known), 'none')!r}"
+        )
+    if not study.scenes:
+        raise UserError(f"study {study.name!r} selects no scene: choose at least one")
+    if len(set(study.scenes)) < len(study.scenes):
+        twice = next(s for s in study.scenes if study.scenes.count(s) > 1)
+        raise UserError(f"study {study.name!r} selects scene {twice!r} twice: select it once")
+    return tuple(sorted((known[scene] for scene in study.scenes), key=lambda scene: scene.index))
+
+
+def check_rows(rows: Iterable[Row], variants: Iterable[str]) -> None:
+    """Raise `UserError` for a row without a known variant, or for two rows at one address."""
+    known = tuple(variants)
+    addresses: set[tuple[str, str, int, tuple[str, ...]]] = set()
+    for row in rows:
+        if row.treatment.variant not in known:
+            raise UserError(
+                f"the system has no variant {row.treatment.variant!r}: choose from "
+                f"{', '.join(known)}"
+            )
+        address = (row.variant, row.condition, row.seed, row.scenes)
+        if address in addresses:
+            raise UserError(
+                f"two rows of the study are both called variant {row.variant!r}, "
+                f"condition {row.condition!r}, seed {row.seed}: give them different names"
+            )
+        addresses.add(address)

@@ -9,10 +9,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.errors import UserError
-from faultpath.trials.declared import Library, SceneRef
+from faultpath.trials.declared import SceneRef
 from faultpath.trials.outcome import Outcome, Status
-from faultpath.trials.plan import Row, Study
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
@@ -203,50 +201,3 @@ class Trials:
         if variant not in self.variants or condition not in self.conditions:
             return np.full((len(self.seeds), len(self.scenes)), -1, np.int64)
         return self.index[self.variants.index(variant), self.conditions.index(condition)]
-
-
-def selected(study: Study, library: Library) -> tuple[SceneRef, ...]:
-    """Return the scenes of a study by index; `UserError` for an unknown, repeated or absent one."""
-    known = {scene.id: scene for scene in library.scenes}
-    unknown = [scene for scene in study.scenes if scene not in known]
-    if unknown:
-        raise UserError(
-            f"library {library.name!r} has no scene {unknown[0]!r}: choose from its "
-            f"{len(known)} scenes, the first of which is {next(iter(known), 'none')!r}"
-        )
-    if not study.scenes:
-        raise UserError(f"study {study.name!r} selects no scene: choose at least one")
-    if len(set(study.scenes)) < len(study.scenes):
-        twice = next(s for s in study.scenes if study.scenes.count(s) > 1)
-        raise UserError(f"study {study.name!r} selects scene {twice!r} twice: select it once")
-    return tuple(sorted((known[scene] for scene in study.scenes), key=lambda scene: scene.index))
-
-
-def check_rows(rows: Iterable[Row], variants: Iterable[str]) -> None:
-    """Raise `UserError` for a row without a known variant, or for two rows at one address."""
-    known = tuple(variants)
-    addresses: set[tuple[str, str, int, tuple[str, ...]]] = set()
-    for row in rows:
-        if row.treatment.variant not in known:
-            raise UserError(
-                f"the system has no variant {row.treatment.variant!r}: choose from "
-                f"{', '.join(known)}"
-            )
-        address = (row.variant, row.condition, row.seed, row.scenes)
-        if address in addresses:
-            raise UserError(
-                f"two rows of the study are both called variant {row.variant!r}, path "
-                f"{row.condition!r}, seed {row.seed}: give them different names"
-            )
-        addresses.add(address)
-
-
-def assemble(study: Study, library: Library, outcomes: Mapping[tuple[str, str], Outcome]) -> Trials:
-    """Lay the outcomes, by treatment key and scene, out in the order of the study's rows."""
-    scenes, trials = selected(study, library), list[Trial]()
-    for row in study.rows:
-        where, key = (row.variant, row.condition, row.seed), row.treatment.key()
-        part = frozenset(row.scenes or study.scenes)
-        here = (scene for scene in scenes if scene.id in part)
-        trials += [Trial(*where, s.index, s.topology, outcomes[key, s.id]) for s in here]
-    return Trials.of(trials)

@@ -18,13 +18,13 @@ from faultpath.trials.execution.recheck import Rechecks
 from faultpath.trials.execution.repeating import repeat
 from faultpath.trials.execution.schedule import Task, TaskQueue, Unit, plan
 from faultpath.trials.execution.state import RunState, Stop
-from faultpath.trials.plan import Study, Treatment
+from faultpath.trials.plan import Study, Treatment, check_rows, selected
 from faultpath.trials.provenance import Recheck
 from faultpath.trials.registry import load_system
 from faultpath.trials.store.folder import RunFolder
 from faultpath.trials.store.manifest import Manifest
 from faultpath.trials.system import System
-from faultpath.trials.trials import Trials, check_rows, selected
+from faultpath.trials.trials import Trials
 from faultpath.trials.work.executor import Executor, Progress
 from faultpath.trials.work.processes import local
 

@@ -2,7 +2,7 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from faultpath.core.errors import UserError
@@ -13,9 +13,9 @@ from faultpath.trials.declared import Library
 from faultpath.trials.deliveries import TreatmentPart
 from faultpath.trials.execution.schedule import Task, Unit
 from faultpath.trials.outcome import Outcome, failed_outcome
-from faultpath.trials.plan import Study
+from faultpath.trials.plan import Study, selected
 from faultpath.trials.store.folder import RunFolder
-from faultpath.trials.trials import Trials, assemble
+from faultpath.trials.trials import Trial, Trials
 from faultpath.trials.work.executor import Progress
 
 FEW = 5
@@ -196,7 +196,7 @@ class RunState:
         if self._stop:
             scenes = study.scenes[: self._looks * study.look]
             study = study.model_copy(update={"scenes": scenes})
-        return assemble(study, self._library, self.outcomes)
+        return _assembled(study, self._library, self.outcomes)
 
     @property
     def units(self) -> tuple[Unit, ...]:
@@ -217,3 +217,16 @@ class RunState:
             left = (self._trials - self._done) * (time.monotonic() - self._began) / self._ended
         count = f"{self._done_in_rows} of {self._in_rows} trials"
         return Progress(self._done, self._trials, count, left)
+
+
+def _assembled(
+    study: Study, library: Library, outcomes: Mapping[tuple[str, str], Outcome]
+) -> Trials:
+    """Return the outcomes, by treatment key and scene, in the order of the study's rows."""
+    scenes, trials = selected(study, library), list[Trial]()
+    for row in study.rows:
+        where, key = (row.variant, row.condition, row.seed), row.treatment.key()
+        part = frozenset(row.scenes or study.scenes)
+        here = (scene for scene in scenes if scene.id in part)
+        trials += [Trial(*where, s.index, s.topology, outcomes[key, s.id]) for s in here]
+    return Trials.of(trials)
