@@ -22,7 +22,7 @@ from faultpath.trials.received.trial import NO_OUTCOME, Received
 from faultpath.trials.store.tables import FIXED
 
 _ONE = "one module"
-"""The condition of a condition that is called isolated, and says no module."""
+"""Name of a condition that results call isolated without naming a module."""
 _FIRST = {CORRECT: 0, SHARED: 2}
 
 
@@ -87,7 +87,7 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
 
 
 def _condition_names(conditions: Collection[str], question: JudgeQuestion) -> dict[str, str]:
-    """Return the condition of each condition; `UserError` without one that is nominal."""
+    """Return what each condition is called here; `UserError` without one that is nominal."""
     for name in filter(None, (question.nominal, question.shared)):
         if name not in conditions:
             raise UserError(

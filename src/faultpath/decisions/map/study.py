@@ -39,7 +39,7 @@ _LEAST, _LARGEST = 1e-6, 1e12
 _MOST_POINTS = 10_000
 """A hundred errors of each module."""
 _BISECTING = 18
-"""Points that are typically added to bisect the conditions of the fault."""
+"""Points that are typically added to bisect where the ranking turns."""
 
 
 @dataclass(frozen=True)
