@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pyarrow.parquet as parquet
 
+from faultpath.decisions.map.record import MapRecord
+
 HERE = Path(__file__).parent / "map-quadrotor"
 THERE = Path(__file__).parents[2] / "docs" / "reference" / "map-quadrotor"
 
@@ -39,11 +41,11 @@ print("| processor | trials | gru ahead | gru+dcc ahead | neither | headline |")
 print("| :-- | --: | --: | --: | --: | :-- |")
 signs = []
 for folder, flown in ((HERE, before), (THERE, now)):
-    record = read(folder, "map.json")
+    record = MapRecord.model_validate(read(folder, "map.json"))
     processor = read(folder, "provenance.json")["processor"].replace("(R)", "")
-    signs.append({tuple(point["errors"]): point["sign"] for point in record["points"]})
+    signs.append({point.errors: point.sign for point in record.points})
     counts = [str(list(signs[-1].values()).count(sign)) for sign in (-1, 1, 0)]
-    print("|", " | ".join([processor, f"{len(flown):,}", *counts, record["headline"]]), "|")
+    print("|", " | ".join([processor, f"{len(flown):,}", *counts, record.headline]), "|")
 
 shared = signs[0].keys() & signs[1].keys()
 alike = sum(signs[0][at] == signs[1][at] for at in shared)

@@ -87,7 +87,9 @@ def trials_of(system: Planted, study: Study) -> Trials:
         cost = system.cost(at if row.variant == "whole" else {})
         for scene in row.scenes:
             status = Status.SUCCESS if difficulty(scene) >= cost else Status.TIMEOUT
-            outcome = Outcome(scene, status, 1.0, scene, scene, "none")
+            acted = int(bool(at) and row.variant == "whole")
+            hashes = (scene, scene, "none")
+            outcome = Outcome(scene, status, 1.0, *hashes, faulted_steps=acted, altered_steps=acted)
             if (row.condition, scene) in system.failing:
                 outcome = failed_outcome(scene, "no air")
             elif (row.condition, scene) in system.unlike:

@@ -125,6 +125,26 @@ def test_the_order_of_the_sources_decides_nothing():
     assert results[0] == results[1]
 
 
+def test_a_size_stays_where_half_of_it_seems_to_cost_nothing():
+    """The errors cost 60 points together or not at all: half of one would hide the pair."""
+
+    def cost(at: Any) -> float:
+        apart = abs(at.get("one.a", 0.0) + at.get("two.b", 0.0))
+        return 0.6 * (apart > 0.3)
+
+    record, scan, _ = scanned(Planted(cost, ("a", "b")))
+    assert {error.halvings for error in scan.tried} == {0, 1}
+    assert {error.halvings for error in record.errors} == {0}
+    assert [of for _, of in listed(record)] == [{"a-one", "b+two"}, {"a+one", "b-two"}]
+
+
+def test_an_error_that_no_module_gets_is_not_called_harmless():
+    record, *_ = scanned(Planted(both("one.a", "two.b"), ("a", "b")), repair="deaf")
+    (idle,) = (text for text in record.sentences if text.startswith("In deaf: No reading was"))
+    assert "a at one (−0.4 m)" in idle
+    assert not any(text.startswith("In whole: No reading") for text in record.sentences)
+
+
 def test_a_costly_size_is_halved_at_all_readers_of_its_source():
     def cost(at: Any) -> float:
         return min(1.0, 2.0 * abs(at.get("one.pair", 0.0) - at.get("two.pair", 0.0)))
@@ -234,3 +254,10 @@ def test_the_page_has_the_numbers_of_the_code():
         f"in {count[PROBED_SCENES]} scenes",
     ):
         assert words in page, words
+
+
+def test_errors_that_cannot_act_together_are_no_scan():
+    with pytest.raises(UserError, match="a has one reader, so no two errors can act together"):
+        planned(Planted(lambda at: 0.0, ("a",)))
+    with pytest.raises(UserError, match="name one behind '@'"):
+        planned(Planted(lambda at: 0.0, ("a", "pair")), fault=("pair:offset=0.4@one+two",))

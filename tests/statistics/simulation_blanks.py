@@ -62,12 +62,12 @@ def judged(
     asked = JudgeQuestion.model_validate({"baseline": "old", "repair": "new", "cluster": cluster})
     laid = pair_results(rows, asked)
     # What decides nothing here takes most of the time: what could have been detected, and curves.
-    unread: dict[str, Any] = {"detectable": None, "mixture_curve": ()}
+    unread: dict[str, Any] = {"decide.detectable": None, "shares.mixture_curve": ()}
     if not shares:
-        unread["break_even"] = _NOT_ASKED
+        unread["shares.break_even"] = _NOT_ASKED
     with ExitStack() as stack:
         for name, value in unread.items():
-            stack.enter_context(patch(f"faultpath.decisions.decide.{name}", return_value=value))
+            stack.enter_context(patch(f"faultpath.decisions.{name}", return_value=value))
         return decide(laid.question, laid.conditions, laid.trials, laid.findings)
 
 

@@ -44,6 +44,8 @@ def drawn(seed, errors=5, seeds=1):
         (20, 24, 36, False, "cancel", None, ("hurts", "hurts")),
         (20, 24, 35, False, None, None, ("hurts", "hurts")),
         (20, 24, 20, False, None, None, ("hurts", "hurts")),
+        (20, 40, 39, False, None, None, ("hurts", "hurts")),
+        (20, 40, 40, False, "cancel", None, ("hurts", "hurts")),
         (20, 52, 50, False, None, None, ("hurts", None)),
         (20, 52, 50, True, "covers", 1, ("hurts", None)),
         (48, 20, 50, True, "covers", 0, (None, "hurts")),

@@ -18,7 +18,7 @@ from faultpath.trials.store.atomic import write_text
 def scan(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> ScanRun | Ranking:
-    """Find which errors of a system's inputs cancel: each alone costs success, both do not.
+    """Find which errors of a system's inputs cancel: each alone costs more than both together.
 
     Args:
         system: As for `audit`.

@@ -33,8 +33,8 @@ def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) ->
 
 @takes(ScanQuestion)
 def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
-    """Find which errors of a system's inputs cancel: each alone costs success, both together do
-    not, so that correcting one of them alone does harm."""
+    """Find which errors of a system's inputs cancel: each alone costs success, and both together
+    less than either, so that correcting one of them alone does not help."""
     from faultpath.api.comparing import in_json
     from faultpath.api.display import SafeConsole
     from faultpath.api.scanning import scan

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.decisions.scan.model import ScannedVersion, SecondStage
+from faultpath.decisions.scan.model import ScanError, ScannedVersion, SecondStage
 from faultpath.decisions.scan.record import ScanRecord
 from faultpath.decisions.scan.sources import Candidate, Ranking
 from faultpath.decisions.sentences import wording
@@ -32,12 +32,15 @@ def _alone(record: ScanRecord) -> Table:
         for entry in (_percent(version.first[0].none), _percent(_none(version)), "")
     ]
     lines = [line("no error", *none)]
-    for place, error in enumerate(record.errors):
+    places = {error.text: place for place, error in enumerate(record.errors)}
+    tried = sorted((first.error for first in versions[0].first), key=_in_order)
+    for error in tried:
         entries: list[Entry] = []
         for version in versions:
             first = next(f for f in version.first if f.error.text == error.text)
-            second = next((s for s in version.singles if s.error == place), None)
-            entries += [Entry(text=_percent(first.alone)), *_second(second)]
+            second = next((s for s in version.singles if s.error == places.get(error.text)), None)
+            alone = _percent(first.alone) if first.acted else "never acted"
+            entries += [Entry(text=alone), *_second(second)]
         lines.append(line(named(error), *entries))
     return Table(
         name="errors",
@@ -51,6 +54,10 @@ def _alone(record: ScanRecord) -> Table:
             "where it is bold and above no error; bold below 0.025.",
         ),
     )
+
+
+def _in_order(error: ScanError) -> tuple[str, str, int, int]:
+    return error.source, error.reader, error.sign, error.halvings
 
 
 def _second(single: SecondStage | None) -> tuple[Entry, Entry]:

@@ -1,4 +1,4 @@
-"""Errors that cancel: each alone costs success, both together do not.
+"""Errors that cancel: each alone costs success, both together less than either.
 
 Outcomes are success by scene, a mean over seeds where there are several, and not a number where a
 trial has none: a scene counts in a comparison where both of its sides have one. Errors are named by
@@ -108,7 +108,8 @@ def cancelling(
     scenes] with each alone and [scenes] with each pair.
 
     A pair cancels if each error alone hurts, at half of ``alpha``, and both together beat the worse
-    one, at the other half, and regain half of its loss. In a pair of ``same_source`` one covers for
+    one, at the other half, regain half of its loss, and do no worse than the other one: so that
+    correcting either alone does not help. In a pair of ``same_source`` one covers for
     the other if that one hurts, both together beat it and regain half of its loss, and the first
     alone is not ahead of no error.
     """
@@ -128,7 +129,8 @@ def cancelling(
     for key, pair in compared.items():
         (other,) = set(key) - {pair.worse}
         enough = pair.regained is not None and pair.regained >= REGAINED
-        cancels = enough and corrected.get(key, 1.0) <= alpha / 2.0
+        least = pair.both >= max(pair.first, pair.second)
+        cancels = enough and least and corrected.get(key, 1.0) <= alpha / 2.0
         gains = alone[other].alone > alone[other].none
         covered = enough and not cancels and covers.get(key, 1.0) <= alpha and not gains
         decided[key] = pair._replace(

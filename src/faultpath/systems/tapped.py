@@ -105,6 +105,10 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
             or compiled code does not take the arguments by name.
     """
     kind = cast("type[Any]", type(what))
+    if not names and not channels:
+        raise SystemMistake(
+            f"tapped {kind.__name__}: names nothing to tap: give an attribute, key or argument"
+        )
     reads = Reads(at, what, {name: name for name in names} | channels)
     if _is_called(what):
         return _collected(reads, _tapped_call(what, reads))

@@ -20,7 +20,7 @@ from faultpath.decisions.scan.model import (
 )
 from faultpath.decisions.scan.record import ScanRecord
 from faultpath.decisions.scan.sources import Ranking
-from faultpath.statistics.cancelling import MOST, Pair, StageOne, cancelling, stage_one
+from faultpath.statistics.cancelling import LEVEL, MOST, Pair, StageOne, cancelling, stage_one
 from faultpath.statistics.inputs import Floats
 from faultpath.trials import Deliveries, Group, Trials, pair
 from faultpath.trials.pairing import Mismatch, mismatch_words
@@ -48,6 +48,18 @@ def going_on(
     return tuple(sorted(worst, key=lambda error: (-worst[error], error))[:MOST])
 
 
+def hurting(
+    question: ResolvedScan, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
+) -> set[tuple[str, int]]:
+    """Return the sources and signs of which an error is seen to cost success in some variant."""
+    return {
+        (error.source, error.sign)
+        for stage in _stages(question, errors, trials, scenes)
+        for error, p_value in zip(errors, stage.p_values.tolist(), strict=True)
+        if p_value < LEVEL
+    }
+
+
 def _stages(
     question: ResolvedScan, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
 ) -> Iterable[StageOne]:
@@ -73,9 +85,11 @@ def successes(
         means = pairs.success[0].mean(axis=1)
         success[condition] = np.where(pairs.void.any(axis=0), np.nan, means)
         if np.isnan(success[condition]).all():
+            rows = part.rows(variant, condition).ravel().tolist()
+            why = next((part.errors[row] for row in rows if row in part.errors), "unlike pairs")
             raise UserError(
-                f"no trial of {variant} under {condition} is left, because all failed: fix what "
-                "made them fail, or give a smaller error with --fault."
+                f"no trial of {variant} under {condition} is left, because all failed ({why}): fix "
+                "what made them fail, or give a smaller error with --fault."
             )
     return success, tuple(mismatches)
 
@@ -119,7 +133,8 @@ def _version(
     names = [label([error]) for error in scanned.tried]
     success, unlike = successes(trials, variant, names, scanned.first)
     mismatches += unlike
-    first = _first_stage(scanned.tried, success)
+    acted = [_acted(trials, variant, name) for name in names]
+    first = _first_stage(scanned.tried, success, acted)
     conditions = {at: label([scanned.errors[place] for place in at]) for at in scanned.conditions}
     if len(conditions) < 2:
         return ScannedVersion(variant=variant, first=first, singles=(), pairs=(), together=())
@@ -137,7 +152,14 @@ def _version(
     )
 
 
-def _first_stage(tried: Sequence[ScanError], success: Successes) -> tuple[FirstStage, ...]:
+def _acted(trials: Trials, variant: str, condition: str) -> bool:
+    rows = trials.rows(variant, condition).ravel()
+    return bool(trials.steps[1, rows[rows >= 0]].any())
+
+
+def _first_stage(
+    tried: Sequence[ScanError], success: Successes, acted: Sequence[bool]
+) -> tuple[FirstStage, ...]:
     none = success[CORRECT]
     alone = [success[label([error])] for error in tried]
     stage = stage_one(none, np.stack(alone))
@@ -150,6 +172,7 @@ def _first_stage(tried: Sequence[ScanError], success: Successes) -> tuple[FirstS
             loss=float(stage.losses[place]),
             p_value=float(stage.p_values[place]),
             helps_p=tested[place].helps_p,
+            acted=acted[place],
         )
         for place, (error, values) in enumerate(zip(tried, alone, strict=True))
     )

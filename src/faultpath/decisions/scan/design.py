@@ -6,12 +6,12 @@ from itertools import combinations
 from pathlib import PurePath
 
 from faultpath.core.errors import UserError
-from faultpath.core.text import unknown
+from faultpath.core.text import listed, unknown
 from faultpath.decisions.analysis import Analysis, Round, Rounds
 from faultpath.decisions.model import CORRECT
 from faultpath.decisions.planning import rows_of, scenes_of
 from faultpath.decisions.question import resolve
-from faultpath.decisions.scan.decide import concluded, going_on, losses
+from faultpath.decisions.scan.decide import concluded, going_on, hurting, losses
 from faultpath.decisions.scan.errors import Scanned, by_source, errors_of, faults_of, halved, label
 from faultpath.decisions.scan.model import ResolvedScan, ScanError
 from faultpath.decisions.scan.ranking import PROBED_SCENES, ranking
@@ -60,7 +60,7 @@ class ScanPlan(Analysis[Scanned]):
 
     def rounds(self) -> Rounds[Scanned]:
         """Yield each error alone, then with halved sizes, and then the pairs in other scenes."""
-        errors, tried = self.errors, list(self.errors)
+        errors, tried, sizes = self.errors, list(self.errors), [self.errors]
         # In scenes of the first stage, however many the second has.
         most = max(1 + len(tried), round(self.expected() / (self.per_scene * len(self.first))))
         trials = yield Round(self.study(tried), 1 + len(tried), most, self.notice())
@@ -69,8 +69,10 @@ class ScanPlan(Analysis[Scanned]):
             if not costly:
                 break
             errors = tuple(halved(e) if (e.source, e.sign) in costly else e for e in errors)
+            sizes.append(errors)
             tried += [error for error in errors if error not in tried]
             trials = yield Round(self.study(tried), 1 + len(tried), most)
+        errors = self.largest_that_hurts(sizes, trials)
         chosen = going_on(self.question, errors, trials, self.first)
         scanned = self.second_stage(tuple(tried), errors, chosen)
         conditions = scanned.conditions
@@ -103,6 +105,20 @@ class ScanPlan(Analysis[Scanned]):
             for error, loss in zip(errors, lost, strict=True)
             if loss > COSTLY_PP
         }
+
+    def largest_that_hurts(
+        self, sizes: Sequence[tuple[ScanError, ...]], trials: Trials
+    ) -> tuple[ScanError, ...]:
+        """Return the errors with their last size, or with one before it where half of that is not
+        seen to cost anything: one halving too many would hide an error."""
+        errors = sizes[-1]
+        for larger in reversed(sizes[:-1]):
+            hurt = hurting(self.question, errors, trials, self.first)
+            errors = tuple(
+                error if (error.source, error.sign) in hurt else before
+                for error, before in zip(errors, larger, strict=True)
+            )
+        return errors
 
     def second_stage(
         self, tried: tuple[ScanError, ...], errors: tuple[ScanError, ...], chosen: tuple[int, ...]
@@ -199,10 +215,10 @@ def plan_scan(
     Raises `UserError` for an unknown variant, one that is both, a fault that a scan cannot take,
     where no source has a size, and for fewer scenes than a scan needs.
     """
-    listed = candidates(system, _variants(system, request), request.fault)
-    errors = errors_of(system, listed)
+    every = candidates(system, _variants(system, request), request.fault)
+    errors = errors_of(system, every)
     if not errors:
-        raise _nothing_sized(system, listed)
+        raise _nothing_sized(system, every)
     chosen = scenes_of(library, request.scenes)
     others = [name for name in system.variants if name not in request.named_variants]
     question = resolve(
@@ -239,12 +255,12 @@ def plan_scan(
 def ranked_sources(system: System, request: ScanQuestion, library: Library) -> Ranking:
     """Return the sources that may err, ranked; `UserError` as `plan_scan`."""
     variants = _variants(system, request)
-    listed = candidates(system, variants, request.fault)
+    every = candidates(system, variants, request.fault)
     scenes = scenes_of(library, min(PROBED_SCENES, len(library.scenes)))
     return Ranking(
         system=system.name,
         variants=request.named_variants,
-        sources=ranking(system, variants, listed, scenes, request.seeds[0]),
+        sources=ranking(system, variants, every, scenes, request.seeds[0]),
         probed=len(scenes) if isinstance(system, LoopSystem) else 0,
     )
 
@@ -252,6 +268,12 @@ def ranked_sources(system: System, request: ScanQuestion, library: Library) -> R
 def _check_scenes(plan: ScanPlan) -> None:
     """Raise `UserError` where scenes or trials are fewer than the correction needs."""
     errors, pairs, _ = most_conditions(plan.errors)
+    if not pairs:
+        raise UserError(
+            f"{plan.system.name}: {listed({error.source for error in plan.errors})} has one "
+            "reader, so no two errors can act together: give the error of another source with "
+            "--fault."
+        )
     least = fewest_scenes(errors, pairs)
     needed = FIRST_SCENES + least
     if len(plan.others) < least:
@@ -279,12 +301,12 @@ def _variants(system: System, request: ScanQuestion) -> tuple[Variant, ...]:
     return tuple(system.variants[name] for name in request.named_variants)
 
 
-def _nothing_sized(system: System, listed: Sequence[Candidate]) -> UserError:
+def _nothing_sized(system: System, every: Sequence[Candidate]) -> UserError:
     """Return the error of a system of which no source has a size."""
-    if not listed:
+    if not every:
         return UserError(f"{system.name}: no version reads a source that may err: nothing to scan.")
-    why = "; ".join(f"{candidate.name} {candidate.unsized}" for candidate in listed)
-    channel = next((c for candidate in listed for c in candidate.channels), "CHANNEL")
+    why = "; ".join(f"{candidate.name} {candidate.unsized}" for candidate in every)
+    channel = next((c for candidate in every for c in candidate.channels), "CHANNEL")
     return UserError(
         f"{system.name}: no source says how large its errors are ({why}): declare it in the "
         f"interface, or give the expected error, for example --fault {channel}:scale=1.1"

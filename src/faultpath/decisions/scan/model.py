@@ -73,6 +73,8 @@ class FirstStage(Result, allow_inf_nan=False):
     """One-sided, not corrected, of "it hurts"."""
     helps_p: float = 1.0
     """Holm's, over all sizes that were run, of "it helps"."""
+    acted: bool = True
+    """Whether it changed a reading in any trial."""
 
 
 class SecondStage(Result, allow_inf_nan=False):

@@ -96,6 +96,11 @@ def _size_at_readers(
 ) -> None:
     """Give the modules that a fault names its size, in the list of sources."""
     narrowed = _given(system, variants, fault)
+    if len(narrowed.modules) > 1:
+        raise UserError(
+            f"fault '{fault}': a scan runs the error of each reader alone: name one behind '@', or "
+            "leave '@' out for all of them."
+        )
     channels = set(narrowed.channels)
     place = next((i for i, other in enumerate(listed) if channels <= set(other.channels)), None)
     if place is None:

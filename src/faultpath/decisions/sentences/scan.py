@@ -3,9 +3,11 @@
 import shlex
 from collections.abc import Iterator, Sequence
 
+from faultpath.decisions.effects import FLOOR_PERCENT
 from faultpath.decisions.scan.model import ScanError, ScannedPair, ScannedVersion, ScanResult
 from faultpath.decisions.sentences.phrases import NO_RESULT
 from faultpath.decisions.sentences.wording import MINUS, capital, counted, series, unit
+from faultpath.faults import FaultText
 from faultpath.statistics.estimate import ALPHA
 
 HELPS = ALPHA / 2
@@ -19,7 +21,9 @@ def size(error: ScanError) -> str:
     factor, ending = (100.0, " %") if error.relative else (1.0, f" {unit(error.unit)}")
     numbers = [f"{factor * part:+.3g}" if part else "0" for part in error.change]
     text = numbers[0] if len(numbers) == 1 else f"({', '.join(numbers)})"
-    return f"{text}{ending}".replace("-", MINUS).removesuffix(" 1").rstrip()
+    shown = f"{text}{ending}".replace("-", MINUS).removesuffix(" 1").rstrip()
+    options = FaultText.read(error.fault).options
+    return ", ".join([shown, *(f"{name}={value}" for name, value in options.items())])
 
 
 def in_words(name: str) -> str:
@@ -29,7 +33,8 @@ def in_words(name: str) -> str:
 
 def named(error: ScanError) -> str:
     """Return an error in words: `gain at controller (+20 %)`."""
-    return f"{in_words(error.source)} at {error.reader} ({size(error)})"
+    text = size(error)
+    return f"{in_words(error.source)} at {error.reader} {text if text[0] == '(' else f'({text})'}"
 
 
 def rate(percent: float) -> str:
@@ -67,8 +72,8 @@ def sentences(record: ScanResult) -> tuple[str, ...]:
     """Return what the scan found, sentence by sentence, then what it left out."""
     if record.invalid:
         return ()
-    results = (*_results(record), *_halved(record), _counts(record))
-    return (*results, *_failed(record), _limits(record))
+    results = (*_results(record), *_idle(record), *_halved(record), _counts(record))
+    return (*results, *_unsized(record), *_hard(record), *_failed(record), _limits(record))
 
 
 def _results(record: ScanResult) -> Iterator[str]:
@@ -149,6 +154,31 @@ def _halved(record: ScanResult) -> Iterator[str]:
         )
 
 
+def _idle(record: ScanResult) -> Iterator[str]:
+    """Say which errors changed no reading."""
+    for version in record.versions:
+        before = f"In {version.variant}: " if len(record.versions) > 1 else ""
+        if names := [named(first.error) for first in version.first if not first.acted]:
+            yield f"{before}No reading was ever changed by {series(names)}: nothing was tested."
+
+
+def _unsized(record: ScanResult) -> Iterator[str]:
+    """Say which sources were not scanned."""
+    names = [s.name for s in record.ranking.sources if not s.fault and not s.at]
+    if names:
+        yield (f"Without a declared size, and so not scanned: {series(names)}; --fault gives one.")
+
+
+def _hard(record: ScanResult) -> Iterator[str]:
+    """Say where so few trials succeed without an error that none can cost much."""
+    for version in record.versions:
+        if version.first[0].none < FLOOR_PERCENT:
+            yield (
+                f"In {version.variant} only {rate(version.first[0].none)} succeed without an "
+                "error, so that none can cost much: choose easier scenes."
+            )
+
+
 def _counts(record: ScanResult) -> str:
     chosen, total = len(record.chosen), len(record.errors)
     first, second = record.scenes
@@ -157,11 +187,13 @@ def _counts(record: ScanResult) -> str:
             f"Of {counted(total, 'error')}, each run alone in {counted(first, 'scene')}, none is "
             "seen to cost success, so no pair was tested."
         )
-    pairs = len(record.versions[0].pairs)
+    pairs, alone = len(record.versions[0].pairs), len(record.versions[0].singles)
+    same = alone - chosen
+    others = f", {same} at other readers of the same sources" if same else ""
     return (
-        f"Of {counted(total, 'error')}, each run alone in {counted(first, 'scene')}, {chosen} went "
-        f"on and {total - chosen} were left out; {counted(pairs, 'pair')} ran in {second} other "
-        "scenes."
+        f"Of {counted(total, 'error')}, each run alone in {counted(first, 'scene')}, {chosen} "
+        f"seemed to cost success and went on{others}; {counted(pairs, 'pair')} ran in {second} "
+        "other scenes."
     )
 
 
