@@ -23,6 +23,38 @@ def tables(record: ScanRecord) -> tuple[Table, ...]:
     return _alone(record), *together, ranking_table(record.ranking)
 
 
+def every_table(record: ScanRecord) -> tuple[Table, ...]:
+    """Return these, and beside them the pairs that ran: too many for a terminal."""
+    first, *others = tables(record)
+    return first, *((_pairs(record),) if record.versions[0].pairs else ()), *others
+
+
+def _pairs(record: ScanRecord) -> Table:
+    """Return success with each pair of errors that ran, beside each of them alone."""
+    lines: list[Line] = []
+    for at, pair in enumerate(record.versions[0].pairs):
+        entries: list[Entry] = []
+        for version in record.versions:
+            one = version.pairs[at]
+            p = one.covers_p if one.corrected_p is None else one.corrected_p
+            rates = (one.none, one.first, one.second, one.both)
+            entries += [Entry(text=_percent(rate)) for rate in rates]
+            shown = "not tested" if p is None else wording.p_value(p)
+            entries.append(Entry(text=shown, detected=one.kind is not None))
+        lines.append(line(" and ".join(named(record.errors[e]) for e in pair.errors), *entries))
+    return Table(
+        name="every-pair",
+        title="Success with pairs of errors, %",
+        corner="Errors",
+        columns=_of_versions(record, "neither", "first", "second", "both", "p, Holm"),
+        lines=tuple(lines),
+        notes=(
+            "p: one-sided, that both together succeed more often than the worse one alone; tested "
+            "where each of them costs success, or in one source. Bold: listed.",
+        ),
+    )
+
+
 def _alone(record: ScanRecord) -> Table:
     """Return success with each error alone, in the first stage and in the second."""
     versions = record.versions
@@ -175,7 +207,7 @@ def page(record: ScanRecord, provenance: RunProvenance) -> str:
         }
         for version, names in zip(record.versions, letter, strict=True)
     ]
-    every = tables(record)
+    every = every_table(record)
     return render(
         "scan.html.j2",
         record=record,
@@ -189,4 +221,4 @@ def page(record: ScanRecord, provenance: RunProvenance) -> str:
 
 def table_markdown(record: ScanRecord) -> str:
     """Return all tables as Markdown."""
-    return "\n\n".join(map(block, tables(record))) + "\n"
+    return "\n\n".join(map(block, every_table(record))) + "\n"
