@@ -16,7 +16,7 @@ from faultpath.report.frame import PAGE
 from faultpath.trials.store.atomic import check_output, write_text
 
 WORDS = ("headline", "sentences", "would_change", "commands")
-"""What results say, as far as one has it."""
+"""Words that results are made into, as far as one has them."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)

@@ -38,7 +38,7 @@ class Condition(Result):
     """Taps faulted in the baseline. Where the baseline has no such reader the fault cannot reach
     it, and its trials under correct inputs stand in."""
     faulted: tuple[FaultedTap, ...] = ()
-    """Taps faulted in the repaired system: from receipts, where `readers` is the plan."""
+    """Taps faulted in the repaired system: from the delivery log, where `readers` is the plan."""
     baseline_faulted: tuple[FaultedTap, ...] = ()
     """Taps faulted in the baseline."""
 
@@ -80,7 +80,8 @@ class ConditionBreakEven(Result):
     """`(share, expected difference, low, high)` in fractions and percentage points. The band
     touches 0 exactly where the share is in the set of `result`."""
     ahead: tuple[Ahead, ...]
-    """What is said of it; empty where no end has an effect that leads."""
+    """Ranges of the share at which a version is ahead; empty where no end has an effect that
+    leads."""
 
 
 class StoppedAudit(Result):

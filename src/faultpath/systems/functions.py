@@ -20,7 +20,8 @@ class FunctionPlant(EpisodePlant):
         start: `start(rng)` returns the state at the start of a scene: an array, or numbers and
             arrays by name. Whatever makes one scene another is drawn from `rng`.
         step: `step(state, action, rng)` returns the state one control step later. It
-            draws other numbers at each step and seed, and the same in every variant.
+            draws other numbers at each step and seed, and the same for every
+            variant and condition.
         observes: Source to its part of the state: a name, an index, a slice, several of them in
             turn, or a function of the batch's state.
         action: Channel from which the plant is moved, at the place `actuator`.

@@ -54,7 +54,8 @@ class GymnasiumPlant(EpisodePlant):
             parameters and disturbances. The values that it returns by name are sources too, and
             are hashed: two trials whose scenes were set up differently are no pair.
         on_step: Called as `on_step(env, rng, step)` before each step, to disturb the scene. It
-            draws other numbers at each step and seed, and the same in every variant.
+            draws other numbers at each step and seed, and the same for every
+            variant and condition.
         trace: `trace(env)` returns where it is, `(x, y)` or `(x, y, z)` in metres, for the report.
         render: `render(env)` returns points `(x, y)` of a line that draws it, in metres.
     """

@@ -12,13 +12,22 @@ from faultpath.decisions.model import CORRECT
 from faultpath.decisions.planning import rows_of, scenes_of
 from faultpath.decisions.question import resolve
 from faultpath.decisions.scan.decide import concluded, going_on, hurting, losses
-from faultpath.decisions.scan.errors import Scanned, by_source, errors_of, faults_of, halved, label
+from faultpath.decisions.scan.errors import (
+    Scanned,
+    by_source,
+    different,
+    errors_of,
+    faults_of,
+    halved,
+    label,
+    most_conditions,
+)
 from faultpath.decisions.scan.model import ResolvedScan, ScanError
 from faultpath.decisions.scan.ranking import PROBED_SCENES, ranking
 from faultpath.decisions.scan.record import ScanRecord
 from faultpath.decisions.scan.sources import Candidate, Ranking, candidates
 from faultpath.faults import at_readers
-from faultpath.statistics.cancelling import MOST, fewest_scenes
+from faultpath.statistics.cancelling import fewest_scenes
 from faultpath.trials import (
     Deliveries,
     Library,
@@ -128,7 +137,7 @@ class ScanPlan(Analysis[Scanned]):
         alike = {place: group for group in groups.values() for place in group}
         singles = tuple(dict.fromkeys((*chosen, *(p for c in chosen for p in alike[c]))))
         paired = dict.fromkeys(
-            pair for pair in combinations(sorted(chosen), 2) if _different(errors, pair)
+            pair for pair in combinations(sorted(chosen), 2) if different(errors, pair)
         )
         paired |= dict.fromkeys(p for c in chosen for p in combinations(alike[c], 2))
         together = [group for group in groups.values() if len(group) > 1]
@@ -187,24 +196,6 @@ class ScanPlan(Analysis[Scanned]):
     def conclude(self, trials: Trials, deliveries: Deliveries, items: Scanned) -> ScanRecord:
         """Return the result; `UserError` where no trial of some condition is left."""
         return concluded(self.question, self.ranking, items, trials, deliveries)
-
-
-def most_conditions(errors: Sequence[ScanError]) -> tuple[int, int, int]:
-    """Return the most errors, pairs and conditions that a second stage may have."""
-    groups = sorted(map(len, by_source(errors).values()), reverse=True)
-    chosen = min(MOST, len(errors))
-    singles = min(len(errors), sum(groups[:chosen]))
-    allowed = sum(_different(errors, pair) for pair in combinations(range(len(errors)), 2))
-    alike = sum(n * (n - 1) // 2 for n in groups[:chosen])
-    pairs = min(allowed, chosen * (chosen - 1) // 2 + alike)
-    together = sum(n > 1 for n in groups) + sum(n for n in groups if n > 2)
-    return singles, pairs, 1 + singles + pairs + together
-
-
-def _different(errors: Sequence[ScanError], pair: tuple[int, int]) -> bool:
-    """Return whether two errors may act together: of two sources, or of one and of one sign."""
-    one, two = (errors[place] for place in pair)
-    return one.source != two.source or (one.sign == two.sign and one.reader != two.reader)
 
 
 def plan_scan(

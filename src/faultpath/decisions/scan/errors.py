@@ -2,12 +2,14 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import combinations
 from typing import NamedTuple
 
 from faultpath.core.errors import UserError
 from faultpath.decisions.scan.model import ScanError
 from faultpath.decisions.scan.sources import Candidate
 from faultpath.faults import Fault, FaultText, at_readers
+from faultpath.statistics.cancelling import MOST
 from faultpath.trials import System
 
 
@@ -131,3 +133,21 @@ def by_source(errors: Sequence[ScanError]) -> Mapping[tuple[str, int], tuple[int
     for place, error in enumerate(errors):
         groups.setdefault((error.source, error.sign), []).append(place)
     return {key: tuple(places) for key, places in groups.items()}
+
+
+def most_conditions(errors: Sequence[ScanError]) -> tuple[int, int, int]:
+    """Return the most errors, pairs and conditions that a second stage may have."""
+    groups = sorted(map(len, by_source(errors).values()), reverse=True)
+    chosen = min(MOST, len(errors))
+    singles = min(len(errors), sum(groups[:chosen]))
+    allowed = sum(different(errors, pair) for pair in combinations(range(len(errors)), 2))
+    alike = sum(n * (n - 1) // 2 for n in groups[:chosen])
+    pairs = min(allowed, chosen * (chosen - 1) // 2 + alike)
+    together = sum(n > 1 for n in groups) + sum(n for n in groups if n > 2)
+    return singles, pairs, 1 + singles + pairs + together
+
+
+def different(errors: Sequence[ScanError], pair: tuple[int, int]) -> bool:
+    """Return whether two errors may act together: of two sources, or of one and of one sign."""
+    one, two = (errors[place] for place in pair)
+    return one.source != two.source or (one.sign == two.sign and one.reader != two.reader)

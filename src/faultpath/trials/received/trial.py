@@ -48,7 +48,7 @@ class Given:
 
     def label(self, name: str, cells: Mapping[str, Any], where: str) -> str:
         """Return variant or condition of a trial; `UserError` where line and file say different
-        ones, since a label at the wrong file would turn the verdict round."""
+        ones, since a label at the wrong file would turn the result round."""
         label, cell = getattr(self, name), _text(cells.get(name), f"{where}: the {name}")
         if label and cell and label != cell:
             raise UserError(
