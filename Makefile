@@ -90,7 +90,7 @@ fuzz: $(STAMPS)/dev ## Try the laws and the command line with random inputs; SEE
 	  --hypothesis-profile=explore --fuzz-seed=$(SEED) --fuzz-whole $(ARGS)
 
 statistics: $(STAMPS)/dev ## Simulate what the statistics promise, and write its page: some minutes; ARGS='"SECTION"' for one
-	OMP_NUM_THREADS=1 $(BIN)/python tests/statistics/simulation_page.py docs/statistics-check.md $(ARGS)
+	OMP_NUM_THREADS=1 $(BIN)/python tests/stats/simulation_page.py docs/statistics-check.md $(ARGS)
 
 bench: $(BENCH)/ready $(BENCH_JAX)/ready $(STAMPS)/dev ## Measure side by side with other software; ARGS="ROW" for one
 	$(BENCH)/bin/python -m benchmarks $(ARGS)

@@ -35,8 +35,8 @@ from torch.profiler import ProfilerActivity, profile
 from benchmarks.results import DEVICE
 from faultpath import open_run
 from faultpath.loop import Batch
-from faultpath.trials import SystemSpec, Treatment, load_system
-from faultpath.trials.attempt import taps_of
+from faultpath.run import SystemSpec, Treatment, load_system
+from faultpath.run.attempt import taps_of
 
 FLOWN = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
 LIBRARIES = "training", "selection"

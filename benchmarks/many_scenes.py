@@ -3,11 +3,11 @@
 from itertools import count
 
 from benchmarks.side import Side
+from faultpath.analyses.family import decide_conditions
+from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.core.streams import generator
-from faultpath.decisions.family import decide_conditions
-from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.statistics.breakeven import break_even
-from faultpath.statistics.power import detectable
+from faultpath.stats.breakeven import break_even
+from faultpath.stats.power import detectable
 
 SUCCESS = {CORRECT: (0.59, 0.6), "observer": (0.6, 0.35), SHARED: (0.4, 0.6)}
 """Under three conditions, of repair and baseline."""

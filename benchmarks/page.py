@@ -10,8 +10,8 @@ from typing import Any
 
 from benchmarks.results import DEVICE, EARLIER, WAITS, Record, load, record
 from benchmarks.waits import STEPS, TESTS
-from faultpath.decisions.tables import MISSING, Line, Table, line
-from faultpath.decisions.tables.markdown import grid
+from faultpath.analyses.tables import MISSING, Line, Table, line
+from faultpath.analyses.tables.markdown import grid
 
 _COLUMNS = ("faultpath", "compared with", "ratio")
 _STEPS = "vehicle-steps/s"

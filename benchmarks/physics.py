@@ -17,8 +17,8 @@ from torch import Tensor
 
 from benchmarks.side import Side
 from faultpath.core.streams import generator
-from faultpath.statistics.effects import success_effect
-from faultpath.statistics.resamples import Resamples
+from faultpath.stats.effects import success_effect
+from faultpath.stats.resamples import Resamples
 
 VEHICLES = 100
 SCENES = 25

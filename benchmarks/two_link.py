@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from faultpath.core.streams import generator
-from faultpath.systems import ComposedSystem, Episode, FunctionPlant, Measure, writes
-from faultpath.trials import Metric
+from faultpath.system import ComposedSystem, Episode, FunctionPlant, Measure, Metric, writes
 
 DT_S, STEPS = 0.01, 300
 LENGTH_M, LINK_KG, GRAVITY = 0.5, 1.0, 9.81

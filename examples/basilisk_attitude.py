@@ -19,7 +19,7 @@ from Basilisk.fswAlgorithms import inertialUKF
 from Basilisk.simulation import reactionWheelStateEffector, spacecraft
 from Basilisk.utilities import RigidBodyKinematics, SimulationBaseClass, simIncludeRW
 
-from faultpath.systems import ComposedSystem, FunctionPlant, writes
+from faultpath.system import ComposedSystem, FunctionPlant, writes
 
 TICK, SWEEP, INERTIA = 500_000_000, 0.002, np.diag([900.0, 800.0, 600.0])  # ns, rad/s, kg m^2
 RPM = np.array([100.0, 200.0, 300.0])  # the wheels at the start

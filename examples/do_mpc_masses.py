@@ -11,8 +11,7 @@ from warnings import catch_warnings
 
 import numpy as np
 
-from faultpath.systems import ComposedSystem, FunctionPlant, Measure, Parts, writes
-from faultpath.trials import Metric
+from faultpath.system import ComposedSystem, FunctionPlant, Measure, Metric, Parts, writes
 
 with catch_warnings(action="ignore"):  # about optional parts of do-mpc
     import do_mpc

@@ -16,9 +16,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from faultpath import UserError, generator
-from faultpath.interface import read_interface
-from faultpath.loop import Reading, Taps
-from faultpath.trials import Library, Metric, Outcome, SceneRef, Status, System, Variant
+from faultpath.system import (
+    Library,
+    Metric,
+    Outcome,
+    Reading,
+    SceneRef,
+    Status,
+    System,
+    Taps,
+    Variant,
+    read_interface,
+)
 
 INTERFACE = read_interface("""
 name: dock

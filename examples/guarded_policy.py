@@ -21,9 +21,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from faultpath.loop import Module
-from faultpath.systems import ComposedSystem, Parts, row_wise, writes
-from faultpath.systems.gymnasium import GymnasiumPlant
+from faultpath.system import ComposedSystem, GymnasiumPlant, Module, Parts, row_wise, writes
 
 FILES = Path(__file__).with_suffix("")
 ONNX, WEIGHTS = FILES / "policy.onnx", FILES / "policy.safetensors"

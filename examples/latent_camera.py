@@ -30,8 +30,19 @@ from torch.nn import functional
 
 from faultpath import UserError, generator
 from faultpath.learning import Schedule, Windows, fit, load, matched, uncertainty_training
-from faultpath.loop import Module, Plant, Port, Progress, interface_of
-from faultpath.trials import Library, LoopSystem, Metric, SceneRef, Status, Wiring
+from faultpath.system import (
+    Library,
+    LoopSystem,
+    Metric,
+    Module,
+    Plant,
+    Port,
+    Progress,
+    SceneRef,
+    Status,
+    Wiring,
+    interface_of,
+)
 
 SHIPPED = Path(__file__).with_suffix("")
 REACH, STEPS, HORIZON, LATENT = 4.0, 12, 6, 32  # px a step; steps

@@ -40,10 +40,7 @@ from faultpath.learning import (
     matched,
     uncertainty_training,
 )
-from faultpath.loop import Module, Port
-from faultpath.systems import ComposedSystem, Measure, Parts
-from faultpath.systems.gymnasium import GymnasiumPlant
-from faultpath.trials import Metric
+from faultpath.system import ComposedSystem, GymnasiumPlant, Measure, Metric, Module, Parts, Port
 
 SHIPPED = Path(__file__).with_suffix("")
 PAST, HORIZON, LATENT, DT_S = 6, 12, 16, 0.05  # steps, steps, numbers, s a control step

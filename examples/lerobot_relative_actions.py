@@ -17,8 +17,7 @@ from functools import cache
 import numpy as np
 import torch
 
-from faultpath.systems import ComposedSystem, FunctionPlant, Measure, Parts, writes
-from faultpath.trials import Metric
+from faultpath.system import ComposedSystem, FunctionPlant, Measure, Metric, Parts, writes
 
 try:
     from lerobot.processor import AbsoluteActionsProcessorStep, RelativeActionsProcessorStep

@@ -18,8 +18,7 @@ import motulator.drive.control.sm as control
 import numpy as np
 from motulator.drive import model, utils
 
-from faultpath.systems import ComposedSystem, FunctionPlant, Measure, Parts, tapped, writes
-from faultpath.trials import Metric
+from faultpath.system import ComposedSystem, FunctionPlant, Measure, Metric, Parts, tapped, writes
 
 T_S, STEPS, ORDERED_S = 250e-6, 2400, 0.2  # the torque is ordered after 0.2 s of 0.6 s
 NOMINAL = utils.NominalValues(U=370, I=4.3, f=75, P=2.2e3, tau=14)

@@ -26,8 +26,7 @@ from opendbc.safety.tests.libsafety.libsafety_py import ffi, make_CANPacket
 from opendbc.safety.tests.test_ford import checksum
 from openpilot_car import DT_S, STEERING, STEERS, STEPS, known, start, step
 
-from faultpath.systems import ComposedSystem, FunctionPlant, Measure, Parts, writes
-from faultpath.trials import Metric
+from faultpath.system import ComposedSystem, FunctionPlant, Measure, Metric, Parts, writes
 
 carlog.setLevel("ERROR")  # else it warns of messages that nothing here uses
 SHIM = """

@@ -6,7 +6,7 @@ from faultpath_quadrotor.estimators import Estimator
 from faultpath_quadrotor.so3 import exp
 from filterpy.kalman import KalmanFilter
 
-from faultpath.loop import Port
+from faultpath.system import Port
 
 GYROSCOPE, FORCE, FIX = (
     Port(channel, "filter") for channel in ("gyroscope", "accelerometer", "position_fix")

@@ -17,9 +17,7 @@ does. Repair `nominal`: the filter uses the data sheet's, so a bad calibration c
 import numpy as np
 from scipy.linalg import expm, solve_discrete_are
 
-from faultpath.systems import ComposedSystem, Measure, Parts, writes
-from faultpath.systems.gymnasium import GymnasiumPlant
-from faultpath.trials import Metric
+from faultpath.system import ComposedSystem, GymnasiumPlant, Measure, Metric, Parts, writes
 
 DATA_SHEET_GAIN, DT_S = 100.0, 0.04  # N a unit of command; s a control step
 

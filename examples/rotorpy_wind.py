@@ -22,8 +22,7 @@ from rotorpy.vehicles.multirotor import Multirotor
 from rotorpy.wind.default_winds import SinusoidWind
 from scipy.spatial.transform import Rotation
 
-from faultpath.systems import ComposedSystem, FunctionPlant, Measure, tapped, writes
-from faultpath.trials import Metric
+from faultpath.system import ComposedSystem, FunctionPlant, Measure, Metric, tapped, writes
 
 DT_S, STEPS, CALIBRATED_AT = 0.01, 500, 3.0  # s, steps, m/s
 SPREAD = {"mass": 0.25, "c_Dx": 1.0, "c_Dz": 1.0, "k_d": 0.5, "k_z": 0.5, "k_eta": 0.09}

@@ -17,9 +17,7 @@ import gymnasium
 import numpy as np
 from stable_worldmodel_model import SCALER, SIDE, WEIGHTS, camera, fitted, scaled, swm, two_room
 
-from faultpath.systems import ComposedSystem, Measure, Parts, tapped, writes
-from faultpath.systems.gymnasium import GymnasiumPlant
-from faultpath.trials import Metric
+from faultpath.system import ComposedSystem, GymnasiumPlant, Measure, Metric, Parts, tapped, writes
 
 STEPS, AHEAD = 50, 25  # of a trial, and to the goal; all of these as they evaluate
 CEM = {"num_samples": 300, "n_steps": 30, "topk": 30}

@@ -20,18 +20,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from faultpath import UserError, generator
-from faultpath.loop import Module, Plant, Port, Progress, interface_of
-from faultpath.trials import (
+from faultpath.system import (
     ErrorSum,
     ErrorTerm,
     FloorPlan,
     Library,
     LoopSystem,
     Metric,
+    Module,
+    Plant,
+    Port,
+    Progress,
     SceneRef,
     Status,
     System,
     Wiring,
+    interface_of,
 )
 
 DT_S, STEPS, TOLERANCE_M = 0.1, 100, 0.25

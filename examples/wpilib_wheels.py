@@ -14,8 +14,7 @@ from wpimath.geometry import Pose2d, Rotation2d, Transform2d, Translation2d, Twi
 from wpimath.kinematics import DifferentialDriveKinematics
 from wpimath.trajectory import TrajectoryConfig, TrajectoryGenerator
 
-from faultpath.systems import ComposedSystem, FunctionPlant, Measure, writes
-from faultpath.trials import Metric
+from faultpath.system import ComposedSystem, FunctionPlant, Measure, Metric, writes
 
 DT_S, STEPS, JUDGED, LIMIT_M = 0.02, 250, 50, 0.1  # steps: all, the first that is judged
 TRUST = {"default": np.ones(3), "trusting": np.array([5.0, 5.0, 0.1 / 0.06])}

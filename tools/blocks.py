@@ -13,6 +13,12 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel, ValidationError
 from rich.console import Console, RenderableType
 
+from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.tables import Entry, Line, Table
+from faultpath.analyses.tables.markdown import grid
 from faultpath.api.folders import (
     MADE_FROM,
     MAP,
@@ -22,13 +28,7 @@ from faultpath.api.folders import (
     SCAN,
     SCAN_MADE_FROM,
 )
-from faultpath.decisions.map.record import MapRecord
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.scan.record import ScanRecord
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.tables import Entry, Line, Table
-from faultpath.decisions.tables.markdown import grid
-from faultpath.trials.provenance import RunProvenance
+from faultpath.run.provenance import RunProvenance
 
 sys.path += [
     str(Path(__file__).resolve().parents[1] / "experiments" / study)

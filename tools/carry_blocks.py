@@ -6,10 +6,10 @@ from blocks import load
 from carry_design import Cell
 from carry_verdicts import Mean, hours, lead, moves, overall, questions, reason, sentences, title
 
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.wording import counted
-from faultpath.decisions.tables import MISSING, Entry, Table, line
-from faultpath.decisions.tables.markdown import grid
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.wording import counted
+from faultpath.analyses.tables import MISSING, Entry, Table, line
+from faultpath.analyses.tables.markdown import grid
 
 NODES = 10
 SIDES = {1: "repair", -1: "baseline"}

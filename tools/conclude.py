@@ -12,26 +12,27 @@ from faultpath_paper.reproduction import write_pages
 from faultpath_paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
 
+from faultpath.analyses.decide import decide
+from faultpath.analyses.map.lattice import UNITS
+from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.map.study import plan_map
+from faultpath.analyses.model import Condition
+from faultpath.analyses.question import Question
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.scan.decide import concluded
+from faultpath.analyses.scan.errors import Scanned
+from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.tables import Table
 from faultpath.api.folders import MAP, RECORD, SCAN, as_text
 from faultpath.api.replaying import shown_first
 from faultpath.api.runs import open_run
-from faultpath.decisions.decide import decide
-from faultpath.decisions.map.lattice import UNITS
-from faultpath.decisions.map.record import MapRecord
-from faultpath.decisions.map.study import plan_map
-from faultpath.decisions.model import Condition
-from faultpath.decisions.question import Question
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.scan.decide import concluded
-from faultpath.decisions.scan.errors import Scanned
-from faultpath.decisions.scan.record import ScanRecord
-from faultpath.decisions.tables import Table
 from faultpath.report.map import table_markdown
-from faultpath.trials import Deliveries, SystemSpec, Trials, library_of, load_system
-from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.question import MapQuestion
-from faultpath.trials.store.folder import OUTCOMES, TRACES, read_outcomes, seal
-from faultpath.trials.store.tables import decode_outcomes, decode_traces, encode_traces
+from faultpath.run import Deliveries, SystemSpec, Trials, load_system
+from faultpath.run.provenance import RunProvenance
+from faultpath.run.question import MapQuestion
+from faultpath.run.store.folder import OUTCOMES, TRACES, read_outcomes, seal
+from faultpath.run.store.tables import decode_outcomes, decode_traces, encode_traces
+from faultpath.system import library_of
 
 
 def conclude_all(tell: Callable[[str], None]) -> None:

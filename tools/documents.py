@@ -29,7 +29,7 @@ import state_blocks
 from blocks import IMAGES, REFERENCE, ROOT, RUNS, Picture, Wrong, copied, kind_of, load
 from pictures import digest, made_from, make_images, name_of
 
-from faultpath.trials.store.signals import SIGNALS
+from faultpath.run.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))
 from benchmarks import page as performance

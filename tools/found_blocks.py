@@ -8,8 +8,8 @@ from latent_blocks import FAULTS
 from latent_blocks import audits_of as audits_of_rooms
 from state_blocks import audits_of
 
-from faultpath.decisions import effects
-from faultpath.decisions.sentences import wording
+from faultpath.analyses import effects
+from faultpath.analyses.sentences import wording
 
 WORLD_MODEL = "stable-worldmodel"
 PAGES = {

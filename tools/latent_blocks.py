@@ -5,9 +5,9 @@ from typing import Any
 
 from blocks import effect_entry, figures_of, words_grid
 
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.wording import counted
-from faultpath.decisions.tables import MISSING, Line, line
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.wording import counted
+from faultpath.analyses.tables import MISSING, Line, line
 
 SHARED, ALONE = "shared", "observation"
 CONDITIONS = {

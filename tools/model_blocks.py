@@ -7,8 +7,8 @@ from blocks import Wrong, words_grid
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.training.catalogue import ALL
 
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.tables import Line, line
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.tables import Line, line
 
 MEASURES = {
     "position_error_20_m": "position after 20 steps, m",

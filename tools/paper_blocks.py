@@ -27,12 +27,12 @@ from faultpath_paper.report.page import sweep_plot
 from faultpath_paper.report.short import apart, by_kind, by_subject
 from faultpath_paper.report.words import NON_DETECTION, headline
 
-from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.tables.escapes import markdown
-from faultpath.decisions.tables.markdown import block, grid
+from faultpath.analyses.model import CORRECT, SHARED
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.tables.escapes import markdown
+from faultpath.analyses.tables.markdown import block, grid
 from faultpath.report.svg import template
-from faultpath.trials.store.folder import read_outcomes
+from faultpath.run.store.folder import read_outcomes
 
 PLACE = REFERENCE / "paper"
 FACTS = PLACE / "facts.md"

@@ -22,7 +22,7 @@ import documents
 import repeats
 from blocks import PROVENANCE, REFERENCE, ROOT, Repeats, Run, load
 
-from faultpath.trials.execution.provenance import processor
+from faultpath.run.execution.provenance import processor
 
 TREE = ROOT / "build" / "references"
 APART = ("carry-over", "state-errors", "paper")

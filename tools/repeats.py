@@ -13,28 +13,20 @@ from typing import Any
 
 from blocks import OUTCOMES, REFERENCE, REPEATS, ROOT, Repeats, Run
 
+from faultpath.analyses.map.lattice import UNITS
+from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.map.study import plan_map
+from faultpath.analyses.planning import plan_audit
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.scan.design import ScanPlan, plan_scan
+from faultpath.analyses.scan.record import ScanRecord
 from faultpath.api.replaying import outcomes_at
-from faultpath.decisions.map.lattice import UNITS
-from faultpath.decisions.map.record import MapRecord
-from faultpath.decisions.map.study import plan_map
-from faultpath.decisions.planning import plan_audit
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.scan.design import ScanPlan, plan_scan
-from faultpath.decisions.scan.record import ScanRecord
-from faultpath.trials import (
-    Outcome,
-    Study,
-    System,
-    SystemSpec,
-    Treatment,
-    Trials,
-    library_of,
-    load_system,
-)
-from faultpath.trials.attempt import Done, attempt
-from faultpath.trials.question import AuditQuestion, MapQuestion, ScanQuestion
-from faultpath.trials.store.folder import read_outcomes
-from faultpath.trials.store.tables import TrialAddress
+from faultpath.run import Study, SystemSpec, Treatment, Trials, load_system
+from faultpath.run.attempt import Done, attempt
+from faultpath.run.question import AuditQuestion, MapQuestion, ScanQuestion
+from faultpath.run.store.folder import read_outcomes
+from faultpath.run.store.tables import TrialAddress
+from faultpath.system import Outcome, System, library_of
 
 SECONDS = 3.0
 """About how long a sample may take; a scene with all versions and conditions is the least."""

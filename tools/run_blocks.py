@@ -17,10 +17,10 @@ from blocks import (
     printed,
 )
 
-from faultpath.decisions.effects import Difference
-from faultpath.decisions.sentences import phrases, wording
-from faultpath.decisions.tables import Table, line
-from faultpath.decisions.tables.markdown import grid
+from faultpath.analyses.effects import Difference
+from faultpath.analyses.sentences import phrases, wording
+from faultpath.analyses.tables import Table, line
+from faultpath.analyses.tables.markdown import grid
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.scan_pictures import triangle
 from faultpath.report.tables import DIFFERENCE, by_quantity

@@ -5,10 +5,10 @@ from typing import Any
 
 from blocks import effect_entry, load, words_grid
 
-from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.wording import counted
-from faultpath.decisions.tables import line
+from faultpath.analyses.model import CORRECT, SHARED
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.wording import counted
+from faultpath.analyses.tables import line
 
 STUDY = "state-errors"
 UNITS = {"position": "m", "velocity": "m/s", "attitude": "deg", "body_rate": "rad/s"}

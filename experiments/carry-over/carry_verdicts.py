@@ -10,10 +10,10 @@ import numpy as np
 from carry_design import Cell, Design, Flown, Question, Reach
 from numpy.typing import NDArray
 
-from faultpath.decisions.sentences.wording import counted
-from faultpath.statistics.betting import log_capital
-from faultpath.statistics.distributions import t_interval
-from faultpath.statistics.power import fewest_scenes
+from faultpath.analyses.sentences.wording import counted
+from faultpath.stats.betting import log_capital
+from faultpath.stats.distributions import t_interval
+from faultpath.stats.power import fewest_scenes
 
 Floats = NDArray[np.float64]
 _KINDS = np.array([-1.0, 0.0, 1.0])

@@ -18,17 +18,25 @@ from pathlib import Path
 from carry_design import VOID, Cell, Design, Flown, Levels, Round
 from carry_verdicts import sentences, settled
 
+from faultpath.analyses.planning import plan_audit
+from faultpath.analyses.sentences.wording import counted
 from faultpath.api.display import Display, SafeConsole
 from faultpath.api.systems import executor_of
 from faultpath.core.errors import Stopped, UserError
-from faultpath.decisions.planning import plan_audit
-from faultpath.decisions.sentences.wording import counted
-from faultpath.trials import Group, Row, Status, Study, SystemSpec, library_of, load_system, pair
-from faultpath.trials.execution.provenance import run_provenance
-from faultpath.trials.execution.runner import RunResult, run_study
-from faultpath.trials.question import AuditQuestion
-from faultpath.trials.store.atomic import make_folder, write_text
-from faultpath.trials.work.executor import Executor, Progress
+from faultpath.core.files.atomic import make_folder, write_text
+from faultpath.run import (
+    Group,
+    Row,
+    Study,
+    SystemSpec,
+    load_system,
+    pair,
+)
+from faultpath.run.execution.provenance import run_provenance
+from faultpath.run.execution.runner import RunResult, run_study
+from faultpath.run.question import AuditQuestion
+from faultpath.run.work.executor import Executor, Progress
+from faultpath.system import Status, library_of
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]

@@ -20,8 +20,8 @@ import latent_camera as camera
 
 from faultpath.faults import at_readers
 from faultpath.loop import Batch
-from faultpath.trials import Treatment
-from faultpath.trials.attempt import taps_of
+from faultpath.run import Treatment
+from faultpath.run.attempt import taps_of
 
 SCENE, ERROR = "selection/000", 0.85
 STRIPS = (

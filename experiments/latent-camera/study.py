@@ -13,14 +13,13 @@ from pathlib import Path
 
 import yaml
 
-from faultpath.decisions.compared import compared
-from faultpath.decisions.family import Family, decide_conditions
-from faultpath.decisions.model import CORRECT, SHARED
+from faultpath.analyses.compared import compared
+from faultpath.analyses.family import Family, decide_conditions
+from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.faults import at_readers
-from faultpath.trials import (
+from faultpath.run import (
     Group,
     Row,
-    Status,
     Study,
     SystemSpec,
     Treatment,
@@ -28,7 +27,8 @@ from faultpath.trials import (
     load_system,
     pair,
 )
-from faultpath.trials.execution.runner import run_study
+from faultpath.run.execution.runner import run_study
+from faultpath.system import Status
 
 ROOT = Path(__file__).resolve().parents[2]
 OBSERVATION, GOAL = "observation", "goal"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pyarrow.parquet as parquet
 
-from faultpath.decisions.map.record import MapRecord
+from faultpath.analyses.map.record import MapRecord
 
 HERE = Path(__file__).parent / "map-quadrotor"
 THERE = Path(__file__).parents[2] / "docs" / "reference" / "map-quadrotor"

@@ -20,18 +20,19 @@ import torch
 from faultpath_quadrotor.state_errors import TURNING, state_errors
 from state_design import Audit, Design, ErrorSize, SensorAudits
 
+from faultpath.analyses.compared import compared
+from faultpath.analyses.family import decide_conditions
+from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.api.display import Display, SafeConsole
 from faultpath.api.systems import executor_of
 from faultpath.core.errors import Stopped, UserError
-from faultpath.decisions.compared import compared
-from faultpath.decisions.family import decide_conditions
-from faultpath.decisions.model import CORRECT, SHARED
+from faultpath.core.files.atomic import make_folder, write, write_text
 from faultpath.faults import Address, at_readers, encode_record
 from faultpath.faults.recorded import decode_record
-from faultpath.trials import Row, Study, Treatment, Trials, library_of, load_system
-from faultpath.trials.execution.provenance import run_provenance
-from faultpath.trials.execution.runner import run_study
-from faultpath.trials.store.atomic import make_folder, write, write_text
+from faultpath.run import Row, Study, Treatment, Trials, load_system
+from faultpath.run.execution.provenance import run_provenance
+from faultpath.run.execution.runner import run_study
+from faultpath.system import library_of
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]

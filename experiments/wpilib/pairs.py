@@ -13,14 +13,15 @@ from pathlib import Path
 
 import numpy as np
 
-from faultpath.decisions.model import CORRECT
-from faultpath.decisions.planning import rows_of
-from faultpath.decisions.scan.decide import successes
-from faultpath.decisions.scan.record import ScanRecord
+from faultpath.analyses.model import CORRECT
+from faultpath.analyses.planning import rows_of
+from faultpath.analyses.scan.decide import successes
+from faultpath.analyses.scan.record import ScanRecord
 from faultpath.faults import at_readers
-from faultpath.statistics.cancelling import cancelling
-from faultpath.trials import Study, SystemSpec, library_of, load_system
-from faultpath.trials.execution.runner import run_study
+from faultpath.run import Study, SystemSpec, load_system
+from faultpath.run.execution.runner import run_study
+from faultpath.stats.cancelling import cancelling
+from faultpath.system import library_of
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from faultpath.api.systems import load_system
     from faultpath.core.errors import UserError
     from faultpath.core.streams import generator
-    from faultpath.trials.system import System
+    from faultpath.system.system import System
 
 __all__ = [
     "Run",
@@ -43,7 +43,7 @@ __all__ = [
 
 _HOMES = {
     "Run": "faultpath.api.runs",
-    "System": "faultpath.trials.system",
+    "System": "faultpath.system.system",
     "UserError": "faultpath.core.errors",
     "audit": "faultpath.api.audit",
     "check": "faultpath.api.checks",

@@ -1,10 +1,11 @@
 """A system with three modules that only lays out variants and never runs."""
 
-from faultpath.decisions.planning import Audit, plan_audit
+from faultpath.analyses.planning import Audit, plan_audit
 from faultpath.faults import Fault, FaultText, Scale
 from faultpath.interface import Channel, Interface, Provenance, Source
-from faultpath.trials import Library, SceneRef, System, SystemSpec, Variant
-from faultpath.trials.question import AuditQuestion
+from faultpath.run import SystemSpec
+from faultpath.run.question import AuditQuestion
+from faultpath.system import Library, SceneRef, System, Variant
 
 INTERFACE = Interface(
     name="paper",

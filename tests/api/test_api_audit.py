@@ -16,9 +16,9 @@ from faultpath.core.files.parquet import read_table
 from faultpath.report.html import report_page
 from faultpath.report.tables import markdown_table
 from faultpath.report.terminal import decision
-from faultpath.trials.store.folder import OUTCOMES
-from faultpath.trials.store.signals import encode_signals
-from faultpath.trials.store.tables import encode_outcomes, encode_traces
+from faultpath.run.store.folder import OUTCOMES
+from faultpath.run.store.signals import encode_signals
+from faultpath.run.store.tables import encode_outcomes, encode_traces
 
 ASKED = {**AUDIT, "scenes": 12, "signals": False}
 

@@ -9,7 +9,7 @@ from toy_audits import AUDIT, FILE
 
 import faultpath
 from faultpath.api.folders import read_run
-from faultpath.trials.store.signals import SIGNALS, TOGETHER
+from faultpath.run.store.signals import SIGNALS, TOGETHER
 
 AUDIT_MODULE = import_module("faultpath.api.audit")
 ASKED = AUDIT | {"scenes": 3}

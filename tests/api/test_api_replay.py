@@ -13,9 +13,9 @@ from faultpath.api.folders import read_run
 from faultpath.api.replaying import chosen_scenes, keep_signals, replay
 from faultpath.cli.replay import replay as command
 from faultpath.core.errors import UserError
-from faultpath.trials.store.signals import IN_FORCE, SIGNALS, Signal
-from faultpath.trials.store.tables import TrialAddress
-from faultpath.trials.trials import Trials
+from faultpath.run.store.signals import IN_FORCE, SIGNALS, Signal
+from faultpath.run.store.tables import TrialAddress
+from faultpath.run.trials import Trials
 
 SCENE = "cart/001"
 ASKED = AUDIT | {"fault": "gain:scale=0.6,onset=20,for=30", "scenes": 3}

@@ -3,13 +3,13 @@
 import pytest
 from toy_audits import TOY
 
-from faultpath.decisions.model import FaultedTap
-from faultpath.decisions.planning import Audit, plan_audit
-from faultpath.decisions.record import DecisionRecord
+from faultpath.analyses.model import FaultedTap
+from faultpath.analyses.planning import Audit, plan_audit
+from faultpath.analyses.record import DecisionRecord
 from faultpath.faults import FaultText
-from faultpath.trials import SystemSpec, load_system
-from faultpath.trials.execution.runner import run_study
-from faultpath.trials.question import AuditQuestion
+from faultpath.run import SystemSpec, load_system
+from faultpath.run.execution.runner import run_study
+from faultpath.run.question import AuditQuestion
 
 STEPS = 100
 

@@ -3,18 +3,18 @@
 import pytest
 from audit_toys import INTERFACE, Paper, planned
 
+from faultpath.analyses.planning import Audit
 from faultpath.core.errors import UserError
 from faultpath.core.files.plain import yaml_text
-from faultpath.decisions.planning import Audit
 from faultpath.interface import read_interface
-from faultpath.trials import Status, Variant
-from faultpath.trials.question import (
+from faultpath.run.question import (
     AuditQuestion,
     CheckQuestion,
     MapQuestion,
     ScanQuestion,
     TraceQuestion,
 )
+from faultpath.system import Status, Variant
 
 COST, LIMIT, MODEL = ("mass", "planner.cost"), ("mass", "planner.limit"), ("mass", "observer.model")
 LOG, HEAT = ("mass", "logger.file"), ("heat", "logger.file")

@@ -11,9 +11,9 @@ from toy_audits import AUDIT, TOY
 
 import faultpath
 from faultpath import Run, UserError
-from faultpath.decisions.model import AS_RUN, SHARED
+from faultpath.analyses.model import AS_RUN, SHARED
 from faultpath.report.html import report_page
-from faultpath.trials.store.tables import encode_outcomes
+from faultpath.run.store.tables import encode_outcomes
 
 WON: Successes = {
     "old": [n < 6 or n % 3 == 0 for n in range(30)],

@@ -9,8 +9,8 @@ import pyarrow.parquet as pq
 import pytest
 from cli_runs import HERE, ROOT, Ended, audit, edit, faultpath, shards
 
+from faultpath.analyses.model import SHARED
 from faultpath.api.runs import open_run
-from faultpath.decisions.model import SHARED
 
 FILES = {
     *("manifest.json", "outcomes.parquet", "traces.parquet", "record.json", "provenance.json"),

@@ -4,7 +4,7 @@ import pytest
 from cli_runs import TOY, audit, faultpath
 
 from faultpath.core.errors import UserError
-from faultpath.trials.question import CheckQuestion, ask
+from faultpath.run.question import CheckQuestion, ask
 
 TOY_MISTAKES = {
     "unknown system": ({"system": "quadcopter"}, ["'quadcopter'", "installed: quadrotor"]),

@@ -12,7 +12,7 @@ from cli_runs import COMMAND, ROOT, audit, faultpath
 HEAD = f"""
 import sys
 sys.path.insert(0, {str(ROOT / "examples")!r})
-from faultpath.trials import Library, SceneRef, System, Variant
+from faultpath.system import Library, SceneRef, System, Variant
 from toy import Toy
 INTERFACE = Toy.interface
 """

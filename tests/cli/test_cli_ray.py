@@ -26,7 +26,7 @@ def test_a_cluster_that_is_not_there_is_a_sentence(executor, workers, name):
 
 def test_a_missing_extra_is_a_sentence():
     with patch.dict(sys.modules, {"ray": None}):
-        sys.modules.pop("faultpath.trials.work.ray_cluster", None)
+        sys.modules.pop("faultpath.run.work.ray_cluster", None)
         audit(executor="ray", workers=1, out="run").refused("pip install '.[ray]'")
 
 
@@ -55,7 +55,7 @@ def test_without_a_cluster_one_is_started_here_with_as_many_cpus_as_workers(monk
 
 def test_what_rays_threads_print_is_no_output_of_ours(capsys):
     pytest.importorskip("ray")
-    from faultpath.trials.work.ray_cluster import _WithoutNews
+    from faultpath.run.work.ray_cluster import _WithoutNews
 
     told = _WithoutNews(sys.stdout)
     print("ours", file=told)

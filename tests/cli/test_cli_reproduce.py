@@ -13,11 +13,11 @@ from faultpath_paper.run import ReproductionPlan
 from faultpath_paper.verb import show
 
 import faultpath
+from faultpath.analyses.tables import MISSING
 from faultpath.api.display import Display
 from faultpath.api.job import Job
 from faultpath.core.errors import UserError
-from faultpath.decisions.tables import MISSING
-from faultpath.trials.work.executor import Here
+from faultpath.run.work.executor import Here
 
 PLAN = ReproductionPlan((table_4.PAGE,), QUICK)
 DISPLAY = Display(command=("faultpath", "reproduce"))

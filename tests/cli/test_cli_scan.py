@@ -11,7 +11,7 @@ import pytest
 from cli_runs import HERE, TOY, edit, faultpath, flags, shards, start, until
 
 import faultpath as library
-from faultpath.decisions.scan.record import ScanRecord
+from faultpath.analyses.scan.record import ScanRecord
 
 SLOW = f"{HERE / 'systems' / 'slow_toy.py'}:create"
 

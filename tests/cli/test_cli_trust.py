@@ -10,8 +10,8 @@ from cli_runs import ROOT, audit, edit, faultpath
 from odd_inputs import sign
 
 from faultpath.core.errors import UserError
-from faultpath.trials import SystemSpec
-from faultpath.trials.trust import check_named
+from faultpath.run import SystemSpec
+from faultpath.run.trust import check_named
 
 MINE = f"""
 import sys

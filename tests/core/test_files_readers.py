@@ -11,14 +11,14 @@ from typing import Any
 import pytest
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import locked
 from faultpath.core.files.opening import contents
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, read_json, read_yaml, yaml_text
 from faultpath.interface import read_interface
 from faultpath.learning.model_card import FitRecord, read_card
-from faultpath.trials.store.atomic import locked
-from faultpath.trials.store.folder import RunFolder, read_outcomes, read_regular
-from faultpath.trials.store.manifest import read_manifest
+from faultpath.run.store.folder import RunFolder, read_outcomes, read_regular
+from faultpath.run.store.manifest import read_manifest
 
 Read = Callable[[Path], object]
 

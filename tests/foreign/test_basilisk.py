@@ -22,7 +22,7 @@ from Basilisk.utilities import SimulationBaseClass
 from foreign_trials import ROOT, attempted, faulted, loaded
 
 from faultpath import audit, generator
-from faultpath.systems import FunctionPlant, shared_objects
+from faultpath.system import FunctionPlant, shared_objects
 
 EXAMPLE = ROOT / "examples" / "basilisk_attitude.py"
 SCENE, STEPS = "seed/7", 300

@@ -5,7 +5,7 @@ import pytest
 from foreign_trials import ROOT, attempted, faulted, loaded
 
 from faultpath import audit, generator
-from faultpath.systems import shared_objects
+from faultpath.system import shared_objects
 
 do_mpc = pytest.importorskip("do_mpc")
 PAGE = ROOT / "docs" / "do-mpc.md"

@@ -11,7 +11,7 @@ from foreign_trials import ROOT, attempted, faulted
 from motulator.common.utils import abc2complex
 
 from faultpath import audit, generator
-from faultpath.systems import shared_objects
+from faultpath.system import shared_objects
 
 EXAMPLE = "motulator_drive.py"
 SCENE, STEPS = "seed/3", 240

@@ -22,7 +22,7 @@ from rotorpy.world import World
 from scipy.spatial.transform import Rotation
 
 from faultpath import audit, generator
-from faultpath.systems import shared_objects
+from faultpath.system import shared_objects
 
 SCENE, STEPS = "seed/7", 60
 

@@ -16,7 +16,7 @@ from wpimath.kinematics import DifferentialDriveKinematics
 from faultpath import audit, generator
 from faultpath.core.errors import SystemMistake
 from faultpath.loop import Inputs, Port
-from faultpath.systems import tapped, writes
+from faultpath.system import tapped, writes
 
 EXAMPLE = ROOT / "examples" / "wpilib_wheels.py"
 SCENE, STEPS = "seed/3", 120

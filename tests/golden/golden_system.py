@@ -5,7 +5,14 @@ import numpy as np
 from faultpath import System, generator
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.loop import Reading
-from faultpath.trials import Library, Metric, Outcome, SceneRef, Status, Variant
+from faultpath.system import (
+    Library,
+    Metric,
+    Outcome,
+    SceneRef,
+    Status,
+    Variant,
+)
 
 STEPS = 5
 PLANNER, OBSERVER, LIMIT = "planner.thrust", "observer.balance", "limit.ceiling"

@@ -11,9 +11,9 @@ from faultpath.core.errors import UserError
 from faultpath.faults import Fault, Scale, resolve
 from faultpath.learning import Learned, errors, fit, uncertainty_training, withheld, withholding
 from faultpath.loop import Batch, Inputs, Module, Port, Reading, Taps
-from faultpath.systems import ComposedSystem, FunctionPlant, Parts
-from faultpath.trials import Treatment
-from faultpath.trials.attempt import taps_of
+from faultpath.run import Treatment
+from faultpath.run.attempt import taps_of
+from faultpath.system import ComposedSystem, FunctionPlant, Parts
 
 GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")
 

@@ -9,7 +9,7 @@ from faultpath.faults import resolve
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Graph, Loop, Module, Plant, Port, Progress, Query, Taps, graph
 from faultpath.loop import interface_of as derived
-from faultpath.systems.checks.reads import Enough
+from faultpath.run.check.reads import Enough
 
 DT_S = 0.1
 SCENES = ("a", "b")

@@ -19,7 +19,7 @@ from faultpath.loop import (
     readers,
 )
 from faultpath.loop import interface_of as derived
-from faultpath.systems.checks.reads import ReadLog
+from faultpath.run.check.reads import ReadLog
 
 
 def fault(text):

@@ -10,7 +10,7 @@ from faultpath_paper.claims import SUBJECTS
 from faultpath_paper.report.short import apart, by_kind, by_subject
 from faultpath_paper.report.words import headline, is_non_detection
 
-from faultpath.statistics.estimate import Sign
+from faultpath.stats.estimate import Sign
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,8 @@ from faultpath_paper.results import Results
 from study_toys import SCENES, as_published, mirrored, whole
 from toy_runs import EMPTY, NOTHING, trials
 
-from faultpath.trials import Status, Trials
+from faultpath.run import Trials
+from faultpath.system import Status
 
 Answers = dict[str, ClaimVerdict]
 

@@ -24,11 +24,11 @@ from faultpath_paper.claims.rules import (
 from faultpath_paper.claims.statement import Turned
 from faultpath_paper.results import decisive
 
-from faultpath.statistics.contrast import Contrast, change, weighted_sum
-from faultpath.statistics.decisions import with_test
-from faultpath.statistics.effects import mean_effect, success_effect
-from faultpath.statistics.estimate import PairedTest
-from faultpath.statistics.resamples import Resamples
+from faultpath.stats.contrast import Contrast, change, weighted_sum
+from faultpath.stats.decisions import with_test
+from faultpath.stats.effects import mean_effect, success_effect
+from faultpath.stats.estimate import PairedTest
+from faultpath.stats.resamples import Resamples
 
 Interval = tuple[float, float] | None
 UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)

@@ -12,9 +12,9 @@ from faultpath_paper.quantities.crossing import crossing, greater_effect
 from faultpath_paper.results import Results
 from toy_runs import NOTHING, trials
 
-from faultpath.statistics.contrast import percentile_interval
-from faultpath.statistics.resamples import Resamples
-from faultpath.trials import Status
+from faultpath.stats.contrast import percentile_interval
+from faultpath.stats.resamples import Resamples
+from faultpath.system import Status
 
 SCENES = 60
 REPAIR = REPAIRS["GRU/reconstruction-only"]

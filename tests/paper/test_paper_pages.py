@@ -25,8 +25,8 @@ from toy_runs import (
     won,
 )
 
-from faultpath.decisions.tables import MISSING, Table
-from faultpath.trials import Trials
+from faultpath.analyses.tables import MISSING, Table
+from faultpath.run import Trials
 
 NAMES = tuple(page.name for page in PAGES)
 

@@ -15,7 +15,7 @@ from faultpath_paper.run import ReproductionPlan, conclude, measure_all, plan, r
 from faultpath.api.display import Display
 from faultpath.api.job import Job
 from faultpath.core.errors import UserError
-from faultpath.trials.work.executor import Here
+from faultpath.run.work.executor import Here
 
 SILENT = Display(command=("faultpath", "reproduce"))
 TINY = Profile("tiny", scenes=1, seeds=(0,))

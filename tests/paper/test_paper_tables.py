@@ -6,7 +6,7 @@ from faultpath_paper.pages import table_3, table_4, table_6
 from faultpath_quadrotor.training import trajectories
 from toy_runs import SCENES, calibrated, line, measured, page, papers, run, tables, texts, won
 
-from faultpath.trials import Status
+from faultpath.system import Status
 
 
 def test_table_1_counts_how_trials_end_and_when() -> None:

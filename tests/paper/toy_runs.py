@@ -11,8 +11,9 @@ from faultpath_paper.page import Page
 from faultpath_paper.pages import PAGES
 from faultpath_paper.results import Results
 
-from faultpath.decisions.tables import Entry, Line, Table
-from faultpath.trials import Outcome, Pairs, Status, Trial, Trials
+from faultpath.analyses.tables import Entry, Line, Table
+from faultpath.run import Pairs, Trial, Trials
+from faultpath.system import Outcome, Status
 
 SCENES = 20
 Ends = Callable[[Cell, int, int], Status]

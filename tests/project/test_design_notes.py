@@ -23,7 +23,7 @@ from project_names import EXEMPT, ROOT, mistakes
 from test_files import MAX_LINES
 
 import faultpath
-from faultpath.decisions.map.lattice import COARSE, UNITS
+from faultpath.analyses.map.lattice import COARSE, UNITS
 from faultpath.learning.model_card import Schedule
 
 DESIGN = ROOT / "docs" / "design"
@@ -64,7 +64,7 @@ def gru() -> tuple[float, ...]:
 
 
 def bets() -> int:
-    return len(resolve_name("faultpath.statistics.betting:_SHARES"))
+    return len(resolve_name("faultpath.stats.betting:_SHARES"))
 
 
 Number = str | Callable[[], Any]
@@ -73,15 +73,15 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("CONTRIBUTING", "# distributions in one", distributions),
     ("CONTRIBUTING", "Python # or newer", lambda: float(PROJECT["project"]["requires-python"][2:])),
     ("architecture", "# distributions - **", distributions),
-    ("analyses", "multiples of 1/#", "faultpath.decisions.map.lattice:UNITS"),
+    ("analyses", "multiples of 1/#", "faultpath.analyses.map.lattice:UNITS"),
     ("analyses", "starts with # by #", lambda: (2 * UNITS // COARSE + 1,) * 2),
-    ("analyses", "# joint resamples", "faultpath.decisions.map.surface:RESAMPLES"),
+    ("analyses", "# joint resamples", "faultpath.analyses.map.surface:RESAMPLES"),
     ("api", "# stand at the top", lambda: len(faultpath.__all__)),
     ("claims", "estimate of at least # scenes;", "faultpath_paper.claims.rules:POINT_SCENES"),
     ("claims", "estimate of at least # scenes meets", "faultpath_paper.claims.rules:POINT_SCENES"),
     ("claims", "fewer than # give no answer", "faultpath_paper.claims.rules:POINT_SCENES"),
     ("claims", "or fewer than # scenes |", "faultpath_paper.claims.rules:POINT_SCENES"),
-    ("claims", "Fewer than # give no interval", "faultpath.statistics.contrast:MIN_SCENES"),
+    ("claims", "Fewer than # give no interval", "faultpath.stats.contrast:MIN_SCENES"),
     ("claims", "above # pp", "faultpath_paper.quantities.differences:TELLING_PP"),
     ("claims", "less than # % success", "faultpath_paper.quantities.summaries:PEAK_PERCENT"),
     ("claims", "# predictors in free space", "faultpath_paper.claims.statement:ALL_SEEDS"),
@@ -90,8 +90,8 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("conventions", "gravity # m/s", "faultpath_quadrotor.vehicle:GRAVITY_MPS2"),
     ("device", "checked every # steps", "faultpath_quadrotor.plant.module:LOOK_EVERY"),
     ("device", "Blocks hold # scenes instead of #", lambda: (block("cuda"), block("cpu"))),
-    ("execution", ": # scenes of one unit", "faultpath.trials.execution.recheck:SAMPLE"),
-    ("execution", "the first # trials", "faultpath.trials.execution.state:FEW"),
+    ("execution", ": # scenes of one unit", "faultpath.run.execution.recheck:SAMPLE"),
+    ("execution", "the first # trials", "faultpath.run.execution.state:FEW"),
     ("kernels", "rolls # candidates", lambda: PLATFORM.planner.sampler.candidates),
     ("kernels", "more than # hidden units", "faultpath_quadrotor.predictors.compiled:MOST_HIDDEN"),
     ("learning", "weights by #", lambda: Schedule().weight_decay),
@@ -129,13 +129,13 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("scenes", "a lattice of # m", "faultpath_quadrotor.scenes.soundness:CELL_M"),
     ("scenes", "(radius # m", "faultpath_quadrotor.vehicle:COLLISION_RADIUS_M"),
     ("statistics", "mean over # shares", bets),
-    ("statistics", "p at most #,", "faultpath.statistics.estimate:ALPHA"),
+    ("statistics", "p at most #,", "faultpath.stats.estimate:ALPHA"),
     ("studies", "A window is # steps", "faultpath_quadrotor.predictors.history:STEPS"),
     ("studies", "at least # control steps", "faultpath_paper.evidence.recording:STRIDE"),
-    ("systems", "faulted for # steps", "faultpath.systems.checks.check:_AFTER"),
-    ("systems", "matters # times as much", "faultpath.systems.checks.judging:_SEVERAL"),
-    ("verdict", "succeed below # %", "faultpath.decisions.effects:FLOOR_PERCENT"),
-    ("verdict", "or above # %, the", "faultpath.decisions.effects:CEILING_PERCENT"),
+    ("systems", "faulted for # steps", "faultpath.run.check.check:_AFTER"),
+    ("systems", "matters # times as much", "faultpath.run.check.judging:_SEVERAL"),
+    ("verdict", "succeed below # %", "faultpath.analyses.effects:FLOOR_PERCENT"),
+    ("verdict", "or above # %, the", "faultpath.analyses.effects:CEILING_PERCENT"),
 ]
 """Page, words around a number (`#`), and the constant or function that gives it."""
 

@@ -14,7 +14,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 import faultpath
-from faultpath.trials.registry import _EXTRAS
+from faultpath.run.registry import _EXTRAS
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from faultpath_paper.pages import PAGES
 from faultpath_paper.results import Results
 from faultpath_paper.run import read_results
 
-from faultpath.trials.provenance import RunProvenance
+from faultpath.run.provenance import RunProvenance
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference" / "paper"

@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 import faultpath
-from faultpath.decisions.question import Question
+from faultpath.analyses.question import Question
 from faultpath.faults import Fault, FaultText, Intervention, resolve
-from faultpath.trials.question import AuditQuestion
+from faultpath.run.question import AuditQuestion
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = str(ROOT / "src" / "faultpath")

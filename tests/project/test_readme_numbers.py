@@ -11,15 +11,15 @@ import documents
 import pytest
 from faultpath_quadrotor.scenes.library import load_library
 
-from faultpath.decisions.decide import decide
-from faultpath.decisions.planning import Audit, plan_audit
-from faultpath.decisions.record import DecisionRecord
-from faultpath.trials import SystemSpec, load_system
-from faultpath.trials.execution.runner import run_study
-from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.question import AuditQuestion
-from faultpath.trials.store.folder import read_outcomes
-from faultpath.trials.store.tables import encode_outcomes
+from faultpath.analyses.decide import decide
+from faultpath.analyses.planning import Audit, plan_audit
+from faultpath.analyses.record import DecisionRecord
+from faultpath.run import SystemSpec, load_system
+from faultpath.run.execution.runner import run_study
+from faultpath.run.provenance import RunProvenance
+from faultpath.run.question import AuditQuestion
+from faultpath.run.store.folder import read_outcomes
+from faultpath.run.store.tables import encode_outcomes
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference"

@@ -6,7 +6,7 @@ import pytest
 import state_blocks as blocks
 from state_design import Design
 
-from faultpath.decisions.family import decide_conditions
+from faultpath.analyses.family import decide_conditions
 
 
 def audit(scenes: int, alone: int, shared: int) -> dict:

@@ -16,7 +16,8 @@ from faultpath_quadrotor.vehicle import VehicleParameters
 from faultpath.core.arrays import Array
 from faultpath.faults import Fault, resolve
 from faultpath.loop import DeliveryListener, Query, Reading, Tap, Taps
-from faultpath.trials import Outcome, SystemSpec, load_system
+from faultpath.run import SystemSpec, load_system
+from faultpath.system import Outcome
 
 STEPS = 12
 HELD_OUT = tuple(f"held-out/{i:03d}" for i in range(5))

@@ -11,9 +11,9 @@ from flights import bits, fly, quadrotor
 
 from faultpath.api.systems import with_parts
 from faultpath.core.errors import UserError
-from faultpath.systems.checks.check import chosen_variants
-from faultpath.trials import SystemSpec
-from faultpath.trials.code import system_code
+from faultpath.run import SystemSpec
+from faultpath.run.check.check import chosen_variants
+from faultpath.run.code import system_code
 
 ROOT = Path(__file__).parents[2]
 PARTS = Path(__file__).with_name("own_parts.py")

@@ -17,10 +17,10 @@ from fitting_toys import Net, Toy
 from safetensors.torch import load_file
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import write
 from faultpath.learning.loop import Diverged
 from faultpath.learning.model_card import Schedule
 from faultpath.learning.model_card import read_card as read
-from faultpath.trials.store.atomic import write
 
 
 def read_card(path: Path) -> ModelCard:
@@ -82,7 +82,7 @@ def test_a_stop_at_any_write_loses_no_bits(reference, tmp_path, monkeypatch):
             original(path, data)
 
         with monkeypatch.context() as patch:
-            patch.setattr("faultpath.trials.store.atomic.write", stopping)
+            patch.setattr("faultpath.core.files.atomic.write", stopping)
             try:
                 _fit(Toy(), folder)
             except KeyboardInterrupt:

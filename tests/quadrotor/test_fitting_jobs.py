@@ -14,7 +14,7 @@ from faultpath_quadrotor.training.provenance import PoolProvenance
 from fitting_toys import Toy, entry
 
 from faultpath.core.errors import Stopped, UserError
-from faultpath.trials.work import processes as processes_of_work
+from faultpath.run.work import processes as processes_of_work
 
 
 def _run(tmp_path: Path, wanted: list[FitJob], workers: int = 0, told=lambda _: None, **more):

@@ -4,11 +4,11 @@ import numpy as np
 from flights import fault
 
 from faultpath.faults import at_readers
-from faultpath.systems.checks.blocks import BlockSpec, run_block
-from faultpath.trials import SystemSpec, Treatment, load_system
-from faultpath.trials.attempt import Done, attempt
-from faultpath.trials.execution.recheck import difference
-from faultpath.trials.store.signals import TOGETHER
+from faultpath.run import SystemSpec, Treatment, load_system
+from faultpath.run.attempt import Done, attempt
+from faultpath.run.check.blocks import BlockSpec, run_block
+from faultpath.run.execution.recheck import difference
+from faultpath.run.store.signals import TOGETHER
 
 SCENE = ("selection/003",)
 

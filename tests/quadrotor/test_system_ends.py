@@ -9,7 +9,7 @@ from faultpath_quadrotor.scenes.scene import Box
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M, CONTROL_DT_S, GRAVITY_MPS2
 from flights import HELD_OUT, STEPS, fault, fly, hall, quadrotor, trace, with_halls
 
-from faultpath.trials import Outcome, Status
+from faultpath.system import Outcome, Status
 
 HOVER = f"action:erase={GRAVITY_MPS2}/0/0/0@vehicle"
 FALL = "action:erase=0/0/0/0@vehicle"

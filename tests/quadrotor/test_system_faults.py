@@ -5,7 +5,7 @@ import pytest
 from flights import HELD_OUT, STEPS, bits, fault, fly, quadrotor, trace
 
 from faultpath.loop import Receipts
-from faultpath.trials import Outcome
+from faultpath.system import Outcome
 
 READERS = ("predictor.dynamics", "predictor.trim", "reconstruction.nominal_model")
 WIND_MAPS = ("predictor.wind_map", "reconstruction.wind_map")

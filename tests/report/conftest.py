@@ -14,14 +14,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from faultpath.decisions.decide import decide
-from faultpath.decisions.model import Condition, FaultedTap
-from faultpath.decisions.question import Question
+from faultpath.analyses.decide import decide
+from faultpath.analyses.model import Condition, FaultedTap
+from faultpath.analyses.question import Question
 from faultpath.interface import Interface, read_interface
 from faultpath.report.inputs import ReportInput
-from faultpath.trials import Outcome, Status, SystemShown, Trial, Trials, VariantShown
-from faultpath.trials.declared import FloorPlan, Pillar, Prism
-from faultpath.trials.provenance import RunProvenance
+from faultpath.run import SystemShown, Trial, Trials, VariantShown
+from faultpath.run.provenance import RunProvenance
+from faultpath.system import Outcome, Status
+from faultpath.system.declared import FloorPlan, Pillar, Prism
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from faultpath.trials import Trial, Trials
-from faultpath.trials.store.tables import Trace
+from faultpath.run import Trial, Trials
+from faultpath.run.store.tables import Trace
 
 
 class Page(HTMLParser):

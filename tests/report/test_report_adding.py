@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
 
-from faultpath.decisions.examples import choose
-from faultpath.decisions.pairs import read_pairs
+from faultpath.analyses.examples import choose
+from faultpath.analyses.pairs import read_pairs
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
-from faultpath.systems.checks.recording import added
-from faultpath.trials.store.tables import TrialAddress
+from faultpath.run.check.recording import added
+from faultpath.run.store.tables import TrialAddress
 
 TOPIC = "error of the predicted acceleration"
 SIZES = {"predictor": (2.0, 0.0), "reconstruction": (0.0, -2.0), "shared": (2.0, -1.75)}

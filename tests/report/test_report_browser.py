@@ -13,9 +13,9 @@ from playwright.sync_api import Browser, Page, expect
 
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.trials import Trials
-from faultpath.trials.store.signals import Signal
-from faultpath.trials.store.tables import TrialAddress
+from faultpath.run import Trials
+from faultpath.run.store.signals import Signal
+from faultpath.run.store.tables import TrialAddress
 
 pytestmark = pytest.mark.browser
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 import pytest
 from page_reader import unpack
 
-from faultpath.decisions.examples import captions, choose
-from faultpath.decisions.pairs import Pair, read_pairs
-from faultpath.decisions.record import DecisionRecord
+from faultpath.analyses.examples import captions, choose
+from faultpath.analyses.pairs import Pair, read_pairs
+from faultpath.analyses.record import DecisionRecord
 from faultpath.report.inputs import ReportInput
 from faultpath.report.viewer import viewer_data
-from faultpath.trials import Status
+from faultpath.system import Status
 
 CONDITIONS = ("correct", "predictor", "reconstruction", "shared")
 LETTERS = {"b": (True, True), "r": (False, True), "l": (True, False), "n": (False, False)}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
-from faultpath.decisions.model import Condition
+from faultpath.analyses.model import Condition
 from faultpath.report.compared import Compared, differing, titles, together
 from faultpath.report.comparison import effects, facts_table, headline, page, sentences, shown
 from faultpath.report.inputs import ReportInput

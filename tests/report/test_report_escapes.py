@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 from reproduction_toys import ledger
 
-from faultpath.decisions.tables import Entry, Line, Table, escapes
-from faultpath.decisions.tables.markdown import block as table_markdown
+from faultpath.analyses.tables import Entry, Line, Table, escapes
+from faultpath.analyses.tables.markdown import block as table_markdown
 from faultpath.report.frame import render
 from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import Svg

@@ -4,15 +4,15 @@ import re
 from typing import Literal
 from xml.etree import ElementTree
 
-from faultpath.decisions.model import Ahead, ConditionBreakEven
-from faultpath.decisions.pairs import read_pairs
-from faultpath.decisions.record import DecisionRecord
+from faultpath.analyses.model import Ahead, ConditionBreakEven
+from faultpath.analyses.pairs import read_pairs
+from faultpath.analyses.record import DecisionRecord
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, panel, shared_axis
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pair_grid import pair_grid, pair_key
 from faultpath.report.svg import covering, shortened, text_width
 from faultpath.report.taps import fork_panel, forks
-from faultpath.statistics.estimate import BreakEven, Region
+from faultpath.stats.estimate import BreakEven, Region
 
 
 def test_an_axis_covers_any_number_that_a_record_may_hold() -> None:

@@ -6,17 +6,17 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page
 
+from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.pairs import Pair
+from faultpath.analyses.scan.record import ScanRecord
 from faultpath.api.folders import read_run
-from faultpath.decisions.map.record import MapRecord
-from faultpath.decisions.pairs import Pair
-from faultpath.decisions.scan.record import ScanRecord
 from faultpath.report.frame import STYLES
 from faultpath.report.html import report_page
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.pair_grid import pair_grid
 from faultpath.report.scan_pictures import strip, triangle
 from faultpath.report.svg import template
-from faultpath.trials import Outcome, Status
+from faultpath.system import Outcome, Status
 
 pytestmark = pytest.mark.browser
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"

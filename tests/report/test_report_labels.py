@@ -13,9 +13,9 @@ from playwright.sync_api import Browser
 from faultpath import compare, open_run
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.trials import FloorPlan
-from faultpath.trials.store.signals import DRAWN, Signal
-from faultpath.trials.store.tables import TrialAddress
+from faultpath.run.store.signals import DRAWN, Signal
+from faultpath.run.store.tables import TrialAddress
+from faultpath.system import FloorPlan
 
 pytestmark = pytest.mark.browser
 REFERENCE = Path(__file__).parents[2] / "docs" / "reference"

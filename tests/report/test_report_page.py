@@ -8,9 +8,9 @@ from itertools import pairwise
 import pytest
 from page_reader import Page, unpack
 
-import faultpath.decisions.pairs as page_pairs
-from faultpath.decisions.examples import captions
-from faultpath.decisions.pairs import PairKind, read_pairs
+import faultpath.analyses.pairs as page_pairs
+from faultpath.analyses.examples import captions
+from faultpath.analyses.pairs import PairKind, read_pairs
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 

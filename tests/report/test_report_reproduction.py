@@ -10,7 +10,7 @@ from page_reader import Page
 from reproduction_toys import NASTY, ledger, reproduction, sweep, tables
 from rich.console import Console
 
-from faultpath.decisions.tables import Entry, Line, Table
+from faultpath.analyses.tables import Entry, Line, Table
 from faultpath.report.inputs import ReportInput
 
 CENTRAL = Table(

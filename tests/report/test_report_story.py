@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from faultpath.decisions.model import Condition
+from faultpath.analyses.model import Condition
 from faultpath.faults import Fault, Scale
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from faultpath.decisions.model import CORRECT
-from faultpath.decisions.sweep import contrasts
+from faultpath.analyses.model import CORRECT
+from faultpath.analyses.sweep import contrasts
 from faultpath.report.compared import Compared, together
 from faultpath.report.inputs import ReportInput
 

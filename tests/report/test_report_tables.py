@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.sentences import wording
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.sentences import wording
 from faultpath.report.html import _finding, write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.tables import by_condition, decided_for, markdown_table

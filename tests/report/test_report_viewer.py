@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 from page_reader import unpack, with_traces
 
-from faultpath.decisions.pairs import read_pairs
+from faultpath.analyses.pairs import read_pairs
 from faultpath.interface import Provenance
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.viewer import pack, viewer_data
-from faultpath.trials.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
-from faultpath.trials.store.tables import TrialAddress, traces_of
+from faultpath.run.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
+from faultpath.run.store.tables import TrialAddress, traces_of
 
 
 def _unpacked(source: ReportInput) -> tuple[dict[str, Any], list[Any]]:

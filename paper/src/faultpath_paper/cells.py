@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import yaml
 
 from faultpath.core.results import Frozen
-from faultpath.trials import Group
+from faultpath.run import Group
 
 SYSTEM = "quadrotor"
 HELD_OUT = "held-out"

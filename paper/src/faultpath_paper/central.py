@@ -10,10 +10,10 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.tables import MISSING, Entry, Table, line
 from faultpath.core.results import Frozen
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.tables import MISSING, Entry, Table, line
-from faultpath.statistics.estimate import Sign
+from faultpath.stats.estimate import Sign
 from faultpath_paper.answers import Reproduction
 from faultpath_paper.entries import bracket
 from faultpath_paper.pages.table_4 import NAMES, PAGE, paper_contrast

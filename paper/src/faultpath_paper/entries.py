@@ -5,10 +5,10 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.tables import MISSING, Entry
-from faultpath.statistics.contrast import Contrast
-from faultpath.trials import Status
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.tables import MISSING, Entry
+from faultpath.stats.contrast import Contrast
+from faultpath.system import Status
 from faultpath_paper.cells import Cell, of_seed
 from faultpath_paper.evidence.table import Measurement
 from faultpath_paper.quantities.differences import contrast

@@ -4,8 +4,8 @@ from functools import cache
 from itertools import groupby
 from typing import Literal, get_args
 
+from faultpath.analyses.tables import Entry, Line, Table, line
 from faultpath.core.results import Frozen
-from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath_paper.cells import data
 
 Standing = Literal["as written", "our reading", "otherwise"]

@@ -7,9 +7,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from faultpath.faults import at_readers
-from faultpath.trials import Row, Study, System, SystemSpec, Treatment, Trials, load_system
-from faultpath.trials.execution.runner import RunResult
-from faultpath.trials.work.executor import Progress
+from faultpath.run import (
+    Row,
+    Study,
+    SystemSpec,
+    Treatment,
+    Trials,
+    load_system,
+)
+from faultpath.run.execution.runner import RunResult
+from faultpath.run.work.executor import Progress
+from faultpath.system import System
 from faultpath_paper.cells import SYSTEM, Cell, Profile, Setting
 
 FLIGHTS = "flights"

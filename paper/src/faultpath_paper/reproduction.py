@@ -6,17 +6,17 @@ from os import PathLike
 from pathlib import Path
 from typing import NoReturn
 
+from faultpath.analyses.tables import markdown
 from faultpath.api.display import Display, display
 from faultpath.api.folders import read_provenance
 from faultpath.api.job import Job
 from faultpath.api.runs import FinishedRun
 from faultpath.api.systems import LOCAL, check_executor, executor_of
 from faultpath.core.errors import Stopped, UserError
-from faultpath.decisions.tables import markdown
-from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store.atomic import write_text
-from faultpath.trials.store.folder import AGAIN, DELIVERIES, unseal
-from faultpath.trials.work.executor import Progress
+from faultpath.core.files.atomic import write_text
+from faultpath.run.provenance import RunProvenance
+from faultpath.run.store.folder import AGAIN, DELIVERIES, unseal
+from faultpath.run.work.executor import Progress
 from faultpath_paper.answers import Reproduction
 from faultpath_paper.central import of_page
 from faultpath_paper.evidence.table import EvidenceTable

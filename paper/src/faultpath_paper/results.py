@@ -6,11 +6,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from faultpath.statistics.contrast import Contrast
-from faultpath.statistics.effects import success_rate
-from faultpath.statistics.estimate import Estimate, Sign
-from faultpath.statistics.resamples import Resamples
-from faultpath.trials import Outcome, PairingRefused, Pairs, Status, Trials, pair
+from faultpath.run import PairingRefused, Pairs, Trials, pair
+from faultpath.stats.contrast import Contrast
+from faultpath.stats.effects import success_rate
+from faultpath.stats.estimate import Estimate, Sign
+from faultpath.stats.resamples import Resamples
+from faultpath.system import Outcome, Status
 from faultpath_paper.cells import Cell
 from faultpath_paper.evidence.table import EvidenceTable, Measured, Measurement
 

@@ -5,16 +5,16 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
+from faultpath.analyses.tables import Table
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import write_text
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
-from faultpath.decisions.tables import Table
-from faultpath.trials import Deliveries, System, SystemSpec, Trials, load_system
-from faultpath.trials.code import system_code
-from faultpath.trials.execution.runner import RunResult
-from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store.atomic import write_text
-from faultpath.trials.store.folder import (
+from faultpath.run import Deliveries, SystemSpec, Trials, load_system
+from faultpath.run.code import system_code
+from faultpath.run.execution.runner import RunResult
+from faultpath.run.provenance import RunProvenance
+from faultpath.run.store.folder import (
     OUTCOMES,
     RunFolder,
     keyed,
@@ -22,6 +22,7 @@ from faultpath.trials.store.folder import (
     read_regular,
     unseal,
 )
+from faultpath.system import System
 from faultpath_paper.answers import Reproduction, Sweep
 from faultpath_paper.cells import HELD_OUT, PROFILES, SYSTEM, Profile
 from faultpath_paper.claims import ledger

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from faultpath.faults import Delay, Fault, Noise, Rotate, Scale, Sequence
 from faultpath.plugin.system import UserError
-from faultpath.trials import Offered
+from faultpath.system import Offered
 
 
 class Wind(StrEnum):

@@ -1,6 +1,6 @@
 """Factory of the quadrotor. Torch loads when it is built, not when its options are listed."""
 
-from faultpath.trials import System
+from faultpath.system import System
 from faultpath_quadrotor.choices import QuadrotorChoices
 
 

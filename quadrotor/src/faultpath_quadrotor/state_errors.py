@@ -11,7 +11,7 @@ from faultpath.faults import Address, Fault, Record, resolve
 from faultpath.loop import DeliveryListener, Reading, Tap
 from faultpath.plugin.recording import taps_of
 from faultpath.plugin.system import UserError
-from faultpath.trials import Treatment
+from faultpath.run import Treatment
 from faultpath_quadrotor.estimators import ErrorStateFilter
 from faultpath_quadrotor.estimators.eskf import AT, Filtered
 from faultpath_quadrotor.estimators.protocol import STATE_SOURCES

@@ -24,7 +24,7 @@ from faultpath.plugin.system import (
     load_parts,
     located,
 )
-from faultpath.trials import SystemSpec
+from faultpath.run import SystemSpec
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators import Estimator
 from faultpath_quadrotor.estimators.protocol import SOURCES

@@ -14,7 +14,7 @@ from typing import Any
 import torch
 
 from faultpath.loop import Module
-from faultpath.trials import Wiring
+from faultpath.system import Wiring
 from faultpath_quadrotor.choices import ClearanceName
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators import FILTERS, Estimator, ExactEstimator, Tuned, filtering

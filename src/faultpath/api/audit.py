@@ -9,6 +9,11 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from faultpath.analyses.planning import Audit, plan_audit
+from faultpath.analyses.question import Question
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.sentences.wording import counted
+from faultpath.analyses.stopping import with_earlier_analyses
 from faultpath.api.display import Display
 from faultpath.api.folders import (
     MADE_FROM,
@@ -22,21 +27,17 @@ from faultpath.api.job import Job, run, with_question_signature
 from faultpath.api.replaying import outcomes_at, run_again, shown_first
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import write_file, write_text
 from faultpath.core.files.parquet import Unreadable
-from faultpath.decisions.planning import Audit, plan_audit
-from faultpath.decisions.question import Question
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.sentences.wording import counted
-from faultpath.decisions.stopping import with_earlier_analyses
 from faultpath.faults import FaultText
 from faultpath.report.inputs import ReportInput
-from faultpath.trials import Deliveries, System, system_shown
-from faultpath.trials.execution.runner import RunResult
-from faultpath.trials.question import AuditQuestion
-from faultpath.trials.store.atomic import write_file, write_text
-from faultpath.trials.store.folder import read_regular, seal
-from faultpath.trials.store.signals import SIGNALS, Signals, decode_signals, encode_signals
-from faultpath.trials.work.executor import Progress
+from faultpath.run import Deliveries, system_shown
+from faultpath.run.execution.runner import RunResult
+from faultpath.run.question import AuditQuestion
+from faultpath.run.store.folder import read_regular, seal
+from faultpath.run.store.signals import SIGNALS, Signals, decode_signals, encode_signals
+from faultpath.run.work.executor import Progress
+from faultpath.system.system import System
 
 _SCENES_FOR_ONE = 20
 """So many scenes of an audit, and one more is recorded: at most about a twentieth more trials."""

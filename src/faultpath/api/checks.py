@@ -3,18 +3,18 @@
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
+from faultpath.analyses.planning import faults_by_condition
 from faultpath.api.display import Display
 from faultpath.api.job import begin, with_question_signature
 from faultpath.api.systems import Chosen
-from faultpath.decisions.planning import faults_by_condition
 from faultpath.faults import Fault
-from faultpath.trials import System
-from faultpath.trials.question import CheckQuestion, TraceQuestion
-from faultpath.trials.work.executor import Progress
+from faultpath.run.question import CheckQuestion, TraceQuestion
+from faultpath.run.work.executor import Progress
+from faultpath.system.system import System
 
 if TYPE_CHECKING:
-    from faultpath.systems.checks.check import Report
-    from faultpath.systems.checks.tracing import TraceReport
+    from faultpath.run.check.check import Report
+    from faultpath.run.check.tracing import TraceReport
 
 
 @with_question_signature(CheckQuestion)
@@ -35,7 +35,7 @@ def check(
     Raises:
         UserError: There is no such system, variant or library, or it cannot be built.
     """
-    from faultpath.systems.checks.check import check_system, chosen_variants
+    from faultpath.run.check.check import check_system, chosen_variants
 
     question, chosen, _, display = begin("check", CheckQuestion, system, arguments, progress)
     conditions: dict[str, dict[str, tuple[Fault, ...]]] = {}
@@ -75,6 +75,6 @@ def trace(
 
 def traced(question: TraceQuestion, chosen: Chosen) -> "TraceReport":
     """Return the trace of a system that is built; raises as `trace`."""
-    from faultpath.systems.checks.tracing import trace_system
+    from faultpath.run.check.tracing import trace_system
 
     return trace_system(chosen.system, chosen.spec, question)

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
+from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.scan.record import ScanRecord
 from faultpath.api.runs import Run, open_run
 from faultpath.core.errors import UserError
-from faultpath.decisions.map.record import MapRecord
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.scan.record import ScanRecord
+from faultpath.core.files.atomic import check_output, write_text
 from faultpath.report.compared import Compared, differing, together
 from faultpath.report.comparison import headline, page, sentences
 from faultpath.report.frame import PAGE
-from faultpath.trials.store.atomic import check_output, write_text
 
 WORDS = ("headline", "sentences", "would_change", "commands")
 """Words that results are made into, as far as one has them."""

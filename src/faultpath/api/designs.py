@@ -3,14 +3,14 @@
 from os import PathLike
 from typing import Any
 
+from faultpath.analyses.map.study import MapPlan, plan_map
 from faultpath.api.display import Display
 from faultpath.api.folders import MAP, MAP_MADE_FROM, as_text
 from faultpath.api.job import Job, run, with_question_signature
 from faultpath.api.runs import MapRun
-from faultpath.decisions.map.study import MapPlan, plan_map
-from faultpath.trials import System
-from faultpath.trials.question import MapQuestion
-from faultpath.trials.store.atomic import write_text
+from faultpath.core.files.atomic import write_text
+from faultpath.run.question import MapQuestion
+from faultpath.system.system import System
 
 
 @with_question_signature(MapQuestion)

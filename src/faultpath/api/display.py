@@ -13,7 +13,7 @@ from rich.progress import Progress as Bar
 from rich.segment import Segment
 
 from faultpath.core.text import printable
-from faultpath.trials.work.executor import Progress
+from faultpath.run.work.executor import Progress
 
 Show = Callable[[Progress], None]
 

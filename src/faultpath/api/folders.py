@@ -9,19 +9,20 @@ from typing import TypeVar
 import numpy as np
 from pydantic import BaseModel
 
+from faultpath.analyses.model import SHARED
+from faultpath.analyses.planning import faulted_taps
+from faultpath.analyses.record import DecisionRecord
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, model_of
-from faultpath.decisions.model import SHARED
-from faultpath.decisions.planning import faulted_taps
-from faultpath.decisions.record import DecisionRecord
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
-from faultpath.trials import Deliveries, Status, SystemShown, Trials
-from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, read_regular, unseal
-from faultpath.trials.store.signals import SIGNALS, decode_signals
-from faultpath.trials.store.tables import decode_outcomes, decode_traces
+from faultpath.run import Deliveries, SystemShown, Trials
+from faultpath.run.provenance import RunProvenance
+from faultpath.run.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, read_regular, unseal
+from faultpath.run.store.signals import SIGNALS, decode_signals
+from faultpath.run.store.tables import decode_outcomes, decode_traces
+from faultpath.system.outcome import Status
 
 RECORD, SYSTEM, MAP, SCAN = "record.json", "system.json", "map.json", "scan.json"
 MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES)

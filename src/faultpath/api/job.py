@@ -12,19 +12,22 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
 
+from faultpath.analyses.analysis import Analysis, Items
 from faultpath.api.display import Display, Show, display
 from faultpath.api.runs import MapRun, Run, ScanRun
 from faultpath.api.systems import Chosen, choose, executor_of
 from faultpath.core.errors import UserError
-from faultpath.decisions.analysis import Analysis, Items
-from faultpath.trials import Library, Study, System, SystemSpec, library_of
-from faultpath.trials.code import system_code
-from faultpath.trials.execution.provenance import run_provenance
-from faultpath.trials.execution.runner import Failure, RunResult, run_study
-from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.question import Asked, Request, Running, ScanQuestion, ask
-from faultpath.trials.store.folder import keyed
-from faultpath.trials.work.executor import Executor, Progress
+from faultpath.run import Study, SystemSpec
+from faultpath.run.code import system_code
+from faultpath.run.execution.provenance import run_provenance
+from faultpath.run.execution.runner import Failure, RunResult, run_study
+from faultpath.run.provenance import RunProvenance
+from faultpath.run.question import Asked, Request, Running, ScanQuestion, ask
+from faultpath.run.store.folder import keyed
+from faultpath.run.work.executor import Executor, Progress
+from faultpath.system.checks import library_of
+from faultpath.system.declared import Library
+from faultpath.system.system import System
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
 _Asked = TypeVar("_Asked", bound=Request)

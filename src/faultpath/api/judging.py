@@ -11,30 +11,30 @@ from typing import Any
 
 import numpy as np
 
+from faultpath.analyses.decide import decide
+from faultpath.analyses.judging import LaidOut, pair_results
+from faultpath.analyses.question import Question
+from faultpath.analyses.record import DecisionRecord
 from faultpath.api.audit import concluded
 from faultpath.api.display import Display, display
 from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text
 from faultpath.api.job import with_question_signature
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
-from faultpath.decisions.decide import decide
-from faultpath.decisions.judging import LaidOut, pair_results
-from faultpath.decisions.question import Question
-from faultpath.decisions.record import DecisionRecord
+from faultpath.core.files.atomic import begin, locked, write_file, write_text
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
-from faultpath.trials.deliveries import Deliveries, RowDeliveries
-from faultpath.trials.execution.provenance import amend, run_provenance
-from faultpath.trials.execution.runner import RunResult
-from faultpath.trials.question import ask
-from faultpath.trials.received.files import read_results
-from faultpath.trials.received.question import JudgeQuestion
-from faultpath.trials.shown import SystemShown, VariantShown
-from faultpath.trials.store.atomic import begin, locked, write_file, write_text
-from faultpath.trials.store.folder import DELIVERIES, OUTCOMES, TRACES
-from faultpath.trials.store.tables import encode_outcomes, encode_traces
-from faultpath.trials.trials import Trials
-from faultpath.trials.work.processes import local
+from faultpath.run.deliveries import Deliveries, RowDeliveries
+from faultpath.run.execution.provenance import amend, run_provenance
+from faultpath.run.execution.runner import RunResult
+from faultpath.run.question import ask
+from faultpath.run.received.files import read_results
+from faultpath.run.received.question import JudgeQuestion
+from faultpath.run.shown import SystemShown, VariantShown
+from faultpath.run.store.folder import DELIVERIES, OUTCOMES, TRACES
+from faultpath.run.store.tables import encode_outcomes, encode_traces
+from faultpath.run.trials import Trials
+from faultpath.run.work.processes import local
 
 
 @with_question_signature(JudgeQuestion)

@@ -5,32 +5,35 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from platform import python_version
 
+from faultpath.analyses.examples import choose as picked
+from faultpath.analyses.pairs import by_scene, read_pairs
+from faultpath.analyses.planning import plan_audit
+from faultpath.analyses.record import DecisionRecord
 from faultpath.api.folders import RECORD
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import write_file
 from faultpath.core.text import unknown
-from faultpath.decisions.examples import choose as picked
-from faultpath.decisions.pairs import by_scene, read_pairs
-from faultpath.decisions.planning import plan_audit
-from faultpath.decisions.record import DecisionRecord
+from faultpath.core.trees import release
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.systems.checks.blocks import BlockSpec, RecordedBlock, run_blocks
-from faultpath.trials import Outcome, Study, System, SystemSpec, Treatment, Trials, library_of
-from faultpath.trials.attempt import Done
-from faultpath.trials.code import CodeState, named, system_code
-from faultpath.trials.execution.dispatch import Built
-from faultpath.trials.execution.provenance import amend, processor
-from faultpath.trials.execution.recheck import difference
-from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.question import AuditQuestion, ask
-from faultpath.trials.store.atomic import write_file
-from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
-from faultpath.trials.store.tables import TrialAddress, address_of
-from faultpath.trials.trees import release
-from faultpath.trials.trust import check_named
-from faultpath.trials.work.executor import Executor
-from faultpath.trials.work.processes import local
+from faultpath.run import Study, SystemSpec, Treatment, Trials
+from faultpath.run.attempt import Done
+from faultpath.run.check.blocks import BlockSpec, RecordedBlock, run_blocks
+from faultpath.run.code import CodeState, named, system_code
+from faultpath.run.execution.dispatch import Built
+from faultpath.run.execution.provenance import amend, processor
+from faultpath.run.execution.recheck import difference
+from faultpath.run.provenance import RunProvenance
+from faultpath.run.question import AuditQuestion, ask
+from faultpath.run.store.signals import SIGNALS, Signal, encode_signals
+from faultpath.run.store.tables import TrialAddress, address_of
+from faultpath.run.trust import check_named
+from faultpath.run.work.executor import Executor
+from faultpath.run.work.processes import local
+from faultpath.system.checks import library_of
+from faultpath.system.outcome import Outcome
+from faultpath.system.system import System
 
 _PROCESSOR = "the processor"
 

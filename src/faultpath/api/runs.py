@@ -7,6 +7,10 @@ from typing import Any, TypeVar
 
 import pyarrow as pa
 
+from faultpath.analyses.gate import Answer, Ask, found, holds_when_shared
+from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.scan.record import ScanRecord
 from faultpath.api.folders import (
     MAP,
     MAP_MADE_FROM,
@@ -19,18 +23,14 @@ from faultpath.api.folders import (
 )
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import read_table
-from faultpath.decisions.gate import Answer, Ask, found, holds_when_shared
-from faultpath.decisions.map.record import MapRecord
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.scan.record import ScanRecord
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.map import write_map
 from faultpath.report.scan import write_scan
 from faultpath.report.tables import markdown_table
-from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store.folder import AGAIN, OUTCOMES, unseal
-from faultpath.trials.store.tables import encode_outcomes
+from faultpath.run.provenance import RunProvenance
+from faultpath.run.store.folder import AGAIN, OUTCOMES, unseal
+from faultpath.run.store.tables import encode_outcomes
 
 
 class FinishedRun:

@@ -3,15 +3,15 @@
 from os import PathLike
 from typing import Any
 
+from faultpath.analyses.scan.design import ScanPlan, plan_scan, ranked_sources
+from faultpath.analyses.scan.sources import Ranking
 from faultpath.api.display import Display
 from faultpath.api.folders import SCAN, SCAN_MADE_FROM, as_text
 from faultpath.api.job import Job, begin, run, with_question_signature
 from faultpath.api.runs import ScanRun
-from faultpath.decisions.scan.design import ScanPlan, plan_scan, ranked_sources
-from faultpath.decisions.scan.sources import Ranking
-from faultpath.trials import System
-from faultpath.trials.question import ScanQuestion
-from faultpath.trials.store.atomic import write_text
+from faultpath.core.files.atomic import write_text
+from faultpath.run.question import ScanQuestion
+from faultpath.system.system import System
 
 
 @with_question_signature(ScanQuestion)

@@ -7,16 +7,17 @@ from functools import cached_property
 from os import PathLike
 from typing import cast
 
-from faultpath import trials
+from faultpath import run
 from faultpath.core.errors import UserError
 from faultpath.core.text import extra
-from faultpath.trials import System, SystemSpec
-from faultpath.trials.checks import check_system
-from faultpath.trials.options import as_text
-from faultpath.trials.registry import factory_name
-from faultpath.trials.trust import PART
-from faultpath.trials.work.executor import Executor
-from faultpath.trials.work.processes import local
+from faultpath.run import SystemSpec
+from faultpath.run.registry import factory_name
+from faultpath.run.trust import PART
+from faultpath.run.work.executor import Executor
+from faultpath.run.work.processes import local
+from faultpath.system.checks import check_system
+from faultpath.system.options import as_text
+from faultpath.system.system import System
 
 LOCAL, RAY = "local", "ray"
 """Where trials run."""
@@ -49,7 +50,7 @@ def load_system(
     that does not exist, and for a package that is missing.
     """
     spec = _spec(system, options or {})
-    built = trials.load_system(spec)
+    built = run.load_system(spec)
     vars(built)[_LOADED] = spec, dict(vars(built))
     return built
 
@@ -84,7 +85,7 @@ def choose(
             spec = None
     if spec is not None:
         spec = with_parts(spec, variants)
-        return Chosen(trials.load_system(spec), spec)
+        return Chosen(run.load_system(spec), spec)
     if workers or executor != LOCAL:
         idle = "workers" if workers else "executor"
         raise UserError(
@@ -117,7 +118,7 @@ def executor_of(system: System, workers: int | None, executor: str = LOCAL) -> E
     if executor == LOCAL:
         return local((os.cpu_count() or 1) if count is None else count)
     try:
-        from faultpath.trials.work.ray_cluster import RayWorkers
+        from faultpath.run.work.ray_cluster import RayWorkers
     except ModuleNotFoundError as error:
         raise UserError(
             f"--executor ray needs the package {error.name!r}, not installed here: {extra('ray')}"
@@ -133,7 +134,7 @@ def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
     `UserError` for a file without the name of what builds the part, or a comma in its path.
     """
     named = [name for name in variants if ":" in name or name.endswith(".py")]
-    if not named or _BRING not in {option.name for option in trials.system_options(spec.name)}:
+    if not named or _BRING not in {option.name for option in run.system_options(spec.name)}:
         return spec
     parts = [part for part in spec.options.get(_BRING, "").split(",") if part]
     for name in named:

@@ -14,8 +14,8 @@ from faultpath.cli.options import Json, SystemName, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
-from faultpath.trials.question import AuditQuestion
-from faultpath.trials.received.question import JudgeQuestion
+from faultpath.run.question import AuditQuestion
+from faultpath.run.received.question import JudgeQuestion
 
 if TYPE_CHECKING:
     from faultpath.api.runs import Run

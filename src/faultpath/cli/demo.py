@@ -24,12 +24,12 @@ def demo(
 ) -> int:
     """Audit the toy that ships with faultpath: a cart whose controller and observer share one wrong
     gain, and a repair that wins where only the observer gets it."""
-    import faultpath.systems
+    import faultpath.system
     from faultpath.api.audit import audit
     from faultpath.api.display import SafeConsole
     from faultpath.report.terminal import decision
 
-    toy = Path(faultpath.systems.__file__).with_name(_TOY)
+    toy = Path(faultpath.system.__file__).with_name(_TOY)
     if not toy.is_file():  # in a checkout, which a wheel takes it from
         toy = Path(__file__).resolve().parents[3] / "examples" / _TOY
     console = SafeConsole()

@@ -7,7 +7,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import FOUND, Json, SystemName, display
-from faultpath.trials.question import MapQuestion, ScanQuestion
+from faultpath.run.question import MapQuestion, ScanQuestion
 
 
 @takes(MapQuestion)
@@ -35,11 +35,11 @@ def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) ->
 def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Find which errors of a system's inputs cancel: each alone costs success, and both together
     less than either, so that correcting one of them alone does not help."""
+    from faultpath.analyses.scan.sources import Ranking
+    from faultpath.analyses.tables.terminal import Parted
     from faultpath.api.comparing import in_json
     from faultpath.api.display import SafeConsole
     from faultpath.api.scanning import scan
-    from faultpath.decisions.scan.sources import Ranking
-    from faultpath.decisions.tables.terminal import Parted
     from faultpath.report.scan import ranking_table, tables
     from faultpath.report.terminal import conclusion
 

@@ -13,10 +13,10 @@ from typer.models import OptionInfo
 
 from faultpath.cli.options import literal, path
 from faultpath.core.errors import UserError
-from faultpath.trials.question import ADVANCED, Asked, Flag, flag
+from faultpath.run.question import ADVANCED, Asked, Flag, flag
 
 if TYPE_CHECKING:
-    from faultpath.trials.options import Option
+    from faultpath.system.options import Option
 
 _Verb = TypeVar("_Verb", bound=Callable[..., Any])
 _KEYWORD = inspect.Parameter.KEYWORD_ONLY
@@ -135,7 +135,7 @@ def with_system_flags(
     flags = {part.partition("=")[0] for part in arguments if part.startswith("--")} - own
     if not arguments or arguments[0].startswith("-") or not (flags or helps):
         return verb
-    from faultpath.trials import system_options
+    from faultpath.run import system_options
 
     system, options = arguments[0], ()
     try:

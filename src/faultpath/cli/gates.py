@@ -12,12 +12,12 @@ from faultpath.cli.options import FOUND
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
-from faultpath.trials.question import ADVANCED
+from faultpath.run.question import ADVANCED
 
 if TYPE_CHECKING:
     from faultpath.api.runs import Run
 
-_ASKS = ("reversal", "repair-behind", "undecided", "void")  # those of `faultpath.decisions.gate`
+_ASKS = ("reversal", "repair-behind", "undecided", "void")  # those of `faultpath.analyses.gate`
 
 FailIf = Annotated[
     list[str] | None,
@@ -57,7 +57,7 @@ class Gate:
     @classmethod
     def of(cls, fail_if: Sequence[str] | None, junit: Path | None, summary: Path | None) -> "Gate":
         """Read the options; `UserError` for what cannot be asked, or written."""
-        from faultpath.trials.store.atomic import check_output
+        from faultpath.core.files.atomic import check_output
 
         conditions = tuple(dict.fromkeys(fail_if or ()))
         for condition in conditions:
@@ -73,10 +73,10 @@ class Gate:
 
     def end(self, runs: "Sequence[Run]", say: Callable[..., Any]) -> int:
         """Write what was asked for, say what a build fails for, and return the exit status."""
+        from faultpath.analyses.gate import broken
+        from faultpath.core.files.atomic import write_file, write_text
         from faultpath.core.files.opening import contents
-        from faultpath.decisions.gate import broken
         from faultpath.report.build import junit, summary
-        from faultpath.trials.store.atomic import write_file, write_text
 
         records = [run.record for run in runs]
         if self.junit is not None:

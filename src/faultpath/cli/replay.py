@@ -37,11 +37,11 @@ def replay(
     """Run trials of a finished run again and compare them with the run, to the bit. It runs the
     system that the run names, which has to be installed, named with --code, or trusted. Exits with
     1 where one differs."""
+    from faultpath.analyses.sentences.wording import counted
+    from faultpath.analyses.tables.terminal import STYLES
     from faultpath.api.display import SafeConsole
     from faultpath.api.folders import RECORD, read_provenance, read_run
     from faultpath.api.replaying import chosen_scenes, keep_signals, replay
-    from faultpath.decisions.sentences.wording import counted
-    from faultpath.decisions.tables.terminal import STYLES
 
     if RECORD not in read_provenance(folder).files:
         raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")

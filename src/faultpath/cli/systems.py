@@ -7,7 +7,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import FOUND, Json, SystemName, display
-from faultpath.trials.question import CheckQuestion, TraceQuestion
+from faultpath.run.question import CheckQuestion, TraceQuestion
 
 
 def init(
@@ -18,7 +18,7 @@ def init(
     ] = "numpy",
 ) -> int:
     """Write a system that runs, and its test, into the working directory."""
-    from faultpath.systems.init import TEMPLATES, write_system
+    from faultpath.system.init import TEMPLATES, write_system
 
     system, test = write_system(name, kind, Path())
     baseline, parameter = TEMPLATES[kind]
@@ -37,10 +37,10 @@ def trace(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Print the information interface of a system and who read what, when.
 
     Exits with 1 where that differs from what is declared."""
+    from faultpath.analyses.tables.terminal import STYLES, Parted
     from faultpath.api.checks import traced
     from faultpath.api.display import SafeConsole
     from faultpath.api.job import begin
-    from faultpath.decisions.tables.terminal import STYLES, Parted
     from faultpath.report.terminal import interface_table, trace_table
 
     question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, display())
@@ -69,10 +69,10 @@ def check(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     from rich.padding import Padding
     from rich.text import Text
 
+    from faultpath.analyses.sentences.wording import counted
+    from faultpath.analyses.tables.terminal import STYLES
     from faultpath.api.checks import check
     from faultpath.api.display import SafeConsole
-    from faultpath.decisions.sentences.wording import counted
-    from faultpath.decisions.tables.terminal import STYLES
 
     report = check(system, **arguments, progress=display())
     if as_json:

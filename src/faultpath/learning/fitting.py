@@ -16,6 +16,7 @@ import numpy as np
 from typing_extensions import override
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import make_folder
 from faultpath.core.streams import key
 from faultpath.faults import Fault, resolve
 from faultpath.learning.loop import FitTask, History, minibatches, run
@@ -32,7 +33,6 @@ from faultpath.learning.model_card import (
 from faultpath.learning.repair import Repair, kept, understood
 from faultpath.learning.windows import VALIDATION, Windows, delivered, named
 from faultpath.loop import TapCount, added
-from faultpath.trials.store.atomic import make_folder
 
 if TYPE_CHECKING:
     from torch import LongTensor, Tensor, nn

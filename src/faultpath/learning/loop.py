@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import write_file
 from faultpath.core.files.opening import opened
 from faultpath.core.streams import generator
 from faultpath.learning.model_card import Schedule, safetensors, tensors
-from faultpath.trials.store.atomic import write_file
 
 if TYPE_CHECKING:
     from torch import LongTensor, Tensor, nn

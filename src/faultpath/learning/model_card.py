@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 from pydantic import Field
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import write_file, write_text
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.core.results import Frozen
@@ -21,7 +22,6 @@ from faultpath.core.text import extra
 from faultpath.core.version import __version__
 from faultpath.learning.repair import Repair
 from faultpath.loop import TapCount
-from faultpath.trials.store.atomic import write_file, write_text
 
 if TYPE_CHECKING:
     from torch import Tensor, nn

@@ -1,4 +1,4 @@
-"""Names for packages that bring a system, beyond those of `faultpath.loop`, `faultpath.trials` etc.
+"""Names for packages that bring a system, beyond those of `faultpath.loop`, `faultpath.run` etc.
 
 A package imports from the engine only what these modules and the public rooms list in `__all__`.
 

@@ -2,7 +2,7 @@
 
 from faultpath.cli.options import FOUND, Json, Verbs, path, refuse_with
 from faultpath.core.errors import Stopped, UserError
-from faultpath.trials.texts import LARGEST
+from faultpath.run.texts import LARGEST
 
 __all__ = [
     "FOUND",

@@ -1,8 +1,6 @@
 """For a package that makes files and keeps them: whole files, and the state of the code behind."""
 
-from faultpath.core.files.parquet import Unreadable, read_table
-from faultpath.trials.code import system_code
-from faultpath.trials.store.atomic import (
+from faultpath.core.files.atomic import (
     check_output,
     locked,
     make_folder,
@@ -11,7 +9,9 @@ from faultpath.trials.store.atomic import (
     write_file,
     write_text,
 )
-from faultpath.trials.trees import Root, packages, trees_of
+from faultpath.core.files.parquet import Unreadable, read_table
+from faultpath.core.trees import Root, packages, trees_of
+from faultpath.run.code import system_code
 
 __all__ = [
     "Root",

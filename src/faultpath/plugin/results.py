@@ -1,12 +1,12 @@
 """For a verb that shows results: estimates with intervals, tables, and numbers as all pages do."""
 
+from faultpath.analyses.sentences.wording import counted, interval, plain
+from faultpath.analyses.tables import MISSING, Line, Table, line
+from faultpath.analyses.tables.terminal import drawn
 from faultpath.api.display import SafeConsole
-from faultpath.decisions.sentences.wording import counted, interval, plain
-from faultpath.decisions.tables import MISSING, Line, Table, line
-from faultpath.decisions.tables.terminal import drawn
-from faultpath.statistics.contrast import Contrast
-from faultpath.statistics.effects import WindowQuantiles
-from faultpath.statistics.estimate import Estimate
+from faultpath.stats.contrast import Contrast
+from faultpath.stats.effects import WindowQuantiles
+from faultpath.stats.estimate import Estimate
 
 __all__ = [
     "MISSING",

@@ -8,9 +8,9 @@ from faultpath.core.results import Frozen
 from faultpath.core.streams import generator, key, words
 from faultpath.core.text import listed, one_line, unknown
 from faultpath.core.validation_messages import misfit_of
-from faultpath.trials.options import call
-from faultpath.trials.registry import factory_root, load_parts
-from faultpath.trials.work.executor import one_thread
+from faultpath.run.registry import factory_root, load_parts
+from faultpath.run.work.executor import one_thread
+from faultpath.system.options import call
 
 __all__ = [
     "LARGEST_TEXT",

@@ -6,16 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.decisions.examples import choose
-from faultpath.decisions.model import CORRECT
-from faultpath.decisions.pairs import Pair, by_scene
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.wording import where
+from faultpath.analyses.examples import choose
+from faultpath.analyses.model import CORRECT
+from faultpath.analyses.pairs import Pair, by_scene
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.wording import where
 from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes, tick_label
-from faultpath.trials import Outcome, Status
-from faultpath.trials.store.signals import TOGETHER, Signal
-from faultpath.trials.store.tables import TrialAddress
+from faultpath.run.store.signals import TOGETHER, Signal
+from faultpath.run.store.tables import TrialAddress
+from faultpath.system.outcome import Outcome, Status
 
 _SQUEEZED = 2.5
 _MOST_CONDITIONS = 4

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from faultpath.decisions.gate import found
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.sentences.answers import answers
-from faultpath.decisions.tables.escapes import markdown, visible
+from faultpath.analyses.gate import found
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.sentences.answers import answers
+from faultpath.analyses.tables.escapes import markdown, visible
 from faultpath.report.tables import markdown_table
 
 

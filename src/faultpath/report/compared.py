@@ -8,16 +8,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from faultpath.decisions.contrasts import effect_name
-from faultpath.decisions.effects import Effect
-from faultpath.decisions.model import CORRECT, SHARED
-from faultpath.decisions.question import Question
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.sentences import phrases, wording
-from faultpath.decisions.sweep import decide_sizes
+from faultpath.analyses.contrasts import effect_name
+from faultpath.analyses.effects import Effect
+from faultpath.analyses.model import CORRECT, SHARED
+from faultpath.analyses.question import Question
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.sentences import phrases, wording
+from faultpath.analyses.sweep import decide_sizes
 from faultpath.report.inputs import ReportInput
-from faultpath.statistics.estimate import Sign
-from faultpath.trials.provenance import RunProvenance
+from faultpath.run.provenance import RunProvenance
+from faultpath.stats.estimate import Sign
 
 _SIZED = re.compile(r"([^=,@]+)=([^=,@/]+)(.*)", re.DOTALL)
 _MAY_DIFFER = ("Fault", "Scenes run", "Scenes compared")

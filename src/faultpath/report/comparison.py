@@ -7,14 +7,14 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from faultpath.analyses.family import ALPHA
+from faultpath.analyses.model import SHARED
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.wording import series, where
+from faultpath.analyses.tables import MISSING, Entry, Line, Table, line
+from faultpath.analyses.tables.html import html
+from faultpath.analyses.tables.terminal import Parted, drawn
 from faultpath.core.text import shortened
-from faultpath.decisions.family import ALPHA
-from faultpath.decisions.model import SHARED
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.wording import series, where
-from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
-from faultpath.decisions.tables.html import html
-from faultpath.decisions.tables.terminal import Parted, drawn
 from faultpath.report.compared import (
     Compared,
     Facts,

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from faultpath.decisions.effects import Effect
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.phrases import in_short
-from faultpath.decisions.sentences.shares import ahead
+from faultpath.analyses.effects import Effect
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.phrases import in_short
+from faultpath.analyses.sentences.shares import ahead
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, shortened, text_width, tick_label
 
 _PITCH, _TOP, _NUMBERS = 48.0, 44.0, 146.0

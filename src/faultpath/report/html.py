@@ -4,13 +4,13 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.decisions.effects import Effect
-from faultpath.decisions.model import SHARED
-from faultpath.decisions.pairs import PairKind, counts, is_sample, read_pairs
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.sentences import phrases, wording
-from faultpath.decisions.sentences.answers import answers
-from faultpath.decisions.tables.html import html
+from faultpath.analyses.effects import Effect
+from faultpath.analyses.model import SHARED
+from faultpath.analyses.pairs import PairKind, counts, is_sample, read_pairs
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.sentences import phrases, wording
+from faultpath.analyses.sentences.answers import answers
+from faultpath.analyses.tables.html import html
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels
 from faultpath.report.frame import STYLES, render, write_pages

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass, field
 
-from faultpath.decisions.record import DecisionRecord
-from faultpath.trials import SystemShown, Trials
-from faultpath.trials.provenance import RunProvenance
-from faultpath.trials.store.signals import Signal, Signals
-from faultpath.trials.store.tables import TrialAddress
+from faultpath.analyses.record import DecisionRecord
+from faultpath.run import SystemShown, Trials
+from faultpath.run.provenance import RunProvenance
+from faultpath.run.store.signals import Signal, Signals
+from faultpath.run.store.tables import TrialAddress
 
 
 @dataclass(frozen=True)

@@ -4,17 +4,17 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.decisions.map.lattice import SHARED
-from faultpath.decisions.map.record import MapRecord
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.maps import estimand
-from faultpath.decisions.tables import Entry, Line, Table, line
-from faultpath.decisions.tables.html import html
-from faultpath.decisions.tables.markdown import block
+from faultpath.analyses.map.lattice import SHARED
+from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.maps import estimand
+from faultpath.analyses.tables import Entry, Line, Table, line
+from faultpath.analyses.tables.html import html
+from faultpath.analyses.tables.markdown import block
 from faultpath.report.frame import render, write_pages
 from faultpath.report.map_pictures import correlation_picture, map_picture
-from faultpath.statistics.contrast import MIN_SCENES
-from faultpath.trials.provenance import RunProvenance
+from faultpath.run.provenance import RunProvenance
+from faultpath.stats.contrast import MIN_SCENES
 
 
 def tables(record: MapRecord) -> tuple[Table, ...]:

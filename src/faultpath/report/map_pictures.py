@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from itertools import pairwise, product
 
-from faultpath.decisions.map.record import MapRecord
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.maps import at_point
+from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.maps import at_point
 from faultpath.report.svg import (
     Axis,
     Point,

@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from itertools import groupby
 from urllib.parse import quote
 
-from faultpath.decisions.pairs import WORDS, Pair, PairKind
+from faultpath.analyses.pairs import WORDS, Pair, PairKind
 from faultpath.report.svg import Point, Svg, text_width
 
 _WIDTH, _SIDE, _GAP, _MOST_COLUMNS = 390.0, 15.0, 2.0, 25

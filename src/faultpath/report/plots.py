@@ -7,11 +7,11 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.decisions.sentences import wording
+from faultpath.analyses.sentences import wording
 from faultpath.interface import Provenance
 from faultpath.report.inputs import ReportInput
-from faultpath.trials.store.signals import DRAWN, IN_FORCE, Signal, Signals
-from faultpath.trials.store.tables import TrialAddress
+from faultpath.run.store.signals import DRAWN, IN_FORCE, Signal, Signals
+from faultpath.run.store.tables import TrialAddress
 
 _MOST_COMPONENTS = 4
 """A rotation matrix says little as lines, unless its numbers have names."""

@@ -4,17 +4,17 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.decisions.scan.model import ScanError, ScannedVersion, SecondStage
-from faultpath.decisions.scan.record import ScanRecord
-from faultpath.decisions.scan.sources import Candidate, Ranking
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.scan import in_words, named, of_pair, size
-from faultpath.decisions.tables import Entry, Line, Table, line
-from faultpath.decisions.tables.html import html
-from faultpath.decisions.tables.markdown import block
+from faultpath.analyses.scan.model import ScanError, ScannedVersion, SecondStage
+from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.scan.sources import Candidate, Ranking
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.scan import in_words, named, of_pair, size
+from faultpath.analyses.tables import Entry, Line, Table, line
+from faultpath.analyses.tables.html import html
+from faultpath.analyses.tables.markdown import block
 from faultpath.report.frame import render, write_pages
 from faultpath.report.scan_pictures import letters, strip, triangle
-from faultpath.trials.provenance import RunProvenance
+from faultpath.run.provenance import RunProvenance
 
 
 def tables(record: ScanRecord) -> tuple[Table, ...]:

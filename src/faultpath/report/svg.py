@@ -8,7 +8,7 @@ from functools import cache
 from hashlib import blake2b
 from importlib import resources
 
-from faultpath.decisions.tables.escapes import html as escape
+from faultpath.analyses.tables.escapes import html as escape
 
 Point = tuple[float, float]
 

@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 
-from faultpath.decisions.effects import Effect
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.sentences import phrases, wording
-from faultpath.decisions.sentences.phrases import adjusted, not_standing, only_alone
-from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
-from faultpath.decisions.tables.markdown import block
-from faultpath.statistics.estimate import Estimate
+from faultpath.analyses.effects import Effect
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.sentences import phrases, wording
+from faultpath.analyses.sentences.phrases import adjusted, not_standing, only_alone
+from faultpath.analyses.tables import MISSING, Entry, Line, Table, line
+from faultpath.analyses.tables.markdown import block
+from faultpath.stats.estimate import Estimate
 
 _VARIANTS = ("baseline", "repair")
 DIFFERENCE = ("difference", "interval", "won")

@@ -6,22 +6,22 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from faultpath.decisions.map.record import MapRecord
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.scan.record import ScanRecord
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.sentences.answers import answers
-from faultpath.decisions.sentences.phrases import (
+from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.answers import answers
+from faultpath.analyses.sentences.phrases import (
     for_trainings,
     in_trials_that_ran,
     not_standing,
 )
-from faultpath.decisions.tables import Line, Table, line
-from faultpath.decisions.tables.terminal import Parted, drawn
+from faultpath.analyses.tables import Line, Table, line
+from faultpath.analyses.tables.terminal import Parted, drawn
 from faultpath.interface import Gap, Interface, rank, transitive_readers
 from faultpath.report.tables import DIFFERENCE, by_condition, by_quantity, by_threshold
-from faultpath.systems.checks.reads import Read
-from faultpath.systems.checks.tracing import TraceReport
+from faultpath.run.check.reads import Read
+from faultpath.run.check.tracing import TraceReport
 
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 

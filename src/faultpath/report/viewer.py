@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.decisions.examples import captions, choose
-from faultpath.decisions.model import SHARED
-from faultpath.decisions.pairs import Pair, by_scene, is_sample
-from faultpath.decisions.record import DecisionRecord
-from faultpath.decisions.sentences import wording
+from faultpath.analyses.examples import captions, choose
+from faultpath.analyses.model import SHARED
+from faultpath.analyses.pairs import Pair, by_scene, is_sample
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.sentences import wording
 from faultpath.report.inputs import ReportInput
 from faultpath.report.plots import Plot, first_plot, plots_of
-from faultpath.trials import Outcome
-from faultpath.trials.store.signals import DRAWN, IN_FORCE, Signal, Signals
-from faultpath.trials.store.tables import Trace, TrialAddress, traces_of
+from faultpath.run.store.signals import DRAWN, IN_FORCE, Signal, Signals
+from faultpath.run.store.tables import Trace, TrialAddress, traces_of
+from faultpath.system.outcome import Outcome
 
 _MOST_WITH_SIGNALS = 12
 """Scenes, with a seed each, whose signals go into a page."""

@@ -4,7 +4,7 @@ import importlib.util
 import time
 from pathlib import Path
 
-from faultpath.trials import System
+from faultpath.system import System
 
 _PLACE = Path(__file__).resolve().parents[3] / "examples" / "toy.py"
 _SPEC = importlib.util.spec_from_file_location("toy_of_the_examples", _PLACE)

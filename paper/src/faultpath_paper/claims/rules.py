@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from faultpath.statistics.contrast import ROUNDING, Contrast
+from faultpath.stats.contrast import ROUNDING, Contrast
 from faultpath_paper.answers import Answer
 from faultpath_paper.results import detection
 

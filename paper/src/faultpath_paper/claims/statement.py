@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
-from faultpath.decisions.sentences import wording
-from faultpath.statistics.contrast import ROUNDING, Contrast, change
+from faultpath.analyses.sentences import wording
+from faultpath.stats.contrast import ROUNDING, Contrast, change
 from faultpath_paper.answers import ClaimVerdict, Size, StatementPart
 from faultpath_paper.cells import Printed, PublishedClaim
 from faultpath_paper.claims.rules import (

@@ -18,7 +18,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.streams import generators
 from faultpath.faults import Delay, Drift, Dropout, Fault, Freeze, Hold, resolve
 from faultpath.loop import Reading, Taps
-from faultpath.trials import Variant
+from faultpath.system import Variant
 from faultpath_paper.evidence.playback import CODE, HELD, Present, at_present
 
 _BY_WINDOW = HELD | {"wind"}

@@ -16,8 +16,8 @@ from faultpath_quadrotor.training.provenance import code_of
 from faultpath_quadrotor.training.windows import HISTORY, Windows
 from torch import Tensor
 
-from faultpath.trials.store import atomic
-from faultpath.trials.store.atomic import locked, make_folder
+from faultpath.core.files import atomic
+from faultpath.core.files.atomic import locked, make_folder
 from faultpath_paper.evidence.inputs import Subject, with_shuffled_history
 from faultpath_paper.evidence.playback import Present
 from faultpath_paper.evidence.recording import Block, Recorded, blocks, quadrotor, recorded

@@ -13,8 +13,8 @@ from faultpath_quadrotor.training.trajectories import record_flights
 from faultpath_quadrotor.training.windows import HISTORY, Windows, cut, places
 from numpy.typing import NDArray
 
-from faultpath.trials import SystemSpec, load_system
-from faultpath.trials.code import system_code
+from faultpath.run import SystemSpec, load_system
+from faultpath.run.code import system_code
 from faultpath_paper.evidence.table import Recording
 
 BLOCK = 25

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import write_file
 from faultpath.core.files.opening import contents
 from faultpath.core.files.parquet import INTEGER, NUMBER, TEXT, Unreadable, decode, encode
 from faultpath.core.results import Frozen
-from faultpath.trials.store.atomic import write_file
 
 Quantity: TypeAlias = Literal[
     "position-error",

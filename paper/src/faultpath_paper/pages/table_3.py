@@ -3,7 +3,7 @@
 The paper averages some rows over three seeds at L3; all other entries use the first.
 """
 
-from faultpath.trials import Status
+from faultpath.system import Status
 from faultpath_paper.cells import SEEDS, Cell, Setting, of_seed, published
 from faultpath_paper.entries import EntryGroup, Made
 from faultpath_paper.page import FLOWN_ONCE, Page, Rows, TableRow, TableSpec, rates

@@ -1,7 +1,7 @@
 """Table V: from which fault frequency on each repair pays."""
 
-from faultpath.decisions.sentences import wording
-from faultpath.statistics.breakeven import break_even
+from faultpath.analyses.sentences import wording
+from faultpath.stats.breakeven import break_even
 from faultpath_paper.cells import published
 from faultpath_paper.entries import EntryGroup, Made, decided
 from faultpath_paper.page import INTERVALS, Page, TableRow, TableSpec

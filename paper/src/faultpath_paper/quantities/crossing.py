@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from faultpath.statistics.contrast import Contrast, percentile_interval
-from faultpath.statistics.inputs import Floats
+from faultpath.stats.contrast import Contrast, percentile_interval
+from faultpath.stats.inputs import Floats
 from faultpath_paper.cells import Cell
 from faultpath_paper.quantities.differences import together
 from faultpath_paper.results import Quantity, Results, decisive

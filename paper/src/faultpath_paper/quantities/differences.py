@@ -4,11 +4,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeAlias
 
-from faultpath.statistics.contrast import Contrast, weighted_sum
-from faultpath.statistics.decisions import with_test
-from faultpath.statistics.effects import mean_effect, median_effect, success_effect, success_rate
-from faultpath.statistics.resamples import Resamples
-from faultpath.trials import Pairs, Status
+from faultpath.run import Pairs
+from faultpath.stats.contrast import Contrast, weighted_sum
+from faultpath.stats.decisions import with_test
+from faultpath.stats.effects import mean_effect, median_effect, success_effect, success_rate
+from faultpath.stats.resamples import Resamples
+from faultpath.system import Status
 from faultpath_paper.cells import Cell
 from faultpath_paper.results import NotRun, Quantity, Results, decisive
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics.contrast import Contrast
-from faultpath.statistics.effects import success_rate
-from faultpath.trials import Status
+from faultpath.stats.contrast import Contrast
+from faultpath.stats.effects import success_rate
+from faultpath.system import Status
 from faultpath_paper.cells import Cell, of_seed
 from faultpath_paper.pages import figure_3
 from faultpath_paper.quantities.differences import contrast, joint

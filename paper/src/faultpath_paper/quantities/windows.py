@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics.contrast import Contrast, weighted_sum
-from faultpath.statistics.effects import WindowQuantiles
+from faultpath.stats.contrast import Contrast, weighted_sum
+from faultpath.stats.effects import WindowQuantiles
 from faultpath_paper.evidence.table import QUANTITIES, EvidenceTable, Measured, Measurement
 from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive
 

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 from markupsafe import Markup
 
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.tables import Table
-from faultpath.decisions.tables.html import html
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.tables import Table
+from faultpath.analyses.tables.html import html
 from faultpath.report.frame import render
 from faultpath.report.svg import Axis, Svg, draw_axes, text_width, tick_label
-from faultpath.trials.provenance import RunProvenance
+from faultpath.run.provenance import RunProvenance
 from faultpath_paper.answers import Point, Reproduction, Series, Sweep
 from faultpath_paper.central import QUESTION
 from faultpath_paper.report import words

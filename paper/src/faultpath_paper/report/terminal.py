@@ -7,12 +7,12 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from faultpath.decisions.sentences import wording
-from faultpath.decisions.tables import MISSING, Entry, Table, line
-from faultpath.decisions.tables.escapes import markdown
-from faultpath.decisions.tables.markdown import grid
-from faultpath.decisions.tables.model import Tone
-from faultpath.decisions.tables.terminal import STYLES
+from faultpath.analyses.sentences import wording
+from faultpath.analyses.tables import MISSING, Entry, Table, line
+from faultpath.analyses.tables.escapes import markdown
+from faultpath.analyses.tables.markdown import grid
+from faultpath.analyses.tables.model import Tone
+from faultpath.analyses.tables.terminal import STYLES
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size
 from faultpath_paper.report import words
 

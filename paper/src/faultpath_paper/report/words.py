@@ -2,7 +2,7 @@
 
 import re
 
-from faultpath.decisions.sentences import wording
+from faultpath.analyses.sentences import wording
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size, StatementPart
 
 QUICK = "quick"

@@ -9,7 +9,7 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress, Query
-from faultpath.trials import VEHICLE
+from faultpath.system import VEHICLE
 from faultpath_quadrotor.batching import lanes_last, scenes_first
 from faultpath_quadrotor.device import host_readable
 from faultpath_quadrotor.estimators.sensors import Sensor, SensorErrors, raw, readings

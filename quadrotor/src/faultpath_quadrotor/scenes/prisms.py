@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import cos, hypot, sin
 
-from faultpath.trials import FloorPlan, Pillar, Prism
+from faultpath.system import FloorPlan, Pillar, Prism
 from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Point, Scene
 
 _BURIED_M = 10.0

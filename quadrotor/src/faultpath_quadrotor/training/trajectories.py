@@ -15,7 +15,7 @@ import torch
 
 from faultpath.loop import Batch, Taps
 from faultpath.plugin.data import system_code
-from faultpath.trials import SystemSpec
+from faultpath.run import SystemSpec
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant.module import ACTION, Flying

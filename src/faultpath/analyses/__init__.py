@@ -1,0 +1,8 @@
+"""The decision: effects, break-even frequency, verdict."""
+
+from faultpath.analyses.model import Condition
+from faultpath.analyses.question import Question
+from faultpath.analyses.record import DecisionRecord
+from faultpath.run.provenance import RunProvenance
+
+__all__ = ["Condition", "DecisionRecord", "Question", "RunProvenance"]

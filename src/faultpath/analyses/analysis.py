@@ -1,0 +1,55 @@
+"""Parts that audit, map and scan share: rounds of trials, and a record."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
+
+from faultpath.analyses.question import Resolved
+from faultpath.run import Deliveries, Study, Trials
+from faultpath.run.execution.state import Stop
+from faultpath.run.question import Running, ScanQuestion
+from faultpath.system.system import System
+
+Items = TypeVar("Items")
+
+
+@dataclass(frozen=True)
+class Round:
+    """Trials of one round, those of earlier rounds included."""
+
+    study: Study
+    items: int = 1
+    """So many of what the analysis adds from round to round."""
+    most: int = 1
+    """So many are expected in the end."""
+    notice: str = ""
+    """Sentence to be shown before the round."""
+    stop: Stop | None = None
+    """Asked at each look of a sequential study."""
+
+
+Rounds: TypeAlias = Generator[Round, Trials, Items]
+"""Rounds, each from the trials of those before; they return all that they added."""
+
+
+@dataclass(frozen=True)
+class Analysis(ABC, Generic[Items]):
+    """A question, the rounds of trials that answer it, and the record that is made of them."""
+
+    noun: ClassVar[str] = ""
+    """Plural of that which rounds add; empty for an analysis of one round."""
+
+    request: Running | ScanQuestion
+    question: Resolved
+    system: System
+    named: tuple[str, ...]
+    """Parts of the name of its folder; system options, scenes and seeds follow."""
+
+    @abstractmethod
+    def rounds(self) -> Rounds[Items]:
+        """Yield the rounds. `UserError` where trials leave nothing to go on."""
+
+    @abstractmethod
+    def conclude(self, trials: Trials, deliveries: Deliveries, items: Items) -> Any:
+        """Return the record. `UserError` where nothing is left to compare."""

@@ -1,0 +1,192 @@
+"""From the outcome table to the decision record."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from faultpath.analyses.compared import ComparedTrials
+from faultpath.analyses.contrasts import change_name, default_primary, effect_name
+from faultpath.analyses.descriptive import cells_of, percent, secondary, untested_conditions
+from faultpath.analyses.effects import Change, Effect, Missing
+from faultpath.analyses.family import Family, family_of
+from faultpath.analyses.model import (
+    AS_RUN,
+    CORRECT,
+    SHARED,
+    Condition,
+    ConditionBreakEven,
+    Invalid,
+)
+from faultpath.analyses.question import Question
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.sentences import phrases
+from faultpath.analyses.shares import between
+from faultpath.analyses.stopping import stopped
+from faultpath.core.errors import UserError
+from faultpath.run.pairing import mismatch_words
+from faultpath.run.trials import Trials
+from faultpath.stats.contrast import Contrast
+from faultpath.stats.power import detectable
+from faultpath.system.outcome import Status
+
+
+def decide(
+    question: Question,
+    conditions: Sequence[Condition],
+    trials: Trials,
+    findings: Sequence[str] = (),
+    repeats: bool = True,
+) -> DecisionRecord:
+    """Return the decision record of an audit.
+
+    Each effect rests on the scenes that have its trials, each change on those that both have; a
+    condition that has none is left out, and named. The record carries `findings`, and what was
+    found about its pairs. Where trials do not `repeats`, or a pair met different conditions,
+    nothing is significant. `UserError` when no pair is left under any condition, for a primary
+    condition that the audit does not have, and where newly trained models are asked for and too few
+    trainings differ.
+    """
+    question = question.model_copy(
+        update={"primary": primary_condition(question.primary, conditions)}
+    )
+    cells = cells_of(question, conditions, trials)
+    # Whether a fault acted is told by receipts, and other tools' results have none.
+    untested = () if question.judged else untested_conditions(conditions, cells)
+    comparison, family = family_of(question, conditions, trials, untested)
+    invalid: Invalid | None = "unpaired" if comparison.mismatches else None
+    if not repeats:
+        invalid = "unrepeatable"
+    if invalid:
+        family = family.without_claims()
+    effects = {
+        condition: _effect(question, condition, comparison, family)
+        for condition in comparison.success
+    }
+
+    def even(ends: Sequence[tuple[str, str]], beta: bool) -> tuple[ConditionBreakEven, ...]:
+        pairs = ((effects[none], effects[every]) for none, every in ends)
+        results = (between(*pair, comparison, family, beta) for pair in pairs)
+        return tuple(result for result in results if result)
+
+    faulted = [condition for condition in effects if condition not in (CORRECT, AS_RUN, *untested)]
+    from_none = [(CORRECT, condition) for condition in faulted] if CORRECT in effects else []
+    from_one = [(condition, SHARED) for condition in family.changes]
+    state = stopped(question, family, trials)
+    first = next(iter(family.effects.values()))
+    record = DecisionRecord(
+        question=question,
+        conditions=tuple(
+            condition.model_copy(update={"acted": condition.name not in untested})
+            for condition in conditions
+        ),
+        cells=cells,
+        effects=tuple(effects.values()),
+        changes=tuple(_change(condition, family) for condition in family.changes),
+        secondary=tuple(
+            secondary(condition, comparison.pairs[condition], question) for condition in effects
+        ),
+        break_even=even(from_none, beta=False),
+        break_even_beta=even(from_one, beta=True),
+        scenes=max(effect.scenes for effect in effects.values()),
+        invalid=invalid,
+        scenes_needed=family.scenes_needed,
+        hypotheses=family.hypotheses,
+        intervals=first.estimate().method,
+        stopped=state and state.model_copy(update={"small": ()} if invalid else {}),
+    )
+    noted = (
+        *(
+            f"{phrases.no_pair(condition)}: the table shows what failed."
+            for condition in comparison.void
+        ),
+        *phrases.failed_trials(record),
+        *phrases.partly_measured(record),
+        *mismatch_words(comparison.mismatches),
+        *findings,  # a record that is decided anew has some of the above already
+    )
+    return record.model_copy(update={"findings": tuple(dict.fromkeys(noted))})
+
+
+def primary_condition(named: str, conditions: Sequence[Condition]) -> str:
+    """Return the condition of the primary contrast: as named, else the shared one, else the
+    isolated.
+
+    `UserError` for a name that the audit does not have.
+    """
+    names = [condition.name for condition in conditions]
+    if named and named not in names:
+        raise UserError(
+            f"the audit has no condition '{named}' for its primary contrast: it has "
+            f"{', '.join(names)}."
+        )
+    return default_primary(named, names)
+
+
+def _effect(
+    question: Question, condition: str, comparison: ComparedTrials, family: Family
+) -> Effect:
+    repair, baseline = comparison.success[condition]
+    effect, pairs = family.effects[condition], comparison.pairs[condition]
+    assert effect.test is not None
+    assert effect.pairs is not None
+    assert effect.won is not None
+    unpaired = np.isnan(repair - baseline)
+    rates = [percent(np.where(unpaired, np.nan, part)) for part in (baseline, repair)]
+    void, missing = int(pairs.void.sum()), None
+    if condition in family.fills:
+        against, favour = family.fills[condition]
+        ours, theirs = (int(failed.sum()) for failed in pairs.ended(Status.FAILED))
+        missing = Missing(
+            void=void,
+            repair=ours,
+            baseline=theirs,
+            against_pp=against.value,
+            favour_pp=favour.value,
+            uneven=condition in family.uneven,
+            unsettled=effect_name(condition) in family.unsettled,
+            repairs=family.repairs.get(condition),
+        )
+    elif void:
+        missing = Missing(void=void)
+    # None is known for newly trained models, whose spread a few seeds do not give, and of an audit
+    # that stops where it has decided.
+    level, least = effect.test.critical_p, None
+    if level and question.generalise == "scenes" and question.stop is None:
+        least = detectable(effect.pairs, graded=True, alpha=level, on_top=True)
+    return Effect(
+        condition=condition,
+        **_difference(effect),
+        won=effect.won,
+        ahead=effect.ahead,
+        rates=(rates[0], rates[1]),
+        missing=missing,
+        least_pp=least,
+    )
+
+
+def _change(condition: str, family: Family) -> Change:
+    contrast = family.changes[condition]
+    return Change(
+        isolated=condition,
+        **_difference(contrast),
+        unsettled=change_name(condition) in family.unsettled,
+        turn=family.turns[condition],
+    )
+
+
+def _difference(contrast: Contrast) -> dict[str, Any]:
+    """Return the fields that an effect and a change share."""
+    assert contrast.test is not None
+    low, high = contrast.interval or (None, None)
+    return {
+        "value": contrast.value,
+        "low": low,
+        "high": high,
+        "per_seed": contrast.per_seed,
+        "scenes": contrast.n_scenes,
+        "test": contrast.test.name,
+        "p_value": contrast.test.p_value,
+        "corrected_p": contrast.test.corrected_p,
+        "sign": contrast.test.sign,
+    }

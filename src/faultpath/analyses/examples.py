@@ -1,0 +1,77 @@
+"""Which scenes stand as examples, and how many go like each.
+
+A scene with one seed shows who succeeded under each condition: its pattern. Patterns come first
+that show the most reversals, then those that show the most significant effects, less what they
+contradict, then those in which not everything ends alike, then those that more scenes have. Of
+each of the first six patterns the scene with the lowest index is shown; places left over are
+filled in the same order. They are examples, not a sample.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import TypeAlias
+
+from faultpath.analyses.model import SHARED
+from faultpath.analyses.pairs import Pair, PairKind, by_scene
+from faultpath.analyses.record import DecisionRecord
+
+At: TypeAlias = tuple[str, int]
+"""A scene and a seed."""
+
+_MOST = 6
+
+
+def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
+    """Return up to six scenes with their seeds by the rule at the top."""
+    patterns, index = _patterns(pairs), {(pair.scene, pair.seed): pair.index for pair in pairs}
+    counts = Counter(patterns.values())
+    signs = {effect.condition: effect.sign for effect in record.effects if effect.leads}
+    variants = {PairKind.REPAIR_ONLY: 1, PairKind.BASELINE_ONLY: -1}
+
+    def order(at: At) -> tuple[int, ...]:
+        pattern = patterns[at]
+        shown = {
+            condition: signs.get(condition, 0) * variants.get(kind, 0)
+            for condition, kind in pattern
+        }
+        reversals = sum(
+            change.turn == "reversal" and shown.get(change.isolated) == shown.get(SHARED) == 1
+            for change in record.changes
+        )
+        alike = len({kind for _, kind in pattern}) == 1 and pattern[0][1] not in variants
+        return -reversals, -sum(shown.values()), alike, -counts[pattern], index[at], at[1]
+
+    ranked = sorted(patterns, key=order)
+    chosen: list[At] = []
+    for only_new_patterns in (True, False):
+        for at in ranked:
+            seen = only_new_patterns and patterns[at] in (patterns[other] for other in chosen)
+            shown = at[0] in (scene for scene, _ in chosen)
+            if len(chosen) < _MOST and not shown and not seen:
+                chosen.append(at)
+    return tuple(at for at in ranked if at in chosen)
+
+
+def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[At, str]:
+    """Say of each scene and seed in how many the same versions succeed under every condition."""
+    patterns = _patterns(pairs)
+    scenes, seeds = (
+        (len(set(values)) for values in zip(*patterns, strict=True)) if patterns else (0, 0)
+    )
+    noun = "sampled scenes" if sampled else "scenes"
+    of = f"{scenes} {noun}" if seeds < 2 else f"{len(patterns)} ({scenes} {noun}, {seeds} seeds)"
+    like = Counter(patterns.values())
+    return {
+        at: f"{like[pattern]} of {of} {'goes' if like[pattern] == 1 else 'go'} like this one: "
+        "the same versions succeed under each condition."
+        for at, pattern in patterns.items()
+    }
+
+
+def _patterns(pairs: Sequence[Pair]) -> dict[At, tuple[tuple[str, PairKind], ...]]:
+    """Return who succeeded, condition by condition, in every scene and seed without a void pair."""
+    return {
+        at: tuple((condition, pair.kind) for condition, pair in group.items())
+        for at, group in by_scene(pairs).items()
+        if not any(pair.kind is PairKind.VOID for pair in group.values())
+    }

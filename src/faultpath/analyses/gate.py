@@ -1,0 +1,88 @@
+"""Questions of a build or a test, answered from a result and nothing else."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from faultpath.analyses.model import SHARED
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.sentences import phrases
+from faultpath.analyses.sentences.phrases import NO_RESULT, in_short, places
+from faultpath.analyses.sentences.wording import capital, counted, sentence, where
+from faultpath.core.errors import UserError
+from faultpath.core.text import unknown
+
+Ask = Literal["reversal", "repair-behind", "undecided", "void"]
+ASKS: tuple[Ask, ...] = get_args(Ask)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Yes or no, and what it rests on: true and false as a bool, and read in a failed assert."""
+
+    yes: bool
+    said: str
+
+    def __bool__(self) -> bool:
+        return self.yes
+
+    def __repr__(self) -> str:
+        """Return the answer and what it rests on."""
+        return f"{'yes' if self.yes else 'no'}: {self.said}"
+
+
+def found(record: DecisionRecord, what: str) -> Answer:
+    """Return whether a result holds what is named; `UserError` for what is none of `ASKS`.
+
+    `reversal`: sharing the fault reverses the ranking. `repair-behind`: under some condition the
+    baseline is significantly ahead. `undecided`: the primary contrast is neither significant nor
+    shown to be small. `void`: pairs of trials count for nothing.
+    """
+    if record.invalid and what in ASKS:
+        return Answer(True, NO_RESULT[record.invalid])
+    match what:
+        case "reversal":
+            turned = [change for change in record.changes if change.turn == "reversal"]
+            text = " ".join(phrases.change(record, change) for change in turned)
+            return Answer(bool(turned), text or "no reversal is significant.")
+        case "repair-behind":
+            behind = [effect for effect in record.effects if effect.sign < 0]
+            if not behind:
+                return Answer(False, "under no condition is the baseline significantly ahead.")
+            ahead = f"{record.question.baseline} succeeds more often."
+            return Answer(True, f"{capital(places(behind))}, {ahead}")
+        case "undecided":
+            primary = record.question.primary
+            main = next((effect for effect in record.effects if effect.condition == primary), None)
+            settled = main is not None and (main.sign != 0 or record.is_small(main))
+            return Answer(not settled, f"{capital(where(primary))}: {in_short(record, main)}.")
+        case "void":
+            void = sum(effect.void for effect in record.effects)
+            lost = [condition.name for condition in record.conditions]
+            lost = [
+                name for name in lost if name not in {effect.condition for effect in record.effects}
+            ]
+            sentences = [f"{counted(void, 'pair')} of trials {'is' if void == 1 else 'are'} void."]
+            sentences += [f"{phrases.no_pair(name)}." for name in lost]
+            return Answer(bool(void or lost), " ".join(sentences))
+        case _:
+            raise UserError(f"a result cannot be asked for that: {unknown('name', what, ASKS)}.")
+
+
+def holds_when_shared(record: DecisionRecord) -> Answer:
+    """Return whether the repair is significantly ahead under the shared fault.
+
+    Away from floor and ceiling, and not because the baseline's trials failed. `UserError` for a
+    result without a shared fault.
+    """
+    if SHARED not in {condition.name for condition in record.conditions}:
+        raise UserError("the result has no shared fault, so nothing says whether the repair holds.")
+    effect = next((effect for effect in record.effects if effect.condition == SHARED), None)
+    text = sentence(f"{where(SHARED)}, {in_short(record, effect)}")
+    return Answer(effect is not None and effect.leads and effect.sign > 0, text)
+
+
+def broken(record: DecisionRecord, conditions: Sequence[str]) -> dict[str, Answer]:
+    """Return which of the conditions to fail for are met: by name, each with its answer."""
+    answers = {condition: found(record, condition) for condition in conditions}
+    return {name: answer for name, answer in answers.items() if answer}

@@ -1,0 +1,236 @@
+"""From trials that other tools ran to what an audit is decided from: question, conditions,
+trials."""
+
+import hashlib
+import json
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from faultpath.analyses.decide import primary_condition
+from faultpath.analyses.judging_table import Address, Key, table_of, units_of
+from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition
+from faultpath.analyses.question import JudgedTrials, Question, resolve
+from faultpath.analyses.sentences.wording import capital, counted, where
+from faultpath.core.errors import UserError
+from faultpath.core.text import listed, unknown
+from faultpath.run import SystemSpec, Trials
+from faultpath.run.deliveries import unproven
+from faultpath.run.received.question import JudgeQuestion
+from faultpath.run.received.trial import NO_OUTCOME, Received
+from faultpath.run.store.tables import FIXED
+from faultpath.system.declared import Library
+from faultpath.system.outcome import Metric, Status
+
+_ONE = "one module"
+"""Name of a condition that results call isolated without naming a module."""
+_FIRST = {CORRECT: 0, SHARED: 2}
+
+
+@dataclass(frozen=True)
+class LaidOut:
+    """Arguments of `decide`."""
+
+    question: Question
+    conditions: tuple[Condition, ...]
+    trials: Trials
+    findings: tuple[str, ...]
+
+
+def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
+    """Pair the trials of two variants by what names them: task, scene, seed and condition.
+
+    What one variant has and the other lacks is a failed trial, so that its pair is void, and is
+    named.
+    Raises `UserError` for variants and conditions that are not there, a trial that is there twice,
+    variants without a trial in common, and hashes that only some trials have.
+    """
+    if request.baseline == request.repair:
+        raise UserError(f"baseline and repair are both '{request.repair}': name two versions.")
+    for name in (request.baseline, request.repair):
+        if name not in (versions := {row.variant for row in rows}):
+            raise UserError(f"the results: {unknown('version', name, versions)}.")
+    rows = [row for row in rows if row.variant in (request.baseline, request.repair)]
+    names = _condition_names({row.condition for row in rows}, request)
+    if request.cluster == "task" and not all(row.task for row in rows):
+        raise UserError("not every trial names its task: give --column task=NAME.")
+    received = _by_address(rows, names, request)
+    conditions = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
+    _check_paired(received, conditions, request)
+
+    units = units_of(received, request)
+    hashed = _hashed(rows)
+    tasks = {address[2][0]: row.task for address, row in received.items()}
+    trials, missing = table_of(received, conditions, units, request, hashed)
+    keys = {unit: sorted(members) for unit, members in units.labels.items()}
+    laid = tuple(_condition(name) for name in conditions)
+    dull = not any(row.status is Status.CRASH for row in rows)
+    question = resolve(
+        Question,
+        request,
+        SystemSpec(name="results of other tools"),
+        Library(
+            "results",
+            (),
+            hashlib.sha256(json.dumps(keys, sort_keys=True).encode()).hexdigest()[:16],
+        ),
+        n_scenes=len(units.labels),
+        seeds=units.seeds,
+        primary=primary_condition(request.primary or "", laid),
+        trained=request.generalise == "models",
+        ends={Status.TIMEOUT.value: "no success"} if dull else {},
+        metrics=_metrics(request),
+        judged=JudgedTrials(pairing="hashes" if hashed else "keys", unit=request.cluster),
+    )
+    longer = [unit for unit, members in units.labels.items() if len(members) > len(units.seeds)]
+    findings = _findings(trials, missing, longer, tasks, request, hashed)
+    return LaidOut(question, laid, trials, tuple(findings))
+
+
+def _condition_names(conditions: Collection[str], question: JudgeQuestion) -> dict[str, str]:
+    """Return what each condition is called here; `UserError` without one that is nominal."""
+    for name in filter(None, (question.nominal, question.shared)):
+        if name not in conditions:
+            raise UserError(
+                f"the results have no such condition: {unknown('condition', name, conditions)}."
+            )
+    if conditions == {""}:
+        return {"": AS_RUN}
+    nominal = {question.nominal} if question.nominal else {"", "nominal", "correct"}
+    shared = {question.shared} if question.shared else {"shared"}
+    names: dict[str, str] = {}
+    for condition in sorted(conditions):
+        if condition in nominal:
+            names[condition] = CORRECT
+        elif condition in shared:
+            names[condition] = SHARED
+        else:
+            names[condition] = (
+                _ONE if condition == "isolated" else condition.removeprefix("isolated:")
+            )
+    if CORRECT not in names.values():
+        raise UserError(
+            f"no condition is nominal ({listed(conditions)}): say with --nominal which one is "
+            "without the fault."
+        )
+    if len(set(names.values())) < len(names):
+        raise UserError(
+            f"two of the conditions mean the same ({listed(conditions)}): say with --nominal and "
+            "--shared which is which."
+        )
+    return names
+
+
+def _by_address(
+    rows: Iterable[Received], names: Mapping[str, str], question: JudgeQuestion
+) -> dict[Address, Received]:
+    trials: dict[Address, Received] = {}
+    for row in rows:
+        scene = f"{row.task}/{row.scene}" if row.task else row.scene
+        key = (scene, row.seed)
+        if question.cluster == "task":
+            key = (row.task, f"{row.scene}, seed {row.seed}" if row.seed else row.scene)
+        address = (row.variant, names[row.condition], key)
+        if (before := trials.setdefault(address, row)) is not row:
+            seed = f", seed {row.seed}" if row.seed else ""
+            raise UserError(
+                f"{row.where} and {before.where} are the same trial (version {row.variant}, scene "
+                f"{scene}{seed}): give each once, or name the column that tells them apart, as in "
+                "--column seed=NAME."
+            )
+    return trials
+
+
+def _check_paired(
+    trials: Collection[Address], conditions: Sequence[str], question: JudgeQuestion
+) -> None:
+    """Raise `UserError` for a condition on which no trial of one variant has its pair in the
+    other."""
+    for condition in conditions:
+        ones, twos = (
+            sorted(key for variant, at, key in trials if (variant, at) == (name, condition))
+            for name in (question.baseline, question.repair)
+        )
+        for name, keys in ((question.baseline, ones), (question.repair, twos)):
+            if not keys:
+                raise UserError(
+                    f"'{name}' has no trial {where(condition)}: give both versions under each "
+                    "condition."
+                )
+        if not set(ones) & set(twos):
+            first, second = (", seed ".join(filter(None, keys[0])) for keys in (ones, twos))
+            raise UserError(
+                f"no trial of '{question.baseline}' has its pair in '{question.repair}' "
+                f"{where(condition)} (the first are scene {first} and scene {second}): name the "
+                "columns "
+                "that say what belongs together, as in --column scene=NAME."
+            )
+
+
+def _hashed(rows: Sequence[Received]) -> bool:
+    """Return whether trials carry hashes of what they began with; `UserError` if only some do."""
+    ended = [row for row in rows if row.status is not Status.FAILED]
+    bare = [row for row in ended if not row.initial]
+    if bare and len(bare) < len(ended):
+        raise UserError(
+            f"{bare[0].where} has no hash of its initial state, and other trials have one: fill "
+            "the column, or take it out."
+        )
+    return bool(ended) and not bare
+
+
+def _condition(name: str) -> Condition:
+    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault", AS_RUN: "The results"}
+    title = titles.get(name, f"{capital(name.replace('_', ' '))} only")
+    return Condition(name=name, title=title, readers=(), baseline_readers=())
+
+
+def _metrics(question: JudgeQuestion) -> dict[str, Metric]:
+    metrics: dict[str, Metric] = {}
+    for name, _, better in (text.partition(":") for text in question.metrics):
+        if not re.fullmatch("[a-z][a-z0-9_]*", name) or name in FIXED:
+            raise UserError(
+                f"--metric {name} cannot be the name of a metric: rename the column to small "
+                "letters, digits and underscores, and not to what every trial has."
+            )
+        if better not in ("", "more", "less"):
+            raise UserError(f"--metric {name}:{better} is neither less nor more: give one of them.")
+        metrics[name] = Metric(unit="1", better="less" if better == "less" else "more")
+    return metrics
+
+
+def _findings(
+    trials: Trials,
+    missing: Mapping[tuple[str, str], Sequence[Key]],
+    longer: Sequence[str],
+    tasks: Mapping[str, str],
+    question: JudgeQuestion,
+    hashed: bool,
+) -> Iterable[str]:
+    for (variant, condition), keys in missing.items():
+        unit, label = keys[0]
+        which = "" if not label else f" ({'' if question.cluster == 'task' else 'seed '}{label})"
+        yield (
+            f"{capital(where(condition))}, {counted(len(keys), 'trial')} of {variant} "
+            f"{'is' if len(keys) == 1 else 'are'} missing, for example that in {unit}{which}: "
+            "each voids its pair."
+        )
+    if longer:
+        yield (
+            f"{counted(len(longer), question.cluster)} {'has' if len(longer) == 1 else 'have'} "
+            f"more trials than the others, for example {longer[0]}: the extra trials are left out."
+        )
+    several = len(set(tasks.values()))
+    if question.cluster == "scene" and several > 1:
+        yield (
+            f"The scenes come from {several} tasks and are taken as independent: what is "
+            "significant need not hold for new tasks. --cluster task tests whether it does."
+        )
+    if hashed:
+        yield from unproven(trials.met())
+    succeeded = trials.has(Status.SUCCESS)
+    if NO_OUTCOME in trials.errors.values() and (succeeded | trials.failed).all():
+        yield (
+            "No trial ended without success, and some say nothing: where `failed` or an empty cell "
+            "means no success, write 0."
+        )

@@ -1,0 +1,163 @@
+"""The question and the record of a map: what was run, what is decided, and how it is said."""
+
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from faultpath.analyses.map.lattice import UNITS
+from faultpath.analyses.model import Invalid
+from faultpath.analyses.question import Resolved
+from faultpath.analyses.sentences.wording import MINUS
+from faultpath.core.results import Result
+from faultpath.stats.estimate import Sign
+
+
+class ResolvedMap(Resolved, allow_inf_nan=False):
+    """The question of a map, as its record keeps it."""
+
+    baseline: str
+    repair: str
+    fault: str
+    """Without a size: `gain`, `gain:offset`, `calibration`."""
+    against: tuple[str, str]
+    """The modules at which the error acts: across and upward in the picture."""
+    others: tuple[str, ...] = ()
+    """Readers of the same source that get it without error."""
+    up_to: float = Field(gt=0)
+    """The largest error, of either sign."""
+    relative: bool
+    """Whether errors are fractions of the reading; else they are in `unit`."""
+    unit: str
+    means: tuple[float, float]
+    spreads: tuple[float, float]
+    """Standard deviations of the joint distribution."""
+    correlation: float | None = Field(default=None, ge=-1, le=1)
+    points: int
+    """As many are run before those that bisect."""
+    library: str
+    library_hash: str
+    n_scenes: int
+    seeds: tuple[int, ...]
+    trained: bool = False
+
+    def size(self, units: int) -> float:
+        """Return an error from a coordinate of a point."""
+        return round(self.up_to * units / UNITS, 12) + 0.0
+
+    def said(self, size: float) -> str:
+        """Return a size in words: `+20 %`, or `+0.2 m`."""
+        if self.relative:
+            return f"{100 * size:+.3g} %".replace("-", MINUS) if size else "0 %"
+        return f"{size:+.3g} {self.unit}".replace("-", MINUS).removesuffix(" 1")
+
+    def winner(self, sign: int) -> str:
+        """Return the variant of a decided side."""
+        return self.repair if sign > 0 else self.baseline
+
+
+class MapPoint(Result, allow_inf_nan=False):
+    """A pair of errors that was run; differences are repair minus baseline, pp."""
+
+    errors: tuple[float, float]
+    baseline_percent: float
+    repair_percent: float
+    difference: float
+    low: float
+    high: float
+    """Ends of the interval that holds at all points at once."""
+    sign: Sign
+    """The side that is decided, with the map's multiplicity."""
+    won: int
+    lost: int
+    """Scenes that go to the repair and to the baseline, over the seeds."""
+
+
+class MapSurface(Result, allow_inf_nan=False):
+    """The surface on an even lattice: rows upward, by the error at the second module."""
+
+    sizes: tuple[float, ...]
+    difference: tuple[tuple[float, ...], ...]
+    sign: tuple[tuple[Sign, ...], ...]
+    """Where the interpolated difference leaves out 0, but for the error of interpolating it."""
+
+    @model_validator(mode="after")
+    def _square(self) -> Self:
+        rows = (self.difference, self.sign, *self.difference, *self.sign)
+        if {len(self.sizes)} != set(map(len, rows)):
+            raise ValueError("has not a row and a column for each size")
+        return self
+
+
+class Flip(Result, allow_inf_nan=False):
+    """On one condition, in one direction of the error: at which of the sizes that were run the
+    ranking is reversed."""
+
+    condition: str
+    """A module, or `shared`."""
+    direction: Sign
+    start: Sign
+    """Side decided under correct inputs."""
+    turned: Sign
+    """Side decided between `first` and `last`: the other one, or either where `start` is 0."""
+    until: float | None
+    """Largest error up to which what is decided under correct inputs stays decided."""
+    estimate: float | None
+    """Smallest error at which the interpolated estimate has the other sign than under correct
+    inputs."""
+    first: float | None
+    last: float | None
+
+
+class Expectation(Result, allow_inf_nan=False):
+    """The expected difference at one correlation, pp."""
+
+    correlation: float
+    value: float
+    low: float
+    high: float
+    sign: Sign
+
+
+class CorrelationRegion(Result, allow_inf_nan=False):
+    """Correlations at which it is decided who is ahead."""
+
+    low: float
+    high: float
+    sign: Sign
+
+
+class JointErrors(Result, allow_inf_nan=False):
+    """The expected difference under the joint distribution, over all correlations: of the surface
+    interpolated between the points, whose error no interval here includes."""
+
+    curve: tuple[Expectation, ...]
+    asked: tuple[Expectation, ...]
+    """At the correlations 0 and 1, and at the one that was asked for."""
+    estimates: tuple[float, ...]
+    """Where the estimate crosses zero: the break-even correlation, if there is just one."""
+    undecided: tuple[tuple[float, float], ...]
+    """A 95 % confidence set for the break-even correlation."""
+    regions: tuple[CorrelationRegion, ...]
+    outside: float = Field(ge=0, le=1)
+    """Largest share of the distribution beyond the map; it counts as at the map's edge."""
+    critical: float
+
+
+class MapResult(Result, allow_inf_nan=False):
+    """The numbers of a map, decided; written as `map.json`."""
+
+    format: Literal[2] = 2
+    question: ResolvedMap
+    scenes: int
+    """Compared: those without a void pair at any point."""
+    invalid: Invalid | None = None
+    """Why no result follows from these trials: then nothing is significant."""
+    points: tuple[MapPoint, ...]
+    surface: MapSurface
+    flips: tuple[Flip, ...]
+    joint: JointErrors
+    critical: float
+    """Critical value of a standard normal that holds over the whole map."""
+    failed: int
+    """Trials in which the program raised an error; each voids its scene at every point."""
+    findings: tuple[str, ...] = ()

@@ -1,0 +1,165 @@
+"""The decision record: what was asked, what came out, and what it means."""
+
+from typing import Literal
+
+from faultpath.analyses.effects import Change, Effect, Secondary
+from faultpath.analyses.question import EarlierLook, Question
+from faultpath.core.results import Result
+from faultpath.stats.estimate import BreakEven
+
+CORRECT = "correct"
+SHARED = "shared"
+AS_RUN = "as-run"
+"""The only condition of results that name no condition; no module can be called so."""
+Invalid = Literal["unrepeatable", "unpaired"]
+"""Trials that came out otherwise when they ran again; pairs that met different conditions."""
+
+
+class FaultedTap(Result):
+    """A tap at which a fault was in force, by the delivery log: all scenes and seeds together."""
+
+    channel: str
+    reader: str
+    faulted_steps: int
+    """Control steps with a fault in force while the scene ran."""
+    altered_steps: int
+    """Those in which what the reader got differed from the reading."""
+
+
+class Condition(Result):
+    """One way in which the fault reaches the system."""
+
+    name: str
+    """`correct`, the name of the only faulted module, or `shared`."""
+    title: str
+    readers: tuple[str, ...]
+    """Taps faulted in the repaired system; empty for `correct`."""
+    baseline_readers: tuple[str, ...]
+    """Taps faulted in the baseline. Where the baseline has no such reader the fault cannot reach
+    it, and its trials under correct inputs stand in."""
+    faulted: tuple[FaultedTap, ...] = ()
+    """Taps faulted in the repaired system: from the delivery log, where `readers` is the plan."""
+    baseline_faulted: tuple[FaultedTap, ...] = ()
+    """Taps faulted in the baseline."""
+
+
+class VariantCounts(Result):
+    """The trials of one variant under one condition, all seeds together."""
+
+    variant: str
+    condition: str
+    trials: int
+    success: int
+    crash: int
+    timeout: int
+    failed: int
+    success_percent: float
+    median_time_s: float | None
+    """Over successful trials; `None` without one."""
+    faulted_trials: int
+    altered_trials: int
+
+
+class Ahead(Result):
+    """Where along a share, of faulty episodes or of common causes, a version is ahead."""
+
+    sign: Literal[-1, 1]
+    where: Literal["everywhere", "many", "few", "from", "up to"]
+    """`many` and `few`: at that end of the range, as far as is open."""
+    percent: int | None = None
+    """Whole percentage of `from` and `up to`."""
+
+
+class ConditionBreakEven(Result):
+    """The shares at which neither variant is decided to be ahead, under one condition: of episodes
+    with the fault, or of the module's faults that are common cause (beta)."""
+
+    condition: str
+    result: BreakEven
+    curve: tuple[tuple[float, float, float, float], ...]
+    """`(share, expected difference, low, high)` in fractions and percentage points. The band
+    touches 0 exactly where the share is in the set of `result`."""
+    ahead: tuple[Ahead, ...]
+    """Ranges of the share at which a version is ahead; empty where no end has an effect that
+    leads."""
+
+
+class StoppedAudit(Result):
+    """How far a sequential audit went."""
+
+    scenes: int
+    """Run; void pairs included."""
+    reached: bool
+    """Whether what it was to stop for came about."""
+    small: tuple[str, ...]
+    """Conditions on which the difference was shown to be smaller than the margin."""
+
+
+class AuditResult(Result):
+    """The numbers that tables, pictures and the report show; written as `record.json`."""
+
+    format: Literal[5] = 5
+    question: Question
+    conditions: tuple[Condition, ...]
+    cells: tuple[VariantCounts, ...]
+    effects: tuple[Effect, ...]
+    changes: tuple[Change, ...]
+    secondary: tuple[Secondary, ...] = ()
+    """Under each condition that has an effect."""
+    break_even: tuple[ConditionBreakEven, ...]
+    """Over the frequency of the fault, each condition but that of correct inputs."""
+    break_even_beta: tuple[ConditionBreakEven, ...] = ()
+    """Over the beta factor, each isolated condition: of the faults of that module, the share that
+    reaches all modules at once."""
+    scenes: int
+    """Scenes that are compared: the most that any effect rests on."""
+    invalid: Invalid | None = None
+    """Why no result follows from these trials: then nothing is significant."""
+    scenes_needed: int
+    """With fewer, nothing can be decided, whatever comes out."""
+    hypotheses: int
+    """Contrasts that share the error rate of 5 %: all that the audit may announce."""
+    intervals: str
+    """Method of the effects' intervals."""
+    findings: tuple[str, ...] = ()
+    """Remarks on the run that a reader has to know, a sentence each."""
+    stopped: StoppedAudit | None = None
+    """State at which a sequential audit ended."""
+    earlier: tuple[EarlierLook, ...] = ()
+    """Concluded before, from the same trials and otherwise."""
+
+    @property
+    def few(self) -> bool:
+        """Whether there are too few scenes to decide anything."""
+        return self.scenes < self.scenes_needed
+
+    def winner(self, sign: int) -> str:
+        """Return the variant of a decided side."""
+        return self.question.repair if sign > 0 else self.question.baseline
+
+    def is_small(self, effect: Effect) -> bool:
+        """Whether an effect was shown to be smaller than the margin of a sequential audit."""
+        return self.stopped is not None and effect.condition in self.stopped.small
+
+    @property
+    def scenes_run(self) -> str:
+        """The number of scenes, and of how many where an audit could have taken more."""
+        most = str(self.question.n_scenes)
+        if self.stopped is None or self.stopped.scenes == self.question.n_scenes:
+            return most
+        return f"{self.stopped.scenes} of at most {most}"
+
+    @property
+    def stopping(self) -> str:
+        """How a sequential audit was to stop."""
+        rule = self.question.stop
+        if rule is None:
+            return ""
+        what = "the primary contrast" if rule.when == "decided" else "every effect"
+        small = f" or shown to be smaller than {rule.margin_pp:g} pp" if rule.margin_pp else ""
+        return (
+            f"the audit was to stop once {what} is significant{small}, at a look after every "
+            f"{'scene' if rule.look == 1 else f'{rule.look} scenes'}, or after "
+            f"{self.question.n_scenes}; the order of its scenes was drawn beforehand from the hash "
+            f"of the library and the seed {rule.order_seed}"
+        )

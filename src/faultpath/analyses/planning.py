@@ -1,0 +1,262 @@
+"""Plan an audit: which treatments a question about a repair needs, under which conditions of the
+fault."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePath
+
+from faultpath.analyses.analysis import Analysis, Round, Rounds
+from faultpath.analyses.decide import decide, primary_condition
+from faultpath.analyses.model import CORRECT, SHARED, Condition, FaultedTap
+from faultpath.analyses.question import Question, StopRule, resolve
+from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.sentences.wording import counted
+from faultpath.analyses.stopping import stops
+from faultpath.core.errors import UserError
+from faultpath.core.streams import generator
+from faultpath.core.text import unknown
+from faultpath.faults import Fault, at_readers, describe
+from faultpath.interface import module_of
+from faultpath.loop import TapCount
+from faultpath.run import (
+    Deliveries,
+    Row,
+    Study,
+    SystemSpec,
+    Treatment,
+    Trials,
+)
+from faultpath.run.question import FEWEST_TRAININGS, AuditQuestion, RepairQuestion
+from faultpath.system.declared import Library, Variant
+from faultpath.system.system import System
+
+LOOK = 5
+"""Scenes from one look to the next of a sequential audit, where the system runs as many at once:
+fewer save few trials and cost much for systems that run their scenes together."""
+_ORDER_SEED = 0
+"""One order for each library, so that nobody can choose among several."""
+
+
+@dataclass(frozen=True)
+class Audit(Analysis[None]):
+    """A question and the study that answers it."""
+
+    request: AuditQuestion
+    question: Question
+    conditions: tuple[Condition, ...]
+    study: Study
+
+    def rounds(self) -> Rounds[None]:
+        """Yield the only round."""
+        yield Round(self.study, stop=self.stops)
+
+    def conclude(
+        self, trials: Trials, deliveries: Deliveries, items: None = None
+    ) -> DecisionRecord:
+        """Return the decision record of a run; raises as `faultpath.analyses.decide`."""
+        question = self.question
+        conditions = [
+            condition.model_copy(
+                update={
+                    "faulted": faulted_taps(deliveries.at(question.repair, condition.name)),
+                    "baseline_faulted": faulted_taps(
+                        deliveries.at(question.baseline, condition.name)
+                    ),
+                }
+            )
+            for condition in self.conditions
+        ]
+        return decide(question, conditions, trials, deliveries.findings, repeats=deliveries.repeats)
+
+    def stops(self, trials: Trials) -> bool:
+        """Return whether a sequential audit ends with these trials."""
+        return stops(self.question, self.conditions, trials)
+
+
+def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
+    """Return the taps at which receipts show a fault in force."""
+    return tuple(
+        FaultedTap(
+            channel=tap.channel,
+            reader=tap.reader,
+            faulted_steps=tap.faulted_steps,
+            altered_steps=tap.altered_steps,
+        )
+        for tap in counts
+        if tap.faulted_steps
+    )
+
+
+def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library: Library) -> Audit:
+    """Lay out the treatments: both variants under correct inputs, under the fault at each module
+    that reads it alone, and under the fault shared by all of them.
+
+    The primary condition, which leads the headline, is by default the shared one, or the only
+    isolated one.
+
+    Raises `UserError` for an unknown variant or metric, a repair that is its own baseline, a number
+    of scenes that the library does not have, a fault that reaches neither variant, a primary
+    condition that does not exist, newly trained models of a system that trains none, from one seed
+    or in a sequential audit, or a margin that is none.
+    """
+    variants = two_variants(system, request)
+    sequential = request.stop_when is not None
+    chosen = scenes_of(library, request.scenes, in_order=not sequential)
+    faults = system.fault(request.fault)
+    faults_of = faults_by_condition(faults, variants)
+    conditions = [
+        _condition(name, of[request.repair], of[request.baseline]) for name, of in faults_of.items()
+    ]
+    # Where the fault cannot reach a variant, that is the treatment under correct inputs: it runs
+    # once.
+    rows = [
+        row for condition, of in faults_of.items() for row in rows_of(condition, of, request.seeds)
+    ]
+    _check(system, request)
+    study = Study(
+        name=f"{spec.name}-{request.repair}-vs-{request.baseline}",
+        system=spec,
+        library=library.name,
+        scenes=chosen,
+        rows=tuple(rows),
+        look=min(LOOK, system.block_size or LOOK) if sequential else 0,
+    )
+    stop = None
+    if request.stop_when is not None:
+        stop = StopRule(
+            when=request.stop_when,
+            margin_pp=request.margin_pp,
+            order=chosen,
+            order_seed=_ORDER_SEED,
+            look=study.look,
+            trials=len(study.treatments()),
+        )
+    question = resolve(
+        Question,
+        request,
+        spec,
+        library,
+        fault=str(request.fault),
+        faults=faults,
+        n_scenes=len(chosen),
+        primary=primary_condition(request.primary or "", conditions),
+        trained=system.trained,
+        ends={status.value: words for status, words in system.ends.items()},
+        metrics=dict(system.metrics),
+        thresholds=tuple(sorted(set(request.thresholds))),
+        stop=stop,
+    )
+    named = [study.name, str(request.fault), PurePath(library.name).stem]
+    if request.stop_when is not None:
+        small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
+        named.append(f"until-{request.stop_when}{small}")
+    return Audit(request, question, system, tuple(named), tuple(conditions), study)
+
+
+def faults_by_condition(
+    faults: Sequence[Fault], variants: Sequence[Variant]
+) -> dict[str, dict[str, tuple[Fault, ...]]]:
+    """Return the faults of each condition in each variant; none under correct inputs. With a single
+    module there is nothing to share: the isolated fault is all of it.
+
+    `UserError` for faults that reach no variant, and a module named like a condition.
+    """
+    shared = {variant.name: at_readers(faults, variant.readers) for variant in variants}
+    reached = (reader for parts in shared.values() for part in parts for reader in part.readers)
+    modules = sorted({module_of(reader) for reader in reached})
+    if not modules:
+        names = " nor ".join(f"'{variant.name}'" for variant in variants)
+        raise UserError(
+            f"the fault ({describe(faults)}) reaches neither {names}: neither reads it there."
+        )
+    for reserved in {CORRECT, SHARED} & set(modules):
+        raise UserError(
+            f"the interface calls a module '{reserved}', which is the name of a condition in every "
+            "audit: rename the module."
+        )
+    conditions: dict[str, dict[str, tuple[Fault, ...]]] = {CORRECT: dict.fromkeys(shared, ())}
+    for module in modules:
+        conditions[module] = {name: at_readers(parts, (module,)) for name, parts in shared.items()}
+    if len(modules) > 1:
+        conditions[SHARED] = shared
+    return conditions
+
+
+def rows_of(
+    condition: str, faults: Mapping[str, Sequence[Fault]], seeds: Sequence[int]
+) -> Iterator[Row]:
+    """Yield the rows of a condition: each variant under its faults, once with each seed."""
+    for variant, parts in faults.items():
+        for seed in seeds:
+            treatment = Treatment(variant=variant, faults=tuple(parts), seed=seed)
+            yield Row(variant=variant, condition=condition, seed=seed, treatment=treatment)
+
+
+def _condition(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Condition:
+    """Return a condition of the fault, with what it reaches in each variant."""
+    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
+    ours, theirs = (
+        tuple(dict.fromkeys(reader for fault in faults for reader in fault.readers))
+        for faults in (repair, baseline)
+    )
+    title = titles.get(name, f"{name.replace('_', ' ').capitalize()} only")
+    return Condition(name=name, title=title, readers=ours, baseline_readers=theirs)
+
+
+def _check(system: System, question: AuditQuestion) -> None:
+    """Raise `UserError` for a metric, a margin or a population that means nothing."""
+    if question.thresholds and not question.metric:
+        raise UserError("thresholds of what? Name a metric of the system beside them.")
+    if question.metric and question.metric not in system.metrics:
+        raise UserError(f"{system.name}: {unknown('metric', question.metric, system.metrics)}")
+    margin = question.margin_pp
+    if margin is not None and not (question.stop_when and 0.0 < margin < 100.0):
+        raise UserError(
+            f"a margin of {margin:g} pp says when a sequential audit counts a difference as "
+            "none: give it with --stop-when, between 0 and 100."
+        )
+    if question.generalise != "models":
+        return
+    if question.stop_when:
+        raise UserError(
+            "no test of newly trained models holds wherever one stops: leave --stop-when or "
+            "--generalise models out."
+        )
+    if not system.trained:
+        raise UserError(
+            f"{system.name} has no trained models to generalise to: leave --generalise models out."
+        )
+    if len(question.seeds) < FEWEST_TRAININGS:
+        raise UserError(
+            f"{counted(len(question.seeds), 'seed')} cannot show how newly trained models would "
+            f"spread: give {FEWEST_TRAININGS} or more, such as --seeds 0,1,2,3,4, or leave "
+            "--generalise models out."
+        )
+
+
+def two_variants(system: System, question: RepairQuestion) -> tuple[Variant, Variant]:
+    """Return baseline and repair; `UserError` for an unknown one, and where both are one."""
+    for name in (question.baseline, question.repair):
+        if name not in system.variants:
+            raise UserError(f"{system.name}: {unknown('variant', name, system.variants)}")
+    if question.baseline == question.repair:
+        raise UserError(
+            f"baseline and repair are both '{question.repair}': name two different variants."
+        )
+    return system.variants[question.baseline], system.variants[question.repair]
+
+
+def scenes_of(library: Library, count: int | None, in_order: bool = True) -> tuple[str, ...]:
+    """Return the first scenes of a library, in its order or the random one of sequential audits;
+    `UserError` for a number that it has not got."""
+    available = len(library.scenes)
+    if count is not None and not 1 <= count <= available:
+        raise UserError(
+            f"cannot run {count} scenes of library '{library.name}': choose 1 to {available}."
+        )
+    scenes = library.scenes
+    if not in_order:
+        stream = generator("scene order", library.content_hash, _ORDER_SEED)
+        drawn: list[int] = stream.permutation(available).tolist()
+        scenes = tuple(scenes[place] for place in drawn)
+    return tuple(scene.id for scene in scenes[:count])

@@ -1,0 +1,238 @@
+"""From the trials of a scan to its result."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from faultpath.analyses.model import CORRECT, Invalid
+from faultpath.analyses.scan.errors import Scanned, label
+from faultpath.analyses.scan.model import (
+    FirstStage,
+    ResolvedScan,
+    ScanError,
+    ScannedPair,
+    ScannedVersion,
+    SecondStage,
+    Together,
+)
+from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.scan.sources import Ranking
+from faultpath.core.errors import UserError
+from faultpath.run import Deliveries, Group, Trials, pair
+from faultpath.run.pairing import Mismatch, mismatch_words
+from faultpath.stats.cancelling import LEVEL, MOST, Pair, StageOne, cancelling, stage_one
+from faultpath.stats.inputs import Floats
+
+Successes: TypeAlias = Mapping[str, Floats]
+"""Success of a variant [scenes], a mean over the seeds, by condition; not a number where a trial
+has no outcome."""
+
+
+def losses(
+    question: ResolvedScan, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
+) -> list[list[float]]:
+    """Return what each error cost in the first stage, percentage points, by variant."""
+    return [stage.losses.tolist() for stage in _stages(question, errors, trials, scenes)]
+
+
+def going_on(
+    question: ResolvedScan, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
+) -> tuple[int, ...]:
+    """Return the errors that hurt in a variant and go on, the worst first."""
+    worst: dict[int, float] = {}
+    for stage in _stages(question, errors, trials, scenes):
+        for error in stage.hurting:
+            worst[error] = max(float(stage.losses[error]), worst.get(error, 0.0))
+    return tuple(sorted(worst, key=lambda error: (-worst[error], error))[:MOST])
+
+
+def hurting(
+    question: ResolvedScan, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
+) -> set[tuple[str, int]]:
+    """Return the sources and signs of which an error is seen to cost success in some variant."""
+    return {
+        (error.source, error.sign)
+        for stage in _stages(question, errors, trials, scenes)
+        for error, p_value in zip(errors, stage.p_values.tolist(), strict=True)
+        if p_value < LEVEL
+    }
+
+
+def _stages(
+    question: ResolvedScan, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
+) -> Iterable[StageOne]:
+    for variant in question.variants:
+        success, _ = successes(trials, variant, [label([error]) for error in errors], scenes)
+        yield stage_one(success[CORRECT], np.stack([success[label([e])] for e in errors]))
+
+
+def successes(
+    trials: Trials, variant: str, conditions: Iterable[str], scenes: Sequence[str]
+) -> tuple[Successes, tuple[Mismatch, ...]]:
+    """Return success without an error and under some conditions, in some scenes, and the trials
+    that met other conditions than those without an error, which are left out."""
+    chosen = set(scenes)
+    inside = np.array([scene.id in chosen for scene in trials.scenes], dtype=np.bool_)
+    kept = tuple(scene for scene in trials.scenes if scene.id in chosen)
+    part = replace(trials, scenes=kept, index=trials.index[..., inside])
+    success: dict[str, Floats] = {}
+    mismatches: list[Mismatch] = []
+    for condition in (CORRECT, *conditions):
+        pairs = pair(part, Group(variant, condition), Group(variant, CORRECT))
+        mismatches += pairs.mismatches
+        means = pairs.success[0].mean(axis=1)
+        success[condition] = np.where(pairs.void.any(axis=0), np.nan, means)
+        if np.isnan(success[condition]).all():
+            rows = part.rows(variant, condition).ravel().tolist()
+            why = next((part.errors[row] for row in rows if row in part.errors), "unlike pairs")
+            raise UserError(
+                f"no trial of {variant} under {condition} is left, because all failed ({why}): fix "
+                "what made them fail, or give a smaller error with --fault."
+            )
+    return success, tuple(mismatches)
+
+
+def concluded(
+    question: ResolvedScan,
+    ranking: Ranking,
+    scanned: Scanned,
+    trials: Trials,
+    deliveries: Deliveries,
+) -> ScanRecord:
+    """Return the result of a scan.
+
+    Raises `UserError` where no trial of a condition is left.
+    """
+    mismatches: list[Mismatch] = []
+    versions = [_version(name, scanned, trials, mismatches) for name in question.variants]
+    unlike = mismatch_words(mismatches)
+    invalid: Invalid | None = "unpaired" if unlike else None
+    if not deliveries.repeats:
+        invalid = "unrepeatable"
+    if invalid:
+        versions = [_without_claims(version) for version in versions]
+    return ScanRecord(
+        question=question,
+        ranking=ranking,
+        errors=scanned.errors,
+        chosen=scanned.chosen,
+        scenes=(len(scanned.first), len(scanned.second)),
+        trials=len(trials),
+        versions=tuple(versions),
+        invalid=invalid,
+        failed=int(trials.failed.sum()),
+        findings=(*unlike, *deliveries.findings),
+    )
+
+
+def _version(
+    variant: str, scanned: Scanned, trials: Trials, mismatches: list[Mismatch]
+) -> ScannedVersion:
+    names = [label([error]) for error in scanned.tried]
+    success, unlike = successes(trials, variant, names, scanned.first)
+    mismatches += unlike
+    acted = [_acted(trials, variant, name) for name in names]
+    first = _first_stage(scanned.tried, success, acted)
+    conditions = {at: label([scanned.errors[place] for place in at]) for at in scanned.conditions}
+    if len(conditions) < 2:
+        return ScannedVersion(variant=variant, first=first, singles=(), pairs=(), together=())
+    names = [name for name in conditions.values() if name]
+    success, unlike = successes(trials, variant, names, scanned.second)
+    mismatches += unlike
+    by_errors = {places: success[name or CORRECT] for places, name in conditions.items()}
+    singles, pairs = _second_stage(scanned, by_errors)
+    return ScannedVersion(
+        variant=variant,
+        first=first,
+        singles=singles,
+        pairs=pairs,
+        together=tuple(_together(scanned.errors, places, by_errors) for places in scanned.together),
+    )
+
+
+def _acted(trials: Trials, variant: str, condition: str) -> bool:
+    rows = trials.rows(variant, condition).ravel()
+    return bool(trials.steps[1, rows[rows >= 0]].any())
+
+
+def _first_stage(
+    tried: Sequence[ScanError], success: Successes, acted: Sequence[bool]
+) -> tuple[FirstStage, ...]:
+    none = success[CORRECT]
+    alone = [success[label([error])] for error in tried]
+    stage = stage_one(none, np.stack(alone))
+    tested = cancelling(none, np.stack(alone), {}, set()).singles
+    return tuple(
+        FirstStage(
+            error=error,
+            none=100.0 * float(np.nanmean(none)),
+            alone=100.0 * float(np.nanmean(values)),
+            loss=float(stage.losses[place]),
+            p_value=float(stage.p_values[place]),
+            helps_p=tested[place].helps_p,
+            acted=acted[place],
+        )
+        for place, (error, values) in enumerate(zip(tried, alone, strict=True))
+    )
+
+
+def _second_stage(
+    scanned: Scanned, success: Mapping[tuple[int, ...], Floats]
+) -> tuple[tuple[SecondStage, ...], tuple[ScannedPair, ...]]:
+    """Return what the errors did alone and in pairs, by the decisions of a scan."""
+    if not scanned.singles:
+        return (), ()
+    at = {error: place for place, error in enumerate(scanned.singles)}
+    keys = {(at[a], at[b]): (a, b) for a, b in scanned.pairs}
+    sources = [scanned.errors[error].source for error in scanned.singles]
+    result = cancelling(
+        success[()],
+        np.stack([success[error,] for error in scanned.singles]),
+        {key: success[errors] for key, errors in keys.items()},
+        {key for key in keys if sources[key[0]] == sources[key[1]]},
+    )
+    singles = tuple(
+        SecondStage(error=error, **single._asdict())
+        for error, single in zip(scanned.singles, result.singles, strict=True)
+    )
+    pairs = tuple(
+        _in_errors(errors, scanned.singles, result.pairs[key]) for key, errors in keys.items()
+    )
+    return singles, pairs
+
+
+def _in_errors(errors: tuple[int, int], singles: Sequence[int], pair: Pair) -> ScannedPair:
+    numbers: dict[str, Any] = pair._asdict()
+    numbers["worse"] = singles[pair.worse]
+    numbers["covering"] = None if pair.covering is None else singles[pair.covering]
+    return ScannedPair(errors=errors, **numbers)
+
+
+def _together(
+    errors: Sequence[ScanError], places: tuple[int, ...], success: Mapping[tuple[int, ...], Floats]
+) -> Together:
+    one = errors[places[0]]
+    readers = {e.reader for e in errors if (e.source, e.sign) == (one.source, one.sign)}
+    left_out = readers - {errors[place].reader for place in places}
+    none, values = success[()], success[places]
+    known = ~np.isnan(none - values)
+    return Together(
+        errors=places,
+        left_out=min(left_out, default=""),
+        none=100.0 * float(none[known].mean()),
+        success=100.0 * float(values[known].mean()),
+        scenes=int(known.sum()),
+    )
+
+
+def _without_claims(version: ScannedVersion) -> ScannedVersion:
+    """Return the numbers of trials from which nothing follows."""
+    none = {"kind": None, "covering": None}
+    return version.model_copy(
+        update={
+            "singles": tuple(s.model_copy(update={"kind": None}) for s in version.singles),
+            "pairs": tuple(pair.model_copy(update=none) for pair in version.pairs),
+        }
+    )

@@ -1,0 +1,252 @@
+"""Three plain answers: what follows, how sure it is, what stays open.
+
+Whoever reads nothing else reads these, so what qualifies a decision is said here too.
+"""
+
+from collections.abc import Iterator
+
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid
+from faultpath.analyses.sentences import phrases, shares
+from faultpath.analyses.sentences.headline import reversed_at
+from faultpath.analyses.sentences.phrases import margin, places
+from faultpath.analyses.sentences.wording import (
+    capital,
+    counted,
+    detectable,
+    series,
+    signed,
+    where,
+)
+from faultpath.analyses.tables import MISSING
+
+_WHY_NO_RESULT: dict[Invalid, str] = {
+    "unrepeatable": "Trials that ran a second time came out otherwise, so every difference may be "
+    "chance: see the remark on what differed, fix the system and run it again.",
+    "unpaired": "Trials that were to be compared met different conditions, so a difference may be "
+    "theirs: see the remark on what differed, fix what draws them and run it again.",
+}
+_PAIRED = {
+    "keys": "Trials are paired by their keys alone: nothing shows that both versions started "
+    "alike.",
+    "hashes": "Both trials of a pair share their keys and a hash of how they started; nothing "
+    "shows that later noise was the same.",
+}
+
+
+def sentences(record: AuditResult) -> tuple[str, ...]:
+    """Return all that a record says, a sentence or two each: changes first, then the answers."""
+    changes = [phrases.change(record, change) for change in record.changes if not record.invalid]
+    return (*changes, *sum(_answers(record).values(), list[str]()))
+
+
+def answers(record: AuditResult) -> dict[str, str]:
+    """Return `What follows`, `How sure` and `Left open`, each with a sentence or a few.
+
+    With too few scenes nothing follows, and only the other two are there.
+    """
+    return {label: " ".join(sentences) for label, sentences in _answers(record).items()}
+
+
+def _answers(record: AuditResult) -> dict[str, list[str]]:
+    question, significant = record.question, any(effect.sign for effect in record.effects)
+    if record.invalid:
+        return {"Left open": [_WHY_NO_RESULT[record.invalid]]}
+    sure = [*reach(record), *phrases.hardly_acted(record)]
+    if record.few:
+        few = (
+            f"Too few scenes: {counted(record.scenes, 'scene')} compared, and no difference can be "
+            f"significant with fewer than {record.scenes_needed}. The numbers hold for them alone."
+        )
+        return {"Left open": [few], "How sure": sure}
+    if record.earlier:
+        sure.append(phrases.looks(record))
+    elif significant and not question.judged and question.generalise == "scenes":
+        # Of other tools' trials it is said with how they were paired.
+        sure.append(
+            "If both versions were equally good, at most 5 % of audits would report any difference."
+        )
+    follows = {"What follows": list(_follows(record)), "How sure": sure}
+    left_open = {"Left open": list(_left_open(record))}
+    # Where nothing is significant, what was not seen is the result.
+    return {**follows, **left_open} if significant else {**left_open, **follows}
+
+
+def _follows(record: AuditResult) -> Iterator[str]:
+    tested = [effect for effect in record.effects if effect.acted]
+    leading = [effect for effect in tested if effect.leads]
+    disagree = {effect.sign for effect in leading} == {1, -1}
+    if not leading:
+        if any(effect.sign and effect.uneven for effect in tested):
+            (first, *_) = (effect for effect in tested if effect.sign and effect.uneven)
+            yield (
+                f"No choice can rest on what is significant: {phrases.failed_more(record, first)}."
+            )
+        elif any(effect.sign for effect in tested):
+            yield "What is significant lies at the floor or ceiling: no choice can rest on it."
+        elif tested and all(record.is_small(effect) for effect in tested):
+            yield f"Neither is to be preferred: each difference is below {margin(record)}."
+        else:
+            yield _unknown(record)
+    turned = reversed_at(record)
+    if turned:
+        one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
+        yield (
+            f"Ask which fault your system will meet: {places(turned)}, {one} succeeds more often; "
+            f"where the modules share it, {other} succeeds more often."
+        )
+        leading = [effect for effect in leading if effect.condition == CORRECT]
+    for sign in (1, -1):
+        if at := [effect for effect in leading if effect.sign == sign]:
+            yield f"{capital(places(at))}, {record.winner(sign)} succeeds more often."
+    alone = any(effect.condition not in (CORRECT, SHARED) for effect in leading)
+    for effect in tested if alone else ():
+        if effect.condition == SHARED and not (effect.sign or effect.extreme or effect.unsettled):
+            less = f", and it is smaller than {margin(record)}" if record.is_small(effect) else ""
+            yield f"When the fault is shared, no difference is seen{less}."
+    if modules := [change.isolated for change in record.changes if change.turn == "interaction"]:
+        yield (
+            f"A fault at the {' or the '.join(modules)} alone does not stand for the shared one: "
+            "the difference between the two versions changes."
+        )
+    if disagree and not turned:
+        yield "Which is better depends on which fault occurs, and how often."
+    for result in record.break_even if disagree else ():
+        if result.condition == record.question.primary and result.ahead:
+            place, words = where(result.condition), shares.ahead(record.question, result)
+            yield f"Depending on how often the fault occurs, {place}: {words}."
+
+
+def _unknown(record: AuditResult) -> str:
+    """Say that no choice follows, and which differences the primary contrast leaves possible."""
+    main = next((e for e in record.effects if e.condition == record.question.primary), None)
+    text = "Not enough is known to prefer either"
+    if main is None or not main.acted or main.low is None or main.high is None:
+        return f"{text}."
+    if main.unsettled:
+        return f"{text}: {where(main.condition)} it depends on trials that failed."
+    low, high = signed(main.low), signed(main.high)
+    return f"{text}: {where(main.condition)}, any difference from {low} to {high} pp is possible."
+
+
+def reach(record: AuditResult) -> Iterator[str]:
+    """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
+    question = record.question
+    holds = "The intervals hold" if record.few else "What is significant holds"
+    conditional = question.trained and question.generalise == "scenes"
+    anew = "; models trained anew may differ" if conditional else ""
+    yield f"{holds} for {phrases.estimand(question)}{anew}."
+    if question.judged:
+        yield _PAIRED[question.judged.pairing]
+        yield (
+            "If both versions were equally good, at most 5 % of such comparisons would report any "
+            "difference, provided that the number of scenes was fixed before anybody looked: other "
+            "tools do not say whether it was."
+        )
+    run = len(question.seeds)
+    yield from phrases.for_trainings(record)
+    tasks = question.judged is not None and question.judged.unit == "task"
+    if run > 1 and not tasks and record.effects and len(record.effects[0].won) == 1:
+        yield f"All {run} seeds gave the same outcome in every trial: together they count as one."
+    yield from _stopped(record)
+
+
+def _stopped(record: AuditResult) -> Iterator[str]:
+    """Say when a sequential audit stopped, why, and what that means for its numbers."""
+    stopped, rule, most = record.stopped, record.question.stop, record.question.n_scenes
+    if stopped is None or rule is None:
+        return
+    whole = stopped.scenes == most
+    because = "but" if not stopped.reached else "and" if whole else "because"
+    why = f"the primary contrast was {'' if stopped.reached else 'not '}significant"
+    if rule.when == "all-decided":
+        also = f" or smaller than {margin(record)}" if rule.margin_pp else ""
+        why = f"{'every' if stopped.reached else 'not every'} effect was significant{also}"
+    elif record.question.primary in stopped.small:
+        why = f"the primary contrast was shown to be smaller than {margin(record)}"
+    took = f"it {'stopped after' if stopped.reached else 'took'} {counted(stopped.scenes, 'scene')}"
+    took += f" of at most {most}"
+    if whole:
+        took = f"it took all that it was allowed, {counted(stopped.scenes, 'scene')}"
+    trials = counted(stopped.scenes * rule.trials, "trial")
+    yield f"This audit was sequential: {took} ({trials}), {because} {why}."
+    yield (
+        "Its scenes came in a random order fixed beforehand. Intervals and p-values hold wherever "
+        "an audit stops, and are wider for that."
+    )
+    if stopped.reached:
+        yield "A difference with which an audit stops is on average further from 0 than the truth."
+
+
+def _left_open(record: AuditResult) -> Iterator[str]:
+    if idle := [where(effect.condition) for effect in record.effects if not effect.acted]:
+        yield f"The fault never acted {series(idle)}: nothing was tested there."
+    yield from phrases.in_trials_that_ran(record)
+    yield from _insignificant(record)
+    yield from phrases.not_standing(record)
+    if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
+        at = " or the ".join(same)
+        yield f"No change from the fault at the {at} alone to the shared fault is significant."
+    if record.question.judged:
+        yield "Other scenes and other conditions are not among the results."
+    else:
+        yield (
+            "Another size or sign of the fault, another library and another wiring were not tried."
+        )
+
+
+def _insignificant(record: AuditResult) -> Iterator[str]:
+    """Say where no difference is significant, and how large a one 8 of 10 audits would find."""
+    sizes: dict[str, str] = {}
+    extreme: dict[str, list[str]] = {}
+    for effect in record.effects:
+        if not effect.acted or effect.sign or effect.unsettled or record.is_small(effect):
+            continue
+        if effect.extreme:
+            extreme.setdefault(effect.extreme, []).append(where(effect.condition))
+        else:
+            sizes[where(effect.condition)] = detectable(effect)
+    for end, at in extreme.items():
+        both = "fail" if end == "floor" else "succeed"
+        yield f"No difference is significant {series(at)}, where both nearly always {both}."
+    if not sizes:
+        return
+    true = f"true ones of {series(list(sizes.values()))} pp, in this order,"
+    if len(set(sizes.values())) == 1:
+        true = f"a true one of {next(iter(sizes.values()))} pp"
+    would = "" if MISSING in sizes.values() else f"; {true} would be found in 8 of 10 audits"
+    yield f"No difference is significant {series(list(sizes))}{would}."
+
+
+def would_change(record: AuditResult) -> Iterator[str]:
+    """Say what would change the result."""
+    if record.invalid:
+        yield "Trials that repeat and are pairs: see the remarks on what differed."
+        return
+    stopped, tested = record.stopped, [effect for effect in record.effects if effect.acted]
+    judged = record.question.judged is not None
+    if stopped and not all(effect.sign for effect in record.effects):
+        yield (
+            "More scenes: --stop-when all-decided goes on until every effect is significant or "
+            "shown to be small."
+            if stopped.reached
+            else "More scenes: a larger --scenes goes on with those of the same order, and what is "
+            "said then holds as well."
+        )
+    if record.few:
+        yield f"More scenes: {record.scenes_needed} at least, and more for all but a clear winner."
+    if len(tested) < len(record.effects):
+        yield "A fault that acts: an onset before the trial ends, a size that changes what is read."
+    if any(effect.extreme == "floor" for effect in tested):
+        yield "Easier scenes or a smaller fault: where both fail, a difference can hardly show."
+    if any(effect.extreme == "ceiling" for effect in tested):
+        yield "Harder scenes or a larger fault: where both succeed, a difference can hardly show."
+    if not record.few and any(e.least_pp and not e.sign for e in tested):
+        instead = "" if judged else ", or --stop-when, which allows for looks"
+        yield (
+            f"Fresh scenes, which no audit has looked at, and more of them{instead}: they find "
+            "smaller differences. Adding scenes to this audit would raise its error rate above 5 %."
+        )
+    if judged:
+        yield "Other scenes, other conditions: none of these is among the results."
+    else:
+        yield "Another size or sign of the fault, another library or wiring: none of these was run."

@@ -1,0 +1,261 @@
+"""Contrasts, conditions and shares in words, from their results and nothing else."""
+
+from collections.abc import Iterator, Sequence
+
+from faultpath.analyses.effects import Change, Effect
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid
+from faultpath.analyses.question import Question
+from faultpath.analyses.sentences.wording import (
+    capital,
+    counted,
+    interval,
+    p_value,
+    series,
+    signed,
+    where,
+    with_interval,
+)
+from faultpath.stats.distributions import sign_p_value
+
+NO_RESULT: dict[Invalid, str] = {
+    "unrepeatable": "No result: trials do not repeat.",
+    "unpaired": "No result: the two versions did not meet the same conditions.",
+}
+"""Headlines of results in which nothing can be significant."""
+
+
+def estimand(question: Question) -> str:
+    """Return what intervals and tests speak of."""
+    if question.generalise == "models":
+        return "new scenes like these and models newly trained with other seeds"
+    if question.judged and question.judged.unit == "task":
+        return "new tasks like these"
+    return "new scenes like these" + (", for these trained models" if question.trained else "")
+
+
+def margin(record: AuditResult) -> str:
+    """Return the margin below which a sequential audit counts a difference as small."""
+    return f"{(record.question.stop and record.question.stop.margin_pp) or 0.0:g} pp"
+
+
+def adjusted(record: AuditResult, of: Effect | Change) -> str:
+    """Return `p = 0.250 after Holm`; nothing where nothing was tested."""
+    if of.corrected_p is None:
+        return ""
+    p = p_value(of.corrected_p)
+    return f"p {p if p.startswith('<') else f'= {p}'} {record.question.family}"
+
+
+def only_alone(of: Effect | Change) -> bool:
+    """Return whether the interval excludes 0 and yet the difference is not significant."""
+    low, high = of.interval or (0.0, 0.0)
+    tested = of.corrected_p is not None and not (of.sign or of.unsettled)
+    return tested and (low > 0 or high < 0)
+
+
+def in_few_scenes(effect: Effect) -> str:
+    """Return in how many scenes the version that is ahead is so, and in how many the other one."""
+    more, less = sorted(effect.ahead, reverse=True)
+    never = "never the other way" if not less else f"the other way in {less}"
+    return f"in {counted(more, 'scene')}, {never}"
+
+
+def trainings(record: AuditResult, effect: Effect) -> str:
+    """Return in how many trainings which version is ahead, with a sign test's p-value: it holds
+    whatever the distribution of trainings."""
+    values = effect.per_seed
+    repair, baseline = sum(value > 0 for value in values), sum(value < 0 for value in values)
+    ahead = record.winner(1 if repair >= baseline else -1)
+    p = p_value(sign_p_value(repair, baseline))
+    even = len(values) - repair - baseline
+    return (
+        f"{capital(where(effect.condition))}, {ahead} is ahead in {max(repair, baseline)} of "
+        f"{len(values)} trainings{f', neither in {even}' if even else ''}, "
+        f"p {p if p.startswith('<') else f'= {p}'}"
+    )
+
+
+def for_trainings(record: AuditResult) -> Iterator[str]:
+    """Say on what a result for newly trained models rests."""
+    if record.question.generalise != "models" or record.invalid:
+        return
+    run = min((len(effect.per_seed) for effect in record.effects), default=0)
+    yield (
+        f"{run} trainings stand for new ones as far as trainings spread evenly around their "
+        "mean, as a Gaussian does: a rare collapse that none of them had is not seen."
+    )
+    for effect in record.effects:
+        yield f"{trainings(record, effect)} (sign test, whatever their distribution)."
+
+
+def failed_more(record: AuditResult, effect: Effect) -> str:
+    """Say which version's trials failed more often than chance explains."""
+    missing, question = effect.missing, record.question
+    more = missing is not None and missing.repair > missing.baseline
+    return f"trials of {question.repair if more else question.baseline} failed more often"
+
+
+def in_trials_that_ran(record: AuditResult) -> Iterator[str]:
+    """Say what the trials that ran show where only those that failed stand in the way."""
+    yield from (_ran(record, effect) for effect in record.effects if effect.unsettled)
+
+
+def _ran(record: AuditResult, effect: Effect) -> str:
+    missing, question = effect.missing, record.question
+    assert missing is not None
+    ahead = record.winner(1 if effect.value > 0 else -1)
+    text = (
+        f"{capital(where(effect.condition))}, the trials that ran favour {ahead} "
+        f"({with_interval(effect)} pp, {adjusted(record, effect)}), which holds if failing "
+        "has nothing to do with how a trial would have ended"
+    )
+    if missing.repairs is None:
+        return f"{text}."
+    of = zip(missing.repairs, (question.repair, question.baseline), strict=True)
+    needed = series([f"{count} of {name}" for count, name in of if count])
+    how = (
+        "add their outcomes to the results"
+        if question.judged
+        else "the same command tries them again"
+    )
+    return (
+        f"{text}; otherwise at least {needed} that failed have to run, and come out as the others "
+        f"did ({how})."
+    )
+
+
+def places(effects: Sequence[Effect]) -> str:
+    """Return where effects are, the first one's kind first, modules faulted alone together."""
+    alone = [effect.condition for effect in effects if effect.condition not in (CORRECT, SHARED)]
+    joined = where(" or the ".join(alone))
+    named = (joined if effect.condition in alone else where(effect.condition) for effect in effects)
+    return series(list(dict.fromkeys(named)))
+
+
+def in_short(record: AuditResult, effect: Effect | None) -> str:
+    """Say in a few words what an audit found under one condition."""
+    if effect is None:
+        return "no pair of trials to compare"
+    if not effect.acted:
+        return "the fault never acted: not tested"
+    if record.invalid:
+        return NO_RESULT[record.invalid].rstrip(".").lower()
+    if effect.sign:
+        at = f", but at the {effect.extreme}" if effect.extreme else ""
+        at = at or (", but trials failed unevenly" if effect.uneven else "")
+        return f"{record.winner(effect.sign)} succeeds more often{at}"
+    if effect.unsettled:
+        return "not significant: trials that failed could undo it"
+    if record.few:
+        return "too few scenes"
+    p = f" ({adjusted(record, effect)})" if only_alone(effect) else ""
+    if record.is_small(effect):
+        return f"differ by less than {margin(record)}{p}"
+    return f"no significant difference{p}"
+
+
+def change(record: AuditResult, of: Change) -> str:
+    """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
+    effects = {effect.condition: effect for effect in record.effects}
+    if record.invalid:
+        return (
+            f"Nothing follows of the change from the effect {where(of.isolated)} to that "
+            f"{where(SHARED)}."
+        )
+    ends = effects[of.isolated], effects[SHARED]
+    values = " to ".join(f"{signed(end.value)} pp" for end in ends)
+    numbers = f"{values}; change {signed(of.value)} pp {interval(of)}".rstrip()
+    numbers += f", {adjusted(record, of)}"
+    numbers += ": not significant, although the interval excludes 0" if only_alone(of) else ""
+    alone, shared = where(of.isolated), where(SHARED)
+    if of.turn == "reversal":
+        one, other = (record.winner(end.sign) for end in ends)
+        aside = " One of the two lies at the floor or ceiling: this carries no headline."
+        return (
+            f"Sharing the fault reverses the ranking: {alone}, {one} succeeds more often; "
+            f"{shared}, {other} does ({numbers})."
+            f"{aside if any(end.extreme for end in ends) else ''}"
+        )
+    if of.turn == "interaction":
+        return (
+            f"Significant interaction: the difference is not the same {alone} as {shared} "
+            f"({numbers}); a reversal is not shown."
+        )
+    between = f"between the effect {alone} and that {shared} ({numbers})"
+    if of.unsettled:
+        return f"No change is significant {between}: trials that failed could undo it."
+    return f"No change is significant {between}."
+
+
+def no_pair(condition: str) -> str:
+    """Say that a condition has no pair of trials to compare."""
+    return f"{capital(where(condition))}, no pair of trials is left to compare"
+
+
+def not_standing(record: AuditResult) -> Iterator[str]:
+    """Say of each interval that excludes 0 without a significant difference why it is not one."""
+    for effect in () if record.invalid else filter(only_alone, record.effects):
+        yield (
+            f"{capital(where(effect.condition))}, the interval excludes 0, but "
+            f"{adjusted(record, effect)} ({record.hypotheses} contrasts): the difference is not "
+            "significant."
+        )
+
+
+def hardly_acted(record: AuditResult) -> Iterator[str]:
+    """Name the versions in which the fault changed nothing in most of the trials."""
+    acted = {effect.condition for effect in record.effects if effect.acted}
+    faulted = {
+        condition.name: (condition.baseline_readers, condition.readers)
+        for condition in record.conditions
+    }
+    for cell in record.cells:
+        readers = faulted[cell.condition][cell.variant == record.question.repair]
+        if cell.condition in acted and readers and 2 * cell.altered_trials < cell.trials:
+            yield (
+                f"{capital(where(cell.condition))}, the fault changed something in only "
+                f"{cell.altered_trials} of {cell.trials} trials of {cell.variant}."
+            )
+
+
+def partly_measured(record: AuditResult) -> Iterator[str]:
+    """Say of which metrics not every trial has a value."""
+    for effect, secondary in zip(record.effects, record.secondary, strict=True):
+        for name in record.question.metrics:
+            whole = secondary.metrics[name].n_scenes if name in secondary.metrics else 0
+            if whole < effect.scenes and (whole or record.question.judged):
+                scenes = f"{whole} of {counted(effect.scenes, 'scene')}"
+                yield (
+                    f"{capital(where(effect.condition))}, {name} is compared in {scenes}: only "
+                    "there does every trial have it."
+                )
+
+
+def failed_trials(record: AuditResult) -> Iterator[str]:
+    """Say by version and condition how many trials failed, and how far that could matter."""
+    question = record.question
+    for effect in record.effects:
+        missing = effect.missing
+        if missing is None or missing.against_pp is None or missing.favour_pp is None:
+            continue
+        if not (missing.repair or missing.baseline or missing.unsettled):
+            continue
+        lost = "failed or missing" if question.judged else "failed"
+        yield (
+            f"{capital(where(effect.condition))}, {counted(missing.repair, 'trial')} of "
+            f"{question.repair} {lost}, {missing.baseline} of {question.baseline}: depending on "
+            "how they would have ended, the difference over all scenes lies anywhere from "
+            f"{signed(missing.against_pp)} to {signed(missing.favour_pp)} pp."
+        )
+
+
+def looks(record: AuditResult) -> str:
+    """Say what was concluded before, and what that does to what is significant now."""
+    counts = sorted({look.scenes for look in record.earlier if look.scenes is not None})
+    with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
+    led = series([f"'{name}'" for name in dict.fromkeys(look.primary for look in record.earlier)])
+    return (
+        f"This audit was concluded before{with_scenes}, led by {led}: after such a look, more "
+        "than 5 % of audits would report a difference between equally good versions. Run it in "
+        "scenes that no audit has looked at, or with --stop-when, which allows for looks."
+    )

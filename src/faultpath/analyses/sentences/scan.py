@@ -1,0 +1,238 @@
+"""Sentences on a scan: which errors cancel, what that means, and what was left out."""
+
+import shlex
+from collections.abc import Iterator, Sequence
+
+from faultpath.analyses.effects import FLOOR_PERCENT
+from faultpath.analyses.scan.model import ScanError, ScannedPair, ScannedVersion, ScanResult
+from faultpath.analyses.sentences.phrases import NO_RESULT
+from faultpath.analyses.sentences.wording import MINUS, capital, counted, series, unit
+from faultpath.faults import FaultText
+from faultpath.stats.estimate import ALPHA
+
+HELPS = ALPHA / 2
+"""Level at which an error raises success."""
+ANY_REPAIR = "REPAIR"
+"""Stands in a command for the name of a variant that only its reader knows."""
+
+
+def size(error: ScanError) -> str:
+    """Return the size of an error: `+20 %`, `−0.1 m`, or `(+1, 0, 0) m`."""
+    factor, ending = (100.0, " %") if error.relative else (1.0, f" {unit(error.unit)}")
+    numbers = [f"{factor * part:+.3g}" if part else "0" for part in error.change]
+    text = numbers[0] if len(numbers) == 1 else f"({', '.join(numbers)})"
+    shown = f"{text}{ending}".replace("-", MINUS).removesuffix(" 1").rstrip()
+    options = FaultText.read(error.fault).options
+    return ", ".join([shown, *(f"{name}={value}" for name, value in options.items())])
+
+
+def in_words(name: str) -> str:
+    """Return the name of a source as part of a sentence."""
+    return name.replace("_", " ")
+
+
+def named(error: ScanError) -> str:
+    """Return an error in words: `gain at controller (+20 %)`."""
+    text = size(error)
+    return f"{in_words(error.source)} at {error.reader} {text if text[0] == '(' else f'({text})'}"
+
+
+def rate(percent: float) -> str:
+    """Return a success rate: `79 %`."""
+    return f"{percent:.0f} %"
+
+
+def headline(record: ScanResult) -> str:
+    """Return which errors cancel, in each version."""
+    if record.invalid:
+        return NO_RESULT[record.invalid]
+    texts = [_in_short(record, version) for version in record.versions]
+    if len(texts) == 1:
+        return f"{capital(texts[0])}."
+    names = (version.variant for version in record.versions)
+    return " ".join(f"In {name}, {text}." for name, text in zip(names, texts, strict=True))
+
+
+def _in_short(record: ScanResult, version: ScannedVersion) -> str:
+    listed = version.listed
+    if not listed:
+        return "no pair of errors is shown to cancel"
+    cancelling = [pair for pair in listed if pair.kind == "cancel"]
+    best = max(cancelling or listed, key=lambda pair: pair.gain)
+    if not cancelling:
+        return f"no pair of errors is shown to cancel, but {_covers(record, best)}"
+    if len(cancelling) == 1:
+        return f"{_both(record, best)} cancel: {_rates(best)}"
+    return (
+        f"{len(cancelling)} pairs of errors cancel, such as {_both(record, best)}: {_rates(best)}"
+    )
+
+
+def sentences(record: ScanResult) -> tuple[str, ...]:
+    """Return what the scan found, sentence by sentence, then what it left out."""
+    if record.invalid:
+        return ()
+    results = (*_results(record), *_idle(record), *_halved(record), _counts(record))
+    return (*results, *_unsized(record), *_hard(record), *_failed(record), _limits(record))
+
+
+def _results(record: ScanResult) -> Iterator[str]:
+    for version in record.versions:
+        before = f"In {version.variant}: " if len(record.versions) > 1 else ""
+        for pair in version.listed:
+            yield before + of_pair(record, pair)
+        hurting = [single for single in version.singles if single.kind == "hurts"]
+        if hurting:
+            names = [
+                f"{named(record.errors[single.error])} {rate(single.alone)}"
+                for single in sorted(hurting, key=lambda single: single.alone)
+            ]
+            none = rate(hurting[0].none)
+            yield f"{before}Alone, these cost success ({none} without an error): {series(names)}."
+        if helping := [stage for stage in version.first if stage.helps_p <= HELPS]:
+            names = [f"{named(stage.error)} {rate(stage.alone)}" for stage in helping]
+            none = rate(helping[0].none)
+            yield (
+                f"{before}Alone, these raised success in the first stage ({none} without an "
+                f"error): {series(names)}."
+            )
+
+
+def of_pair(record: ScanResult, pair: ScannedPair) -> str:
+    """Return what two errors do to each other, and what follows for who corrects them."""
+    if pair.kind == "covers":
+        return f"{capital(_covers(record, pair))}."
+    first, second = (record.errors[place] for place in pair.errors)
+    one, other = f"only the {in_words(first.source)}", f"only the {in_words(second.source)}"
+    if first.source == second.source:
+        one, other = (f"it only at {error.reader}" for error in (first, second))
+    return (
+        f"{capital(_both(record, pair))} cancel: {_rates(pair)}. Correct {one}: "
+        f"{rate(pair.second)}. Correct {other}: {rate(pair.first)}. Correct both together."
+    )
+
+
+def _both(record: ScanResult, pair: ScannedPair) -> str:
+    first, second = (named(record.errors[place]) for place in pair.errors)
+    return f"{first} and {second}"
+
+
+def _rates(pair: ScannedPair) -> str:
+    return f"{rate(pair.both)} with both, {rate(pair.none)} with neither"
+
+
+def _covers(record: ScanResult, pair: ScannedPair) -> str:
+    rates = dict(zip(pair.errors, (pair.first, pair.second), strict=True))
+    (covering,) = {*pair.errors} - {pair.worse}
+    worse, other = record.errors[pair.worse], record.errors[covering]
+    return (
+        f"{named(other)} covers for {named(worse)}: {_rates(pair)}, {rate(rates[pair.worse])} with "
+        f"the one at {worse.reader} alone, {rate(rates[covering])} with the one at {other.reader} "
+        "alone"
+    )
+
+
+def _halved(record: ScanResult) -> Iterator[str]:
+    """Say which sizes were halved, those of a source together where they are equal."""
+    sizes: dict[str, list[str]] = {}
+    for error in record.errors:
+        if error.halvings:
+            alike = [other for other in record.errors if other.source == error.source]
+            same = len({tuple(map(abs, other.change)) for other in alike}) == 1
+            place = in_words(error.source) + ("" if same else f" at {error.reader}")
+            shown = size(error)
+            opposite = {size(other) for other in alike if other.sign != error.sign}
+            if same and len(error.change) == 1 and opposite:
+                shown = f"±{shown[1:]}"
+            if shown not in sizes.setdefault(place, []):
+                sizes[place].append(shown)
+    if sizes:
+        texts = [f"{place} to {' and '.join(shown)}" for place, shown in sizes.items()]
+        yield (
+            "Errors that cost more than 50 percentage points were halved, at all readers of the "
+            f"source: {series(texts)}."
+        )
+
+
+def _idle(record: ScanResult) -> Iterator[str]:
+    """Say which errors changed no reading."""
+    for version in record.versions:
+        before = f"In {version.variant}: " if len(record.versions) > 1 else ""
+        if names := [named(first.error) for first in version.first if not first.acted]:
+            yield f"{before}No reading was ever changed by {series(names)}: nothing was tested."
+
+
+def _unsized(record: ScanResult) -> Iterator[str]:
+    """Say which sources were not scanned."""
+    names = [s.name for s in record.ranking.sources if not s.fault and not s.at]
+    if names:
+        yield (f"Without a declared size, and so not scanned: {series(names)}; --fault gives one.")
+
+
+def _hard(record: ScanResult) -> Iterator[str]:
+    """Say where so few trials succeed without an error that none can cost much."""
+    for version in record.versions:
+        if version.first[0].none < FLOOR_PERCENT:
+            yield (
+                f"In {version.variant} only {rate(version.first[0].none)} succeed without an "
+                "error, so that none can cost much: choose easier scenes."
+            )
+
+
+def _counts(record: ScanResult) -> str:
+    chosen, total = len(record.chosen), len(record.errors)
+    first, second = record.scenes
+    if not chosen:
+        return (
+            f"Of {counted(total, 'error')}, each run alone in {counted(first, 'scene')}, none is "
+            "seen to cost success, so no pair was tested."
+        )
+    pairs, alone = len(record.versions[0].pairs), len(record.versions[0].singles)
+    same = alone - chosen
+    others = f", {same} at other readers of the same sources" if same else ""
+    return (
+        f"Of {counted(total, 'error')}, each run alone in {counted(first, 'scene')}, {chosen} "
+        f"seemed to cost success and went on{others}; {counted(pairs, 'pair')} ran in {second} "
+        "other scenes."
+    )
+
+
+def _failed(record: ScanResult) -> Iterator[str]:
+    if record.failed:
+        yield (
+            f"{counted(record.failed, 'trial')} failed and left their scenes out of what they are "
+            "part of: what is listed holds if failing has nothing to do with how they would have "
+            "ended."
+        )
+
+
+def _limits(record: ScanResult) -> str:
+    models = ", for these trained models" if record.question.trained else ""
+    apart = " Versions are tested separately." if len(record.versions) > 1 else ""
+    return (
+        f"What is listed holds for new scenes like these{models}, at these sizes. Nothing is "
+        f"claimed of other pairs, nor that any errors add up.{apart}"
+    )
+
+
+def commands(record: ScanResult) -> tuple[str, ...]:
+    """Return a command for each listed pair that audits a repair under these errors."""
+    question = record.question
+    if question.system.endswith(" object"):
+        return ()
+    listed = {pair.errors for version in record.versions for pair in version.listed}
+    repair = question.repair or question.other or ANY_REPAIR
+    options = [f"--set={key}={value}" for key, value in question.options.items()]
+    words = ["faultpath", "audit", question.system, *options]
+    words += ["--baseline", question.variant, "--repair", repair, "--fault"]
+    return tuple(shlex.join([*words, _fault(record, places)]) for places in sorted(listed))
+
+
+def _fault(record: ScanResult, places: Sequence[int]) -> str:
+    """Return both errors as one fault; it names no readers where it reaches all of them."""
+    first, second = (record.errors[place] for place in places)
+    if first.fault != second.fault:
+        return f"{first.text} & {second.text}"
+    alike = [e for e in record.errors if (e.source, e.sign) == (first.source, first.sign)]
+    whole = len(alike) == 2 and all(error.at == (error.reader,) for error in alike)
+    return first.fault if whole else f"{first.fault}@{'+'.join((*first.at, *second.at))}"

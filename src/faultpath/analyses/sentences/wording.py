@@ -1,0 +1,161 @@
+"""How numbers, lists and places are written: in sentences, tables and pictures alike."""
+
+import math
+import re
+from collections.abc import Sequence
+
+from faultpath.analyses.effects import Difference, Effect
+from faultpath.analyses.model import AS_RUN, CORRECT, SHARED
+from faultpath.analyses.question import Question
+from faultpath.stats.estimate import BreakEven, Estimate
+
+MINUS = "−"
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_SLACK = 1e-6
+"""On a percentage that is a whole number but for rounding."""
+
+
+def signed(value: float, digits: int = 1) -> str:
+    """Return `+6.7`, `−9.7` or `0.0`: a difference always shows its sign, zero has none."""
+    text = f"{value:+.{digits}f}"
+    if float(text) == 0.0:
+        return text[1:]
+    return text.replace("-", MINUS)
+
+
+def plain(value: float, digits: int = 1) -> str:
+    """Return the number with a real minus sign."""
+    text = f"{value:.{digits}f}"
+    return (text.removeprefix("-") if float(text) == 0.0 else text).replace("-", MINUS)
+
+
+def interval(estimate: Estimate | Difference, digits: int = 1) -> str:
+    """Return `[−16.0, −4.0]`, or nothing where no interval exists."""
+    if estimate.low is None or estimate.high is None:
+        return ""
+    return f"[{plain(estimate.low, digits)}, {plain(estimate.high, digits)}]"
+
+
+def with_interval(estimate: Estimate | Difference | None, digits: int = 1) -> str:
+    """Return `−9.7 [−16.0, −4.0]`; a dash for an estimate that does not exist."""
+    if estimate is None:
+        return "–"
+    return f"{signed(estimate.value, digits)} {interval(estimate, digits)}".rstrip()
+
+
+def detectable(effect: Effect) -> str:
+    """Return the difference that 8 of 10 audits would find, in whole percentage points."""
+    least = effect.least_pp
+    return "–" if least is None else str(math.ceil(least))
+
+
+def won(counts: Sequence[tuple[int, int]]) -> str:
+    """Return `2:15/2:11/2:9`, one pair of counts a seed."""
+    return "/".join(f"{won}:{lost}" for won, lost in counts)
+
+
+def p_value(value: float) -> str:
+    """Return `0.032`, or `< 0.001`; a digit more where `0.050` would hide the side of 0.05."""
+    if value < 0.001:
+        return "< 0.001"
+    text = f"{value:.3f}"
+    return f"{value:.4f}" if text == "0.050" and value != 0.05 else text
+
+
+def break_even(result: BreakEven) -> str:
+    """Return the frequencies at which nobody is decided to be ahead, in percent.
+
+    `59 [33, 80]` with the estimate in front where there is one; `[0, 12] and [80, 100]` for two
+    pieces; `none` where one variant is ahead throughout; `any` where at no frequency it is decided
+    who is. Ends are rounded outwards.
+    """
+    if result.kind == "empty":
+        return "none"
+    if result.kind == "whole":
+        return "any"
+    pieces = " and ".join(f"[{last(low)}, {first(high)}]" for low, high in result.pieces)
+    return pieces if result.p_star is None else f"{100.0 * result.p_star:.0f} {pieces}"
+
+
+def first(frequency: float) -> int:
+    """Return the first whole percentage at or above a frequency."""
+    return math.ceil(100.0 * frequency - _SLACK)
+
+
+def last(frequency: float) -> int:
+    """Return the last whole percentage at or below a frequency."""
+    return math.floor(100.0 * frequency + _SLACK)
+
+
+def percent(fraction: float) -> str:
+    """Return a fraction as whole percent, without the sign."""
+    return f"{100.0 * fraction:.0f}"
+
+
+def adjusted(effect: Effect) -> str:
+    """Return an effect's p-value within its family; a dash where it is in none."""
+    return "–" if effect.corrected_p is None else p_value(effect.corrected_p)
+
+
+def reservation(effect: Effect) -> str:
+    """Return why an effect makes no headline: the fault never acted, floor, ceiling, failures."""
+    if not effect.acted:
+        return "fault never acted"
+    return effect.extreme or (
+        "failed trials" if effect.unsettled or (effect.sign and effect.uneven) else ""
+    )
+
+
+def ended(question: Question, status: str) -> str:
+    """Return what the system calls the way in which a trial ended."""
+    return question.ends.get(status, status)
+
+
+def faults(question: Question) -> str:
+    """Return what the fault does to each channel, whoever gets it; empty in records without it."""
+    words = (fault.aimed_at("*").describe() for fault in question.faults)
+    # `describe` says at whom a fault aims, and an audit aims it at each in turn.
+    return "; ".join(re.sub(" at every [a-z]+", "", text) for text in words)
+
+
+def unit(name: str) -> str:
+    """Return a unit with its exponents raised: `m/s²` for `m/s^2`."""
+    return re.sub(r"\^(-?\d)", lambda match: match[1].translate(_RAISED), name)
+
+
+def sentence(words: str) -> str:
+    """Return words with a capital letter in front and a full stop behind."""
+    return f"{words[:1].upper()}{words[1:].removesuffix('.')}."
+
+
+def seeds(values: tuple[int, ...]) -> str:
+    """Return `seed 0` or `seeds 0, 1, 2`."""
+    return f"seed{'s' if len(values) > 1 else ''} {', '.join(map(str, values))}"
+
+
+def counted(count: int, noun: str) -> str:
+    """Return `1 pair` or `2 pairs`."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def where(condition: str) -> str:
+    """Return a condition as part of a sentence."""
+    if condition == CORRECT:
+        return "under correct inputs"
+    if condition == AS_RUN:
+        return "in these results"
+    return (
+        "under the shared fault"
+        if condition == SHARED
+        else f"with the fault at the {condition} alone"
+    )
+
+
+def capital(words: str) -> str:
+    """Return words with a capital letter in front, whatever follows."""
+    return words[:1].upper() + words[1:]
+
+
+def series(items: Sequence[str]) -> str:
+    """Return `a`, `a and b` or `a, b and c`."""
+    return " and ".join(filter(None, (", ".join(items[:-1]), items[-1])))

@@ -1,0 +1,71 @@
+"""At which shares, of faulty episodes or of common causes, a version is ahead."""
+
+from faultpath.analyses.compared import ComparedTrials
+from faultpath.analyses.effects import Effect
+from faultpath.analyses.family import Family
+from faultpath.analyses.model import Ahead, ConditionBreakEven
+from faultpath.analyses.sentences.wording import first, last
+from faultpath.stats.breakeven import break_even, mixture_curve, only
+from faultpath.stats.estimate import Region
+
+
+def between(
+    none: Effect, every: Effect, comparison: ComparedTrials, family: Family, beta: bool
+) -> ConditionBreakEven | None:
+    """Return where baseline and repair are even between the effects at two ends of a share, over
+    the scenes that both have; `None` where they have none in common.
+
+    The share is that of episodes with the fault of `every`, or the beta factor of the module that
+    `none` is of.
+    """
+    tests = [family.effects[end.condition].test for end in (none, every)]
+    level = 1.0 - min(test.critical_p for test in tests if test and test.critical_p is not None)
+    tested = family.measure.together(
+        comparison.success[none.condition], comparison.success[every.condition]
+    )
+    if tested is None:
+        return None
+    filled = [family.fills[e.condition] for e in (none, every) if e.condition in family.fills]
+    # Both ends with what failed trials leave open against the repair, and for it.
+    fills = tuple(zip(*filled, strict=True)) if any(a.value != b.value for a, b in filled) else ()
+    result = break_even(*tested, level=level, fills=fills)
+    return ConditionBreakEven(
+        condition=none.condition if beta else every.condition,
+        result=only(result, [region for region in result.regions if _shown(region, none, every)]),
+        curve=mixture_curve(*tested, level=level, fills=fills),
+        ahead=_ahead(result.regions, none, every),
+    )
+
+
+def _shown(region: Region, none: Effect, every: Effect) -> bool:
+    """Return whether a table and a picture show a region: the effect at the end that it reaches
+    bears it out."""
+    low = region.low > 0.0 or (none.leads and region.sign == none.sign)
+    high = region.high < 1.0 or (every.leads and region.sign == every.sign)
+    inner = region.low > 0.0 and region.high < 1.0
+    return low and high and not inner and last(region.high) > 0 and first(region.low) < 100
+
+
+def _ahead(regions: tuple[Region, ...], none: Effect, every: Effect) -> tuple[Ahead, ...]:
+    """Return who is decided to be ahead at which shares.
+
+    A region counts where it reaches an end (a share of none, or of all) at which the family
+    detects an effect on the same side, away from floor and ceiling: so no sentence contradicts
+    that under the condition.
+    """
+    results: list[Ahead] = []
+    for region in regions:
+        sign = region.sign
+        low = region.low <= 0.0 and none.leads and sign == none.sign
+        high = region.high >= 1.0 and every.leads and sign == every.sign
+        if low and high:
+            return (Ahead(sign=sign, where="everywhere"),)
+        if high and region.low <= 0.0:
+            results.append(Ahead(sign=sign, where="many"))
+        elif low and region.high >= 1.0:
+            results.append(Ahead(sign=sign, where="few"))
+        elif high and first(region.low) < 100:
+            results.append(Ahead(sign=sign, where="from", percent=first(region.low)))
+        elif low and last(region.high) > 0:
+            results.append(Ahead(sign=sign, where="up to", percent=last(region.high)))
+    return tuple(results)

@@ -1,0 +1,241 @@
+"""Blocks of scenes that a check, a trace or a replay runs and records, and what came of them."""
+
+import copy
+import math
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from faultpath.core.error_source import described, place_in
+from faultpath.core.errors import UserError
+from faultpath.loop import (
+    FaultedElsewhere,
+    IllegalRead,
+    Loop,
+    MalformedReading,
+    NotDelivered,
+    NotFinite,
+    Query,
+    TapCount,
+    UndeclaredReader,
+)
+from faultpath.run import Treatment
+from faultpath.run.attempt import Died, Done, Raised, Wrong, attempt
+from faultpath.run.check.reads import Enough, Read, ReadLog
+from faultpath.run.check.recording import Recording, signals
+from faultpath.run.execution.dispatch import Built, UndeclaredFile, dispatch
+from faultpath.run.pairing import unlike
+from faultpath.run.store.signals import DRAWN, Signal
+from faultpath.run.work.executor import Executor
+from faultpath.system.episodes import EpisodePlant
+from faultpath.system.loop_system import LoopSystem
+from faultpath.system.outcome import Outcome
+from faultpath.system.system import System
+
+MISTAKES: dict[str, tuple[type[Exception], ...]] = {
+    "declared reads": (UndeclaredReader, IllegalRead),
+    "shape and unit": (MalformedReading, NotFinite),
+    "fault delivery": (NotDelivered, FaultedElsewhere),
+    "data files": (UndeclaredFile,),
+}
+"""Errors by the check that reports them; any other error keeps trials from their end."""
+TRIALS = "trials end"
+
+
+@dataclass(frozen=True)
+class BlockSpec:
+    """A treatment over some scenes."""
+
+    treatment: Treatment
+    scenes: tuple[str, ...]
+    why: str = ""
+    steps: int | None = None
+    """After so many it is stopped; `None`: it runs to its end."""
+    tap: tuple[str, str] = ("", "")
+    """The one that is looked at, where it is one."""
+    signals: bool = False
+    """Whether signals are wanted, and not reads."""
+    second: bool = False
+    """Whether it is the second of two runs in a row in one process, of which the first is lost."""
+
+
+@dataclass(frozen=True)
+class RecordedBlock:
+    """The result of a block."""
+
+    outcomes: tuple[Outcome, ...] = ()
+    """One a scene; fewer where it was stopped or an error ended it."""
+    counts: tuple[TapCount, ...] = ()
+    reads: tuple[Read, ...] = ()
+    signals: tuple[tuple[Signal, ...], ...] = ()
+    """Signals of each scene."""
+    error: str = ""
+    """Error that stopped it, or kept a scene from its end."""
+    fails: str = ""
+    """The check that reports the error."""
+
+    def readings(self, dt_s: float, what: str = "clean") -> dict[tuple[str, int, str, str], Any]:
+        """Return what is noted of each reading by scene, step, channel and reader, while it ran.
+
+        `what` is a field of `Read` by scene: a digest, or the sum.
+        """
+        if (dt_s, what) not in self._readings:
+            self._readings[dt_s, what] = self._by_reading(dt_s, what)
+        return self._readings[dt_s, what]
+
+    @cached_property
+    def _readings(self) -> dict[tuple[float, str], dict[tuple[str, int, str, str], Any]]:
+        return {}
+
+    def _by_reading(self, dt_s: float, what: str) -> dict[tuple[str, int, str, str], Any]:
+        ends = {outcome.scene: outcome.steps(dt_s) for outcome in self.outcomes}
+        return {
+            (scene, read.step, *read.tap): noted
+            for read in self.reads
+            for scene, noted in getattr(read, what).items()
+            if read.step < ends.get(scene, read.step + 1)
+        }
+
+
+def run_blocks(
+    executor: Executor,
+    built: Built,
+    blocks: Iterable[BlockSpec],
+    settle: Callable[[BlockSpec, RecordedBlock], None],
+) -> None:
+    """Run blocks on the workers of an executor; `settle` gets each result.
+
+    Raises a `UserError` that ended a worker.
+    """
+    waiting = iter(blocks)
+
+    def settled(block: BlockSpec, reply: RecordedBlock | Died | Wrong) -> None:
+        if isinstance(reply, Wrong) and isinstance(reply.error, UndeclaredFile):
+            reply = RecordedBlock(error=str(reply.error), fails="data files")
+        elif isinstance(reply, Wrong):
+            if isinstance(reply.error, UserError):
+                raise reply.error
+            reply = RecordedBlock(error=described(reply.error), fails=TRIALS)
+        elif isinstance(reply, Died):
+            reply = RecordedBlock(error=reply.how, fails=TRIALS)
+        settle(block, reply)
+
+    dispatch(executor, built, run_block, lambda _: next(waiting, None), settled)
+
+
+def run_block(system: System, block: BlockSpec) -> RecordedBlock:
+    """Run in blocks of the system's size; an error ends it."""
+    if block.second:
+        run_block(system, replace(block, second=False))
+    outcomes, counts, reads = list[Outcome](), list[TapCount](), list[Read]()
+    signals_by_scene = list[tuple[Signal, ...]]()
+    error = fails = ""
+    size = system.scenes_a_block(len(block.scenes))
+    for first in range(0, len(block.scenes), size):
+        scenes = block.scenes[first : first + size]
+        recording, log, result = Recording(), ReadLog(scenes, block.steps), None
+        if block.signals:
+            result = attempt(
+                _with_plant(system, recording), block.treatment, scenes, observer=recording
+            )
+        else:
+            with suppress(Enough):
+                result = attempt(system, block.treatment, scenes, observer=log)
+        reads += log.reads()
+        if isinstance(result, Done):
+            outcomes += result.outcomes
+            counts += result.taps
+            if block.signals:
+                signals_by_scene += signals(system, recording, result)
+            elif lost := next((o for o in result.outcomes if o.failed), None):
+                error, fails = f"{lost.error} in scene {lost.scene!r}", TRIALS
+        elif isinstance(result, Raised):
+            kind, _, text = result.error.partition(": ")
+            at = place_in(result.traceback)
+            error, fails = f"{result.error} ({at})" if at else result.error, TRIALS
+            for scene in scenes if block.tap == ("", "") else ():
+                if not scenes[1:] or isinstance(attempt(system, block.treatment, (scene,)), Raised):
+                    error += f" in scene {scene!r}"
+                    break
+            if kind == NotFinite.__name__:
+                error, fails = text, "shape and unit"
+        elif isinstance(result, Wrong):
+            error = str(result.error)
+            failing = (name for name, kinds in MISTAKES.items() if isinstance(result.error, kinds))
+            fails = next(failing, TRIALS)
+        if error:
+            break
+    return RecordedBlock(
+        () if error else tuple(outcomes),
+        tuple(counts),
+        tuple(reads),
+        tuple(signals_by_scene),
+        error,
+        fails,
+    )
+
+
+def coarsest(run: RecordedBlock) -> float:
+    """Return the relative spacing of the coarsest numbers that were read."""
+    kinds = {read.dtype for read in run.reads}
+    return max((float(np.finfo(k).eps) for k in kinds if k.startswith("float")), default=0.0)
+
+
+def gap_of(first: RecordedBlock, again: RecordedBlock, dt_s: float) -> float:
+    """Return by how much of their size metrics and sums of readings differ at most; infinity for
+    other ends. Nothing that ran differs from nothing."""
+    by_scene = {outcome.scene: outcome for outcome in first.outcomes}
+    for two in again.outcomes:
+        one = by_scene[two.scene]
+        if (one.status, one.time_s) != (two.status, two.time_s) or unlike(one, two):
+            return math.inf
+
+    def numbers(run: RecordedBlock) -> dict[tuple[Any, ...], float]:
+        read = run.readings(dt_s, "sums")
+        sums = {((channel, at), scene, step): v for (scene, step, channel, at), v in read.items()}
+        metrics = ((outcome.scene, outcome.metrics.items()) for outcome in run.outcomes)
+        return sums | {(name, scene): v or 0.0 for scene, named in metrics for name, v in named}
+
+    then, sizes = numbers(first), dict[Any, float]()
+    for (what, *_), value in then.items():
+        sizes[what] = max(sizes.get(what, 0.0), abs(value))
+    gaps = (
+        abs(value - then.get(key, math.inf)) / (sizes.get(key[0]) or 1.0)
+        for key, value in numbers(again).items()
+    )
+    return max(gaps, default=0.0)
+
+
+def _with_plant(system: System, recording: Recording) -> System:
+    """Return a system whose plant, where it has one, is recorded too."""
+    if not isinstance(system, LoopSystem):
+        return system
+    inner = system.loop
+
+    def recorded(variant: str, seed: int | None) -> Loop:
+        loop = inner(variant, seed)
+        plant = copy.copy(loop.graph.plant)
+        sense, steps = plant.sense, iter(range(plant.steps + 1))
+
+        def sensed(state: Any) -> Mapping[str, Any]:
+            outputs, step = sense(state), next(steps)
+            drawn = plant.drawn(state) if isinstance(plant, EpisodePlant) else None
+            if drawn is not None:
+                recording.sources.setdefault(DRAWN, {})[step] = drawn.reshape(len(drawn), -1)
+            for name, value in outputs.items():
+                # What a plant shows to estimators alone is named after the plant.
+                shown = plant.name if isinstance(value, Mapping) else name
+                if not isinstance(value, Query):
+                    recording.source(shown, value, step)
+            return outputs
+
+        vars(plant)["sense"] = sensed
+        return replace(loop, graph=replace(loop.graph, plant=plant))
+
+    system = copy.copy(system)
+    vars(system)["loop"] = recorded
+    return system

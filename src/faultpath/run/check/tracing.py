@@ -1,0 +1,123 @@
+"""Trace of who read what, when, in the first steps of a run, and where that is not as declared."""
+
+from collections.abc import Sequence
+from typing import Literal
+
+from faultpath.core.errors import UserError
+from faultpath.core.results import Result
+from faultpath.core.text import unknown
+from faultpath.faults import describe, reaching
+from faultpath.interface import module_of
+from faultpath.run import SystemSpec, Treatment
+from faultpath.run.check.blocks import BlockSpec, run_block
+from faultpath.run.check.check import chosen_variants
+from faultpath.run.check.reads import Read
+from faultpath.run.question import TraceQuestion
+from faultpath.system.checks import library_of
+from faultpath.system.loop_system import LoopSystem
+from faultpath.system.system import System
+
+
+class TraceReport(Result):
+    """A trace of a variant; what `faultpath trace --json` prints."""
+
+    format: Literal[1] = 1
+    system: str
+    options: dict[str, str]
+    variant: str
+    library: str
+    scene: str
+    seed: int
+    steps: int
+    fault: str = ""
+    reads: tuple[Read, ...]
+    """In the order in which they happened."""
+    reconstructed: dict[str, tuple[str, tuple[str, ...]]]
+    """Source to the module that reconstructs it and the channels that this one read."""
+    privileged: tuple[str, ...] = ()
+    """Reads of what deployment does not have, by permission of the variant or past all taps."""
+    findings: tuple[str, ...] = ()
+    """Differences from what is declared, a sentence each."""
+
+
+def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> TraceReport:
+    """Run a variant for a few steps and report what was read.
+
+    Raises `UserError` for a variant, library or scene that there is not, a fault that
+    reaches no reader there, and a run that fails.
+    """
+    variant, steps = question.variant or next(iter(system.variants)), question.steps
+    readers = chosen_variants(system, (variant,))[0].readers
+    known = [ref.id for ref in library_of(system, question.library).scenes]
+    scene = known[0] if question.scene is None else question.scene
+    if scene not in known:
+        raise UserError(f"library '{question.library}': {unknown('scene', scene, known)}")
+    faults = () if question.fault is None else system.fault(question.fault)
+    faults = reaching(faults, readers)
+    treatment = Treatment(variant=variant, faults=faults, seed=question.seed)
+    run = run_block(system, BlockSpec(treatment, (scene,), steps=steps))
+    if run.error and not run.reads:
+        raise UserError(f"variant '{variant}' does not run: {run.error}")
+    taps = {read.tap for read in run.reads}
+    findings = tuple(
+        f"Variant '{variant}' declares that {reader} reads '{channel.name}', but in the first "
+        f"{steps} steps it did not; trace more --steps, or take it out of the variant's readers."
+        for channel in system.interface.channels
+        for reader in channel.readers
+        if reader in readers and (channel.name, reader) not in taps
+    )
+    if run.error:
+        findings = (f"The run ended early: {run.error}.",)
+    words = {
+        (fault.channel, reader): fault.intervention.words()
+        for fault in faults
+        for reader in fault.readers
+    }
+    return TraceReport(
+        system=spec.name,
+        options=spec.options,
+        variant=variant,
+        library=question.library,
+        scene=scene,
+        seed=question.seed,
+        steps=steps,
+        fault=describe(faults),
+        reads=tuple(
+            read.model_copy(update={"altered_by": (words[read.tap],)}) if read.altered else read
+            for read in run.reads
+        ),
+        reconstructed=_reconstructed(system, run.reads),
+        privileged=_privileged(system, variant, run.reads),
+        findings=findings,
+    )
+
+
+def _reconstructed(system: System, reads: Sequence[Read]) -> dict[str, tuple[str, tuple[str, ...]]]:
+    """Return by reconstructed source that was read its module and what that module read."""
+    sources = {read.source for read in reads}
+    readers: dict[str, dict[str, None]] = {}
+    for read in reads:
+        readers.setdefault(module_of(read.reader), {})[read.channel] = None
+    return {
+        source: (module, tuple(readers.get(module, ())))
+        for module, source in system.interface.reconstructions
+        if source in sources
+    }
+
+
+def _privileged(system: System, variant: str, reads: Sequence[Read]) -> tuple[str, ...]:
+    """Return a sentence on each read of what deployment does not have."""
+    permitted = system.variants[variant].privileged
+    by_permission = {read.reader: read.source for read in reads if read.source in permitted}
+    modules = system.modules(variant, None) if isinstance(system, LoopSystem) else ()
+    return (
+        *(
+            f"{reader} reads '{source}', which is privileged, by permission of the variant."
+            for reader, source in by_permission.items()
+        ),
+        *(
+            f"Module '{module.name}' takes the plant's truth '{truth}' past all taps."
+            for module in modules
+            for truth in sorted(module.truths)
+        ),
+    )

@@ -1,0 +1,196 @@
+"""Run a little twice, to find results that do not repeat or that depend on their block.
+
+A few scenes of a unit drawn at random run again without the others, and one scene of another by
+itself, with guarded readings.
+"""
+
+import hashlib
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+
+from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.plain import Misread, model_of
+from faultpath.core.results import Frozen
+from faultpath.loop import WrittenTo
+from faultpath.run.attempt import Died, Done, Reply, Wrong
+from faultpath.run.execution.schedule import Task, Unit
+from faultpath.run.provenance import Recheck
+from faultpath.run.store.folder import RunFolder
+from faultpath.system.outcome import Outcome
+
+SAMPLE = 4
+"""Scenes of a unit that run again."""
+_TRAJECTORY = "trajectory_hash"
+
+
+def difference(first: Sequence[Outcome], reply: Reply) -> str:
+    """Say how a second run of the same scenes differs; empty where it is the same to the bit.
+
+    Trajectories count where both runs have a hash of them.
+    """
+    if isinstance(reply, Died):
+        return f"could not be run again ({reply.how}), which differs"
+    if not isinstance(reply, Done):
+        return f"failed the second time ({reply.error}), which differs"
+    differences = _gaps(first, reply)
+    if not differences:
+        return ""
+    ends = sum("status" in gaps for gaps in differences.values())
+    parts = [f"{ends} end otherwise" if ends else "none ends otherwise"]
+    for name in dict.fromkeys(
+        name for gaps in differences.values() for name in gaps if name != "status"
+    ):
+        most = max(gaps.get(name, 0.0) for gaps in differences.values())
+        label = "what readers got" if name == _TRAJECTORY else name
+        parts.append(f"{label} by up to {most:.3g}" if math.isfinite(most) else f"{label} too")
+    summary = ", ".join(parts)
+    scene = next(iter(differences))
+    return f"differs in {len(differences)} of {len(first)}, {scene!r} for one ({summary})"
+
+
+def _gaps(first: Sequence[Outcome], again: Done) -> dict[str, dict[str, float]]:
+    """Return by scene and name how far outcomes lie apart; infinity for what is no number."""
+    gaps: dict[str, dict[str, float]] = {}
+    for one, two in zip(first, again.outcomes, strict=True):
+        mine: dict[str, Any] = {**vars(one), **one.metrics}
+        theirs: dict[str, Any] = {**vars(two), **two.metrics}
+        for name in dict.fromkeys((*mine, *theirs)):
+            a: Any = mine.get(name)
+            b: Any = theirs.get(name)
+            if name in ("metrics", "error") or np.array_equal(a, b):
+                continue
+            if name == _TRAJECTORY and not (a and b):
+                continue
+            gap = math.inf
+            if isinstance(a, int | float) and isinstance(b, int | float):
+                gap = abs(a - b)
+            gaps.setdefault(one.scene, {})[name] = gap
+    return gaps
+
+
+class _Kept(Frozen):
+    """Contents of `rechecks.json`."""
+
+    format: Literal[4] = 4
+    flown: tuple[Recheck, ...] = ()
+
+
+class Rechecks:
+    """Trials of a finished run that run again, and how they differ; kept in the run's folder.
+
+    `outcomes` are those of `units`, by treatment key and scene.
+    """
+
+    def __init__(
+        self, units: Sequence[Unit], outcomes: Mapping[tuple[str, str], Outcome], folder: RunFolder
+    ) -> None:
+        self._units, self._outcomes, self._folder = units, outcomes, folder
+        kept = _Kept()
+        with suppress(OSError, Misread):
+            kept = model_of(contents(folder.rechecks, LARGEST_TEXT), _Kept)
+        self._kept = {
+            (recheck.unit, recheck.why, recheck.scenes): recheck for recheck in kept.flown
+        }
+
+    def tasks(self) -> tuple[Task, ...]:
+        """Return what is to run again; empty when nothing is left.
+
+        It follows from the units' keys: the same run draws the same, whoever continues it.
+        """
+        sound = [
+            unit
+            for unit in self._units
+            if not any(self._outcomes[unit.treatment_key, scene].failed for scene in unit.scenes)
+        ]
+        if not sound:
+            return ()
+        # Not the first treatment of a block, where there are others: nothing ran before it from
+        # which anything could have been kept. It has so many scenes that some are left out.
+        first = {unit.block: unit.key for unit in reversed(self._units)}
+        follow = [unit for unit in sound if unit.key != first[unit.block]]
+        unit = min(
+            follow or sound,
+            key=lambda candidate: (len(candidate.scenes) <= SAMPLE, _hash_order(candidate.key)),
+        )
+        scenes = unit.scenes
+        if len(scenes) > SAMPLE:
+            by_lot = sorted(scenes[1:], key=lambda scene: _hash_order(unit.key, scene))[:SAMPLE]
+            scenes = tuple(scene for scene in scenes if scene in by_lot)
+        others = [candidate for candidate in sound if candidate is not unit] or [unit]
+        other = min(
+            others,
+            key=lambda candidate: (len(candidate.scenes) == 1, _hash_order("guard", candidate.key)),
+        )
+        alone = min(
+            other.scenes[1:] or other.scenes, key=lambda scene: _hash_order(other.key, scene)
+        )
+        tasks = (Task(unit, scenes, recheck="sample"), Task(other, (alone,), recheck="guarded"))
+        return tuple(t for t in tasks if (t.unit.key, t.recheck, t.scenes) not in self._kept)
+
+    def settle(self, task: Task, reply: Reply) -> None:
+        """Compare what came of a second run with the first; keep what that showed."""
+        assert task.recheck is not None
+        treatment = task.unit.treatment
+        # Results have to repeat here: that readings differ in a last bit with the number of scenes
+        # in a call, as products of matrices do, is no reason to conclude nothing.
+        first = [
+            replace(self._outcomes[task.unit.treatment_key, scene], trajectory_hash="")
+            for scene in task.scenes
+        ]
+        wrote, other = "", task.scenes
+        if isinstance(reply, Wrong) and isinstance(reply.error, WrittenTo):
+            wrote, other = str(reply.error), ()
+        elif isinstance(reply, Done):
+            other = tuple(_gaps(first, reply))
+        self._kept[task.unit.key, task.recheck, task.scenes] = Recheck(
+            why=task.recheck,
+            unit=task.unit.key,
+            variant=treatment.variant,
+            faults=" and ".join(fault.describe() for fault in treatment.faults) or "correct inputs",
+            seed=treatment.seed,
+            scenes=task.scenes,
+            unit_scenes=len(task.unit.scenes),
+            wrote=wrote,
+            differs="" if wrote else difference(first, reply),
+            other=other,
+        )
+        kept = _Kept(flown=tuple(recheck for _, recheck in sorted(self._kept.items())))
+        self._folder.save_rechecks(f"{kept.model_dump_json(indent=1)}\n")
+
+    def flown(self) -> tuple[Recheck, ...]:
+        """Return what ran again of the units of this run."""
+        keys = {unit.key for unit in self._units}
+        return tuple(shown for _, shown in sorted(self._kept.items()) if shown.unit in keys)
+
+    def findings(self) -> Iterator[str]:
+        """Yield what second runs of this run's units found; nothing where all were the same."""
+        for shown in self.flown():
+            where = f"'{shown.variant}' under {shown.faults}, seed {shown.seed}"
+            if shown.wrote:
+                yield (
+                    f"A module writes into its reading, seen with {where}: {shown.wrote}. "
+                    "Without a fault that changes what others read, and with one it does not."
+                )
+            elif shown.differs:
+                count = len(shown.scenes)
+                how = (
+                    "alone, with a copy of every reading for each module"
+                    if shown.why == "guarded"
+                    else f"without the others of its {shown.unit_scenes}"
+                )
+                yield (
+                    f"Results do not repeat: {count} scene{'s' * (count != 1)} of {where}, run "
+                    f"again {how}, {shown.differs}. Effects may be chance: look for random numbers "
+                    "that are not of faultpath.generator, for threads, for what scenes of one call "
+                    "of run() share or one call leaves for the next, and for what is written into "
+                    "an array after it was delivered."
+                )
+
+
+def _hash_order(*parts: str) -> str:
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()

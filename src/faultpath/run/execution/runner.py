@@ -1,0 +1,203 @@
+"""Run a study into a folder, from wherever an earlier invocation left it."""
+
+import logging
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from faultpath.core.errors import Stopped, UserError
+from faultpath.core.version import __version__
+from faultpath.run.attempt import Reply, Wrong, attempt
+from faultpath.run.code import Code, named
+from faultpath.run.deliveries import Deliveries
+from faultpath.run.execution.dispatch import Built, dispatch
+from faultpath.run.execution.recheck import Rechecks
+from faultpath.run.execution.repeating import repeat
+from faultpath.run.execution.schedule import Task, TaskQueue, Unit, plan
+from faultpath.run.execution.state import RunState, Stop
+from faultpath.run.plan import Study, Treatment, check_rows, selected
+from faultpath.run.provenance import Recheck
+from faultpath.run.registry import load_system
+from faultpath.run.store.folder import RunFolder
+from faultpath.run.store.manifest import Manifest
+from faultpath.run.trials import Trials
+from faultpath.run.work.executor import Executor, Progress
+from faultpath.run.work.processes import local
+from faultpath.system.declared import SceneRef
+from faultpath.system.system import System
+
+_log = logging.getLogger("faultpath")
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A trial in which the program raised an error or died."""
+
+    treatment: Treatment
+    scene: str
+    error: str
+    details: Path | None
+    """The file with the traceback, when there is one."""
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """A finished run."""
+
+    trials: Trials
+    deliveries: Deliveries
+    """Deliveries of the taps, row by row, and what a reader of the results has to know."""
+    blocks_computed: int
+    blocks_kept: int
+    failures: tuple[Failure, ...]
+    outcomes_sha256: str
+    system_fingerprint: str
+    """Digest of `code`, shortened; for several runs together, of all of them."""
+    code: tuple[Code, ...]
+    """Code that ran, of each run that this is made of; none where other code had finished it."""
+    library_hash: str
+    rechecks: tuple[Recheck, ...] = ()
+    """Trials that ran a second time, to see whether results repeat."""
+
+    @property
+    def findings(self) -> tuple[str, ...]:
+        """Findings that a reader has to know: results that do not repeat, readers that
+        never read or that write, hashes that prove nothing."""
+        return self.deliveries.findings
+
+
+def run_study(
+    study: Study,
+    folder: Path | str,
+    workers: int = 2,
+    progress: Callable[[Progress], None] = lambda report: None,
+    notice: Callable[[str], None] = _log.warning,
+    system: System | None = None,
+    shared: bool = False,
+    executor: Executor | None = None,
+    time_limit_s: float | None = None,
+    recheck: bool = True,
+    stop: Stop | None = None,
+) -> RunResult:
+    """Run every treatment of a study over its scenes, keeping what `folder` already holds.
+
+    Args:
+        study: Treatments and scenes.
+        folder: Run folder.
+        workers: Worker processes; 0 runs in this one.
+        progress: Called after each block and about twice a second.
+        notice: Called with what a user should read, such as a damaged file or another process in
+            the folder.
+        system: Saves building it here when the caller has.
+        shared: Lets studies with other treatments use the folder one after the other: a treatment
+        that one of
+            them ran is there for the next; the folder's tables are those of the last.
+        executor: Runs trials in place of `workers` processes, and keeps its own for the next study.
+        time_limit_s: Seconds that a worker may take over one block, or one scene of a block that
+            failed, before it is stopped; by default what the system says, or an hour.
+        recheck: Runs a few scenes again and compares; see `RunResult.findings`.
+        stop: Asked at each look of a study that has some, and ends it; the result holds the scenes
+            up to that look.
+
+    Raises:
+        UserError: The folder or the study cannot be run.
+        Stopped: Ctrl-C; everything finished is stored.
+        Exception: An error of `faultpath.loop.taps`, when the audit itself is wrong.
+    """
+    manager = local(workers) if executor is None else nullcontext(executor)
+    if (workers if executor is None else executor.count) == 0 and time_limit_s is not None:
+        raise UserError("a time limit needs worker processes: this one cannot stop itself")
+    system = load_system(study.system) if system is None else system
+    built = Built.of(system, study.system, study.library)
+    built.check_files()
+    library, code = built.library, built.code
+    manifest = Manifest(
+        faultpath_version=__version__,
+        code=code.state,
+        library_hash=library.content_hash,
+        study=study,
+    )
+    run = RunFolder(Path(folder))
+    units, earlier = _units(study, built, manifest), run.made_by_other_code(manifest)
+    try:
+        with manager as workforce:
+            work = partial(dispatch, workforce, built, _attempted, limit_s=time_limit_s)
+            of_it = _units(study, built, earlier) if earlier else ()
+            if earlier and (blocks := run.finished((unit.key, unit.scenes) for unit in of_it)):
+                manifest, units = earlier, of_it
+                changed = named(earlier.code.changed(code.state)) or "faultpath"
+                notice(repeat(blocks, units, run, work, changed))
+            state = RunState(study, library, units, run, stop)
+            with run.open(manifest, notice, shared):
+                schedule = TaskQueue(state.resume(notice), study.look > 0)
+                progress(state.progress())
+                work(
+                    lambda worker: None if state.enough() else schedule.take(worker),
+                    lambda task, reply: schedule.put(state.settle(task, reply)),
+                    report=lambda: progress(state.progress()),
+                )
+                again = Rechecks(state.units, state.outcomes, run)
+                if recheck:
+                    waiting = iter(again.tasks())
+                    work(lambda worker: next(waiting, None), again.settle)
+                trials, findings = state.trials(), (*state.findings(), *again.findings())
+                repeats = not any(recheck.differs for recheck in again.flown())
+                deliveries = Deliveries.of(study, state.taps(), trials, findings, repeats)
+                digest = run.save_tables(trials, deliveries)
+    except KeyboardInterrupt:
+        # What is on disk counts: the run may have been stopped between storing and noting.
+        done = len(run.list_shards().keys() & {unit.key for unit in units})
+        raise Stopped(
+            f"interrupted with {done} of {len(units)} blocks done and kept in {run.path}; run the "
+            "same again to resume."
+        ) from None
+    return RunResult(
+        trials=trials,
+        deliveries=deliveries,
+        blocks_computed=state.computed,
+        blocks_kept=state.kept,
+        failures=tuple(_failures(state, run)),
+        outcomes_sha256=digest,
+        system_fingerprint=manifest.code.digest,
+        code=(code,) if manifest.code == code.state else (),
+        library_hash=library.content_hash,
+        rechecks=again.flown(),
+    )
+
+
+def _units(study: Study, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
+    """Return the blocks that a study takes, run by the code of `manifest`.
+
+    `UserError` for scenes or rows that cannot be run.
+    """
+    library, system = built.library, built.system
+    scenes: Sequence[SceneRef] = selected(study, library)
+    if study.look:
+        scenes = sorted(scenes, key=lambda scene: study.scenes.index(scene.id))
+    check_rows(study.rows, system.variants)
+    fingerprint = f"{manifest.faultpath_version} {manifest.code.digest}"
+    size = system.scenes_a_block(len(library.scenes))
+    units: list[Unit] = []
+    for part, treatments in study.parts().items():
+        chosen = [scene for scene in scenes if scene.id in part] if part else scenes
+        units += plan(treatments, chosen, size, library, fingerprint, study.look, part)
+    return tuple(units)
+
+
+def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:
+    for unit in state.units:
+        details = folder.failures / f"{unit.key}.txt"
+        for scene in unit.scenes:
+            outcome = state.outcomes[unit.treatment_key, scene]
+            if outcome.failed:
+                where = details if details.exists() else None
+                yield Failure(unit.treatment, scene, outcome.error or "", where)
+
+
+def _attempted(system: System, task: Task) -> Reply:
+    reply = attempt(system, task.unit.treatment, task.scenes, task.recheck == "guarded")
+    if isinstance(reply, Wrong):
+        raise reply.error  # not every error survives being sent as a value
+    return reply

@@ -1,0 +1,114 @@
+"""Units of work, one treatment over one block of scenes, and which worker does what next."""
+
+import hashlib
+import json
+from collections import deque
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from faultpath.run.plan import Treatment
+from faultpath.system.declared import Library, SceneRef
+
+
+@dataclass(frozen=True)
+class Unit:
+    """One treatment over the scenes of one block, stored and resumed as a whole."""
+
+    key: str
+    """Content hash of everything that decides the result."""
+    treatment: Treatment
+    treatment_key: str
+    """That of `treatment`, which a model computes anew each time."""
+    block: int
+    scenes: tuple[str, ...]
+    part: tuple[str, ...] = ()
+    """Scenes that its rows name; empty where they name none."""
+
+
+def plan(
+    treatments: Sequence[Treatment],
+    scenes: Sequence[SceneRef],
+    block_size: int,
+    library: Library,
+    fingerprint: str,
+    look: int = 0,
+    part: tuple[str, ...] = (),
+) -> tuple[Unit, ...]:
+    """Return every unit: block by block, in each the treatments in order.
+
+    A block is a place in the library, not a count of selected scenes, so a selection and the whole
+    library share the blocks that both hold in full. With a `look`, blocks are so many scenes in
+    the order given.
+    """
+    parts: dict[int, list[str]] = {}
+    for place, scene in enumerate(scenes):
+        block = place // look if look else scene.index // block_size
+        parts.setdefault(block, []).append(scene.id)
+    units: list[Unit] = []
+    dumped = [
+        (treatment, treatment.key(), treatment.model_dump(mode="json")) for treatment in treatments
+    ]
+    for block, ids in parts.items():
+        for treatment, treatment_key, treatment_content in dumped:
+            content = {
+                "system": fingerprint,
+                "treatment": treatment_content,
+                "scenes": ids,
+                "library": library.content_hash,
+            }
+            key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
+            units.append(Unit(key, treatment, treatment_key, block, tuple(ids), part))
+    return tuple(units)
+
+
+@dataclass(frozen=True)
+class Task:
+    """Some or all scenes of a unit, for one worker."""
+
+    unit: Unit
+    scenes: tuple[str, ...]
+    recheck: Literal["sample", "guarded"] | None = None
+    """Why it runs again: a few scenes without the others, or one alone with `Taps(guard=True)`.
+    Its result is compared and not stored."""
+
+
+class TaskQueue:
+    """Tasks that wait for a worker.
+
+    A system caches what it derives from a block's scenes, so a worker stays with its block, takes
+    the one with the most work left when that is done, and helps out with another worker's only
+    when no block is free. The longest work is thus never started last. `in_order`, all workers are
+    at the first block that is left.
+    """
+
+    def __init__(self, units: Iterable[Unit], in_order: bool = False) -> None:
+        self._in_order = in_order
+        self._blocks: dict[int, deque[Task]] = {}
+        for unit in units:
+            self._blocks.setdefault(unit.block, deque()).append(Task(unit, unit.scenes))
+        self._home: dict[int, int] = {}
+
+    def take(self, worker: int) -> Task | None:
+        """Return the next task for a worker, or `None` when nothing waits."""
+        if not self._blocks:
+            return None
+        home = min(self._blocks) if self._in_order else self._home.get(worker)
+        if home not in self._blocks:
+            taken = set(self._home.values())
+            free = [block for block in self._blocks if block not in taken]
+            home = max(
+                free or self._blocks,
+                key=lambda block: sum(len(task.scenes) for task in self._blocks[block]),
+            )
+            self._home[worker] = home
+        waiting = self._blocks[home]
+        task = waiting.popleft()
+        if not waiting:
+            del self._blocks[home]
+        return task
+
+    def put(self, tasks: Iterable[Task]) -> None:
+        """Put tasks back, before everything else of their block."""
+        for task in reversed(tuple(tasks)):
+            self._blocks.setdefault(task.unit.block, deque()).appendleft(task)

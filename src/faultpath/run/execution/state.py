@@ -1,0 +1,232 @@
+"""The state of a run: which units are done, what becomes of a reply, and where it may stop."""
+
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from faultpath.core.errors import UserError
+from faultpath.core.text import one_line
+from faultpath.loop import TapCount, added
+from faultpath.run.attempt import Died, Done, Raised, Reply, Wrong
+from faultpath.run.deliveries import TreatmentPart
+from faultpath.run.execution.schedule import Task, Unit
+from faultpath.run.plan import Study, selected
+from faultpath.run.store.folder import RunFolder
+from faultpath.run.trials import Trial, Trials
+from faultpath.run.work.executor import Progress
+from faultpath.system.declared import Library
+from faultpath.system.outcome import Outcome, failed_outcome
+
+FEW = 5
+"""So many failed trials without one that ran to its end stop the study."""
+_WHOLE = "All scenes of the block at once: "
+"""Begins the traceback of a block that raised an error, of which each scene is then run alone."""
+Stop = Callable[[Trials], bool]
+"""Says of the trials of all looks so far whether they are enough."""
+
+
+class NothingRuns(UserError):
+    """A system failed in all of the first trials: the rest would only repeat it."""
+
+
+@dataclass
+class _Partial:
+    """A unit of which some scenes have an outcome."""
+
+    outcomes: dict[str, Outcome] = field(default_factory=dict[str, Outcome])
+    taps: tuple[TapCount, ...] = ()
+    tracebacks: list[str] = field(default_factory=list[str])
+
+
+class RunState:
+    """Stores each unit as soon as all its scenes have an outcome.
+
+    The looks of a study are taken in order, each as soon as all of its trials are there: the same
+    trials count whatever the number of workers, and wherever a run was interrupted.
+    """
+
+    def __init__(
+        self,
+        study: Study,
+        library: Library,
+        units: tuple[Unit, ...],
+        folder: RunFolder,
+        stop: Stop | None = None,
+    ) -> None:
+        self.outcomes: dict[tuple[str, str], Outcome] = {}
+        """By treatment key and scene."""
+        self.kept = self.computed = 0
+        """Units that were stored before, and those that this invocation ran."""
+        self._study, self._library, self._units, self._folder = study, library, units, folder
+        self._rows = Counter((row.treatment.key(), row.scenes) for row in study.rows)
+        self._taps: dict[str, tuple[TapCount, ...]] = {}
+        self._partial: dict[str, _Partial] = {}
+        self._began, self._ended = time.monotonic(), 0
+        self._trials = sum(len(unit.scenes) for unit in units)
+        self._in_rows = sum(len(u.scenes) * self._rows[u.treatment_key, u.part] for u in units)
+        self._done = self._done_in_rows = 0
+        """Trials with an outcome, and in how many of the rows' trials they stand."""
+        self._failed, self._sound = 0, False
+        self._stop = stop if study.look else None
+        self._looks, self._over = 0, False
+
+    def resume(self, notice: Callable[[str], None]) -> list[Unit]:
+        """Take over what is stored, say how much and from when, and return what is left to do.
+
+        Units with trials that failed are left to do: what was wrong may have been the machine.
+        """
+        missing: list[Unit] = []
+        failed = 0
+        for unit in self._units:
+            shard = self._folder.load_shard(unit.key, unit.scenes, notice)
+            lost = sum(outcome.failed for outcome in shard.outcomes) if shard else 0
+            failed += lost
+            if shard is None or lost:
+                missing.append(unit)
+            else:
+                self._enter(unit, shard)
+                self._count(unit, len(unit.scenes))
+        self.kept = len(self._taps)
+        self._sound = self.kept > 0
+        if self.kept or failed:
+            tried = f"; {failed} that failed are tried again" if failed else ""
+            when = ""
+            if self.kept:
+                written = self._folder.written(tuple(self._taps))
+                first, last = (f"{moment:%Y-%m-%d %H:%M}" for moment in written)
+                when = f", from {first}" + (f" to {last}" if first != last else "") + " UTC"
+            notice(f"Kept {self.progress().count}{when}{tried}.")
+        return missing
+
+    def settle(self, task: Task, reply: Reply) -> tuple[Task, ...]:
+        """Take in a reply and return the tasks that follow from it.
+
+        A block whose program raised an error, or that its worker did not outlive, is run again
+        scene by scene, so that only the scenes at fault are lost. `Wrong` raises its error: nothing
+        that follows would mean anything. `NothingRuns` after a few failures and no trial beside.
+        """
+        unit, taps = task.unit, tuple[TapCount, ...]()
+        match reply:
+            case Done():
+                outcomes, taps = reply.outcomes, reply.taps
+                details = {o.scene: o.error or "" for o in outcomes if o.failed}
+            case Died() | Raised() if task.scenes[1:]:
+                if isinstance(reply, Raised):
+                    whole = f"{_WHOLE}{one_line(reply.error)}\n{reply.traceback}\n"
+                    self._partial.setdefault(unit.key, _Partial()).tracebacks.append(whole)
+                return tuple(replace(task, scenes=(scene,)) for scene in task.scenes)
+            case Died() | Raised():
+                scene = task.scenes[0]
+                error = reply.error if isinstance(reply, Raised) else reply.how
+                outcomes = (failed_outcome(scene, error),)
+                details = {scene: reply.traceback if isinstance(reply, Raised) else error}
+            case Wrong():
+                raise reply.error
+        partial = self._partial.setdefault(unit.key, _Partial())
+        for scene, detail in details.items():
+            partial.tracebacks.append(f"{scene}: {unit.treatment.model_dump_json()}\n{detail}\n")
+        partial.outcomes |= {outcome.scene: outcome for outcome in outcomes}
+        self._count(unit, len(outcomes))
+        partial.taps = added((*partial.taps, *taps))
+        self._ended += len(outcomes)
+        self._failed += len(details)
+        self._sound = self._sound or len(details) < len(outcomes)
+        tracebacks = "\n".join(sorted(partial.tracebacks))
+        if self._failed >= FEW and not self._sound:
+            self._folder.save_failure(unit.key, tracebacks)
+            last = next(o for o in reversed(partial.outcomes.values()) if o.failed)
+            raise NothingRuns(
+                f"all of the first {self._failed} trials failed, and none ran to its end; in scene "
+                f"{last.scene!r}: {' '.join((last.error or '').split())[:300]}. Fix the system "
+                "and run the same again; the tracebacks are in "
+                f"{self._folder.failures / unit.key}.txt"
+            )
+        if len(partial.outcomes) == len(unit.scenes):
+            shard = Done(tuple(partial.outcomes[scene] for scene in unit.scenes), partial.taps)
+            self._folder.save_failure(unit.key, tracebacks)
+            self._folder.save_shard(unit.key, shard)
+            del self._partial[unit.key]
+            self.computed += 1
+            self._enter(unit, shard)
+        return ()
+
+    def findings(self) -> Iterator[str]:
+        """Yield what is wrong with the system though its trials ended: it takes one scene alone."""
+        units = self.units
+        sound = [unit for unit in units if not any(o.failed for o in self._outcomes_of(unit))]
+        errors = [
+            text.partition("\n")[0].removeprefix(_WHOLE)
+            for text in (self._folder.load_failure(unit.key) for unit in sound)
+            if text.startswith(_WHOLE)
+        ]
+        if errors:
+            yield (
+                f"{len(errors)} of {len(units)} blocks raised an error when their scenes ran "
+                f"together, and none when each ran alone: {errors[0]}. A reading holds a value for "
+                "each scene of its block: `faultpath check` says what to fix."
+            )
+
+    def _outcomes_of(self, unit: Unit) -> list[Outcome]:
+        return [self.outcomes[unit.treatment_key, scene] for scene in unit.scenes]
+
+    def _enter(self, unit: Unit, shard: Done) -> None:
+        self.outcomes.update(
+            ((unit.treatment_key, outcome.scene), outcome) for outcome in shard.outcomes
+        )
+        self._taps[unit.key] = shard.taps
+
+    def _count(self, unit: Unit, trials: int) -> None:
+        self._done += trials
+        self._done_in_rows += trials * self._rows[unit.treatment_key, unit.part]
+
+    def enough(self) -> bool:
+        """Take the looks whose trials are all there; return whether the study stops."""
+        while self._stop and not self._over:
+            look = [unit.key for unit in self._units if unit.block == self._looks]
+            if not look or not self._taps.keys() >= set(look):
+                break
+            self._looks += 1
+            self._over = self._stop(self.trials())
+        return self._over
+
+    def trials(self) -> Trials:
+        """Return the trials that count: all, or those of the looks that were taken."""
+        study = self._study
+        if self._stop:
+            scenes = study.scenes[: self._looks * study.look]
+            study = study.model_copy(update={"scenes": scenes})
+        return _assembled(study, self._library, self.outcomes)
+
+    @property
+    def units(self) -> tuple[Unit, ...]:
+        """The units whose trials count."""
+        return tuple(unit for unit in self._units if not self._stop or unit.block < self._looks)
+
+    def taps(self) -> dict[TreatmentPart, tuple[TapCount, ...]]:
+        """Return what the taps did in the units that count."""
+        counts: dict[TreatmentPart, list[TapCount]] = {}
+        for unit in self.units:
+            counts.setdefault((unit.treatment_key, unit.part), []).extend(self._taps[unit.key])
+        return {key: added(taps) for key, taps in counts.items()}
+
+    def progress(self) -> Progress:
+        """Return how far the run is, and how long it takes yet at the pace that it had."""
+        left = None
+        if self._ended:
+            left = (self._trials - self._done) * (time.monotonic() - self._began) / self._ended
+        count = f"{self._done_in_rows} of {self._in_rows} trials"
+        return Progress(self._done, self._trials, count, left)
+
+
+def _assembled(
+    study: Study, library: Library, outcomes: Mapping[tuple[str, str], Outcome]
+) -> Trials:
+    """Return the outcomes, by treatment key and scene, in the order of the study's rows."""
+    scenes, trials = selected(study, library), list[Trial]()
+    for row in study.rows:
+        where, key = (row.variant, row.condition, row.seed), row.treatment.key()
+        part = frozenset(row.scenes or study.scenes)
+        here = (scene for scene in scenes if scene.id in part)
+        trials += [Trial(*where, s.index, s.topology, outcomes[key, s.id]) for s in here]
+    return Trials.of(trials)

@@ -1,0 +1,199 @@
+"""Two groups of trials over the same scenes; a pair that met different conditions is void."""
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import compress
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.core.errors import UserError
+from faultpath.run.trials import HASHES, Bools, Floats, Rows, Trials
+from faultpath.system.declared import SceneRef
+from faultpath.system.outcome import Outcome, Status
+
+_Value = TypeVar("_Value", bound=np.generic)
+_HASHED: dict[str, str] = dict(
+    zip(HASHES, ("initial states", "disturbances", "planner noise"), strict=True)
+)
+
+
+class PairingRefused(UserError):
+    """Two groups that were to be compared do not hold the same seeds and scenes."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """The trials of a variant under a condition."""
+
+    variant: str
+    condition: str
+    once: int | None = None
+    """Seed of the only run of what no seed trains anew; that run is paired with every seed."""
+
+    def __str__(self) -> str:
+        return f"{self.variant} under {self.condition}"
+
+    def at(self, seed: int) -> int:
+        """Return the seed of the trials that stand for `seed`."""
+        return seed if self.once is None else self.once
+
+
+@dataclass(frozen=True)
+class Mismatch:
+    """Two trials of a scene that met different conditions and are no pair."""
+
+    first: Group
+    second: Group
+    scene: str
+    seed: int
+    differences: tuple[tuple[str, str, str], ...]
+    """The name of each hash that differs, and both of its values."""
+
+    def __str__(self) -> str:
+        hashes = "; ".join(f"{name} {a[:8]!r} and {b[:8]!r}" for name, a, b in self.differences)
+        what = " and ".join(_HASHED[name] for name, _, _ in self.differences)
+        return (
+            f"{self.first} and {self.second} are no pair in scene {self.scene!r} (seed "
+            f"{self.seed}): their {what} differ ({hashes})"
+        )
+
+
+def mismatch_words(mismatches: Sequence[Mismatch]) -> tuple[str, ...]:
+    """Return one sentence that counts the mismatches and shows the first; nothing without any."""
+    if not mismatches:
+        return ()
+    first, *more = mismatches
+    others = f"; so do those of {len(more)} other pair{'s' * (len(more) > 1)}" if more else ""
+    return (f"{first}{others}.",)
+
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Trials of two groups, scene by scene and seed by seed.
+
+    A pair is void where a trial failed, or where the two met different conditions.
+    """
+
+    trials: Trials
+    seeds: tuple[int, ...]
+    scenes: tuple[SceneRef, ...]
+    rows: tuple[Rows, Rows]
+    """Those of the first and of the second group, `[seeds, scenes]`."""
+    void: Bools
+    """`[seeds, scenes]`."""
+    mismatches: tuple[Mismatch, ...] = ()
+
+    @cached_property
+    def success(self) -> tuple[Floats, Floats]:
+        """Success of both groups `[scenes, seeds]`: 1 or 0, not a number where a trial failed."""
+        ends = np.where(self.trials.failed, np.nan, self.trials.has(Status.SUCCESS))
+        return self._of(ends)
+
+    def ended(self, status: Status) -> tuple[Bools, Bools]:
+        """Return `[scenes, seeds]` of both groups whether a trial ended so."""
+        return self._of(self.trials.has(status))
+
+    @property
+    def time_s(self) -> tuple[Floats, Floats]:
+        """Times of both groups `[scenes, seeds]`."""
+        return self._of(self.trials.time_s)
+
+    def metric(self, name: str) -> tuple[Floats, Floats] | None:
+        """Return a metric of both groups `[scenes, seeds]`; `None` where one has it nowhere."""
+        if name not in self.trials.metrics:
+            return None
+        values = self._of(self.trials.metrics[name])
+        return None if any(np.isnan(part).all() for part in values) else values
+
+    def _of(self, values: NDArray[_Value]) -> tuple[NDArray[_Value], NDArray[_Value]]:
+        # By columns: the order of later sums, and with it their last bits, rests on it.
+        first, second = (values[rows].T for rows in self.rows)
+        return first, second
+
+    def whole(self) -> "Pairs":
+        """Return the pairs of the scenes that have no void one: every seed over the same scenes."""
+        return self._at(np.asarray(~self.void.any(axis=0), dtype=np.bool_))
+
+    def only(self, scenes: Collection[str]) -> "Pairs":
+        """Return the pairs of `scenes`, to cut several contrasts to what all of them have."""
+        return self._at(np.array([scene.id in scenes for scene in self.scenes], dtype=np.bool_))
+
+    def _at(self, keep: Bools) -> "Pairs":
+        first, second = self.rows
+        return replace(
+            self,
+            scenes=tuple(compress(self.scenes, keep)),
+            rows=(first[:, keep], second[:, keep]),
+            void=self.void[:, keep],
+        )
+
+
+def pair(
+    trials: Trials,
+    first: Group,
+    second: Group,
+    seeds: Sequence[int] | None = None,
+    *,
+    other_noise: bool = False,
+) -> Pairs:
+    """Pair two groups scene by scene and seed by seed.
+
+    `seeds` are those of the first group when left out. `other_noise` says that the two are planners
+    that draw differently, by number of candidates for one: their noise is not compared. Nor is it
+    where one of them was run once, with another seed.
+    Two trials that differ in their initial state, their disturbance or the planner's noise are no
+    pair: it is void and among the `mismatches`. `PairingRefused` when the groups do not hold the
+    same seeds and scenes.
+    """
+    seeds = trials.seeds_of(first.variant, first.condition) if seeds is None else tuple(seeds)
+    if not seeds:
+        raise PairingRefused(f"cannot pair {first} with {second}: the table has no trial of it")
+    one, two = (_rows(trials, group, seeds) for group in (first, second))
+    planned = np.stack([one >= 0, two >= 0])
+    some: list[bool] = np.asarray(planned.any(axis=(0, 1))).tolist()
+    odd: list[bool] = np.asarray((~planned).any(axis=(0, 1))).tolist()
+    for scene, there, lacking in zip(trials.scenes, some, odd, strict=True):
+        if there and lacking:
+            raise PairingRefused(
+                f"cannot pair {first} with {second}: they ran in different scenes, for example "
+                f"{scene.id!r}"
+            )
+    one, two = one[:, some], two[:, some]
+    scenes = tuple(compress(trials.scenes, some))
+    void = trials.failed[one] | trials.failed[two]
+    mismatches: list[Mismatch] = []
+    for at, seed in enumerate(seeds):
+        drawn_alike = not other_noise and first.at(seed) == second.at(seed)
+        hashes = [name for name in HASHES if name != "planner_noise_hash" or drawn_alike]
+        unlike = np.any([trials.texts[h][one[at]] != trials.texts[h][two[at]] for h in hashes], 0)
+        unlike_scenes: list[int] = np.flatnonzero(unlike & ~void[at]).tolist()
+        for scene in unlike_scenes:
+            values = (
+                (h, *(str(trials.texts[h][rows[at, scene]]) for rows in (one, two))) for h in hashes
+            )
+            differences = tuple((h, a, b) for h, a, b in values if a != b)
+            mismatches.append(Mismatch(first, second, scenes[scene].id, seed, differences))
+            void[at, scene] = True
+    return Pairs(trials, tuple(seeds), scenes, (one, two), void, tuple(mismatches))
+
+
+def _rows(trials: Trials, group: Group, seeds: Sequence[int]) -> Rows:
+    try:
+        return trials.rows(group.variant, group.condition, [group.at(seed) for seed in seeds])
+    except KeyError as error:
+        raise PairingRefused(
+            f"the table has no trial of {group} with seed {error.args[0]}"
+        ) from None
+
+
+def unlike(
+    a: Outcome, b: Outcome, hashes: Iterable[str] = HASHES
+) -> tuple[tuple[str, str, str], ...]:
+    """Return the name of each hash in which two trials differ, and both of its values."""
+    if a.failed or b.failed:
+        return ()  # a failed trial has no conditions to compare; its pair is void anyway
+    values = ((name, getattr(a, name), getattr(b, name)) for name in hashes)
+    return tuple((name, one, two) for name, one, two in values if one != two)

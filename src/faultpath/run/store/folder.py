@@ -1,0 +1,235 @@
+"""A run on disk, and whether its files are still as the run left them.
+
+A run folder may come from anybody and may have been edited by anybody. Its provenance names each
+file that a report is made from with a digest; whoever reads the folder reads all of them, compares,
+and parses the very bytes that it has compared.
+"""
+
+import hashlib
+from collections.abc import Generator, Iterable, Mapping, Sequence
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+
+from faultpath.core.errors import UserError
+from faultpath.core.files import atomic
+from faultpath.core.files.atomic import Say, locked, make_folder, write_file
+from faultpath.core.files.opening import contents
+from faultpath.core.files.parquet import Unreadable
+from faultpath.run.attempt import Done
+from faultpath.run.code import CodeState
+from faultpath.run.deliveries import Deliveries
+from faultpath.run.store.manifest import Manifest, check_same, read_manifest
+from faultpath.run.store.tables import (
+    decode_outcomes,
+    decode_shard,
+    encode_outcomes,
+    encode_shard,
+    encode_traces,
+)
+from faultpath.run.trials import Trials
+
+OUTCOMES, TRACES, DELIVERIES = "outcomes.parquet", "traces.parquet", "deliveries.json"
+"""Files that are assembled at the end of a run."""
+AGAIN = "run it again, into a new folder"
+
+
+def keyed(place: Path, name: str, code: CodeState) -> Path:
+    """Return the folder for a question, run by `code`."""
+    return place / f"{name}-{code.digest[:8]}"
+
+
+class RunFolder:
+    """The folder of one run.
+
+    `manifest.json` says which study it is, `shards/` holds one Parquet file a finished block,
+    `failures/` the tracebacks of trials that failed, and `outcomes.parquet` and `traces.parquet`
+    are assembled at the end, with what the taps did in `deliveries.json`. Everything is written
+    atomically.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.shards = path / "shards"
+        self.failures = path / "failures"
+        self.manifest = path / "manifest.json"
+        self.rechecks = path / "rechecks.json"
+        self._shard_files: dict[str, list[Path]] | None = None
+        """By key, as they were listed last: a list for each block would cost its square."""
+        self.provenance = path / "provenance.json"
+
+    @contextmanager
+    def open(
+        self, manifest: Manifest, notice: Say, shared: bool = False
+    ) -> Generator[None, None, None]:
+        """Create or continue the run, alone in the folder until the end of the `with` block.
+
+        `shared` lets studies with other treatments use the folder one after the other. `UserError`
+        when the folder cannot be written, or holds something else.
+        """
+        if not self.manifest.exists():  # nothing is left in a folder of somebody else
+            atomic.check_free(self.path)
+        make_folder(self.path)
+        with locked(self.path, notice):
+            previous = read_manifest(self.manifest)
+            if previous is not None:
+                check_same(self.path, previous, manifest, shared)
+            for folder in (self.shards, self.failures):
+                make_folder(folder)
+            for folder in (self.path, self.shards, self.failures):
+                atomic.sweep(folder)
+            if previous != manifest:
+                self._write(self.manifest, manifest.encode())
+            self._shard_files = self.list_shards()
+            yield
+
+    def made_by_other_code(self, manifest: Manifest) -> Manifest | None:
+        """Return what the manifest would be if the code that the folder was run with ran it."""
+        previous = read_manifest(self.manifest) or manifest
+        made_by = {"code": previous.code, "faultpath_version": previous.faultpath_version}
+        earlier = manifest.model_copy(update=made_by)
+        return None if earlier == manifest else earlier
+
+    def save_shard(self, key: str, shard: Done) -> None:
+        """Store a finished block. The name carries a digest of the bytes, checked on reading."""
+        data = encode_shard(key, shard)
+        path = self.shards / f"{key}-{_digest(data)[:32]}.parquet"
+        self._write(path, data)
+        for other in self._files_of(key):
+            if other != path:  # the block as it was before its failed trials were tried again
+                other.unlink(missing_ok=True)
+        self._files_of(key)[:] = [path]
+
+    def written(self, keys: Sequence[str]) -> tuple[datetime, datetime]:
+        """Return when the first and the last of some stored blocks were written, UTC."""
+        times = [path.stat().st_mtime for key in keys for path in self._files_of(key)]
+        return datetime.fromtimestamp(min(times), UTC), datetime.fromtimestamp(max(times), UTC)
+
+    def load_shard(self, key: str, scenes: Sequence[str], notice: Say) -> Done | None:
+        """Return a finished block, or `None` without a whole one; a damaged one is removed."""
+        shards: list[Done] = []
+        for path in tuple(self._files_of(key)):
+            try:
+                shards.append(_read_shard(path, key, scenes))
+            except Unreadable as error:
+                notice(f"{path} is damaged ({error}); removing it and running its trials again")
+                path.unlink()
+                self._files_of(key).remove(path)
+        # A process killed between writing and tidying leaves two; the later one failed less often.
+        return min(shards, key=lambda shard: sum(o.failed for o in shard.outcomes), default=None)
+
+    def finished(self, units: Iterable[tuple[str, Sequence[str]]]) -> dict[str, Done]:
+        """Return the blocks of a finished run; none where one is missing or has failures."""
+        files = self.list_shards()
+        try:
+            blocks = {key: _read_shard(files[key][0], key, scenes) for key, scenes in units}
+        except (KeyError, Unreadable):
+            return {}
+        failed = any(trial.failed for block in blocks.values() for trial in block.outcomes)
+        return blocks if self.provenance.exists() and not failed else {}
+
+    def save_failure(self, key: str, text: str) -> None:
+        """Store what is known about the failed trials of a block; without any, forget the last."""
+        path = self.failures / f"{key}.txt"
+        if text:
+            self._write(path, text.encode(errors="backslashreplace"))
+        else:
+            path.unlink(missing_ok=True)
+
+    def load_failure(self, key: str) -> str:
+        """Return what is known about the failed trials of a block; empty without any."""
+        path = self.failures / f"{key}.txt"
+        return path.read_text("utf-8", errors="replace") if path.exists() else ""
+
+    def save_rechecks(self, text: str) -> None:
+        """Write what running some trials again has found."""
+        self._write(self.rechecks, text.encode())
+
+    def save_tables(self, trials: Trials, deliveries: Deliveries) -> str:
+        """Write what was assembled and return the SHA-256 of the outcomes."""
+        data = encode_outcomes(trials)
+        self._write(self.path / DELIVERIES, f"{deliveries.model_dump_json(indent=1)}\n".encode())
+        self._write(self.path / TRACES, encode_traces(trials))
+        self._write(self.path / OUTCOMES, data)
+        return _digest(data)
+
+    def list_shards(self) -> dict[str, list[Path]]:
+        """Return the files of the finished blocks that are on disk, by key."""
+        files: dict[str, list[Path]] = {}
+        for path in sorted(self.shards.glob("*-*.parquet")):
+            files.setdefault(path.name.rpartition("-")[0], []).append(path)
+        return files
+
+    def _files_of(self, key: str) -> list[Path]:
+        if self._shard_files is None:
+            self._shard_files = self.list_shards()
+        return self._shard_files.setdefault(key, [])
+
+    def _write(self, path: Path, data: bytes) -> None:
+        write_file(path, data, self.path)
+
+
+def _read_shard(path: Path, key: str, scenes: Sequence[str]) -> Done:
+    try:
+        data = contents(path)
+    except OSError as error:
+        raise UserError(f"{path} cannot be read ({error.strerror}): remove it.") from error
+    if path.stem != f"{key}-{_digest(data)[:32]}":
+        raise Unreadable("its contents are not those that were written")
+    shard = decode_shard(data, key)
+    if [outcome.scene for outcome in shard.outcomes] != list(scenes):
+        raise Unreadable("it holds other scenes")
+    return shard
+
+
+def read_outcomes(path: Path) -> Trials:
+    """Read an assembled outcome table (without traces); `UserError` when there is none to read."""
+    try:
+        return decode_outcomes(read_regular(path))
+    except Unreadable as error:
+        raise UserError(f"{path} is damaged ({error}): run the study again to rebuild it") from None
+
+
+def read_regular(path: Path) -> bytes:
+    """Return the contents of a file; `UserError` where there is none to read."""
+    try:
+        return contents(path)
+    except FileNotFoundError:
+        raise UserError(
+            f"{path.parent} holds no {path.name}: give the folder of a finished run."
+        ) from None
+    except OSError as error:
+        raise UserError(
+            f"{path} cannot be read ({error.strerror}): give the folder of a finished run."
+        ) from error
+
+
+def seal(folder: Path, names: Iterable[str]) -> dict[str, str]:
+    """Return the SHA-256 of each file by name."""
+    return {name: _digest(contents(folder / name)) for name in names}
+
+
+def unseal(folder: Path, digests: Mapping[str, str], needed: Iterable[str]) -> dict[str, bytes]:
+    """Return the contents of every file that `digests` names, by name.
+
+    Raises `UserError`, with the names, where one that is needed has no digest, one is missing, or
+    one has another digest: it was changed.
+    """
+    unnamed = [name for name in needed if name not in digests]
+    if unnamed:
+        raise UserError(
+            f"{folder / 'provenance.json'} has no digest of {', '.join(unnamed)}, as if an earlier "
+            f"faultpath had written it: {AGAIN}."
+        )
+    files = {name: read_regular(folder / name) for name in digests}
+    changed = [name for name, data in files.items() if _digest(data) != digests[name]]
+    if changed:
+        raise UserError(
+            f"{folder}: {', '.join(changed)} changed since the run, by the SHA-256 in "
+            f"provenance.json: bring back what the run wrote, or {AGAIN}."
+        )
+    return files
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()

@@ -1,0 +1,88 @@
+"""The study of a run folder, and whether the folder may go on with the one that is asked for."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.plain import Misread, model_of, read_json
+from faultpath.core.results import Frozen
+from faultpath.run.code import CodeState, named
+from faultpath.run.plan import Study
+
+FORMAT = 2
+"""Version of the folder's layout and of its columns."""
+
+
+class Manifest(Frozen):
+    """The study of a run folder and the exact system and scenes that it was run with."""
+
+    format: int = FORMAT
+    faultpath_version: str
+    code: CodeState
+    """Source files, data files, packages."""
+    library_hash: str
+    study: Study
+
+    def encode(self) -> bytes:
+        """Return the file's contents."""
+        content = self.model_dump(mode="json")
+        return (json.dumps(content, indent=2, sort_keys=True) + "\n").encode()
+
+
+def read_manifest(path: Path) -> Manifest | None:
+    """Read a manifest, `None` when there is none; `UserError` when this version cannot use it."""
+    try:
+        data = contents(path, LARGEST_TEXT)
+        content: Any = read_json(data)
+        if content["format"] != FORMAT:
+            raise UserError(
+                f"{path.parent} was written in format {content['format']} and this faultpath reads "
+                f"format {FORMAT}: choose another folder, or the version of faultpath that wrote it"
+            )
+        return model_of(data, Manifest)
+    except FileNotFoundError:
+        return None
+    except (OSError, Misread, TypeError, KeyError) as error:
+        why = error.strerror if isinstance(error, OSError) else error
+        raise UserError(
+            f"{path} cannot be read as a manifest ({why}): choose a new folder, or delete this one"
+        ) from error
+
+
+def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: bool = False) -> None:
+    """Raise `UserError` unless `folder` may go on with the study that is asked for.
+
+    The selection of scenes may differ: a quick look at some scenes grows into the whole library
+    in the same folder, and keeps what it has. In a folder that rounds of one study share, their
+    treatments may differ as well.
+    """
+    same_study = (
+        ("set of variants, faults or seeds", previous.study.rows, manifest.study.rows),
+        ("number of scenes from look to look", previous.study.look, manifest.study.look),
+    )
+    differences = [
+        what
+        for what, one, two in (
+            ("version of faultpath", previous.faultpath_version, manifest.faultpath_version),
+            ("name", previous.study.name, manifest.study.name),
+            ("system", previous.study.system, manifest.study.system),
+            ("library", previous.study.library, manifest.study.library),
+            ("state of the library", previous.library_hash, manifest.library_hash),
+            *(() if shared else same_study),
+        )
+        if one != two
+    ]
+    changed = previous.code.changed(manifest.code)
+    if changed and not differences:
+        raise UserError(
+            f"{folder} holds trials of other code than this (changed since: {named(changed)}): "
+            "they are kept and not mixed with new ones; choose a new folder, or go back to that "
+            "code to resume"
+        )
+    if differences:
+        raise UserError(
+            f"{folder} holds the run of another study, with another {differences[0]}: choose a "
+            "new folder, or repeat the command that made this one"
+        )

@@ -1,0 +1,230 @@
+"""Errors that cancel: each alone costs success, both together less than either.
+
+Outcomes are success by scene, a mean over seeds where there are several, and not a number where a
+trial has none: a scene counts in a comparison where both of its sides have one. Errors are named by
+their places in ``singles``, pairs by those of both.
+
+Nothing is tested about errors that add up. On the scale of success rates harms that are additive
+inside look like interactions, because of floor and ceiling.
+"""
+
+from collections.abc import Mapping, Set
+from typing import Literal, NamedTuple, TypeAlias, TypeVar
+
+import numpy as np
+
+from faultpath.stats import power, score
+from faultpath.stats.decisions import holm
+from faultpath.stats.distributions import binomial_cdf
+from faultpath.stats.estimate import ALPHA
+from faultpath.stats.inputs import Floats
+
+LEVEL, MOST = 0.1, 10
+"""Level at which an error goes on to the second stage, and how many do at most."""
+REGAINED = 0.5
+"""Share of its loss that the worse error has to regain."""
+_DIGITS = 9
+"""Digits of means over seeds, so that those which are equal leave exactly 0."""
+Key: TypeAlias = tuple[int, int]
+Name = TypeVar("Name", int, Key)
+
+
+class StageOne(NamedTuple):
+    """Errors alone in the first stage, and which of them go on."""
+
+    p_values: Floats
+    """[errors]: one-sided, not corrected, of "it hurts"."""
+    losses: Floats
+    """[errors]: percentage points that it cost."""
+    hurting: tuple[int, ...]
+    """Those that go on, the worst first."""
+
+
+class Single(NamedTuple):
+    """An error alone, in the scenes that have an outcome with it and without any."""
+
+    kind: Literal["hurts", "helps"] | None
+    none: float
+    """Success without an error, in percent."""
+    alone: float
+    scenes: int
+    p_value: float
+    """One-sided, of "it hurts"."""
+    corrected_p: float
+    """Holm's, over all errors."""
+    helps_p: float
+    """The same of "it helps"."""
+
+
+class Pair(NamedTuple):
+    """Two errors, in the scenes that have all four outcomes; success in percent."""
+
+    none: float
+    first: float
+    second: float
+    both: float
+    scenes: int
+    worse: int
+    """The error that alone left less success."""
+    regained: float | None
+    """Share of the worse one's loss that both together have not; None where it lost nothing."""
+    p_value: float
+    """One-sided, of "both together beat the worse of them alone"; doubled, since that one is chosen
+    by the data."""
+    corrected_p: float | None = None
+    """Holm's, over the pairs of which both errors hurt alone; None for others."""
+    covers_p: float | None = None
+    """Holm's, over pairs of one source, of "the worse one hurts, and both together beat it"."""
+    kind: Literal["cancel", "covers"] | None = None
+    covering: int | None = None
+    """The error that covers for the other one."""
+
+
+class Cancelling(NamedTuple):
+    """Errors of a scan, alone and in pairs."""
+
+    singles: tuple[Single, ...]
+    pairs: dict[Key, Pair]
+
+
+def stage_one(none: Floats, singles: Floats) -> StageOne:
+    """Return which errors go on, of outcomes without an error [scenes] and with each alone
+    [errors, scenes]."""
+    p_values = ahead(none, singles)
+    losses = 100.0 * _means(none - singles)
+    order = np.argsort(-losses, kind="stable")
+    hurting = [int(error) for error in order if p_values[error] < LEVEL]
+    return StageOne(p_values, losses, tuple(hurting[:MOST]))
+
+
+def cancelling(
+    none: Floats,
+    singles: Floats,
+    pairs: Mapping[Key, Floats],
+    same_source: Set[Key],
+    alpha: float = ALPHA,
+) -> Cancelling:
+    """Return what the errors did alone and in pairs, from [scenes] without an error, [errors,
+    scenes] with each alone and [scenes] with each pair.
+
+    A pair cancels if each error alone hurts, at half of ``alpha``, and both together beat the worse
+    one, at the other half, regain half of its loss, and do no worse than the other one: so that
+    correcting either alone does not help. In a pair of ``same_source`` one covers for
+    the other if that one hurts, both together beat it and regain half of its loss, and the first
+    alone is not ahead of no error.
+    """
+    if unknown := same_source - pairs.keys():
+        raise ValueError(f"pairs of one source have no outcomes: {sorted(unknown)}")
+    alone = _singles(none, singles, alpha / 2.0)
+    compared = _compared(none, singles, pairs) if pairs else {}
+    hurt = [key for key in compared if all(alone[error].kind == "hurts" for error in key)]
+    corrected = _holm({key: compared[key].p_value for key in hurt})
+    covers = _holm(
+        {
+            key: max(compared[key].p_value, 2.0 * alone[compared[key].worse].p_value)
+            for key in same_source
+        }
+    )
+    decided: dict[Key, Pair] = {}
+    for key, pair in compared.items():
+        (other,) = set(key) - {pair.worse}
+        enough = pair.regained is not None and pair.regained >= REGAINED
+        least = pair.both >= max(pair.first, pair.second)
+        cancels = enough and least and corrected.get(key, 1.0) <= alpha / 2.0
+        gains = alone[other].alone > alone[other].none
+        covered = enough and not cancels and covers.get(key, 1.0) <= alpha and not gains
+        decided[key] = pair._replace(
+            corrected_p=corrected.get(key),
+            covers_p=covers.get(key),
+            kind="cancel" if cancels else "covers" if covered else None,
+            covering=other if covered else None,
+        )
+    return Cancelling(alone, decided)
+
+
+def fewest_scenes(n_singles: int, n_pairs: int) -> int:
+    """Return with how many scenes a scan can say anything of each error and each pair at all."""
+    return power.fewest_scenes(ALPHA / max(n_singles, 2 * n_pairs, 1))  # two-sided: half of alpha
+
+
+def ahead(first: Floats, second: Floats) -> Floats:
+    """Return [...]: the one-sided p of "``first`` succeeds more than ``second``" [..., scenes].
+
+    Where scenes differ wholly or not it is exact McNemar's. Else scenes that differ by ``y`` are
+    worth ``(sum |y|)^2 / sum y^2`` that differ wholly, and it is the larger of McNemar's among
+    these and of the score's, as for audits of several seeds (`score.degrees_p_value`).
+    """
+    differences = np.asarray(first - second).round(_DIGITS)
+    values = np.nan_to_num(differences)
+    total, size = values.sum(axis=-1), np.abs(values).sum(axis=-1)
+    squares = np.maximum(np.square(values).sum(axis=-1), np.finfo(np.float64).tiny)
+    fewer = np.maximum(0.5 * size * (size - total) / squares, 0.0)
+    p_values = binomial_cdf(fewer, size * size / squares, 0.5)
+    by_degrees = (np.abs(values) != np.rint(np.abs(values))).any(axis=-1) & (total > 0.0)
+    for at in map(tuple, np.argwhere(by_degrees)):
+        kinds, counts = np.unique(differences[at], return_counts=True)
+        known = ~np.isnan(kinds)
+        two_sided = score.p_value(kinds[known], counts[known].astype(np.float64), 1.0)
+        p_values[at] = max(p_values[at], 0.5 * two_sided)
+    return p_values
+
+
+def _singles(none: Floats, singles: Floats, alpha: float) -> tuple[Single, ...]:
+    hurts, helps = ahead(none, singles), ahead(singles, none)
+    corrected, helping = (_holm(dict(enumerate(map(float, p)))) for p in (hurts, helps))
+    known = ~np.isnan(none - singles)
+    means = (
+        _means(np.where(known, values, np.nan))
+        for values in (np.broadcast_to(none, known.shape), singles)
+    )
+    results: list[Single] = []
+    for error, (without, alone) in enumerate(zip(*means, strict=True)):
+        hurt, helped = corrected[error] <= alpha, helping[error] <= alpha
+        single = Single(
+            kind="hurts" if hurt else "helps" if helped else None,
+            none=100.0 * float(without),
+            alone=100.0 * float(alone),
+            scenes=int(known[error].sum()),
+            p_value=float(hurts[error]),
+            corrected_p=corrected[error],
+            helps_p=helping[error],
+        )
+        results.append(single)
+    return tuple(results)
+
+
+def _compared(none: Floats, singles: Floats, pairs: Mapping[Key, Floats]) -> dict[Key, Pair]:
+    """Return what the pairs did beside their errors alone, not yet decided."""
+    both = np.stack(list(pairs.values()))
+    parts = singles[np.array(list(pairs)).T]  # [2, pairs, scenes]
+    outcomes = np.stack([np.broadcast_to(none, both.shape), *parts, both])
+    known = ~np.isnan(outcomes.sum(axis=0))
+    percent = 100.0 * _means(np.where(known, outcomes, np.nan))
+    beats = ahead(both, parts)
+    compared: dict[Key, Pair] = {}
+    for at, key in enumerate(pairs):
+        rates = percent[:, at].round(_DIGITS).tolist()
+        second = rates[1] > rates[2] or (rates[1] == rates[2] and beats[1, at] > beats[0, at])
+        least = min(rates[1:3])
+        lost, won = rates[0] - least, rates[3] - least
+        compared[key] = Pair(
+            *rates,
+            scenes=int(known[at].sum()),
+            worse=key[int(second)],
+            regained=round(won / lost, _DIGITS) if lost > 0.0 else None,
+            p_value=min(1.0, 2.0 * float(beats[int(second), at])),
+        )
+    return compared
+
+
+def _means(values: Floats) -> Floats:
+    """Return the mean [...] of those of [..., scenes] that are numbers; NaN without any."""
+    known = ~np.isnan(values)
+    with np.errstate(invalid="ignore"):
+        return np.nansum(values, axis=-1) / known.sum(axis=-1)
+
+
+def _holm(p_values: Mapping[Name, float]) -> dict[Name, float]:
+    names = {str(name): p for name, p in p_values.items()}
+    adjusted = holm(names, dict.fromkeys(names, 1.0))
+    return {name: adjusted[str(name)] for name in p_values}

@@ -1,0 +1,207 @@
+"""Contrasts of paired variants: success, means, medians (paper, "Statistical Aggregation"),
+windows."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from faultpath.stats.contrast import Contrast
+from faultpath.stats.estimate import SCENES, SCENES_AND_SEEDS
+from faultpath.stats.inputs import Floats, Numbers, by_scene_and_seed, paired
+from faultpath.stats.resamples import Resamples, quantiles
+from faultpath.stats.score import SceneValues
+
+N_RESAMPLES = 10_000
+
+
+def success_effect(
+    first: Numbers,
+    second: Numbers,
+    resamples: Resamples,
+    *,
+    models: bool = False,
+    sequential: bool = False,
+    graded: bool = False,
+) -> Contrast:
+    """Return the difference in success in percentage points, from binary [scenes, seeds].
+
+    A pair of which a trial has no outcome (not a number) is left out: a scene's difference is the
+    mean over the seeds that it has, and scenes without any do not count. ``resamples`` are of those
+    that do. ``models`` speaks of newly trained ones as well, of which each seed is one.
+    ``sequential`` says that the number of scenes was not fixed beforehand: its interval and test
+    hold at whatever scene one stops. ``graded`` takes the test by which audits are decided, and its
+    interval, in the place of the paper's.
+    """
+    one, two = paired(first, second, binary=True)
+    pairs = one - two
+    pairs = pairs[~np.isnan(pairs).all(axis=1)]
+    if not len(pairs):
+        raise ValueError("no pair has both outcomes, so there is no difference")
+    if models:  # a training without any pair says nothing of trainings
+        pairs = pairs[:, ~np.isnan(pairs).all(axis=0)]
+    # Summed first, so that wins and losses of a scene cancel exactly.
+    values = seed_sums(pairs) / pairs.shape[1]
+    scenes = SceneValues.paired(values, 1.0, 100.0, sequential, graded)
+    return replace(_mean(pairs, resamples, "pp", scenes, models), pairs=pairs)
+
+
+def seed_sums(values: Floats) -> Floats:
+    """Return the sum over the seeds [scenes] of ``values`` [scenes, seeds], with the mean of those
+    that a scene has in the place of what is not a number."""
+    ran = (~np.isnan(values)).sum(axis=1)
+    return np.nansum(values, axis=1) * (values.shape[1] / ran)
+
+
+def mean_effect(first: Numbers, second: Numbers, resamples: Resamples, unit: str) -> Contrast:
+    """Return the mean difference of [scenes, seeds] in ``unit`` (distances, clearances)."""
+    return _mean(np.subtract(*paired(first, second)), resamples, unit)
+
+
+def success_rate(outcomes: Numbers, resamples: Resamples) -> Contrast:
+    """Return one variant's success in percent, from binary [scenes, seeds].
+
+    For one seed the interval is Wilson's score interval of a proportion.
+    """
+    values = by_scene_and_seed(outcomes, "outcomes", binary=True)
+    means = values.sum(axis=1) / values.shape[1]
+    scenes = SceneValues(means - 0.5, bound=0.5, far=0.5, scale=100.0, centre=0.5)
+    return replace(_mean(values, resamples, "percent", scenes), against_zero=False)
+
+
+def _mean(
+    values: Floats,
+    resamples: Resamples,
+    unit: str,
+    scenes: SceneValues | None = None,
+    models: bool = False,
+) -> Contrast:
+    n_scenes, n_seeds = values.shape
+    resamples.check(n_scenes)
+    if models and n_seeds < 2:
+        raise ValueError("one seed says nothing about new seeds")
+    if scenes is None:
+        method = "percentile bootstrap of scenes"
+    elif scenes.sequential:
+        method = "confidence sequence by betting on scene means"
+    else:
+        name = "Wilson" if scenes.centre else "Tango"
+        several = f"score on scene means ({name}'s, cluster-robust)"
+        method = f"score ({name})" if n_seeds == 1 else several
+        method = f"hull of {method} and Student's t over seeds" if models else method
+    scale = scenes.scale if scenes else 1.0
+    # Sums of binary outcomes are whole numbers and so exact; dividing last makes a resampled mean
+    # of 0 exactly 0, on which "the interval excludes 0" depends.
+    ran = ~np.isnan(values)
+    totals = seed_sums(values)
+    sums = resamples.counts @ totals
+    return Contrast(
+        value=float(scale * (values if ran.all() else totals).sum() / (n_scenes * n_seeds)),
+        unit=unit,
+        n_scenes=n_scenes,
+        method=method,
+        estimand=SCENES_AND_SEEDS if models else SCENES,
+        n_seeds=n_seeds,
+        per_seed=tuple(
+            float(scale * total / max(1, count))
+            for total, count in zip(np.nansum(values, axis=0), ran.sum(axis=0), strict=True)
+        ),
+        draws=scale * sums / (n_scenes * n_seeds),
+        resamples=resamples,
+        scenes=scenes,
+    )
+
+
+def median_effect(
+    first: Numbers, second: Numbers, joint: Numbers, resamples: Resamples
+) -> Contrast:
+    """Return the median over scenes of the within-scene difference, where both variants count.
+
+    ``first``, ``second`` and ``joint`` are [scenes, seeds] (or [scenes]); ``joint`` is true where
+    both variants succeeded, and the variants' entries elsewhere are not read. Differences are
+    averaged over the joint seeds of a scene. Whole scenes are resampled, so the number of jointly
+    successful scenes varies between resamples, as it would between new libraries; the few resamples
+    without any are left out. ``n_scenes`` counts the jointly successful scenes.
+    """
+    mask = np.asarray(joint, dtype=np.bool_)
+    mask = mask[:, np.newaxis] if mask.ndim == 1 else mask
+
+    def counted(values: Numbers, name: str) -> Floats:
+        array = np.asarray(values, dtype=np.float64)
+        array = array[:, np.newaxis] if array.ndim == 1 else array
+        if array.shape != mask.shape:
+            raise ValueError(f"{name} has shape {array.shape}, joint has {mask.shape}")
+        return by_scene_and_seed(np.where(mask, array, 0.0), name)
+
+    difference = counted(first, "first") - counted(second, "second")
+    resamples.check(len(difference))
+    used = mask.any(axis=1)
+    if not used.any():
+        raise ValueError("no scene is jointly successful, so there is no median difference")
+    means = difference[used].sum(axis=1) / mask[used].sum(axis=1)
+    return Contrast(
+        value=float(np.median(means)),
+        draws=quantiles(resamples.counts, means, np.flatnonzero(used), 0.5),
+        per_seed=tuple(
+            float(np.median(column[seen]))
+            for column, seen in zip(difference.T, mask.T, strict=True)
+            if seen.any()
+        ),
+        unit="s",
+        method="median of paired differences, percentile bootstrap of scenes",
+        n_scenes=int(used.sum()),
+        n_seeds=mask.shape[1],
+        resamples=resamples,
+    )
+
+
+class WindowQuantiles:
+    """Quantiles over the windows of some scenes, all on the same resamples of these scenes.
+
+    Windows of a scene share its trial and disturbances, so they are not independent: a resample
+    takes or leaves a scene with all its windows. Arrays are [windows, seeds], or
+    [windows] for one seed; a quantile is taken over the windows of each seed, and then the mean
+    over seeds (paper, Table VI: "mean of per-seed window medians").
+
+    Args:
+        scenes: Scene of each window, [windows].
+        seed: Seed of the resamples; the scenes themselves name the stream.
+        n_resamples: How many.
+    """
+
+    def __init__(
+        self, scenes: Sequence[str], *, seed: int = 0, n_resamples: int = N_RESAMPLES
+    ) -> None:
+        if not scenes:
+            raise ValueError("no window, so there is no quantile")
+        names, self._scene = np.unique(np.asarray(scenes), return_inverse=True)
+        label = "windows/" + "/".join(map(str, names))
+        self.resamples = Resamples.draw(label, len(names), seed=seed, n_resamples=n_resamples)
+
+    def value(self, values: Numbers, q: float, unit: str = "") -> Contrast:
+        """Return the quantile ``q`` of ``values``."""
+        seen, drawn = self._quantiles(by_scene_and_seed(values), q)
+        return self._effect(seen, drawn, unit, f"quantile {q:g} over windows")
+
+    def _quantiles(self, values: Floats, q: float) -> tuple[Floats, Floats]:
+        """Return those of the scenes as they are [seeds], and the resampled [resamples, seeds]."""
+        if not 0.0 < q < 1.0:
+            raise ValueError(f"a quantile lies between 0 and 1, not at {q}")
+        if len(values) != len(self._scene):
+            raise ValueError(f"{len(values)} values are not of {len(self._scene)} windows")
+        counts = np.concatenate([np.ones((1, self.resamples.n_scenes)), self.resamples.counts])
+        every = [quantiles(counts, column, self._scene, q) for column in values.T]
+        rows: Floats = np.stack(every, axis=1)
+        return rows[0], rows[1:]
+
+    def _effect(self, seen: Floats, drawn: Floats, unit: str, what: str) -> Contrast:
+        return Contrast(
+            value=float(seen.mean()),
+            draws=drawn.mean(axis=1),
+            per_seed=tuple(float(value) for value in seen),
+            unit=unit,
+            method=f"{what}, percentile bootstrap of scenes",
+            n_scenes=self.resamples.n_scenes,
+            n_seeds=len(seen),
+            resamples=self.resamples,
+        )

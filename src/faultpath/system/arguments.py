@@ -1,0 +1,105 @@
+"""What a user hands to systems and plants, checked where it is handed over.
+
+Each function raises `SystemMistake` with a sentence that says what is wrong and what to give.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from math import isfinite
+from numbers import Integral, Real
+from operator import index
+from typing import Any, cast
+
+from faultpath.core.errors import SystemMistake
+from faultpath.loop import Module
+from faultpath.system import declared
+from faultpath.system.outcome import Metric
+
+
+def seeds_of(scenes: Any) -> dict[str, tuple[int, ...]]:
+    """Return the seeds of each library of scenes."""
+    example = "such as {'training': range(20)}"
+    libraries: dict[str, tuple[int, ...]] = {}
+    for library, seeds in _mapping("scenes", scenes, example).items():
+        try:
+            libraries[library] = tuple(map(index, seeds))
+        except TypeError:
+            raise SystemMistake(
+                f"scenes: library '{library}' is {shown(seeds)}: give the seeds of its scenes, "
+                "whole numbers, such as range(20)"
+            ) from None
+        if not libraries[library]:
+            raise SystemMistake(f"scenes: library '{library}' is empty: give at least one seed")
+    return libraries
+
+
+def modules_of(variant: str, modules: Any) -> Sequence[Module]:
+    """Return the modules of a variant."""
+    where = f"variant '{variant}'"
+    if not isinstance(modules, Sequence):
+        raise SystemMistake(f"{where} is {shown(modules)}: give a list of modules")
+    for module in cast("Sequence[Any]", modules):
+        if isinstance(module, Module):
+            continue
+        kind = f"the function {module.__name__}" if hasattr(module, "__name__") else shown(module)
+        raise SystemMistake(
+            f"{where} holds {kind}, which is no module: write @writes('what it writes') above its "
+            "def"
+        )
+    return cast("Sequence[Module]", modules)
+
+
+def variants_of(variants: Any) -> Mapping[str, Any]:
+    """Return the variants."""
+    return _mapping("variants", variants, "such as {'old': [filter, controller]}")
+
+
+def units_of(units: Any) -> Mapping[str, Any]:
+    """Return what is said of each source."""
+    for source, entry in _mapping("units", units, "such as {'speed': 'm/s'}").items():
+        if not isinstance(entry, str | Mapping):
+            raise SystemMistake(
+                f"units: source '{source}' has {shown(entry)}: give its unit as text, '1' for a "
+                "number without one, or fields by name"
+            )
+    return units
+
+
+def channels_of(channels: Any) -> dict[str, tuple[str, ...]]:
+    """Return the sources of each channel that several may feed."""
+    example = "such as {'speed': ['wheels', 'filter']}"
+    found: dict[str, tuple[str, ...]] = {}
+    for channel, sources in _mapping("channels", channels, example).items():
+        if isinstance(sources, str) or not isinstance(sources, Sequence) or not sources:
+            raise SystemMistake(
+                f"channels: '{channel}' is {shown(sources)}: give a list of its sources"
+            )
+        found[channel] = tuple(cast("Sequence[str]", sources))
+    return found
+
+
+def check_episode(steps: Any, dt_s: Any, succeeded: Any, metrics: Any) -> None:
+    """Check the length of an episode and of a step, and what is asked of an episode."""
+    if not isinstance(steps, Integral) or steps < 1:
+        raise SystemMistake(f"steps is {shown(steps)}: give a whole number of at least 1")
+    if not isinstance(dt_s, Real) or not isfinite(dt_s) or dt_s <= 0:
+        raise SystemMistake(f"dt_s is {shown(dt_s)}: give the seconds of a step, above 0")
+    if not callable(succeeded):
+        raise SystemMistake(f"succeeded is {shown(succeeded)}: give a function of an episode")
+    for name, measure in _mapping("metrics", metrics, "such as {'missed_m': Measure(…)}").items():
+        if not isinstance(getattr(measure, "metric", None), Metric):
+            raise SystemMistake(
+                f"metrics: '{name}' is {shown(measure)}: give a Measure, such as "
+                "Measure(Metric(unit='m', better='less'), function)"
+            )
+
+
+def _mapping(name: str, value: Any, example: str) -> Mapping[str, Any]:
+    if not isinstance(value, Mapping):
+        raise SystemMistake(f"{name} is {shown(value)}: give a mapping by name, {example}")
+    return cast("Mapping[str, Any]", value)
+
+
+def shown(value: Any) -> str:
+    """Return a wrong value in a line, without the place in memory that says nothing."""
+    return re.sub(" at 0x[0-9a-f]+", "", declared.shown(value))

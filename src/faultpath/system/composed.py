@@ -1,0 +1,266 @@
+"""A system composed of a plant of episodes and modules; its interface follows from these."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from hashlib import sha256
+from os import PathLike
+from typing import Any, cast
+
+import numpy as np
+from typing_extensions import override
+
+from faultpath.core.errors import SystemMistake, UserError
+from faultpath.core.text import unknown
+from faultpath.interface import Interface
+from faultpath.loop import Batch, Loop, Module, Reading, graph, interface_of
+from faultpath.system.arguments import channels_of, modules_of, seeds_of, units_of, variants_of
+from faultpath.system.checks import UNNAMED
+from faultpath.system.declared import Library, SceneRef
+from faultpath.system.episodes import SCENE, EpisodePlant
+from faultpath.system.loop_system import LoopSystem, Wiring
+from faultpath.system.modules import FunctionModule
+from faultpath.system.system import BLOCK
+
+SCENES: Mapping[str, Sequence[int]] = {
+    "training": range(100),
+    "selection": range(500, 600),
+    "held-out": range(1000, 1100),
+}
+"""The seeds of the libraries that a system has unless it says otherwise."""
+
+
+@dataclass(frozen=True)
+class Parts:
+    """A variant: its modules, in any order, or a function of the treatment's seed that returns
+    them.
+
+    The function is for trained modules; it gets `None` where only ports and shapes are needed.
+    """
+
+    description: str
+    modules: Sequence[Module] | Callable[[int | None], Sequence[Module]]
+
+    def of(self, seed: int | None) -> Sequence[Module]:
+        """Return the modules of a treatment."""
+        return self.modules(seed) if callable(self.modules) else self.modules
+
+
+class ComposedSystem(LoopSystem):
+    """A system of a plant and modules, whose interface follows from them.
+
+    Readers follow from the modules' ports, shapes from the first step of each variant.
+    What the plant senses is measured, what a scene's set-up returns is estimated (its channel has a
+    fidelity gap), what the plant reads is commanded, what a module writes is reconstructed.
+
+    Args:
+        name: Name of the system.
+        plant: The part that senses and is moved.
+        variants: The ways to wire it: `Parts`, or just their modules.
+        units: Unit of each source, or the fields of a `faultpath.interface.Source` where there is
+            more to say: unit, provenance, latency_s, rate_hz, uncertainty, correlation_group; and
+            components, what its numbers are called in charts.
+        channels: Those that several sources may feed, with these sources; every other source is a
+            channel of its own. In a variant the first that one of its modules writes feeds it, else
+            the first that the plant gives.
+        scenes: Seeds of the scenes of each library. A single one is what a command runs that names
+            none.
+        data_files: Files and folders whose contents decide a result; see `System.data_files`.
+
+    Raises:
+        SystemMistake: The parts do not fit together, or a source has no unit.
+    """
+
+    block_size = BLOCK
+    """Its plant moves a scene at a time: in larger blocks there is little to gain."""
+
+    def __init__(
+        self,
+        name: str,
+        plant: EpisodePlant,
+        variants: Mapping[str, Parts | Sequence[Module]],
+        units: Mapping[str, str | Mapping[str, Any]],
+        channels: Mapping[str, Sequence[str]] | None = None,
+        scenes: Mapping[str, Sequence[int]] = SCENES,
+        data_files: Sequence[str | PathLike[str]] = (),
+    ) -> None:
+        self.name, self.control_dt_s = name, plant.dt_s
+        self.metrics = {key: measure.metric for key, measure in plant.metrics.items()}
+        self._plant, self._scenes = plant, seeds_of(scenes)
+        self._data_files = tuple(data_files)
+        self.components = dict[str, tuple[str, ...]]()
+        units, several = units_of(units), channels_of(channels or {})
+        self._parts, self._wirings = dict[str, Parts](), dict[str, Wiring]()
+        for variant, given in variants_of(variants).items():
+            modules = modules_of(variant, given.of(None) if isinstance(given, Parts) else given)
+            listed = Parts(f"Modules: {', '.join(map(str, modules))}.", modules)
+            self._parts[variant] = given if isinstance(given, Parts) else listed
+            written = [name for module in modules for name in module.writes]
+            bindings = {
+                channel: next((n for n in (*written, *plant.senses) if n in sources), sources[0])
+                for channel, sources in several.items()
+            }
+            self._wirings[variant] = Wiring(self._parts[variant].description, bindings)
+        self._interface = self._declared(units, several, plant.shapes)
+        seen = _Shapes()
+        for variant in self._parts:
+            wired = self.wirings[variant].bindings
+            executable = graph(self._interface, plant, self.modules(variant, None), wired)
+            batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
+            first = next(iter(Loop(self._interface, executable).execute(batch, cast("Any", seen))))
+            for world in first.state.worlds:
+                world.close()
+        self._interface = self._declared(units, several, plant.shapes | seen.shapes)
+
+    @property
+    @override
+    def data_files(self) -> Sequence[str | PathLike[str]]:
+        return self._data_files
+
+    @property
+    @override
+    def interface(self) -> Interface:
+        return self._interface
+
+    @property
+    @override
+    def wirings(self) -> Mapping[str, Wiring]:
+        return self._wirings
+
+    @override
+    def plant(self) -> EpisodePlant:
+        return self._plant
+
+    @override
+    def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
+        return self._parts[variant].of(seed)
+
+    @override
+    def library(self, name: str) -> Library:
+        if name in UNNAMED and len(self._scenes) == 1:
+            (name,) = self._scenes
+        if name not in self._scenes:
+            raise UserError(f"{self.name}: {unknown('library', name, self._scenes)}")
+        seeds = list(self._scenes[name])
+        content = sha256(f"{self._plant.identity}{seeds}".encode()).hexdigest()[:16]
+        return Library(name, tuple(SceneRef(f"{SCENE}{s}", s) for s in seeds), content)
+
+    @override
+    def fingerprint(self) -> str:
+        return self._plant.identity
+
+    @property
+    @override
+    def parts(self) -> Sequence[str]:
+        return self._plant.code
+
+    def _declared(
+        self,
+        units: Mapping[str, str | Mapping[str, Any]],
+        several: Mapping[str, Sequence[str]],
+        shapes: Mapping[str, tuple[int, ...]],
+    ) -> Interface:
+        """Return the interface; a source of unknown shape counts as a number."""
+        plant = self._plant
+        modules = [module for parts in self._parts.values() for module in parts.of(None)]
+        read = dict.fromkeys(
+            port.channel for part in (*modules, plant) for port in sorted(part.ports)
+        )
+        feeds = {channel: several.get(channel, (channel,)) for channel in read}
+        # Until a first step shows what a module writes, it has the shape of what it stands in for.
+        for fed in feeds.values():
+            if shaped := [name for name in fed if name in shapes]:
+                shapes = dict.fromkeys(fed, shapes[shaped[0]]) | dict(shapes)
+        written = [name for module in modules for name in module.writes]
+        known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.facts, "estimated")
+        known |= dict.fromkeys(several.get(plant.action, (plant.action,)), "commanded")
+        for module in modules:
+            for port in sorted(module.ports):
+                if not {*feeds[port.channel]} & {*plant.senses, *plant.facts, *written}:
+                    there = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
+                    wrong = unknown("source", port.channel, there)
+                    mistake = SystemMistake(
+                        f"system '{self.name}': module '{module.name}': {wrong}"
+                    )
+                    mistake.place = module.place if isinstance(module, FunctionModule) else ""
+                    raise mistake
+        if plant.action in feeds and not {*feeds[plant.action]} & {*written}:
+            raise SystemMistake(
+                f"system '{self.name}': no module writes what the plant's action names: "
+                f"{unknown('source', plant.action, dict.fromkeys(written))}"
+            )
+        names = (*plant.senses, *written, *(n for fed in feeds.values() for n in fed))
+        self._check_units(units, names)
+        sources = {
+            name: {
+                "name": name,
+                "shape": shapes.get(name, ()),
+                "provenance": known.get(name, "reconstructed"),
+                **self._facts(name, units, shapes.get(name)),
+            }
+            for name in names
+        }
+        declared = [
+            {
+                "name": channel,
+                "sources": list(fed),
+                "gap": "fidelity" if sources[fed[0]]["provenance"] == "estimated" else "none",
+            }
+            for channel, fed in feeds.items()
+        ]
+        content = {"name": self.name, "sources": list(sources.values()), "channels": declared}
+        try:
+            return interface_of(content, (*modules, plant))
+        except UserError as error:
+            raise SystemMistake(f"system '{self.name}': {error}") from None
+
+    def _check_units(self, units: Mapping[str, Any], sources: Sequence[str]) -> None:
+        """Refuse sources without a unit, after a look at whether it stands under another name."""
+        spare = [name for name in units if name not in sources]
+        for source in sources:
+            if source in units:
+                continue
+            if misspelt := get_close_matches(source, spare, n=1):
+                raise SystemMistake(
+                    f"system '{self.name}': units names '{misspelt[0]}', which is no source; did "
+                    f"you mean '{source}'?"
+                )
+            raise SystemMistake(
+                f"system '{self.name}': source '{source}' has no unit: add it to units, '1' for a "
+                "number without one"
+            )
+
+    def _facts(
+        self,
+        source: str,
+        units: Mapping[str, str | Mapping[str, Any]],
+        shape: tuple[int, ...] | None,
+    ) -> dict[str, Any]:
+        """Return what `units` says of a source, and note what its numbers are called."""
+        label = f"system '{self.name}': source '{source}'"
+        entry = units[source]
+        facts = {"unit": entry} if isinstance(entry, str) else dict(entry)
+        if named := facts.pop("components", ()):
+            self.components[source] = tuple(named)
+            if shape is not None and len(named) != np.prod(shape, dtype=int):
+                raise SystemMistake(
+                    f"{label} has {len(named)} components and is of shape {list(shape)}: name each "
+                    "of its numbers once"
+                )
+        return facts
+
+
+class _Shapes:
+    """Takes the place of the taps during a first step, and notes the shapes that pass."""
+
+    def __init__(self) -> None:
+        self.shapes: dict[str, tuple[int, ...]] = {}
+
+    def set_active(self, mask: Any) -> None:
+        del mask
+
+    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Any:
+        del channel, reader, step
+        if hasattr(reading.value, "shape"):
+            self.shapes.setdefault(reading.source, tuple(np.shape(reading.value)[1:]))
+        return reading.value

@@ -1,0 +1,171 @@
+"""Gymnasium's environments as the plant of a system (extra `gymnasium`, version 1.0 or newer).
+
+It is made anew for every scene, by id or by a function, and moved only while its episode lasts.
+"""
+
+import re
+import sys
+from collections.abc import Callable, Mapping
+from types import ModuleType
+from typing import Any
+
+import gymnasium
+import numpy as np
+from typing_extensions import override
+
+from faultpath.core.arrays import HostArray
+from faultpath.core.errors import SystemMistake
+from faultpath.core.streams import generator
+from faultpath.core.trees import release
+from faultpath.system.episodes import (
+    SCENE,
+    Episode,
+    EpisodePlant,
+    Look,
+    Measure,
+    SceneInstance,
+    Show,
+)
+from faultpath.system.observed import hashed
+from faultpath.system.outcome import Metric
+
+Setup = Callable[[Any, np.random.Generator], Mapping[str, Any] | None]
+OnStep = Callable[[Any, np.random.Generator, int], None]
+
+_PLACE = re.compile(r"(?<=faultpath_system_)\w*(?=:)| at 0x[0-9a-f]+")
+"""A system's module, which is named after the place of its file, and a function's place in memory:
+both differ from machine to machine."""
+
+
+class GymnasiumPlant(EpisodePlant):
+    """Gymnasium environments, side by side.
+
+    Args:
+        environment: An id, or a function without arguments that returns one environment.
+        observes: Source to its part of the observation: a key, an index, a slice, several of them
+            in turn, or a function of the batch's observation.
+        action: Channel from which the environment is moved, at the place `actuator`; a reading has
+            the action's shape, or is a number where the action is one.
+        succeeded: Says of each finished episode whether it was a success.
+        metrics: Further measures of each finished episode, by name, beside its `return`.
+        steps: Control steps of an episode; default the time limit of the environment.
+        dt_s: Length of a control step, s; default the `dt` of the environment.
+        setup: Called as `setup(env, rng)` for each scene, after its seeded reset, to set model
+            parameters and disturbances. The values that it returns by name are sources too, and
+            are hashed: two trials whose scenes were set up differently are no pair.
+        on_step: Called as `on_step(env, rng, step)` before each step, to disturb the scene. It
+            draws other numbers at each step and seed, and the same for every
+            variant and condition.
+        trace: `trace(env)` returns where it is, `(x, y)` or `(x, y, z)` in metres, for the report.
+        render: `render(env)` returns points `(x, y)` of a line that draws it, in metres.
+    """
+
+    def __init__(
+        self,
+        environment: str | Callable[[], Any],
+        *,
+        observes: Mapping[str, Look],
+        action: str,
+        succeeded: Callable[[Episode], bool],
+        metrics: Mapping[str, Measure] | None = None,
+        steps: int | None = None,
+        dt_s: float | None = None,
+        setup: Setup | None = None,
+        on_step: OnStep | None = None,
+        trace: Show | None = None,
+        render: Show | None = None,
+    ) -> None:
+        self._environment, self._setup, self._on_step = environment, setup, on_step
+        self._limit = steps
+        sample = self._make()
+        self.identity, self.code = _identity(sample), _code(sample)
+        steps = steps or getattr(sample.spec, "max_episode_steps", None)
+        dt_s = dt_s or getattr(sample.unwrapped, "dt", None)
+        sample.close()
+        for what, value in {"steps": steps, "dt_s": dt_s}.items():
+            if not value:
+                raise SystemMistake(f"GymnasiumPlant: the environment does not say {what}: give it")
+        returned = Measure(Metric(unit="1", better="more"), lambda episode: episode.returned)
+        super().__init__(
+            observes=observes,
+            action=action,
+            steps=int(steps or 0),
+            dt_s=float(dt_s or 0),
+            succeeded=succeeded,
+            metrics={"return": returned, **(metrics or {})},
+            trace=trace,
+            render=render,
+        )
+
+    @override
+    def world(self, scene: str, seed: int) -> SceneInstance:
+        digits = scene.removeprefix(SCENE)
+        if digits == scene or not digits.isdecimal():
+            raise SystemMistake(f"scene '{scene}' names no seed: such scenes are called {SCENE}7")
+        env, disturbance = self._make(), "none"
+        observation, _ = env.reset(seed=int(digits))
+        initial = hashed(scene, observation, env.unwrapped.np_random.bit_generator.state)
+        facts: Mapping[str, Any] = {}
+        if self._setup:
+            rng = generator("environment/setup", scene, 0)
+            facts = self._setup(env, rng) or {}
+            disturbance = hashed((sorted(facts.items()), rng.bit_generator.state))
+        if self._on_step:  # its draws are addressed by scene and seed, which so decide it
+            disturbance = hashed(disturbance, scene, seed)
+
+        def step(action: HostArray, step: int) -> tuple[Any, float, bool, bool, Mapping[str, Any]]:
+            if self._on_step:
+                self._on_step(env, generator("environment/step", scene, seed, step), step)
+            space = env.action_space
+            if space.shape is None:
+                raise SystemMistake(
+                    f"the environment takes actions of {space}: only arrays can be given"
+                )
+            if np.issubdtype(space.dtype, np.integer) and action.dtype.kind not in "biu":
+                raise SystemMistake(
+                    f"the environment takes whole numbers, {space}, and its action is of "
+                    f"{action.dtype}: give integers"
+                )
+            try:
+                row = action.reshape(space.shape).astype(space.dtype)
+            except ValueError:
+                raise SystemMistake(
+                    f"the environment takes actions of shape {list(space.shape)}, and one scene's "
+                    f"is of shape {list(action.shape)}: correct what writes it"
+                ) from None
+            return env.step(row[()])
+
+        return SceneInstance(observation, facts, initial, disturbance, step, lambda: env, env.close)
+
+    def _make(self) -> Any:
+        if not isinstance(self._environment, str):
+            return self._environment()
+        limit: dict[str, Any] = {} if self._limit is None else {"max_episode_steps": self._limit}
+        return gymnasium.make(self._environment, **limit)
+
+
+def _identity(env: Any) -> str:
+    """Return how an environment is made, and the packages that its class computes with."""
+    places = [sys.modules.get(kind.__module__) for kind in type(env.unwrapped).__mro__]
+    values = [value for place in places if place for value in vars(place).values()]
+    used = {value.__name__.partition(".")[0] for value in values if isinstance(value, ModuleType)}
+    versions = {name: version for name in sorted(used) if (version := release(name))}
+    return f"{_PLACE.sub('', str(env.spec))} {versions}"
+
+
+def _code(env: Any) -> tuple[str, ...]:
+    """Return the classes of an environment and its wrappers that are not Gymnasium's own.
+
+    Nobody imports an environment that is registered under an id, but its code decides trials all
+    the same. The file of a system is counted elsewhere.
+    """
+    parts: list[Any] = [env]
+    while hasattr(parts[-1], "env"):
+        parts.append(parts[-1].env)
+    names: dict[str, None] = {}
+    for part in parts:
+        place = part.__class__.__module__
+        ours = place.partition(".")[0] == "gymnasium" or place.startswith("faultpath_system_")
+        if not ours and getattr(sys.modules.get(place), "__spec__", None) is not None:
+            names[f"{place}:{part.__class__.__name__}"] = None
+    return tuple(names)

@@ -1,0 +1,248 @@
+"""Functions as modules: what one is called with is what it reads."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from inspect import Parameter, signature, unwrap
+from typing import Any, cast
+
+import numpy as np
+from typing_extensions import override
+
+from faultpath.core.arrays import is_array, namespace
+from faultpath.core.error_source import described, ours, place
+from faultpath.core.errors import SystemMistake
+from faultpath.core.text import near, unknown
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
+from faultpath.system.tapping import Made
+
+MEMORY = "memory"
+"""Name of the argument that is no channel."""
+
+
+def writes(
+    source: str,
+    *,
+    past: str | Sequence[str] = (),
+    before: Any = None,
+    of: Callable[..., Any] | None = None,
+    name: str = "",
+) -> Callable[[Callable[..., Any]], "FunctionModule"]:
+    """Make a function a module that writes `source`: `@writes("push")` above its `def`.
+
+    Each argument is a channel, read at a place of the same name, and is handed one row a scene,
+    `[B, ...]`; what the function returns is what `source` holds. One that has an argument `memory`,
+    `None` at the first step, returns `(value, memory)`.
+
+    With `of` the module is made of objects that keep their own state, a set for each scene. The
+    function is called a scene at a time, with the scene's objects first and rows without the batch
+    axis, and only while the scene runs. Where these objects are `faultpath.system.tapping`, what
+    is read there are ports too.
+
+    Objects are made at a scene's first step. What the function that makes them cannot be called
+    without are arguments like the others: channels, of which it gets the first reading.
+
+    Args:
+        source: Source that it writes.
+        past: Arguments that get the value of the step before.
+        before: Value of `source` before the first step, of one scene, for readers of its past.
+        of: Makes the objects of one scene, of readings too.
+        name: Name of the module; default the function's. An audit faults modules of one name
+            together: give it to a function that takes another's place in a variant.
+
+    Raises:
+        SystemMistake: The function takes no names, or has no such argument; `of` makes objects of
+            readings and taps some of these objects.
+    """
+    late = (past,) if isinstance(past, str) else tuple(past)
+    return lambda function: FunctionModule(
+        function, source, late, before, {}, of, name or function.__name__
+    )
+
+
+class FunctionModule(Module):
+    """A module that is a function; see `writes`."""
+
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        source: str,
+        past: Sequence[str],
+        before: Any,
+        values: dict[str, Any],
+        of: Callable[..., Any] | None,
+        name: str,
+    ) -> None:
+        self.name, self.writes = name, (source,)
+        self._function, self._past, self._before, self._values = function, past, before, values
+        self._of = of
+        parameters = dict(signature(function).parameters)
+        if of is not None:  # the first argument are the objects
+            parameters.pop(next(iter(parameters), ""), None)
+            self._called_with, made_of = tuple(parameters), _required(of)
+            self._made_of = tuple(made_of)
+            parameters |= made_of
+            if made_of.keys() <= values.keys():
+                sample = self._make(values)
+                sample.check()
+                self.at_read = sample.ports
+            if MEMORY in parameters:
+                raise SystemMistake(
+                    f"module '{self.name}' has objects and a memory: let the objects keep it"
+                )
+        if odd := [
+            parameter.name
+            for parameter in parameters.values()
+            if parameter.kind not in (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
+        ]:
+            raise SystemMistake(
+                f"module '{self.name}': its argument '{odd[0]}' has no name to hand it over by: "
+                "give each channel an argument of its own"
+            )
+        for name in (*past, *values):
+            if name not in parameters:
+                raise SystemMistake(
+                    f"module '{self.name}': {unknown('argument', name, list(parameters))}"
+                )
+        self._remembers = MEMORY in parameters
+        read = {Port(name, name) for name in parameters if name not in (MEMORY, *values)}
+        self.reads_past = frozenset(port for port in read if port.channel in past)
+        self.reads = frozenset(read - self.reads_past) | self.at_read
+        self._handed_over = tuple(sorted(read))
+
+    def _make(self, row: Mapping[str, Any]) -> Made:
+        """Return the objects of a scene, made of a row of readings and values."""
+        of = cast("Callable[..., Any]", self._of)
+        return Made(partial(of, **{name: row[name] for name in self._made_of}))
+
+    def given(self, **values: Any) -> "FunctionModule":
+        """Return it with other values for some arguments, which it then reads no more.
+
+        A value is handed over as it is: a number is one for every scene, where a reading has one a
+        scene, `[B]`.
+        """
+        values = self._values | values
+        source = self.writes[0]
+        return FunctionModule(
+            self._function, source, self._past, self._before, values, self._of, self.name
+        )
+
+    def __str__(self) -> str:
+        """Return its name and the numbers that it was given."""
+        words = [f"{name} {value:g}" for name, value in self._numbers.items()]
+        return f"{self.name} ({', '.join(words)})" if words else self.name
+
+    @property
+    def place(self) -> str:
+        """File and line of the function; nothing for what is not a user's own function."""
+        function: Any = unwrap(self._function)
+        code = getattr(function, "__code__", None)
+        if code is None or ours(function.__module__):
+            return ""
+        return f"{near(code.co_filename)}, line {code.co_firstlineno}"
+
+    @property
+    def _numbers(self) -> dict[str, int | float]:
+        return {n: v for n, v in self._values.items() if isinstance(v, int | float)}
+
+    def _refused(self, numbers: Iterable[str], error: Exception) -> SystemMistake:
+        """Return what to tell of an error at the first step of a module that was given numbers."""
+        mistake = SystemMistake(
+            f"module '{self.name}' fails ({described(error)}) with one number for every scene as "
+            f"its {' and '.join(numbers)}, where a reading has one value a scene: let it take "
+            "both, or correct it there"
+        )
+        mistake.place = place(error)
+        return mistake
+
+    @override
+    def before(self, batch: Batch) -> Outputs:
+        if self._before is None:
+            return {}
+        row = np.asarray(self._before, np.float64)
+        return {self.writes[0]: np.tile(row, (len(batch.scenes), *[1] * row.ndim))}
+
+    @override
+    def begin(self, batch: Batch) -> Memory:
+        return [None] * len(batch.scenes) if self._of else None
+
+    def _step_scene(self, inputs: Inputs, i: int, scene: Made | None) -> Made:
+        """Let the objects of one scene make a step, after they are made at the first."""
+        rows = {port.channel: inputs[port][i] for port in self._handed_over} | self._values
+        if scene is None:
+            scene = self._make(rows)
+            if scene.ports - self.at_read:
+                raise SystemMistake(
+                    f"module '{self.name}' taps objects that are made of readings: let the "
+                    "function that makes them take no readings, or tap none of them"
+                )
+        with scene.reading(inputs, i) as objects:
+            arguments = {name: rows[name] for name in self._called_with}
+            scene.last = np.array(self._function(objects, **arguments))
+        return scene
+
+    @override
+    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
+        if self._of:
+            memory = [
+                self._step_scene(inputs, i, scene)
+                if inputs.running is None or inputs.running[i]
+                else scene
+                for i, scene in enumerate(cast("list[Made]", memory))
+            ]
+            return {self.writes[0]: np.stack([scene.last for scene in memory])}, memory
+        rows = {port.channel: inputs[port] for port in self._handed_over}
+        more = {MEMORY: memory} if self._remembers else {}
+        try:
+            pair: Any = self._function(**rows, **self._values, **more)
+        except (TypeError, ValueError, AttributeError, LookupError) as error:
+            writes_input = "read-only" in str(error)
+            if inputs.step == 0 and not writes_input and (numbers := self._numbers):
+                raise self._refused(numbers, error) from error
+            raise
+        if not self._remembers:
+            if not rows and isinstance(pair, int | float) and inputs.running is not None:
+                pair = np.full(
+                    len(inputs.running), pair, bool if isinstance(pair, bool) else np.float64
+                )
+            return {self.writes[0]: pair}, None
+        if not isinstance(pair, tuple) or len(cast("tuple[Any, ...]", pair)) != 2:
+            raise SystemMistake(
+                f"module '{self.name}' has a memory and returned no pair: return (value, memory)"
+            )
+        value, memory = cast("tuple[Any, Any]", pair)
+        return {self.writes[0]: value}, memory
+
+
+def _required(make: Callable[..., Any]) -> dict[str, Parameter]:
+    """Return the arguments that a function cannot be called without."""
+    try:
+        parameters = signature(make).parameters
+    except ValueError:  # such as that of `dict`
+        return {}
+    several = (Parameter.VAR_POSITIONAL, Parameter.VAR_KEYWORD)
+    return {
+        name: parameter
+        for name, parameter in parameters.items()
+        if parameter.default is Parameter.empty and parameter.kind not in several
+    }
+
+
+def row_wise(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function, such as a torch module, that takes the rows of a batch one at a time.
+
+    A matrix product rounds differently for another number of rows; row by row it gives each scene
+    the same bits, whatever the other scenes. Arrays are `[B, ...]`, also those returned; all other
+    arguments are passed on unchanged.
+    """
+
+    def each(*values: Any) -> Any:
+        rows = max(len(value) for value in values if is_array(value) and value.ndim)
+        single = [
+            function(*(v[i : i + 1] if is_array(v) and v.ndim else v for v in values))
+            for i in range(rows)
+        ]
+        if isinstance(single[0], tuple):
+            return tuple(namespace(parts[0]).concat(parts) for parts in zip(*single, strict=True))
+        return namespace(single[0]).concat(single)
+
+    return each

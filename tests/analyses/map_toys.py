@@ -1,0 +1,57 @@
+"""Maps without a simulator: what scenes show at a point is a function of both errors."""
+
+from collections.abc import Callable
+
+import numpy as np
+from outcome_tables import question as audit
+
+from faultpath.analyses.map.decide import decided
+from faultpath.analyses.map.lattice import COARSE, UNITS, Point, lattice
+from faultpath.analyses.map.model import ResolvedMap
+from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.map.surface import Differences, next_points
+
+MODULES = ("observer", "predictor")
+Seen = Callable[[float, float], tuple[np.ndarray, np.ndarray]]
+"""From two errors to success of the repair and of the baseline, `[scenes]`."""
+
+
+def question(**given: object) -> ResolvedMap:
+    same = audit(100).model_dump(include={*ResolvedMap.model_fields})
+    errors = {"up_to": 0.4, "relative": True, "unit": "1", "means": (0.0, 0.0)}
+    more = {"fault": "gain", "against": MODULES, "spreads": (0.2, 0.2), "points": 81}
+    return ResolvedMap.model_validate(same | errors | more | given)
+
+
+def differences(seen: Seen, points: tuple[Point, ...], seeds: int = 1) -> Differences:
+    variants = [seen(x / UNITS, y / UNITS) for x, y in points]
+    repair, baseline = (
+        np.array(each, dtype=float)[..., None] for each in zip(*variants, strict=True)
+    )
+    return Differences(points, np.repeat(repair, seeds, 2), np.repeat(baseline, seeds, 2))
+
+
+def grown(seen: Seen, limit: int = 81) -> Differences:
+    points = lattice(COARSE)
+    while new := next_points(differences(seen, points), MODULES, limit, "toy"):
+        points += new
+    return differences(seen, points)
+
+
+def record(seen: Seen, **given: object) -> MapRecord:
+    return decided(question(**given), grown(seen))
+
+
+def reversal(scenes: int) -> Seen:
+    """A baseline whose two errors cancel, and a repair that looks at one error only; it is ahead
+    where the errors differ much."""
+    bears = (np.arange(scenes) + 0.5) / scenes
+
+    def seen(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
+        return bears > 0.3 + 0.2 * abs(x), bears > abs(x - y)
+
+    return seen
+
+
+def alike(scenes: int) -> Seen:
+    return lambda x, y: (np.arange(scenes) % 2 > 0, np.arange(scenes) % 2 > 0)

@@ -1,0 +1,114 @@
+"""A system without a loop whose errors do what a test plants, and the scan of it in memory.
+
+Scenes have a difficulty, evenly spread over 0 to 1; a trial succeeds where that is above what the
+errors cost together. `a`, `b` and `c` have one reader each, `pair` two, `three` three.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from faultpath.analyses.scan.design import Scanned, ScanPlan, plan_scan
+from faultpath.analyses.scan.record import ScanRecord
+from faultpath.interface import Channel, Interface, Provenance, Source, Uncertainty
+from faultpath.loop import Taps
+from faultpath.run import Deliveries, Study, SystemSpec, Trials
+from faultpath.run.question import ScanQuestion, ask
+from faultpath.run.trials import Trial
+from faultpath.system import Library, SceneRef, System, Variant
+from faultpath.system.outcome import Outcome, Status, failed_outcome
+
+READERS = {
+    "a": ("one.a",),
+    "b": ("two.b",),
+    "c": ("two.c",),
+    "pair": ("one.pair", "two.pair"),
+    "three": ("one.three", "two.three", "last.three"),
+}
+Cost = Callable[[Mapping[str, float]], float]
+"""What errors cost, by reader, such as `one.pair`."""
+
+
+class Planted(System):
+    name, control_dt_s = "planted", 0.1
+
+    def __init__(self, cost: Cost, sources: Sequence[str] = ("a", "b"), scenes: int = 400) -> None:
+        self.cost, self.sources, self.scenes = cost, sources, scenes
+        self.failing: set[tuple[str, str]] = set()
+        self.unlike: set[tuple[str, str]] = set()
+        """Condition and scene of trials that fail, and of those that begin elsewhere."""
+
+    @property
+    def interface(self) -> Interface:
+        unsure = Uncertainty(std=0.4)
+        return Interface(
+            name="planted",
+            sources=tuple(
+                Source(name=n, unit="m", provenance=Provenance.ESTIMATED, uncertainty=unsure)
+                for n in self.sources
+            ),
+            channels=tuple(Channel(name=n, sources=(n,), readers=READERS[n]) for n in self.sources),
+        )
+
+    @property
+    def variants(self) -> Mapping[str, Variant]:
+        readers = frozenset(reader for name in self.sources for reader in READERS[name])
+        return {name: Variant(name, "", readers) for name in ("whole", "deaf")}
+
+    def library(self, name: str) -> Library:
+        return Library(name, tuple(SceneRef(f"s{i:04d}", i) for i in range(self.scenes)), name)
+
+    def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
+        raise AssertionError("trials are taken from what the errors cost")
+
+
+def difficulty(scene: str) -> float:
+    """Return that of a scene, evenly spread in any row of scenes."""
+    return (int(scene[1:]) * 0.6180339887498949) % 1.0
+
+
+def trials_of(system: Planted, study: Study) -> Trials:
+    """Return the trials of a study, each from what its faults cost; `deaf` reads no error."""
+    trials: list[Trial] = []
+    for row in study.rows:
+        at = {
+            reader: float(fault.intervention.by)  # pyright: ignore - an offset
+            for fault in row.treatment.faults
+            for reader in fault.readers
+        }
+        cost = system.cost(at if row.variant == "whole" else {})
+        for scene in row.scenes:
+            status = Status.SUCCESS if difficulty(scene) >= cost else Status.TIMEOUT
+            acted = int(bool(at) and row.variant == "whole")
+            hashes = (scene, scene, "none")
+            outcome = Outcome(scene, status, 1.0, *hashes, faulted_steps=acted, altered_steps=acted)
+            if (row.condition, scene) in system.failing:
+                outcome = failed_outcome(scene, "no air")
+            elif (row.condition, scene) in system.unlike:
+                outcome = replace(outcome, initial_hash="another")
+            trials.append(Trial(row.variant, row.condition, row.seed, int(scene[1:]), "", outcome))
+    return Trials.of(trials)
+
+
+def planned(system: Planted, **arguments: Any) -> ScanPlan:
+    question = ask(ScanQuestion, {"variant": "whole", **arguments})
+    return plan_scan(system, SystemSpec(name="planted"), question, system.library("selection"))
+
+
+def scanned(system: Planted, **arguments: Any) -> tuple[ScanRecord, Scanned, list[Study]]:
+    """Run the rounds of a scan; return its result, what ran, and the study of each round."""
+    plan = planned(system, **arguments)
+    rounds = plan.rounds()
+    studies = [next(rounds).study]
+    while True:
+        trials = trials_of(system, studies[-1])
+        try:
+            studies.append(rounds.send(trials).study)
+        except StopIteration as end:
+            return plan.conclude(trials, Deliveries(rows=()), end.value), end.value, studies
+
+
+def names(record: ScanRecord, places: Sequence[int]) -> set[str]:
+    """Return errors by source, reader and sign: `a+one`."""
+    errors = [record.errors[place] for place in places]
+    return {f"{e.source}{'+' if e.sign > 0 else '-'}{e.reader}" for e in errors}

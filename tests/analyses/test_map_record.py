@@ -1,0 +1,166 @@
+"""Joint errors, break-even correlation, turning sizes, and that nothing undecided is said."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from map_toys import Seen, alike, differences, grown, question, record, reversal
+from pydantic import ValidationError
+
+from faultpath.analyses.map.decide import decided
+from faultpath.analyses.map.joint import Errors, lattice_weights
+from faultpath.analyses.map.lattice import COARSE, SHOWN, UNITS, lattice, surface_weights
+from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.map.surface import Combined, Differences
+
+REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
+X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS
+DECIDES = re.compile(r"(new|old) (is|does|is expected)")
+
+
+@pytest.mark.parametrize("correlation", [-1.0, 0.6])
+def test_the_expectation_of_a_bilinear_surface_is_that_of_its_moments(correlation: float) -> None:
+    errors = Errors((0.1, -0.2), (0.15, 0.1))
+    weights = lattice_weights(errors, correlation)
+    assert weights.sum() == pytest.approx(1)
+    assert weights @ X == pytest.approx(0.1, abs=1e-6)
+    assert weights @ Y == pytest.approx(-0.2, abs=1e-6)
+    assert weights @ (X * Y) == pytest.approx(correlation * 0.015 - 0.02, abs=2e-4)
+    assert errors.outside(correlation) == 0
+
+
+def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
+    found = grown(reversal(100))
+    made = record(reversal(100), spreads=(0.16, 0.16))
+    (estimate,) = made.joint.estimates
+    ((low, high),) = made.joint.undecided
+    assert -1 < low < estimate < high < 1
+    assert [region.sign for region in made.joint.regions] == [1, -1]
+    weights = lattice_weights(Errors((0.0, 0.0), (0.4, 0.4)), estimate)
+    expected = Combined.of((weights @ surface_weights(found.points))[np.newaxis], found)
+    assert expected.means[0] == pytest.approx(0, abs=0.1)
+    (said,) = [text for text in made.sentences if "averages to" in text]
+    assert "nothing is concluded" in said
+    assert "correlation" not in made.headline
+
+
+def test_swapping_the_variants_swaps_the_record() -> None:
+    found = grown(reversal(60))
+    one = decided(question(), found)
+    two = decided(question(), Differences(found.points, found.baseline, found.repair))
+    assert [p.sign for p in one.points] == [-p.sign for p in two.points]
+    assert [r.sign for r in one.joint.regions] == [-r.sign for r in two.joint.regions]
+    np.testing.assert_allclose(one.joint.undecided, two.joint.undecided)
+    assert [(f.until, f.first, -f.start) for f in one.flips] == [
+        (f.until, f.first, f.start) for f in two.flips
+    ]
+
+
+@pytest.mark.parametrize("scenes", [1, 2, 4])
+def test_nothing_is_said_to_be_decided_of_a_few_scenes(scenes: int) -> None:
+    made = record(reversal(scenes))
+    assert made.headline.startswith(f"Too few scenes: {scenes} compared")
+    assert not DECIDES.search(" ".join((made.headline, *made.sentences)))
+    assert not any(point.sign for point in made.points)
+    assert made.joint.regions == ()
+    assert made.joint.undecided == ((-1.0, 1.0),)
+
+
+def test_nothing_is_said_to_be_decided_of_ties() -> None:
+    made = record(alike(40))
+    assert made.headline == "At none of 81 pairs of errors is the difference significant."
+    said = " ".join(made.sentences)
+    assert "old is significantly ahead at 0 and new at 0; at" in said
+    assert said.count("nothing is significant") == 6
+    assert not DECIDES.search(said.replace("old is significantly ahead at 0 and new at 0", ""))
+    assert [flip.estimate for flip in made.flips] == [None] * 6
+
+
+def _weak(strong: int, sign: int) -> Seen:
+    """A repair that wins 8 of 60 scenes and loses 2 at each pair of errors, other ones each time,
+    and at a few pairs most."""
+    points = lattice(COARSE)
+
+    def seen(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
+        place = points.index((round(x * UNITS), round(y * UNITS)))
+        order = np.random.default_rng(place).permutation(60)
+        won = 40 if place in (12, 7)[:strong] else 8
+        return (order < won, (order >= won) & (order < won + 2))[::sign]
+
+    return seen
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("strong", [0, 1, 2])
+def test_ahead_is_said_only_at_pairs_of_errors_that_were_run(strong: int, sign: int) -> None:
+    """The average over errors can leave out 0 where no pair of errors does."""
+    made = decided(question(points=25), differences(_weak(strong, sign), lattice(COARSE)))
+    assert sum(point.sign == sign for point in made.points) == strong
+    assert {region.sign for region in made.joint.regions} == {sign}
+    winner = "new" if sign > 0 else "old"
+    said = (
+        f"{winner} is ahead at {strong} of 25 pairs of errors; elsewhere neither is significantly "
+        "ahead."
+    )
+    if not strong:
+        said = "At none of 25 pairs of errors is the difference significant."
+    assert made.headline == said
+
+
+@pytest.mark.parametrize("name", ["sizes", "difference", "sign"])
+def test_a_surface_has_a_row_and_a_column_for_each_size(name: str) -> None:
+    held = record(alike(8)).model_dump()
+    whole = held["surface"][name]
+    for odd in ((), whole[:-1], [whole[0][:-1], *whole[1:]] if name != "sizes" else whole * 2):
+        held["surface"][name] = odd
+        with pytest.raises(ValidationError, match="has not a row and a column for each size"):
+            MapRecord.model_validate(held)
+
+
+def test_every_claim_of_a_condition_is_one_of_its_points() -> None:
+    made = record(reversal(100))
+    of = {point.errors: point for point in made.points}
+    observer = next(f for f in made.flips if (f.condition, f.direction) == ("observer", 1))
+    assert (observer.start, observer.turned) == (-1, 1)
+    assert observer.until is not None
+    assert observer.first is not None
+    assert observer.estimate is not None
+    assert 0 <= observer.until < observer.estimate < observer.first <= 0.4
+    assert {(observer.until, 0.0), (observer.first, 0.0)} <= set(of)
+    for (x, y), point in of.items():
+        if y == 0 and 0 <= x <= observer.until:
+            assert point.sign == -1
+        if y == 0 and observer.first <= x <= (observer.last or 0):
+            assert point.sign == 1
+    shared = next(f for f in made.flips if (f.condition, f.direction) == ("shared", -1))
+    assert (shared.until, shared.estimate, shared.first) == (-0.4, None, None)
+    said = " ".join(made.sentences)
+    assert "With both wrong alike, error below 0: old is ahead at every size run." in said
+    assert "Sharing the error reverses the ranking at" in said
+
+
+def test_a_place_between_points_is_claimed_nowhere() -> None:
+    """A ridge between the points: the surface was 5.6 pp off, and its band covered in .38."""
+
+    def ridge(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
+        place = np.random.default_rng(int(1000 * (x + 2) + 10 * (y + 2))).random((2, 100))
+        return place[0] < 0.7 - 0.25 * abs(x), place[1] < 0.8 - 0.35 * abs(x - y)
+
+    result = decided(question(points=25), differences(ridge, lattice(COARSE)))
+    text = " ".join((result.headline, *result.sentences))
+    assert not re.search(r"correlat\w* .*(does better|is ahead|succeed)", text)
+    run = {x or y for x, y in (point.errors for point in result.points)}
+    assert {flip.until for flip in result.flips} | {flip.first for flip in result.flips} <= {
+        *run,
+        None,
+    }
+
+
+@pytest.mark.parametrize("invalid", ["unrepeatable", "unpaired"])
+def test_a_map_of_trials_on_which_nothing_rests_claims_nothing(invalid) -> None:
+    result = decided(question(), grown(reversal(100)), invalid=invalid)
+    assert result.headline.startswith("No result: ")
+    assert result.sentences == ()
+    assert not any(point.sign for point in result.points)
+    assert not any(flip.start or flip.turned for flip in result.flips)

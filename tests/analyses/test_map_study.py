@@ -1,0 +1,98 @@
+"""What a map flies: two errors at two modules of one source, and mistakes in asking for it."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from faultpath.analyses.map.lattice import UNITS
+from faultpath.analyses.map.study import MapPlan, plan_map
+from faultpath.analyses.planning import plan_audit
+from faultpath.core.errors import UserError
+from faultpath.faults import FaultText
+from faultpath.run import SystemSpec, load_system
+from faultpath.run.question import AuditQuestion, MapQuestion, ask
+from faultpath.system import library_of
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+SPEC = SystemSpec(name=f"{EXAMPLES / 'toy.py'}:create")
+TOY = load_system(SPEC)
+ASKED: dict[str, Any] = {
+    "baseline": "calibrated",
+    "repair": "blind",
+    "fault": "gain",
+    "against": ("controller", "observer"),
+    "up_to": 0.4,
+    "scenes": 8,
+}
+
+
+def plan(**given: Any) -> MapPlan:
+    return plan_map(TOY, SPEC, ask(MapQuestion, ASKED | given), library_of(TOY, "carts"))
+
+
+def test_the_conditions_of_an_audit_are_points_of_the_map() -> None:
+    """To the treatment, so that both would be the same trials."""
+    fault = FaultText.read("gain:scale=0.6")
+    question = AuditQuestion(baseline="calibrated", repair="blind", fault=fault, scenes=8)
+    audit = plan_audit(TOY, SPEC, question, library_of(TOY, "carts"))
+    points = [(0, 0), (-UNITS, 0), (0, -UNITS), (-UNITS, -UNITS)]
+    names = dict(zip(("correct", "controller", "observer", "shared"), points, strict=True))
+    made = plan()
+    treatments = {(row.variant, row.condition): row.treatment for row in made.study(points).rows}
+    for row in audit.study.rows:
+        assert treatments[row.variant, made.condition(names[row.condition])] == row.treatment
+
+
+def test_errors_of_unequal_size_strike_each_its_own_module() -> None:
+    rows = plan().study([(8, -16)]).rows
+    faulted = {
+        (row.variant, fault.readers, fault.intervention.factor)  # type: ignore[union-attr] - a scale
+        for row in rows
+        for fault in row.treatment.faults
+    }
+    assert faulted == {
+        ("calibrated", ("controller.inverse",), 1.1),
+        ("calibrated", ("observer.model",), 0.8),
+        ("blind", ("controller.inverse",), 1.1),
+    }
+
+
+def test_an_offset_is_in_the_unit_of_the_reading() -> None:
+    dock = SystemSpec(name=f"{EXAMPLES / 'dock.py'}:create")
+    system = load_system(dock)
+    question = {"baseline": "wheels", "repair": "ranges", "fault": "range:offset,onset=5"}
+    question |= {"against": ("approach", "speedometer"), "up_to": 0.5, "scenes": 4}
+    planned = plan_map(system, dock, ask(MapQuestion, question), library_of(system, "floors"))
+    assert not planned.question.relative
+    assert planned.question.said(-0.25) == "−0.25 m"
+    (fault,) = planned.study([(0, 16)]).rows[1].treatment.faults
+    assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr] - a bias
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"fault": "gain:scale=0.6"}, "the map sets the size itself; leave '=0.6' out"),
+        ({"fault": "gain@observer"}, "name the modules with --against"),
+        ({"fault": "gain:noise"}, "errors of both signs"),
+        ({"points": 9 * 10**400}, "takes at most 10000"),
+        ({"against": ("controller",)}, "--against needs two modules"),
+        ({"against": ("controller", "controller.inverse")}, "share no place"),
+        ({"against": ("controller", "speedometer")}, "name two of controller, observer"),
+        ({"against": ("controller", "observer"), "baseline": "blind"}, "two different variants"),
+        ({"up_to": None}, "say how large errors may be"),
+        ({"up_to": 1.0}, "less than 1"),
+        ({"up_to": 1e-13}, "1e-13 is no size"),
+        ({"points": 24}, "begins with 25"),
+        ({"spread": (0.1, 1e308)}, "--spread: give standard deviations above 0, up to"),
+        ({"spread": (0.1, 0.1, 0.1)}, "one for each module"),
+        ({"mean": (0.5,)}, "beyond the map"),
+        ({"correlation": 1.5}, "between -1 and 1"),
+    ],
+)
+def test_a_mistake_is_one_sentence(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(UserError) as refused:
+        plan(**given)
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)

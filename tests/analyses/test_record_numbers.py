@@ -1,0 +1,192 @@
+"""From tables with known counts to exactly their numbers."""
+
+import numpy as np
+import pytest
+from outcome_tables import (
+    BASELINE,
+    REPAIR,
+    conditions,
+    exact_p,
+    question,
+    record,
+    rows,
+    seeded,
+    table,
+    three,
+    variants,
+)
+
+from faultpath.analyses.decide import decide
+from faultpath.analyses.model import CORRECT, SHARED
+from faultpath.core.errors import UserError
+from faultpath.run import Trials
+from faultpath.system import Status
+
+
+@pytest.mark.parametrize("counts", [(40, 20, 5), (60, 3, 15), (50, 0, 0), (0, 7, 7), (94, 6, 0)])
+def test_counts_make_the_effect_and_the_p_value(counts):
+    both, wins, losses = counts
+    made = record({CORRECT: counts})
+    (effect,) = made.effects
+    assert effect.value == pytest.approx(wins - losses)  # of 100 scenes: points
+    assert effect.won == ((wins, losses),)
+    assert effect.scenes == 100
+    assert made.secondary[0].joint_successes == both
+    assert effect.mcnemar_p == pytest.approx(exact_p(wins, losses), rel=1e-9)
+    low, high = effect.low, effect.high
+    assert low <= effect.value <= high
+    assert high - low > 2, "no interval is without width"
+
+
+def test_cells_count_every_trial():
+    made = record({CORRECT: (40, 20, 5), "observer": (10, 0, 30)})
+    cells = {(cell.variant, cell.condition): cell for cell in made.cells}
+    assert {at: cell.success for at, cell in cells.items()} == {
+        (REPAIR, CORRECT): 60,
+        (BASELINE, CORRECT): 45,
+        (REPAIR, "observer"): 10,
+        (BASELINE, "observer"): 40,
+    }
+    for cell in made.cells:
+        assert cell.success + cell.crash == cell.trials == 100
+        assert cell.faulted_trials == (0 if cell.condition == CORRECT else 100)
+        altered = cell.condition != CORRECT and cell.variant == REPAIR
+        assert cell.altered_trials == (100 if altered else 0)
+    assert cells[REPAIR, CORRECT].median_time_s == pytest.approx(5 + 0.01 * 29.5)
+
+
+@pytest.mark.parametrize(
+    ("correct", "fault", "p_star", "signs"),
+    [
+        ((50, 0, 16), (30, 24, 0), 16 / 40, [-1, 1]),
+        ((50, 16, 0), (30, 0, 24), 16 / 40, [1, -1]),
+        ((50, 10, 0), (30, 20, 0), None, [1]),
+        ((50, 0, 10), (30, 0, 20), None, [-1]),
+        ((50, 0, 0), (50, 0, 0), None, []),
+    ],
+)
+def test_break_even_follows_from_the_two_effects(correct, fault, p_star, signs):
+    made = record({CORRECT: correct, "observer": fault})
+    (item,) = made.break_even
+    assert item.condition == "observer"
+    assert item.result.p_star == (None if p_star is None else pytest.approx(p_star))
+    assert [region.sign for region in item.result.regions] == signs
+    curve = np.array(item.curve)
+    d0, df = made.effects[0].value, made.effects[1].value
+    assert (curve[0, 0], curve[-1, 0]) == (0, 1)
+    assert np.allclose(curve[:, 1], (1 - curve[:, 0]) * d0 + curve[:, 0] * df)
+    assert (curve[:, 2] <= curve[:, 1] + 1e-9).all()
+    assert (curve[:, 1] <= curve[:, 3] + 1e-9).all()
+    in_piece, touches = curve[:, 0] < 0, (curve[:, 2] <= 0) & (curve[:, 3] >= 0)
+    near_end = in_piece
+    for low, high in item.result.pieces:
+        in_piece = in_piece | ((low <= curve[:, 0]) & (curve[:, 0] <= high))
+        near_end = near_end | np.isclose(curve[:, 0], low, atol=0.02)
+        near_end = near_end | np.isclose(curve[:, 0], high, atol=0.02)
+    assert ((in_piece == touches) | near_end).all()
+
+
+@pytest.mark.parametrize(("n", "enough"), [(3, False), (6, False), (8, True)])
+def test_too_few_scenes_decide_nothing_and_the_number_that_would_is_known(n, enough):
+    made = record({CORRECT: (0, n, 0), "a": (0, n, 0), "b": (0, n, 0), SHARED: (0, 0, n)}, n=n)
+    assert made.hypotheses == 6
+    assert made.scenes_needed == 7  # 2 / 2^7 <= 0.05 / 2 < 2 / 2^6
+    assert all(effect.significant == enough for effect in made.effects)
+    assert [change.turn for change in made.changes] == ["reversal" if enough else "none"] * 2
+
+
+def _with_failures(*failed: tuple[str, str, int]) -> Trials:
+    """Return trials under two conditions of which some failed: variant, condition, scene."""
+    out = []
+    for condition, counts in {CORRECT: (40, 20, 10), "observer": (20, 10, 30)}.items():
+        for variant, statuses in variants(counts).items():
+            for v, p, i in failed:
+                if (v, p) == (variant, condition):
+                    statuses[i] = Status.FAILED
+            out += rows(variant, condition, statuses)
+    return Trials.of(out)
+
+
+def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_conditions_nothing():
+    # Scene 45 is won by the repair alone under correct inputs, and lost to the baseline otherwise.
+    made = decide(
+        question(), conditions(CORRECT, "observer"), _with_failures((REPAIR, "observer", 45))
+    )
+    correct, observer = made.effects
+    assert (correct.void, observer.void) == (0, 1)
+    assert (correct.scenes, observer.scenes, made.scenes) == (100, 99, 100)
+    assert correct.won[0][0] == 20
+    assert observer.won[0][1] == 29
+    assert observer.value == pytest.approx(100 * (10 - 29) / 99)
+    assert correct.mcnemar_p == pytest.approx(exact_p(20, 10))
+    cells = {(cell.variant, cell.condition): cell for cell in made.cells}
+    assert cells[REPAIR, "observer"].failed == 1
+    assert cells[REPAIR, "observer"].trials == 100
+    assert cells[REPAIR, "observer"].success_percent == pytest.approx(100 * 30 / 99)
+
+
+def test_a_condition_without_any_pair_costs_the_others_nothing_and_is_named():
+    every = tuple((REPAIR, "observer", i) for i in range(100))
+    made = decide(question(), conditions(CORRECT, "observer"), _with_failures(*every))
+    (correct,) = made.effects
+    assert (correct.condition, correct.scenes, correct.void) == (CORRECT, 100, 0)
+    assert not made.break_even
+    said = "With the fault at the observer alone, no pair of trials is left to compare"
+    assert made.headline.startswith(said)
+    assert made.findings[0].startswith(said)
+    every += tuple((REPAIR, CORRECT, i) for i in range(100))
+    with pytest.raises(UserError, match="no scene is left"):
+        decide(question(), conditions(CORRECT, "observer"), _with_failures(*every))
+
+
+def test_several_seeds_are_averaged_within_each_scene():
+    (effect,) = seeded({CORRECT: [(40, 20, 5), (40, 10, 5)]}).effects
+    assert effect.value == pytest.approx((15 + 5) / 2)
+    assert effect.won == ((20, 5), (10, 5))
+    assert effect.scenes == 100
+    assert "score of scenes" in effect.test
+    assert len(effect.per_seed) == 2
+
+
+def test_seeds_that_change_nothing_are_counted_once():
+    thrice = seeded({CORRECT: [(40, 9, 2)] * 3, "observer": [(40, 2, 9)] * 3})
+    once = seeded({CORRECT: [(40, 9, 2)], "observer": [(40, 2, 9)]})
+    for many, one in zip(thrice.effects, once.effects, strict=True):
+        assert many == one
+        assert many.won == one.won
+    assert "All 3 seeds gave the same outcome in every trial" in " ".join(thrice.sentences)
+    assert "seeds" not in " ".join(once.sentences)
+
+
+@pytest.mark.parametrize(
+    ("counts", "extreme"),
+    [((0, 7, 0), "floor"), ((92, 4, 4), "ceiling"), ((5, 5, 0), None), ((90, 0, 8), None)],
+)
+def test_floor_and_ceiling_are_both_variants_below_10_or_above_90(counts, extreme):
+    assert record({CORRECT: counts}).effects[0].extreme == extreme
+
+
+def test_a_condition_on_which_the_fault_never_acted_is_no_part_of_the_family():
+    out = []
+    for condition, counts in ((CORRECT, (50, 9, 1)), ("a", (40, 20, 2)), (SHARED, (40, 2, 20))):
+        for variant, statuses in variants(counts).items():
+            out += rows(variant, condition, statuses, altered=0 if condition == "a" else None)
+    made = decide(question(), conditions(CORRECT, "a", SHARED), Trials.of(out))
+    idle = made.effects[1]
+    assert not idle.acted
+    assert not idle.significant
+    assert idle.corrected_p is None
+    assert made.hypotheses == 2
+    assert made.changes == ()
+    assert [each.condition for each in made.break_even] == [SHARED]
+
+
+def test_the_primary_contrast_is_the_shared_condition_or_the_only_isolated_one_or_the_one_named():
+    level = (50, 5, 5)
+    assert three(level, level, level).question.primary == SHARED
+    assert record({CORRECT: level, "observer": level}).question.primary == "observer"
+    named = question().model_copy(update={"primary": "observer"})
+    cells = {CORRECT: level, "observer": level, SHARED: level}
+    assert decide(named, conditions(*cells), table(cells)).question.primary == "observer"
+    with pytest.raises(UserError, match=r"no condition 'obs'.*has correct, observer, shared"):
+        decide(named.model_copy(update={"primary": "obs"}), conditions(*cells), table(cells))

@@ -1,0 +1,263 @@
+"""A scan: which trials it runs, what it lists, in words and commands, and what it refuses."""
+
+import json
+import shlex
+from pathlib import Path
+from typing import Any
+
+import pytest
+from scan_toy import Cost, Planted, names, planned, scanned
+
+from faultpath.analyses.scan.design import COSTLY_PP, FIRST_SCENES, HALVINGS, TRIALS
+from faultpath.analyses.scan.ranking import PROBED_SCENES
+from faultpath.analyses.scan.record import ScanRecord
+from faultpath.core.errors import UserError
+from faultpath.stats.cancelling import LEVEL, MOST, REGAINED
+from faultpath.stats.estimate import ALPHA
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def both(one: str, other: str, size: float = 1.0) -> Cost:
+    """Return the cost of two errors of which only the sum is felt."""
+    return lambda at: size * abs(at.get(one, 0.0) + at.get(other, 0.0))
+
+
+def covered(at: Any) -> float:
+    """Return the cost of an error at one reader, which the same error at the other one hides."""
+    return 0.4 if at.get("one.pair") and not at.get("two.pair") else 0.0
+
+
+def listed(record: ScanRecord, version: int = 0) -> list[tuple[str | None, set[str]]]:
+    return [(pair.kind, names(record, pair.errors)) for pair in record.versions[version].listed]
+
+
+@pytest.mark.parametrize(
+    ("cost", "sources", "pairs"),
+    [
+        (both("one.a", "two.b"), "abc", [{"a-one", "b+two"}, {"a+one", "b-two"}]),
+        (lambda at: 0.3 * sum(map(abs, at.values())), "abc", []),
+        (lambda at: 0.0, "abc", []),
+        (lambda at: 0.9 * bool(at.get("one.a")), "abc", []),
+        (lambda at: 0.4 - 0.4 * bool(at.get("one.a")), "abc", []),
+    ],
+    ids=["cancel", "add up", "nothing", "one at the floor", "one helps"],
+)
+def test_only_errors_that_cancel_are_listed(cost: Cost, sources: str, pairs: list[set[str]]):
+    record, *_ = scanned(Planted(cost, tuple(sources)))
+    assert [of for _, of in listed(record)] == pairs
+    assert all(kind == "cancel" for kind, _ in listed(record))
+    assert len(record.commands) == len(pairs)
+    assert ("no pair of errors is shown to cancel" in record.headline.lower()) == (not pairs)
+
+
+def test_what_is_listed_is_said_with_all_four_rates_and_what_follows():
+    record, *_ = scanned(Planted(both("one.a", "two.b"), ("a", "b")))
+    pair = record.versions[0].listed[0]
+    assert record.sentences[0] == (
+        "A at one (−0.4 m) and b at two (+0.4 m) cancel: 100 % with both, 100 % with neither. "
+        f"Correct only the a: {pair.second:.0f} %. Correct only the b: {pair.first:.0f} %. "
+        "Correct both together."
+    )
+    words = shlex.split(record.commands[0])
+    assert words[:4] == ["faultpath", "audit", "planted", "--baseline"]
+    assert words[-1] == "a:offset=-0.4@one & b:offset=0.4@two"
+
+
+def test_an_error_that_raises_success_is_said_and_goes_no_further():
+    record, scan, _ = scanned(Planted(lambda at: 0.4 - 0.4 * bool(at.get("one.a")), ("a", "b")))
+    assert scan.chosen == ()
+    assert (
+        "Alone, these raised success in the first stage (58 % without an error): a at one "
+        "(−0.4 m) 100 % and a at one (+0.4 m) 100 %." in record.sentences
+    )
+
+
+def test_an_error_that_hides_another_covers_for_it():
+    record, scan, _ = scanned(Planted(covered, ("a", "pair")))
+    assert listed(record) == [
+        ("covers", {"pair-one", "pair-two"}),
+        ("covers", {"pair+one", "pair+two"}),
+    ]
+    assert names(record, scan.chosen) == {"pair-one", "pair+one"}
+    assert "at two (−0.4 m) covers for pair at one (−0.4 m)" in record.headline
+    assert shlex.split(record.commands[1])[-1] == "pair:offset=0.4"
+
+
+def test_each_stage_has_scenes_of_its_own_and_all_conditions_of_it():
+    def cost(at: Any) -> float:
+        return 0.3 * min(1.0, sum(abs(size) > 0 for size in at.values()))
+
+    system = Planted(cost, ("a", "three"))
+    record, scan, studies = scanned(system)
+    first, second = set(scan.first), set(scan.second)
+    assert len(first) == 50
+    assert not first & second
+    ran = {row.condition: set(row.scenes) for row in studies[0].rows}
+    assert len(ran) == 1 + 2 * 4
+    assert set.union(*ran.values()) == first
+    later = {row.condition for row in studies[-1].rows if set(row.scenes) == second}
+    everywhere = "three:offset=0.4@last & three:offset=0.4@one & three:offset=0.4@two"
+    for path in (
+        "correct",
+        "a:offset=0.4@one",
+        "a:offset=-0.4@one & three:offset=0.4@two",
+        "three:offset=0.4@one & three:offset=0.4@two",
+        everywhere,
+    ):
+        assert path in later
+    assert not [path for path in later if {"three:offset=0.4", "three:offset=-0.4"} <= sizes(path)]
+    assert {of.left_out for of in record.versions[0].together} == {"", "one", "two", "last"}
+    assert record.trials <= 8000
+
+
+def sizes(path: str) -> set[str]:
+    return {part.partition("@")[0] for part in path.split(" & ")}
+
+
+def test_the_order_of_the_sources_decides_nothing():
+    cost = both("one.a", "two.b", 0.8)
+    results: list[Any] = []
+    for sources in (("a", "b", "c", "pair"), ("pair", "c", "b", "a")):
+        record, *_ = scanned(Planted(cost, sources))
+        content = json.loads(record.model_dump_json())
+        results.append({**content, "ranking": sorted(map(str, content["ranking"]["sources"]))})
+    assert results[0] == results[1]
+
+
+def test_a_size_stays_where_half_of_it_seems_to_cost_nothing():
+    """The errors cost 60 points together or not at all: half of one would hide the pair."""
+
+    def cost(at: Any) -> float:
+        apart = abs(at.get("one.a", 0.0) + at.get("two.b", 0.0))
+        return 0.6 * (apart > 0.3)
+
+    record, scan, _ = scanned(Planted(cost, ("a", "b")))
+    assert {error.halvings for error in scan.tried} == {0, 1}
+    assert {error.halvings for error in record.errors} == {0}
+    assert [of for _, of in listed(record)] == [{"a-one", "b+two"}, {"a+one", "b-two"}]
+
+
+def test_an_error_that_no_module_gets_is_not_called_harmless():
+    record, *_ = scanned(Planted(both("one.a", "two.b"), ("a", "b")), repair="deaf")
+    (idle,) = (text for text in record.sentences if text.startswith("In deaf: No reading was"))
+    assert "a at one (−0.4 m)" in idle
+    assert not any(text.startswith("In whole: No reading") for text in record.sentences)
+
+
+def test_a_costly_size_is_halved_at_all_readers_of_its_source():
+    def cost(at: Any) -> float:
+        return min(1.0, 2.0 * abs(at.get("one.pair", 0.0) - at.get("two.pair", 0.0)))
+
+    record, _, studies = scanned(Planted(cost, ("pair",)))
+    assert [study.rows[0].condition for study in studies] == ["correct"] * 3
+    assert {(error.change, error.halvings) for error in record.errors} == {
+        ((-0.2,), 1),
+        ((0.2,), 1),
+    }
+    assert "pair to ±0.2 m" in " ".join(record.sentences)
+    assert [kind for kind, _ in listed(record)] == ["cancel", "cancel"]
+
+
+def test_a_repair_is_scanned_with_the_same_errors_and_tested_apart():
+    record, *_ = scanned(Planted(both("one.a", "two.b")), repair="deaf")
+    assert len(listed(record)) == 2
+    assert listed(record, 1) == []
+    whole, deaf = record.versions
+    assert [pair.errors for pair in whole.pairs] == [pair.errors for pair in deaf.pairs]
+    assert record.headline.startswith("In whole, 2 pairs of errors cancel")
+    assert record.headline.endswith("In deaf, no pair of errors is shown to cancel.")
+
+
+def test_seeds_count_as_one_scene_and_failed_trials_are_left_out():
+    system = Planted(both("one.a", "two.b"))
+    pair = "a:offset=-0.4@one & b:offset=0.4@two"
+    system.failing = {(pair, "s0060"), ("correct", "s0001")}
+    record, scan, _ = scanned(system, seeds=(0, 1))
+    assert len(listed(record)) == 2
+    assert [of.scenes for of in record.versions[0].listed] == [
+        len(scan.second) - 1,
+        len(scan.second),
+    ]
+    assert record.failed == 4
+    assert [text for text in record.sentences if text.startswith("4 trials failed")]
+    system.failing = {(pair, f"s{i:04d}") for i in range(400)}
+    with pytest.raises(UserError, match="is left, because all failed"):
+        scanned(system)
+
+
+def test_trials_that_are_no_pairs_give_no_result():
+    system = Planted(both("one.a", "two.b"))
+    system.unlike = {("a:offset=-0.4@one & b:offset=0.4@two", "s0060")}
+    record, *_ = scanned(system)
+    assert (record.invalid, listed(record), record.sentences) == ("unpaired", [], ())
+    assert "s0060" in record.findings[0]
+    assert record.commands == ()
+
+
+def test_at_most_ten_errors_go_on_and_the_worst_first():
+    def cost(at: Any) -> float:
+        return sum(0.05 * abs(size) * len(reader) for reader, size in at.items())
+
+    record, scan, _ = scanned(Planted(cost, ("a", "b", "c", "pair", "three")))
+    assert len(record.errors) == 16
+    lost = {place: first.loss for place, first in enumerate(record.versions[0].first)}
+    assert len(scan.chosen) == 10
+    assert [lost[place] for place in scan.chosen] == sorted(lost.values(), reverse=True)[:10]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parts"),
+    [
+        ({"scenes": 55}, ("55 scenes of 'selection' are too few", "so 59 would do")),
+        ({"scenes": 500}, ("cannot run 500 scenes", "choose 1 to 400")),
+        ({"variant": "hole"}, ("unknown variant 'hole'", "did you mean 'whole'")),
+        ({"repair": "whole"}, ("both 'whole'",)),
+        ({"fault": "a:delay=3"}, ("'a:delay=3'", "two signs")),
+        ({"fault": "a:offset=0"}, ("changes nothing",)),
+        ({"fault": "a:offset"}, ("needs one size",)),
+        ({"fault": ("a:offset=1", "a:scale=2")}, ("given an error already",)),
+        ({"seeds": tuple(range(40))}, ("trials at least, and 8000 are run", "--scenes 59")),
+    ],
+)
+def test_a_mistake_is_one_sentence(arguments: dict[str, Any], parts: tuple[str, ...]):
+    with pytest.raises(UserError) as refused:
+        planned(Planted(lambda at: 0.0), **arguments)
+    assert all(part in str(refused.value) for part in parts), str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_system_that_says_no_size_is_asked_for_one():
+    class Unsized(Planted):
+        @property
+        def interface(self):
+            whole = super().interface
+            sources = tuple(s.model_copy(update={"uncertainty": None}) for s in whole.sources)
+            return whole.model_copy(update={"sources": sources})
+
+    with pytest.raises(UserError, match=r"a declares no uncertainty.*--fault a:scale=1\.1"):
+        planned(Unsized(lambda at: 0.0))
+
+
+def test_the_page_has_the_numbers_of_the_code():
+    page = " ".join((ROOT / "docs" / "scan.md").read_text().split())
+    count = {3: "three", 5: "five", 10: "ten"}
+    for words in (
+        f"**First stage**, {FIRST_SCENES} scenes",
+        f"costs more than {COSTLY_PP:g} percentage points is halved",
+        f"up to {count[HALVINGS]} times",
+        f"(p below {LEVEL:g}) go on, {count[MOST]} at most",
+        f"about {TRIALS:,} trials",
+        f"regain at least {'half' if REGAINED == 0.5 else REGAINED} of",
+        f"Holm's correction at {100 * ALPHA / 2:g} %",
+        f"Tested apart, at {100 * ALPHA:g} %",
+        f"in {count[PROBED_SCENES]} scenes",
+    ):
+        assert words in page, words
+
+
+def test_errors_that_cannot_act_together_are_no_scan():
+    with pytest.raises(UserError, match="a has one reader, so no two errors can act together"):
+        planned(Planted(lambda at: 0.0, ("a",)))
+    with pytest.raises(UserError, match="name one behind '@'"):
+        planned(Planted(lambda at: 0.0, ("a", "pair")), fault=("pair:offset=0.4@one+two",))

@@ -1,0 +1,70 @@
+"""Where a run comes from."""
+
+import hashlib
+import subprocess
+import sys
+from datetime import UTC, datetime
+
+from stale_toys import Mine
+
+from faultpath.run.execution.provenance import checkout, run_provenance
+from faultpath.run.execution.runner import run_study
+from faultpath.run.work.processes import local
+
+
+def _git(folder, *arguments):
+    settings = ["-c", "user.name=a", "-c", "user.email=a@b.c", "-c", "commit.gpgsign=false"]
+    command = ["git", "-C", str(folder), *settings, *arguments]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    return done.stdout.strip()
+
+
+def test_a_checkout_knows_its_commit_and_its_changes(tmp_path):
+    package = tmp_path / "src" / "package"
+    package.mkdir(parents=True)
+    main = package / "__init__.py"
+    main.write_text("a = 1\n")
+    _git(tmp_path, "init", "-q")
+    assert checkout(main, [package]) == (None, None)  # inside a repository, but not part of it
+    _git(tmp_path, "add", ".")
+    _git(tmp_path, "commit", "-qm", "one")
+    commit = _git(tmp_path, "rev-parse", "HEAD")
+    assert checkout(main, [package]) == (commit, False)
+    (tmp_path / "notes").write_text("beside the package\n")
+    assert checkout(main, [package]) == (commit, False)
+    main.write_text("a = 2\n")
+    assert checkout(main, [package]) == (commit, True)
+
+
+def test_provenance_tells_the_run_its_repository_and_every_file_that_flew(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    mine = Mine(tmp_path / "mine")
+
+    def told(name: str):
+        result = run_study(mine.study(), tmp_path / name, workers=1)
+        started = datetime.now(UTC)
+        return run_provenance(tmp_path / name, [], result, started, ["faultpath"], local(1))
+
+    untracked = told("untracked")
+    assert (untracked.system_commit, untracked.system_dirty) == (None, None)
+    assert untracked.command == ("faultpath",)
+    assert untracked.processor
+    assert 0 < untracked.wall_s < 60
+    assert untracked.started <= untracked.finished
+    _git(tmp_path / "mine", "init", "-q")
+    _git(tmp_path / "mine", "add", ".")
+    _git(tmp_path / "mine", "commit", "-qm", "one")
+    clean = told("clean")
+    assert clean.system_commit == _git(tmp_path / "mine", "rev-parse", "HEAD")
+    assert clean.system_dirty is False
+    assert {"my.py", mine.helper.name, "faultpath"} <= clean.sources.keys()
+    assert clean.sources["my.py"] == hashlib.sha256(mine.file.read_bytes()).hexdigest()
+    assert clean.data.keys() == {"push.txt"}
+    assert {"numpy", "pyarrow", "pydantic-core"} <= clean.packages.keys()
+    (tmp_path / "mine" / "notes").write_text("beside what flies")
+    again = told("clean")
+    assert again.system_dirty is False
+    assert [(run.blocks_computed, run.blocks_kept) for run in (clean, again)] == [(3, 0), (0, 3)]
+    assert again.outcomes_sha256 == clean.outcomes_sha256
+    mine.data.write_text("1.0")
+    assert told("dirty").system_dirty is True

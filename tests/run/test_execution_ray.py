@@ -1,0 +1,251 @@
+"""A study on a Ray cluster of this machine: what is lost comes back, and nothing else changes."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+
+import pytest
+from calls import alive, end_of, until
+from ray_nodes import cluster, node
+from toy_study import SYSTEM, UNITS, study, study_of
+
+import faultpath
+from faultpath.cli.main import INTERRUPTED
+from faultpath.core.errors import Notice, UserError
+from faultpath.run import SystemSpec
+from faultpath.run.execution.runner import run_study
+from faultpath.run.work import ray_cluster
+from faultpath.run.work.executor import Failed, Lost, Returned, elsewhere, tell
+from faultpath.run.work.ray_cluster import RayWorkers
+
+UNRULY = Path(__file__).with_name("test_execution_limits.py")
+OTHER = """
+import os
+from toy_system import ToySystem
+
+class Other(ToySystem):
+    def fingerprint(self):
+        return os.environ.get("PLACE", "there")
+
+def create(**options) -> Other:
+    if options.get("needs") not in os.environ:
+        raise OSError(f"{options['needs']} is not set")
+    return Other()
+"""
+pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::FutureWarning")
+
+
+@pytest.fixture(scope="module")
+def head():
+    pytest.importorskip("ray")
+    with cluster() as started:
+        yield started
+
+
+@pytest.fixture(scope="module")
+def here(tmp_path_factory):
+    """The study by processes of this machine."""
+    return run_study(study(), tmp_path_factory.mktemp("here"), workers=0)
+
+
+def test_a_study_that_loses_a_node_ends_with_the_same_bytes(head, here, tmp_path):
+    """Two nodes of one CPU each hold a unit when one of them is killed."""
+    lost = head.add_node(**node())
+    gate, log = tmp_path / "gate", tmp_path / "log"
+    gate.touch()
+    log.touch()
+
+    def kill(progress):
+        if gate.exists() and len(log.read_text().splitlines()) == 2:
+            head.remove_node(lost, allow_graceful=False)
+            workers = [int(line.split()[3]) for line in log.read_text().splitlines()]
+            # Until a worker has noticed that its node is gone, it would go on and finish its unit.
+            until(lambda: not all(map(alive, workers)), "a worker's end")
+            gate.unlink()
+
+    asked = study(hang_while=str(gate), log=str(log))
+    with RayWorkers(head.address, 2) as hands:
+        there = run_study(asked, tmp_path / "there", executor=hands, progress=kill, recheck=False)
+        assert re.fullmatch(r"Ray \S+, 2 nodes", hands.name)
+    assert there.failures == ()
+    assert there.outcomes_sha256 == here.outcomes_sha256
+    flown = [line.split() for line in log.read_text().splitlines()]
+    assert len(flown) == UNITS + 1, "one unit was lost with its node and flown again"
+    assert max(Counter(pid for *_, pid in flown).values()) >= UNITS - 1
+
+
+def test_a_study_that_loses_a_worker_ends_with_the_same_bytes(head, here, tmp_path):
+    gate, log = tmp_path / "gate", tmp_path / "log"
+    gate.touch()
+    log.touch()
+
+    def kill(progress):
+        if gate.exists() and (begun := log.read_text().splitlines()):
+            os.kill(worker := int(begun[0].split()[3]), signal.SIGKILL)
+            until(lambda: not alive(worker), "a worker's end")
+            gate.unlink()
+
+    asked = study(hang_while=str(gate), log=str(log))
+    with RayWorkers(head.address, 1) as hands:
+        there = run_study(asked, tmp_path / "there", executor=hands, progress=kill, recheck=False)
+    assert there.failures == ()
+    assert there.outcomes_sha256 == here.outcomes_sha256
+    pids = [line.split()[3] for line in log.read_text().splitlines()]
+    assert len(pids) == UNITS + 1, "one unit was lost with its worker and run again"
+    assert pids[0] not in pids[1:]
+
+
+@pytest.mark.parametrize("error", ["OutOfMemoryError", "WorkerCrashedError"])
+def test_workers_that_ray_stops_for_want_of_memory_are_waited_for(head, monkeypatch, error):
+    """Others that do not start, such as those of another Python, are given up after some."""
+    fetch, stopped = ray_cluster._ray.get, [getattr(ray_cluster._ray.exceptions, error)("")]
+    monkeypatch.setattr(ray_cluster, "_FALSE_STARTS", 0)
+
+    def get(reference):
+        if stopped:
+            raise stopped.pop()
+        return fetch(reference)
+
+    with RayWorkers(head.address, 1) as hands:
+        monkeypatch.setattr(ray_cluster._ray, "get", get)
+        if error == "OutOfMemoryError":
+            monkeypatch.setattr(ray_cluster, "_PATIENCE_S", 0.0)
+            with pytest.warns(Notice, match="no worker runs on the Ray cluster yet; waiting for"):
+                assert list(hands.free()) == [0]
+            assert not stopped
+        else:
+            with pytest.raises(UserError, match="workers do not start on the Ray cluster"):
+                hands.free()
+
+
+def test_an_actor_is_a_worker_like_any_other(head):
+    with RayWorkers(head.address, 1) as hands:
+        heard = []
+        assert end_of(hands, partial(tell, "news"), heard.append) == Returned(None)
+        assert heard == ["news"]
+        first = end_of(hands, os.getpid)
+        assert end_of(hands, os.getpid) == first, "a number stands for a memory that stays"
+        assert end_of(hands, partial(os.getenv, "OMP_NUM_THREADS")) == Returned("1")
+        assert end_of(hands, os.getcwd) == Returned(os.getcwd())
+        assert end_of(hands, elsewhere).value.startswith("node ")
+        failed = end_of(hands, partial(int, "none"))
+        assert isinstance(failed, Failed)
+        assert "Traceback" in failed.error.__notes__[0]
+        lost = end_of(hands, partial(os._exit, 3))
+        assert isinstance(lost, Lost)
+        assert lost.how.startswith("the worker on node ")
+        second = end_of(hands, os.getpid)
+        assert second != first
+        hands.submit(0, partial(time.sleep, 600))
+        assert list(hands.free()) == []
+        hands.cancel(0)
+        assert end_of(hands, os.getpid) not in (first, second)
+    assert elsewhere() == ""
+
+
+@contextmanager
+def command(asked, folder, address):
+    """Run an audit by the command line until it has stored two units more than there were."""
+    stored = len(shards(folder))
+    options = {"executor": f"ray:{address}", "workers": 1, "out": folder}
+    line = [f"--{name}={value}" for name, value in (asked | options).items() if name != "system"]
+    main = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]
+    with (
+        folder.with_name("words").open("w") as words,
+        subprocess.Popen(
+            [*main, "audit", asked["system"], *line], stdout=words, stderr=words
+        ) as process,
+    ):
+        until(
+            lambda: len(shards(folder)) >= stored + 2 or process.poll() is not None,
+            "two units",
+            seconds=180,
+        )
+        assert process.poll() is None
+        yield process
+
+
+def shards(folder):
+    return list(folder.glob("shards/*.parquet"))
+
+
+def test_a_command_that_was_stopped_and_then_killed_goes_on_to_the_same_bytes(
+    head, tmp_path, monkeypatch
+):
+    gate, folder = tmp_path / "slow", tmp_path / "there"
+    asked = {"system": SYSTEM, "baseline": "plain", "repair": "observed", "library": "ten"}
+    asked |= {"fault": "mass:scale=0.6", "seeds": "0,1,2,3"}
+    line = asked | {"set": f"slow_while={gate}"}
+    gate.touch()
+    with command(line, folder, head.address) as stopped:
+        stopped.send_signal(signal.SIGINT)
+    assert stopped.returncode == INTERRUPTED
+    (said,) = [each for each in words(folder) if each.startswith("faultpath: interrupted with")]
+    assert "run the same again to resume" in said
+    with command(line, folder, head.address) as killed:
+        killed.kill()
+    kept = len(shards(folder))
+    gate.unlink()
+    asked |= {"seeds": range(4), "options": {"slow_while": str(gate)}, "progress": False}
+    alone = faultpath.audit(folder=tmp_path / "alone", workers=0, **asked)
+    monkeypatch.setenv("RAY_ADDRESS", head.address)
+    there = faultpath.audit(folder=folder, executor="ray", workers=1, **asked)
+    assert there.provenance.blocks_kept == kept >= 4
+    assert there.provenance.blocks_computed > 0
+    for table in ("outcomes.parquet", "traces.parquet"):
+        assert (folder / table).read_bytes() == (tmp_path / "alone" / table).read_bytes()
+    assert there.record == alone.record
+    assert (there.provenance.workers, alone.provenance.executor) == (1, "")
+    assert there.provenance.executor in (folder / "report.html").read_text()
+
+
+def words(folder):
+    return folder.with_name("words").read_text().splitlines()
+
+
+@pytest.mark.parametrize(
+    ("option", "says"),
+    [
+        ("PATH", r"is another one on node \S+ of the Ray cluster than here \(what fingerprint"),
+        ("PLACE", r"on node \S+ of the Ray cluster: .*PLACE is not set.*every node needs the same"),
+    ],
+)
+def test_a_node_with_another_system_is_named(head, tmp_path, monkeypatch, option, says):
+    monkeypatch.setenv("PLACE", "here")  # a node keeps the environment in which it was started
+    file = tmp_path / "other.py"
+    file.write_text(OTHER)
+    spec = SystemSpec(name=f"{file}:create", options={"needs": option})
+    asked = study().model_copy(update={"system": spec})
+    with RayWorkers(head.address, 1) as hands, pytest.raises(UserError, match=says):
+        run_study(asked, tmp_path / "run", executor=hands)
+
+
+@pytest.fixture(scope="module")
+def hands(head):
+    with RayWorkers(head.address, 1) as workers:
+        yield workers
+
+
+@pytest.mark.parametrize(
+    ("does", "limit", "says"),
+    [
+        ("die", {}, "the worker on node .* of the Ray cluster was lost"),
+        ("hang", {"time_limit_s": 8.0}, "it was stopped at the time limit of 8 s"),
+    ],
+)
+def test_a_unit_that_is_its_workers_end_or_takes_too_much_loses_itself_alone(
+    hands, tmp_path, does, limit, says
+):
+    """One is killed in the moment in which its flight begins, each time."""
+    trials = study_of(f"{UNRULY}:unruly", ("s00", "s05"), does=does, where="s05", dies="s05")
+    found = run_study(trials, tmp_path, executor=hands, recheck=False, **limit)
+    (failure,) = found.failures
+    assert (failure.scene, found.blocks_computed) == ("s05", 2)
+    assert re.search(says, failure.error)

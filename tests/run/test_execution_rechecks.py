@@ -1,0 +1,184 @@
+"""A little is flown twice: what does not repeat, depends on its block or writes is named."""
+
+import itertools
+import json
+import re
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from toy_study import SCENES, UNITS, study, study_of
+from toy_system import CONSUMERS, STEPS, ToySystem
+
+from faultpath.core.errors import Stopped
+from faultpath.loop import Reading
+from faultpath.run.execution.recheck import SAMPLE, Rechecks
+from faultpath.run.execution.runner import run_study
+
+_CALLS = itertools.count()
+
+
+class Odd(ToySystem):
+    """Has one oddity, by option; `block` is the size of a block."""
+
+    def __init__(self, **options: str) -> None:
+        super().__init__(**options)
+        self.block_size = int(options.get("block", "4"))
+        self._random = np.random.default_rng(0)
+        self._calls: dict[tuple[str, ...], int] = {}
+
+    def run(self, variant, scenes, taps, seed):
+        outcomes = super().run(variant, scenes, taps, seed)
+        match self._options["odd"]:
+            case "drifts":
+                return _moved(outcomes, [1e-3 * next(_CALLS)] * len(scenes))
+            case "clock":
+                return _moved(outcomes, [1e-9 * (time.perf_counter_ns() % 10**9)] * len(scenes))
+            case "random":  # one generator for all that a process flies
+                return _moved(outcomes, self._random.normal(size=len(scenes)))
+            case "cache":  # what is made for some scenes is written to at each flight of them
+                self._calls[tuple(scenes)] = calls = self._calls.get(tuple(scenes), 0) + 1
+                return _moved(outcomes, [0.1 * calls] * len(scenes))
+            case "by-place":  # the same numbers at each call, in the order of its scenes
+                return _moved(outcomes, np.random.default_rng(seed).normal(size=len(scenes)))
+            case "crowded":
+                return [replace(o, time_s=o.time_s * len(scenes)) for o in outcomes]
+            case "hashless":
+                same = dict.fromkeys(("initial_hash", "disturbance_hash"), "none")
+                return [replace(o, **same) for o in outcomes]
+            case "reads" | "writes" | "plant writes" as kind:
+                import torch
+
+                state = torch.ones(len(scenes))
+                got = taps.deliver("mass", CONSUMERS[0], Reading(state, "mass", STEPS), STEPS)
+                if kind == "writes":
+                    got *= 2.0
+                if kind == "plant writes":  # into what it has delivered, and the reader has kept
+                    state += 1.0
+                    return _moved(outcomes, got)
+        return outcomes
+
+
+def _moved(outcomes, by):
+    return [
+        replace(o, metrics={"distance": o.metrics["distance"] + abs(float(by[i]))})
+        for i, o in enumerate(outcomes)
+    ]
+
+
+def odd(**options: str) -> Odd:
+    return Odd(**options)
+
+
+def _study(kind: str, count: int = 1, **options: str):
+    if kind in ("reads", "writes", "plant writes"):
+        pytest.importorskip("torch")
+    return study_of(f"{__file__}:odd", count=count, odd=kind, **options)
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [
+        ("drifts", r"Results do not repeat: .* of 'plain' under correct inputs, seed 0"),
+        ("crowded", r"Results do not repeat: .* of 'plain' .*time_s by up"),
+        ("plant writes", r"Results do not repeat: 1 scene of 'plain' .* a copy of every reading"),
+        ("writes", r"A module writes .*tap mass -> planner.thrust: the reader"),
+        ("hashless", r"All 10 scenes carry the same hashes of initial state"),
+    ],
+)
+def test_an_oddity_is_named_and_kept(tmp_path, kind, said):
+    trials = _study(kind)
+    result = run_study(trials, tmp_path, workers=int(kind == "writes"))
+    found = [finding for finding in result.findings if re.search(said, finding)]
+    assert found, result.findings
+    again = run_study(trials, tmp_path, workers=0)
+    assert again.blocks_computed == 0
+    assert again.findings == result.findings
+    held = json.loads((tmp_path / "deliveries.json").read_text())
+    assert found[0] in held["findings"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "block"),
+    [("clock", "4"), ("random", "10"), ("cache", "10"), ("by-place", "4"), ("by-place", "10")],
+)
+def test_what_does_not_repeat_is_seen_whatever_the_reason(tmp_path, kind, block):
+    findings = run_study(_study(kind, count=12, block=block), tmp_path, workers=0).findings
+    assert findings
+    assert all(said.startswith("Results do not repeat: ") for said in findings)
+
+
+@pytest.mark.parametrize("kind", ["", "crowded"])
+def test_a_run_killed_between_second_runs_ends_with_the_same_tables(tmp_path, kind, monkeypatch):
+    trials = _study(kind, count=12, block="10")
+    whole = run_study(trials, tmp_path / "whole", workers=0)
+    assert len(whole.rechecks) == 2
+    for flights in range(2):
+        folder = tmp_path / str(flights)
+        with monkeypatch.context() as patched:
+            patched.setattr(Rechecks, "settle", _stopping(flights))
+            with pytest.raises(Stopped):
+                run_study(trials, folder, workers=0)
+        result = run_study(trials, folder, workers=0)
+        assert result.rechecks == whole.rechecks
+        for name in ("outcomes.parquet", "deliveries.json", "rechecks.json"):
+            assert (folder / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def _stopping(after: int):
+    settle, flights = Rechecks.settle, itertools.count()
+
+    def stopping(self, *arguments):
+        if next(flights) == after:
+            raise KeyboardInterrupt
+        settle(self, *arguments)
+
+    return stopping
+
+
+def test_a_few_scenes_of_a_later_treatment_are_flown_at_other_places_than_before(tmp_path):
+    result = run_study(_study("", count=12, block="10"), tmp_path, workers=0)
+    assert [each.why for each in result.rechecks].count("sample") == 1
+    few = next(each for each in result.rechecks if each.why == "sample")
+    (one,) = (each for each in result.rechecks if each is not few)
+    assert (one.why, len(one.scenes), one.unit != few.unit) == ("guarded", 1, True)
+    assert (len(few.scenes), few.unit_scenes, few.differs) == (SAMPLE, 10, "")
+    assert all(SCENES.index(scene) > i for i, scene in enumerate(few.scenes))
+    first = study().rows[0].treatment
+    assert (few.variant, few.faults, few.seed) != (first.variant, "correct inputs", first.seed)
+
+
+def test_a_sound_system_has_none_and_pays_for_two_flights_once(tmp_path):
+    log = tmp_path / "log"
+    asked = study(log=str(log))
+    result = run_study(asked, tmp_path / "run", workers=0)
+    assert result.findings == ()
+    assert len(log.read_text().splitlines()) == UNITS + 2
+    run_study(asked, tmp_path / "run", workers=0)
+    assert len(log.read_text().splitlines()) == UNITS + 2
+    bare = run_study(study(), tmp_path / "bare", workers=0, recheck=False)
+    assert bare.outcomes_sha256 == result.outcomes_sha256
+    assert not (tmp_path / "bare" / "rechecks.json").exists()
+
+
+def test_one_that_leaves_its_reading_alone_is_not_accused(tmp_path):
+    assert run_study(_study("reads"), tmp_path, workers=0).findings == ()
+
+
+def test_a_reader_that_never_reads_is_named(tmp_path):
+    row = study().rows[0]
+    deaf = row.model_copy(
+        update={
+            "variant": "deaf",
+            "treatment": row.treatment.model_copy(update={"variant": "deaf"}),
+        }
+    )
+    asked = study().model_copy(update={"rows": (row, deaf)})
+    (finding,) = run_study(asked, tmp_path, workers=0).findings
+    assert finding.startswith("Variant 'deaf' declares that observer.balance reads 'mass', but it")
+
+
+def test_failed_trials_are_not_drawn(tmp_path):
+    result = run_study(study(raises="s05"), tmp_path, workers=0)
+    assert result.findings == ()

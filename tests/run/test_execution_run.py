@@ -1,0 +1,245 @@
+"""What a run computes, whoever computes it and in whatever order."""
+
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from toy_study import FAULT, SCENES, UNITS, rows, study
+from toy_system import STEPS
+
+from faultpath.core.errors import UserError
+from faultpath.core.files import parquet
+from faultpath.loop import NotDelivered, TapCount, UndeclaredReader
+from faultpath.run import Deliveries
+from faultpath.run.execution.runner import RunResult, run_study
+from faultpath.run.execution.schedule import plan
+from faultpath.run.plan import Row, Study, Treatment
+from faultpath.run.store import tables
+from faultpath.run.store.folder import RunFolder, read_outcomes
+from faultpath.run.store.tables import decode_traces, traces_of
+from faultpath.run.trials import Trial
+from faultpath.run.work.executor import Progress
+from faultpath.system.declared import Library, SceneRef
+
+
+@pytest.fixture(scope="session")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[RunResult, Path]:
+    folder = tmp_path_factory.mktemp("whole") / "run"
+    return run_study(study(), folder, workers=0), folder
+
+
+def _comparable(rows: tuple[Trial, ...]) -> list[tuple[object, ...]]:
+    return [
+        (r.variant, r.condition, r.seed, r.scene_index, r.topology, replace(r.outcome, trace=None))
+        for r in rows
+    ]
+
+
+def test_rows_are_in_the_order_of_the_study_then_of_the_library(whole):
+    result, _ = whole
+    addresses = [(r.variant, r.condition, r.seed, r.outcome.scene) for r in result.trials]
+    assert addresses == [(r.variant, r.condition, r.seed, s) for r in rows() for s in SCENES]
+    assert result.blocks_computed == UNITS
+    assert not result.failures
+
+
+def test_the_fault_changes_what_it_should(whole):
+    result, _ = whole
+    table = result.trials
+
+    def distances(variant: str, condition: str) -> list[float | None]:
+        return [o.metrics["distance"] for o in table.outcomes(variant, condition, 0)]
+
+    assert distances("plain", "shared") == distances("plain", "planner")
+    assert distances("plain", "shared") != distances("plain", "correct")
+    assert distances("observed", "shared") != distances("observed", "planner")
+    faulted = {o.faulted_steps for o in table.outcomes("observed", "shared", 0)}
+    assert faulted == {9}  # 12 steps, from step 3 on
+    assert {o.altered_steps for o in table.outcomes("observed", "correct", 0)} == {0}
+
+
+def test_worker_processes_give_the_same_bytes(whole, tmp_path):
+    result, folder = whole
+    other = run_study(study(), tmp_path, workers=2)
+    assert other.outcomes_sha256 == result.outcomes_sha256
+    for name in ("outcomes.parquet", "traces.parquet", "deliveries.json"):
+        assert (tmp_path / name).read_bytes() == (folder / name).read_bytes()
+
+
+def test_the_tables_read_back(whole):
+    result, folder = whole
+    table = read_outcomes(folder / "outcomes.parquet")
+    assert _comparable(table) == _comparable(result.trials)
+    traces = decode_traces((folder / "traces.parquet").read_bytes())
+    assert traces.keys() == traces_of(result.trials).keys()
+    assert len(traces) == len(table)
+    for address, trace in traces.items():
+        assert trace.dtype == np.float32
+        np.testing.assert_array_equal(trace, traces_of(result.trials)[address])
+
+
+@pytest.mark.parametrize("scenes", [("s03",), SCENES[2:9], SCENES[::-1]])
+def test_a_selection_in_any_order_gives_the_rows_of_the_whole(whole, tmp_path, scenes):
+    result, _ = whole
+    part = run_study(study(scenes), tmp_path, workers=0)
+    expected = tuple(r for r in result.trials if r.outcome.scene in scenes)
+    assert _comparable(part.trials) == _comparable(expected)
+
+
+def test_a_quick_look_grows_into_the_whole_and_then_nothing_is_computed(whole, tmp_path):
+    result, _ = whole
+    log, folder = tmp_path / "log", tmp_path / "run"
+    look, grown = (
+        run_study(study(scenes, log=str(log)), folder, workers=0) for scenes in (SCENES[:4], SCENES)
+    )
+    assert grown.blocks_kept == look.blocks_computed
+    assert grown.blocks_computed == UNITS - look.blocks_computed
+    assert grown.outcomes_sha256 == result.outcomes_sha256
+    assert grown.deliveries == result.deliveries != look.deliveries
+
+    before = log.read_text()
+    again = run_study(study(log=str(log)), folder, workers=2)
+    assert log.read_text() == before
+    assert (again.blocks_computed, again.blocks_kept) == (0, UNITS)
+    assert again.outcomes_sha256 == result.outcomes_sha256
+    assert again.deliveries == result.deliveries
+    stored = (folder / "deliveries.json").read_bytes()
+    assert Deliveries.model_validate_json(stored) == result.deliveries
+
+
+def test_every_row_brings_what_its_taps_did(whole):
+    deliveries = whole[0].deliveries
+    every = STEPS * len(SCENES)
+    faulted = (STEPS - FAULT.onset_step) * len(SCENES)
+    planner = TapCount("mass", "planner.thrust", every, faulted, faulted)
+    struck = TapCount("mass", "observer.balance", every, faulted, faulted)
+    spared = TapCount("mass", "observer.balance", every, 0, 0)
+    taps = {(row.variant, row.condition, row.seed): row.taps for row in deliveries.rows}
+    assert taps["observed", "planner", 1] == (planner, spared)
+    assert taps["observed", "shared", 0] == (planner, struck)
+    assert taps["plain", "shared", 0] == (planner,)
+    assert taps["plain", "correct", 0] == (TapCount("mass", "planner.thrust", every, 0, 0),)
+    both = TapCount("mass", "planner.thrust", 2 * every, 2 * faulted, 2 * faulted)
+    assert deliveries.at("observed", "shared")[0] == both
+    with pytest.raises(KeyError):
+        deliveries.at("observed", "elsewhere")
+
+
+def test_a_shard_without_receipts_is_named_and_run_again(whole, tmp_path, monkeypatch):
+    with monkeypatch.context() as patch:
+        encode = parquet.encode
+        patch.setattr(tables, "encode", lambda columns, values, notes=None: encode(columns, values))
+        run_study(study(), tmp_path, workers=0)
+    notices: list[str] = []
+    after = run_study(study(), tmp_path, workers=0, notice=notices.append)
+    assert after.blocks_kept == 0
+    assert len(notices) == after.blocks_computed
+    assert all("kept no delivery log" in notice for notice in notices)
+    assert after.deliveries == whole[0].deliveries
+
+
+def test_progress_reaches_the_end_and_never_goes_back(tmp_path):
+    seen: list[Progress] = []
+    run_study(study(), tmp_path, workers=2, progress=seen.append)
+    rows = [int(progress.count.split()[0]) for progress in seen]
+    assert rows == sorted(rows)
+    assert (rows[0], rows[-1], seen[-1].count) == (0, 120, "120 of 120 trials")
+    assert seen[-1].done == seen[-1].total == 10 * len(study().treatments())
+    assert all(0 <= progress.done <= progress.total for progress in seen)
+
+
+def test_bookkeeping_grows_with_the_rows_and_not_with_rows_times_blocks(tmp_path, monkeypatch):
+    calls: list[str] = []
+    key, list_shards = Treatment.key, RunFolder.list_shards
+    monkeypatch.setattr(Treatment, "key", lambda treatment: calls.append("key") or key(treatment))
+    monkeypatch.setattr(
+        RunFolder, "list_shards", lambda folder: calls.append("list") or list_shards(folder)
+    )
+    counts: list[Counter[str]] = []
+    for scenes in (SCENES[:2], SCENES):
+        calls.clear()
+        run_study(study(scenes), tmp_path / str(len(scenes)), workers=0)
+        counts.append(Counter(calls))
+    assert counts[0] == counts[1]
+
+
+def test_rows_of_one_condition_may_have_scenes_of_their_own(tmp_path: Path) -> None:
+    """As if it were one row with all of them; each has its own deliveries."""
+    early, late = Treatment(variant="observed"), Treatment(variant="plain")
+    rows = [
+        Row(variant="observed", condition="correct", seed=0, treatment=early, scenes=SCENES[:2]),
+        Row(variant="observed", condition="correct", seed=0, treatment=early, scenes=SCENES[2:]),
+        Row(variant="plain", condition="correct", seed=0, treatment=late, scenes=SCENES[2:]),
+    ]
+    parts = run_study(_study_of(*rows), tmp_path / "parts", workers=0)
+    whole = run_study(
+        _study_of(Row(variant="observed", condition="correct", seed=0, treatment=early)),
+        tmp_path / "whole",
+        workers=0,
+    )
+    ends = [run.trials.outcomes("observed", "correct", 0) for run in (parts, whole)]
+    assert [o.trajectory_hash for o in ends[0]] == [o.trajectory_hash for o in ends[1]]
+    assert [o.scene for o in parts.trials.outcomes("plain", "correct", 0)] == [*SCENES[2:]]
+    assert parts.deliveries.at("observed", "correct") == whole.deliveries.at("observed", "correct")
+
+
+def _study_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Study:
+    return study().model_copy(update={"rows": rows, "scenes": scenes})
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+@pytest.mark.parametrize(
+    ("variant", "reader", "error"),
+    [
+        ("deaf", "observer.balance", NotDelivered),
+        ("nosy", "planner.thrust", UndeclaredReader),
+        ("plain", "observer.balance", UserError),
+    ],
+)
+def test_an_audit_that_is_wrong_stops(tmp_path, variant, reader, error, workers):
+    fault = FAULT.aimed_at(reader)
+    row = Row(
+        variant=variant,
+        condition="p",
+        seed=0,
+        treatment=Treatment(variant=variant, faults=(fault,)),
+    )
+    with pytest.raises(error, match=r"observer\.balance"):
+        run_study(_study_of(row), tmp_path, workers=workers)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "sentence"),
+    [
+        (study(("s00", "nowhere")), "has no scene 'nowhere'"),
+        (study(("s00", "s01", "s00")), "selects scene 's00' twice"),
+        (study(()), "selects no scene"),
+        (_study_of(rows()[0], rows()[0]), "two rows"),
+        (
+            _study_of(Row(variant="x", condition="p", seed=0, treatment=Treatment(variant="no"))),
+            "no variant 'no'",
+        ),
+    ],
+)
+def test_a_study_that_cannot_be_run_is_refused(tmp_path, wrong, sentence):
+    with pytest.raises(UserError, match=sentence):
+        run_study(wrong, tmp_path, workers=0)
+
+
+def test_a_key_names_everything_that_decides_a_result():
+    treatments = [Treatment(variant="v", seed=seed) for seed in (0, 1)]
+    scenes = [SceneRef(f"s{i}", i) for i in (0, 1)]
+    here, other = (Library("ten", tuple(scenes), digest) for digest in ("hash", "other"))
+    cases = (
+        (treatments[:1], scenes[:1], 4, here, "fingerprint"),
+        (treatments[:1], scenes[:1], 1, here, "fingerprint"),  # the size of blocks decides none
+        (treatments[1:], scenes[:1], 4, here, "fingerprint"),
+        (treatments[:1], scenes[1:], 4, here, "fingerprint"),
+        (treatments[:1], scenes[:1], 4, other, "fingerprint"),
+        (treatments[:1], scenes[:1], 4, here, "another"),
+    )
+    keys = [plan(*case)[0].key for case in cases]
+    assert keys[0] == keys[1]
+    assert len(set(keys)) == 5

@@ -1,0 +1,102 @@
+"""Trials of one state of a user's code are never taken for those of another."""
+
+import sys
+from pathlib import Path
+
+import pytest
+from stale_toys import Mine
+
+from faultpath.core.errors import UserError
+from faultpath.run.execution.runner import run_study
+
+PLACES = ("file", "helper", "data")
+
+
+@pytest.fixture
+def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Mine:
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    return Mine(tmp_path / "mine")
+
+
+def _edit(mine: Mine, place: str) -> str:
+    """Let every trial end one metre further off, by one file; return the name of that file."""
+    path: Path = getattr(mine, place)
+    old, new = {
+        "file": ("+ push}", "+ push + 1.0}"),
+        "helper": ("0.0", "1.0"),
+        "data": ("0.0", "1.0"),
+    }[place]
+    assert old in path.read_text()
+    path.write_text(path.read_text().replace(old, new))
+    return path.name
+
+
+def _distances(result) -> list[float]:
+    return [row.outcome.metrics["distance"] for row in result.trials]
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_after_an_edit_nothing_stale_comes_back(place, mine, tmp_path):
+    before = run_study(mine.study(), tmp_path / "run", workers=1)
+    shards = {p: p.read_bytes() for p in (tmp_path / "run").rglob("*.parquet")}
+    edited = _edit(mine, place)
+    with pytest.raises(UserError, match=rf"other code than this.*{edited}"):
+        run_study(mine.study(), tmp_path / "run", workers=1)
+    assert {p: p.read_bytes() for p in (tmp_path / "run").rglob("*.parquet")} == shards
+    after = run_study(mine.study(), tmp_path / "new", workers=1)
+    assert after.blocks_kept == 0
+    assert after.system_fingerprint != before.system_fingerprint
+    assert _distances(after) == pytest.approx([x + 1.0 for x in _distances(before)])
+
+
+def test_edited_back_the_trials_are_kept(mine, tmp_path):
+    run_study(mine.study(), tmp_path / "run", workers=1)
+    source = mine.helper.read_text()
+    _edit(mine, "helper")
+    mine.helper.write_text(source)
+    notices: list[str] = []
+    again = run_study(mine.study(), tmp_path / "run", workers=1, notice=notices.append)
+    assert (again.blocks_kept, again.blocks_computed) == (3, 0)
+    assert [notice.partition(", ")[0] for notice in notices] == ["Kept 10 of 10 trials"]
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_an_edit_while_a_run_is_under_way_ends_it(place, mine, tmp_path):
+    """A worker that is built after the edit, or that reads the file after it, is refused."""
+    once, log = tmp_path / "died", tmp_path / "log"
+    study = mine.study(dies="s05", once=str(once), log=str(log))
+    edited = ""
+
+    def edit(progress) -> None:
+        nonlocal edited
+        if not edited and once.exists():
+            edited = _edit(mine, place)
+
+    with pytest.raises(UserError, match="changed while the run was under way") as refusal:
+        run_study(study, tmp_path / "run", workers=1, progress=edit)
+    assert edited in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_without_workers_data_that_change_under_way_end_the_run(mine, tmp_path):
+    def edit(progress) -> None:
+        if progress.done == 8:
+            mine.data.write_text("1.0")
+
+    with pytest.raises(UserError, match=r"push\.txt changed while the run was under way"):
+        run_study(mine.study(), tmp_path / "run", workers=0, progress=edit)
+    assert len(list((tmp_path / "run" / "shards").iterdir())) == 2
+
+
+def test_an_edit_under_way_of_what_nothing_loads_ends_no_run(mine, tmp_path):
+    other = mine.file.with_name("plots.py")
+    other.touch()
+    run_study(mine.study(), tmp_path / "run", workers=0, progress=lambda _: other.write_text("x"))
+    with pytest.raises(UserError, match=r"other code than this.*plots\.py"):
+        run_study(mine.study(), tmp_path / "run", workers=0)
+
+
+def test_data_that_are_not_there_are_named(mine, tmp_path):
+    mine.data.unlink()
+    with pytest.raises(UserError, match=r"push\.txt.*data_files"):
+        run_study(mine.study(), tmp_path / "run", workers=0)

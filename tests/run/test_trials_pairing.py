@@ -1,0 +1,174 @@
+"""A contrast is of trials that met the same conditions; other pairs are void."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from faultpath.run import (
+    Group,
+    PairingRefused,
+    Pairs,
+    Trial,
+    Trials,
+    pair,
+)
+from faultpath.system.outcome import Outcome, Status
+
+ONE, TWO = Group("repair", "shared"), Group("baseline", "shared")
+SCENES = ("a", "b", "c")
+SEEDS = (3, 5)
+
+
+def _outcome(scene: str, seed: int, success: bool, distance: float | None = 1.0) -> Outcome:
+    return Outcome(
+        scene=scene,
+        status=Status.SUCCESS if success else Status.CRASH,
+        time_s=2.0 + seed,
+        metrics={} if distance is None else {"distance": distance},
+        initial_hash=f"i-{scene}",
+        disturbance_hash=f"d-{scene}",
+        planner_noise_hash=f"n-{scene}-{seed}",
+    )
+
+
+def _table(change: Callable[[Trial], Trial] = lambda row: row) -> Trials:
+    """Only the repair succeeds in `a`; both do in `b`; with seed 5 only the baseline in `c`."""
+    wins = {ONE: {"a": SEEDS, "b": SEEDS, "c": ()}, TWO: {"a": (), "b": SEEDS, "c": (5,)}}
+    return Trials.of(
+        tuple(
+            change(
+                Trial(
+                    side.variant,
+                    side.condition,
+                    seed,
+                    index,
+                    "open",
+                    _outcome(scene, seed, seed in wins[side][scene]),
+                )
+            )
+            for side in (ONE, TWO)
+            for seed in SEEDS
+            for index, scene in enumerate(SCENES)
+        )
+    )
+
+
+def whole(pairs: Pairs) -> list[str]:
+    """Return the scenes without a void pair."""
+    return [scene.id for scene in pairs.whole().scenes]
+
+
+def _altering(variant: str, scene: str, seed: int, **fields: object) -> Trials:
+    def change(row: Trial) -> Trial:
+        if (row.variant, row.outcome.scene, row.seed) != (variant, scene, seed):
+            return row
+        return replace(row, outcome=replace(row.outcome, **fields))
+
+    return _table(change)
+
+
+def test_pairs_are_by_scene_and_seed():
+    pairs = pair(_table(), ONE, TWO)
+    assert [(scene.id, scene.index) for scene in pairs.scenes] == [("a", 0), ("b", 1), ("c", 2)]
+    assert (pairs.seeds, pairs.void.sum()) == (SEEDS, 0)
+    np.testing.assert_array_equal(pairs.success[0], [[1, 1], [1, 1], [0, 0]])
+    np.testing.assert_array_equal(pairs.success[1], [[0, 0], [1, 1], [0, 1]])
+    np.testing.assert_array_equal(pairs.ended(Status.CRASH)[1], 1 - pairs.success[1])
+    np.testing.assert_array_equal(pairs.time_s[0], [[5.0, 7.0]] * 3)
+    np.testing.assert_array_equal(pairs.metric("distance")[0], np.ones((3, 2)))
+
+
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [
+        ("initial_hash", "initial states"),
+        ("disturbance_hash", "disturbances"),
+        ("planner_noise_hash", "planner noise"),
+    ],
+)
+def test_other_conditions_void_the_pair_and_name_both_hashes(name, what):
+    table = _altering("repair", "b", 5, **{name: "other"})
+    pairs = pair(table, ONE, TWO)
+    assert (pairs.void.sum(), whole(pairs)) == (1, ["a", "c"])
+    (mismatch,) = pairs.mismatches
+    assert f"in scene 'b' (seed 5): their {what} differ ({name} 'other' and " in str(mismatch)
+    assert repr(getattr(_outcome("b", 5, success=True), name)) in str(mismatch)
+    np.testing.assert_array_equal(pairs.whole().success[1], [[0, 0], [0, 1]])
+
+
+def test_planners_that_draw_differently_are_pairs_all_the_same():
+    table = _altering("repair", "b", 5, planner_noise_hash="other")
+    assert pair(table, ONE, TWO, other_noise=True).mismatches == ()
+    table = _altering("repair", "b", 5, initial_hash="other")
+    assert len(pair(table, ONE, TWO, other_noise=True).mismatches) == 1
+
+
+def test_a_failed_trial_voids_its_pair_and_leaves_its_scene_out():
+    table = _altering("baseline", "b", 3, status=Status.FAILED, initial_hash="", time_s=0.0)
+    pairs = pair(table, ONE, TWO)
+    assert (pairs.void.sum(), whole(pairs)) == (1, ["a", "c"])
+    np.testing.assert_array_equal(pairs.whole().success[0], [[1, 1], [0, 0]])
+    np.testing.assert_array_equal(pairs.whole().time_s[0], [[5.0, 7.0]] * 2)
+
+
+def test_when_every_scene_is_void_nothing_is_left():
+    def fail(row: Trial) -> Trial:
+        return replace(row, outcome=replace(row.outcome, status=Status.FAILED))
+
+    pairs = pair(_table(fail), ONE, TWO)
+    assert (pairs.void.sum(), whole(pairs)) == (6, [])
+    assert pairs.whole().success[0].shape == pairs.whole().time_s[0].shape == (0, 2)
+
+
+def test_pairs_can_be_cut_to_common_scenes():
+    pairs = pair(_table(), ONE, TWO).only(("c", "b"))
+    assert [scene.id for scene in pairs.scenes] == ["b", "c"]
+    np.testing.assert_array_equal(pairs.success[1], [[1, 1], [0, 1]])
+
+
+def test_a_metric_that_a_trial_lacks_is_not_a_number_there():
+    table = _altering("repair", "a", 3, metrics={})
+    pairs = pair(table, ONE, TWO)
+    missing = [np.isnan(values) for values in pairs.metric("distance")]
+    assert missing[0].sum() == 1
+    assert missing[0][SCENES.index("a"), SEEDS.index(3)]
+    assert not missing[1].any()
+
+
+def test_sides_of_different_extent_are_refused():
+    short = Trials.of(tuple(row for row in [*_table()][:-1]))
+    with pytest.raises(PairingRefused, match="different scenes, for example 'c'"):
+        pair(short, ONE, TWO)
+    with pytest.raises(PairingRefused, match="no trial of baseline under correct with seed 3"):
+        pair(_table(), ONE, Group("baseline", "correct"))
+    with pytest.raises(PairingRefused, match="repair under correct"):
+        pair(_table(), Group("repair", "correct"), TWO)
+
+
+def test_what_was_run_once_is_paired_with_every_seed_of_the_other_side():
+    """Its planner drew with its own seed, so that noise counts only where seeds agree."""
+    once = Group("baseline", "shared", once=3)
+    rows = tuple(row for row in _table() if (row.variant, row.seed) != ("baseline", 5))
+    for first, second in ((ONE, once), (once, ONE)):
+        pairs = pair(Trials.of(rows), first, second, SEEDS)
+        assert (pairs.seeds, pairs.void.sum()) == (SEEDS, 0)
+        its = 0 if first == once else 1
+        np.testing.assert_array_equal(pairs.success[its], [[0, 0], [1, 1], [0, 0]])
+        assert pairs.time_s[its].tolist() == [[5.0, 5.0]] * 3
+    assert pair(_altering("repair", "a", 3, planner_noise_hash="x"), ONE, once).void.sum() == 1
+    assert pair(_altering("repair", "a", 5, planner_noise_hash="x"), ONE, once).void.sum() == 0
+    assert pair(_altering("repair", "a", 5, initial_hash="x"), ONE, once).void.sum() == 1
+    with pytest.raises(PairingRefused, match="with seed 4"):
+        pair(_table(), ONE, Group("baseline", "shared", once=4), SEEDS)
+
+
+def test_trials_that_share_nothing_do_not_take_all_memory():
+    trials = [
+        Trial(f"v{n}", f"c{n}", n, n, "", _outcome(f"s{n}", n, success=True)) for n in range(100)
+    ]
+    with pytest.raises(ValueError, match="hardly any variant"):
+        Trials.of(trials)
+    with pytest.raises(ValueError, match="two trials have the same"):
+        Trials.of([trials[0], trials[0]])

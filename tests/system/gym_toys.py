@@ -1,0 +1,91 @@
+"""An environment that ends each episode in its own time, and a module that moves it."""
+
+import gymnasium
+import numpy as np
+from gymnasium.spaces import Box, Dict, Discrete
+
+from faultpath.loop import Module, Port
+from faultpath.run import Treatment
+from faultpath.run.attempt import taps_of
+from faultpath.system import ComposedSystem, FunctionPlant
+from faultpath.system.gymnasium import GymnasiumPlant
+
+REAL = Box(-np.inf, np.inf, (1,), np.float64)
+SCENES = tuple(f"seed/{i}" for i in range(6))
+
+
+class Walk(gymnasium.Env):
+    """A walker that falls off beyond 3, and is called back after some steps of its own number."""
+
+    observation_space = Box(-np.inf, np.inf, (2,), np.float64)
+    action_space = Box(-1.0, 1.0, (1,), np.float64)
+    dt = 0.5
+
+    def __init__(self):
+        self.slope, self.calls = 0.0, []
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.at, self.step_count = float(self.np_random.uniform(-1, 1)), 0
+        self.patience = int(self.np_random.integers(3, 9))
+        self.calls.append("reset")
+        return self._seen(), {}
+
+    def step(self, action):
+        self.calls.append("step")
+        self.at += float(action[0]) + self.slope
+        self.step_count += 1
+        fell, late = abs(self.at) > 3, self.step_count >= self.patience
+        return self._seen(), -abs(self.at), fell, late, {"patience": self.patience}
+
+    def _seen(self):
+        return np.array([self.at, self.step_count])
+
+
+class Keyed(Walk):
+    """The same, with its observation by key and two actions to choose from."""
+
+    observation_space = Dict({"at": REAL, "eye": Box(-np.inf, np.inf, (4, 4), np.float64)})
+    action_space = Discrete(2)
+
+    def step(self, action):
+        assert self.action_space.contains(action)
+        return super().step(np.array([float(action) - 0.5]))
+
+    def _seen(self):
+        return {"at": np.array([self.at]), "eye": np.full((4, 4), self.at)}
+
+
+class Steer(Module):
+    name, writes = "steer", ("push",)
+    reads = frozenset({Port("place", "feedback")})
+
+    def __init__(self, gain=0.5):
+        self.gain = gain
+
+    def step(self, inputs, memory):
+        return {"push": np.clip(self.gain * inputs["place", "feedback"], -1, 1)}, memory
+
+
+def kept(episode):
+    return not episode.terminated and len(episode.rewards) == episode.info["patience"]
+
+
+def plant(environment=Walk, **given):
+    given = {"observes": {"place": 0}, "steps": 20, "succeeded": kept} | given
+    return GymnasiumPlant(environment, action="push", **given)
+
+
+def functions(start, step, action="push", steps=2, succeeded=lambda episode: True, **given):
+    """Return a plant of plain functions in which every scene succeeds."""
+    given = {"dt_s": 0.1, "steps": steps, "succeeded": succeeded} | given
+    return FunctionPlant(start, step, action=action, **given)
+
+
+def system(made, modules=None, **given):
+    units = {"place": "m", "push": "m", "slope": "m"} | given.pop("units", {})
+    return ComposedSystem("walk", made, {"only": modules or [Steer()]}, units, **given)
+
+
+def fly(built, scenes=SCENES, variant="only", seed=0):
+    return built.run(variant, scenes, taps_of(built, Treatment(variant=variant), scenes), seed)

@@ -1,0 +1,270 @@
+"""A check passes what is sound, and names what is broken and nothing else."""
+
+import json
+import os
+import re
+
+import pytest
+from checked import BROKEN, LOOPS, ROOT, check, failed
+from gym_toys import functions
+
+from faultpath.cli.main import main
+from faultpath.core.errors import SystemMistake, UserError
+from faultpath.loop import Taps
+from faultpath.run.check.judging import remedy
+from faultpath.run.check.remarks import ENOUGH, diverged, other_names, successes, without_room
+from faultpath.system import ComposedSystem, Outcome, Status, writes
+
+INDEPENDENCE = "scene independence"
+SAID = {
+    "raises": ("trials end", "Variant 'bare': ValueError: no air"),
+    "raises late": ("trials end", ") in scene 'w4'; correct the system"),
+    "never repeats": ("determinism", "first at step 1 in range -> pilot.approach, scene 'w0'"),
+    "by place": ("scene independence", "Variant 'bare' run in another order, without"),
+    "crowded": ("scene independence", "without some of the scenes beside it, differs"),
+    "barely crowded": ("scene independence", "differs in"),
+    "network with batch norm": ("scene independence", "wrap a torch module in"),
+    "unpaired": ("pairing", "their disturbances differ"),
+    "hashless": ("pairing", "All 4 scenes carry the same hashes"),
+    "deaf": ("declared reads", "Variant 'guarded' declares that guard.limit reads 'range'"),
+    "nosy": ("declared reads", "tap range -> guard.limit: this variant has no such reader"),
+    "of the future": ("declared reads", "the reading is of step 1, which is after step 0"),
+    "another source": ("declared reads", "the reading is of source 'sonar'"),
+    "keeps": (
+        "fault delivery",
+        "Injection point range -> guard.limit of variant 'guarded', faulted in 4",
+    ),
+    "nan": ("shape and unit", "source 'laser' at step 10, read by pilot.approach, is not finite"),
+    "shape": ("shape and unit", "'laser' declares `shape: []`"),
+    "whole": ("shape and unit", "Source 'laser' gives whole numbers (int64) of unit m: what is"),
+    "millimetres": ("shape and unit", "its largest reading is 2.78e+03; give it in m"),
+}
+NONE_ENDS = ("of the future", "another source", "shape")
+"""Ways to be broken in which no trial of any variant ends."""
+
+
+@pytest.mark.parametrize("broken", SAID)
+def test_a_broken_system_fails_its_check_and_no_other(broken):
+    if "network" in broken:
+        pytest.importorskip("torch")
+    found = failed(check(broken=broken))
+    name, sentence = SAID[broken]
+    found.pop("trials end", None) if broken in NONE_ENDS else None
+    found.pop("determinism", None) if broken == "keeps" else None  # what it reads differs too
+    assert set(found) == {name}, found
+    assert any(sentence in said for said in found[name]), found[name]
+    assert all(said.endswith(".") for said in found[name])
+
+
+@pytest.mark.parametrize(
+    ("name", "library"),
+    [(BROKEN, "any"), ("examples/toy.py:create", "carts"), ("examples/dock.py:create", "floors")],
+)
+def test_a_sound_system_passes(name, library):
+    report = check(name if name == BROKEN else f"{ROOT / name}", library=library)
+    assert failed(report) == {}
+    assert {each.status for each in report.checks} == {"passed"}
+
+
+def test_where_no_trial_ends_that_check_fails_and_names_the_one_to_see():
+    trials = check(broken="shape").checks[0]
+    assert (trials.status, trials.says) == ("failed", "none did; see *shape and unit*")
+    (said,) = trials.failures
+    assert said.startswith("No trial of any variant ended: correct first what *shape and unit*")
+
+
+@pytest.mark.parametrize("also", [(), ("pilot.approach",)], ids=["instead", "too"])
+def test_a_fault_that_alters_another_tap_is_seen_without_the_taps_own_counts(monkeypatch, also):
+    attach = Taps._add
+
+    def misplaced(self, faults, dt_s, seed):
+        moved = {"readers": ("guard.limit", *also)}
+        guarded = ("range", "guard.limit") in self._taps
+        at = [
+            fault.model_copy(update=moved)
+            if guarded and fault.readers == ("pilot.approach",)
+            else fault
+            for fault in faults
+        ]
+        attach(self, at, dt_s, seed)
+
+    monkeypatch.setattr(Taps, "_add", misplaced)
+    monkeypatch.setattr(Taps, "verify", lambda self, last_step: None)
+    lead = (
+        "Injection point range -> pilot.approach of variant 'guarded', faulted in 4 trials, "
+        "altered a reading"
+    )
+    failures = failed(check(broken=""))["fault delivery"]
+    assert any(said.startswith(f"{lead} at range -> guard.limit too") for said in failures)
+
+
+def test_an_error_is_told_with_its_line_and_an_if_on_a_reading_with_what_to_take():
+    trials = check(broken="raises").checks[0]
+    assert (trials.status, trials.says) == ("failed", "none did")
+    (said,) = trials.failures
+    assert re.search(
+        r"ValueError: no air \(\S*broken\.py, line \d+\) in scene 'w2'; correct the system", said
+    )
+    assert "np.where" in remedy("ValueError: The truth value of an array is ambiguous")
+
+
+def test_a_source_that_nobody_writes_is_looked_up_where_a_module_reads_it():
+    @writes("push")
+    def controller(sped):
+        return sped
+
+    plant = functions(
+        lambda rng: {"speed": 1.0}, lambda state, push, rng: state, observes={"speed": "speed"}
+    )
+    line = controller._function.__code__.co_firstlineno
+    sentence = rf"test_checks_check\.py, line {line}: system 'cart': module 'controller': unknown "
+    sentence += "source 'sped'; did you mean 'speed'"
+    with pytest.raises(SystemMistake, match=sentence):
+        ComposedSystem("cart", plant, {"old": [controller]}, {"speed": "m/s", "push": "1"})
+
+
+def test_a_baseline_that_always_ends_alike_leaves_an_audit_no_room():
+    def ends(count: int, *others: Status) -> list[Outcome]:
+        statuses = (*[Status.SUCCESS] * (count - len(others)), *others)
+        return [Outcome(f"w{i}", how, 1.0, "a", "b", "c") for i, how in enumerate(statuses)]
+
+    crashes = ends(ENOUGH, *[Status.CRASH] * ENOUGH)
+    above, below = without_room({"bare": ends(ENOUGH), "guarded": ends(ENOUGH), "lost": crashes})
+    assert above.startswith("Variants 'bare', 'guarded' succeed in all of 20 checked scenes")
+    assert below.startswith("Variant 'lost' succeeds in none of 20 checked scenes")
+    assert without_room({"bare": ends(ENOUGH - 1)}) == ()  # too few to say so
+    for odd in (Status.CRASH, Status.FAILED):
+        assert without_room({"bare": ends(ENOUGH, odd)}) == ()
+
+
+def test_a_check_counts_successes_and_sees_what_diverged():
+    rows = [Outcome("w0", how, 1.0, "a", "b", "c") for how in (Status.SUCCESS, Status.CRASH)]
+    counted = successes({"bare": rows, "guarded": rows[:1]})
+    assert counted == "3 under correct inputs; successes: bare 1 of 2, guarded 1 of 1"
+    assert diverged({"height": (-2.0, 3.0)}) == ()
+    assert "Source 'height' gives readings of up to 2e+259" in diverged({"height": (-2e259, 1)})[0]
+
+
+def test_a_check_says_that_a_system_is_at_its_ceiling():
+    name = f"{ROOT / 'examples/toy.py'}:create"
+    trials = check(name, library="carts", scenes=ENOUGH, variants=("calibrated",)).checks[0]
+    assert trials.status == "passed"
+    assert trials.remarks[0].startswith("Variant 'calibrated' succeeds in all of 20 checked scenes")
+
+
+def test_modules_that_stand_for_each_other_under_two_names_are_a_remark():
+    def cart(second: str):
+        @writes("slope", name=second)
+        def nominal(speed):
+            return speed
+
+        @writes("slope")
+        def observer(speed):
+            return 2 * speed
+
+        @writes("push")
+        def controller(slope):
+            return -slope
+
+        plant = functions(
+            lambda rng: {"speed": rng.uniform()},
+            lambda state, push, rng: {"speed": state["speed"] + push},
+            observes={"speed": "speed"},
+        )
+        variants = {"old": [observer, controller], "new": [nominal, controller]}
+        units: dict[str, str] = dict.fromkeys(("speed", "slope", "push"), "1")
+        return ComposedSystem("cart", plant, variants, units)
+
+    (said,) = other_names(cart("nominal"), ["old", "new"])
+    assert said.startswith("Modules 'observer' of old and 'nominal' of new read speed and write")
+    assert other_names(cart("observer"), ["old", "new"]) == ()
+
+
+@pytest.mark.parametrize(
+    ("kind", "status", "remark"),
+    [
+        ("rounds", "passed", "differs by rounding alone, at most [1-9]e-1[5-7]"),
+        ("last digit", "not judged", "rounding cannot be told from dependence"),
+        ("network", "passed", "differs by rounding alone"),
+        ("network row by row", "passed", "^$"),
+    ],
+)
+def test_rounding_is_told_from_dependence_by_its_size(kind, status, remark):
+    """A sum over scenes beside it may change a last digit; that is no shared state."""
+    if "network" in kind:
+        pytest.importorskip("torch")
+    (found,) = (each for each in check(broken=kind).checks if each.name == INDEPENDENCE)
+    assert found.status == status
+    assert re.search(remark, " ".join(found.remarks))
+
+
+def test_a_system_that_takes_one_scene_at_a_time_flies_all_that_are_asked_for():
+    report = check(broken="one at a time")
+    assert failed(report) == {}
+    assert len(report.scenes) == 4
+    assert report.checks[0].says.startswith("8 ")
+
+
+def test_a_reader_that_ignores_its_reading_is_remarked_and_not_failed():
+    report = check(broken="ignores")
+    assert failed(report) == {}
+    (remarks,) = (each.remarks for each in report.checks if each.remarks)
+    assert "Injection point mass -> pilot.thrust of variant 'bare'" in remarks[0]
+
+
+@pytest.mark.parametrize(
+    ("broken", "says"),
+    [
+        ("undeclared port", "add Port('place', 'other') to its reads."),
+        ("undeclared truth", "the plant's truth 'truth'"),
+    ],
+)
+def test_a_modules_ports_are_what_it_looks_at(broken, says):
+    found = failed(check(LOOPS, broken=broken))
+    assert set(found) == {"trials end", "declared reads"}
+    assert any("'pilot'" in each and says in each for each in found["declared reads"]), found
+
+
+def test_what_differs_from_process_to_process_takes_workers_to_see():
+    assert failed(check(broken="hash of a text")) == {}
+    assert set(failed(check(broken="hash of a text", workers=1))) == {"determinism"}
+
+
+@pytest.mark.parametrize(
+    ("question", "says"),
+    [({"variants": ("bear",)}, "did you mean 'bare'"), ({"scenes": 7}, "1 to 6")],
+)
+def test_what_cannot_be_checked_is_refused(question, says):
+    with pytest.raises(UserError, match=says):
+        check(**question)
+
+
+def test_the_command_says_it_in_lines_and_as_json(capsys, monkeypatch):
+    def run(*arguments: str) -> tuple[int, str]:
+        monkeypatch.setattr("sys.argv", ["faultpath", "check", *arguments, "--workers", "0"])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        return int(ended.value.code or 0), capsys.readouterr().out
+
+    code, said = run(BROKEN)
+    assert (code, said.splitlines()[-1]) == (0, "No check failed; 1 remark.")
+    code, said = run(BROKEN, "--broken", "deaf", "--json", "--scenes", "2")
+    assert code == 1
+    counts = [len(each["failures"]) for each in json.loads(said)["checks"]]
+    assert counts == [0, 0, 0, 0, 1, 0, 0, 0]
+    assert run(BROKEN, "--variants", "bear")[0] == 2
+
+
+def test_a_file_that_is_read_undeclared_fails_a_check_of_its_own(tmp_path) -> None:
+    (tmp_path / "gain.txt").write_text("1")
+    (tmp_path / "mine.py").write_text(
+        f"import sys\nsys.path.append({str(ROOT / 'examples')!r})\nfrom pathlib import Path\n"
+        "from toy import Toy\nclass Mine(Toy):\n    def run(self, *asked):\n"
+        "        Path(__file__).with_name('gain.txt').read_text()\n"
+        "        return super().run(*asked)\ndef create() -> Mine:\n    return Mine()\n"
+    )
+    os.utime(tmp_path / "gain.txt", (0, 0))
+    found = failed(check(f"{tmp_path}/mine.py:create", library="carts"))
+    assert set(found) == {"trials end", "data files"}
+    (said,) = found["data files"]
+    assert "reads gain.txt, which it does not declare" in said

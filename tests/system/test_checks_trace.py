@@ -1,0 +1,116 @@
+"""A trace tells who read what, when; what differs from the declarations is a finding."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from faultpath.cli.main import main
+from faultpath.core.errors import UserError
+from faultpath.faults import FaultText
+from faultpath.interface import Provenance
+from faultpath.report.terminal import trace_table
+from faultpath.run import SystemSpec, load_system
+from faultpath.run.check.tracing import trace_system
+from faultpath.run.question import TraceQuestion
+
+ROOT = Path(__file__).resolve().parents[2]
+HERE = Path(__file__).parent
+BROKEN, LOOPS = f"{HERE / 'broken.py'}:create", f"{HERE / 'broken_loops.py'}:create"
+TOY, DOCK = f"{ROOT / 'examples/toy.py'}:create", f"{ROOT / 'examples/dock.py'}:create"
+
+
+def trace(name, variant, fault=None, library="selection", **options):
+    spec = SystemSpec(name=name, options=options)
+    system = load_system(spec)
+    text = fault and FaultText.read(fault)
+    question = TraceQuestion(variant=variant, library=library, fault=text)
+    return system, trace_system(system, spec, question)
+
+
+def test_it_says_who_read_what_and_when_and_stops_after_its_steps():
+    system, found = trace(TOY, "calibrated")
+    assert {read.step for read in found.reads} == {0, 1, 2}
+    assert {read.reader for read in found.reads} == system.variants["calibrated"].readers
+    late = [read.valid_step for read in found.reads if read.reader == "observer.executed"]
+    assert late == [-1, 0, 1]
+    assert found.reconstructed == {"observed_slope": ("observer", ("gain", "push", "velocity"))}
+    assert found.findings == ()
+
+
+def test_a_run_of_ones_own_is_traced_and_a_fault_shows_whom_it_reaches():
+    _, found = trace(DOCK, "ranges", "range:scale=0.7@speedometer", library="floors")
+    altered = {read.reader: read.altered_by for read in found.reads if read.altered_by}
+    assert altered == {"speedometer.difference": ("scaled by 0.7",)}
+    (speed,) = (line for line in trace_table(found).lines if line.label == "approach.feedback")
+    assert [entry.text for entry in speed.entries] == [
+        *("speed", "", "range_rate", "0 1 2", "0 1 2", "speedometer")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "variant", "broken", "said"),
+    [
+        (BROKEN, "bare", "nosy", r"tap range -> guard.limit: this variant has no such reader"),
+        (BROKEN, "guarded", "deaf", r"declares that guard.limit reads 'range', but in the first 3"),
+        (BROKEN, "bare", "of the future", r"tap range -> pilot.approach: the reading is of step 1"),
+        (BROKEN, "bare", "another source", r"of source 'sonar', but the channel is bound to 'las"),
+        (LOOPS, "plain", "undeclared port", r"ended early: .*'place' at 'other', a port that it d"),
+    ],
+)
+def test_what_is_not_as_declared_is_found(name, variant, broken, said):
+    if broken in ("of the future", "another source"):  # nothing was read before
+        with pytest.raises(UserError, match=said):
+            trace(name, variant, broken=broken)
+        return
+    _, found = trace(name, variant, broken=broken)
+    assert len(found.findings) == 1
+    assert re.search(said, found.findings[0])
+
+
+def test_a_privileged_read_without_permission_is_found():
+    system, _ = trace(TOY, "calibrated")
+    interface = system.interface
+    known = interface.source("gain_estimate")
+    secret = known.model_copy(update={"provenance": Provenance.PRIVILEGED})
+    sources = tuple(secret if each.name == secret.name else each for each in interface.sources)
+    system.interface = interface.model_copy(update={"sources": sources})
+    vars(system).pop("_variants", None)
+    question = TraceQuestion(variant="calibrated", library="carts")
+    permitted = trace_system(system, SystemSpec(name=TOY), question)
+    assert permitted.findings == ()
+    readers = [each.split(" reads")[0] for each in permitted.privileged]
+    assert readers == ["observer.model", "controller.inverse"]
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"variant": "blinded"}, "unknown variant 'blinded'; did you mean 'blind'?"),
+        ({"variant": "blind", "scene": "cart/1"}, "library 'selection': unknown scene 'cart/1'"),
+    ],
+)
+def test_what_cannot_be_traced_is_refused(more, said):
+    system, _ = trace(TOY, "blind")
+    with pytest.raises(UserError, match=re.escape(said)):
+        trace_system(system, SystemSpec(name=TOY), TraceQuestion(**more))
+
+
+def test_the_command_prints_and_exits_with_what_was_found(capsys, monkeypatch):
+    def run(*arguments: str) -> tuple[int, str]:
+        monkeypatch.setattr("sys.argv", ["faultpath", "trace", *arguments])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        return int(ended.value.code or 0), capsys.readouterr().out
+
+    code, said = run(TOY, "--variant", "blind", "--fault", "gain:scale=0.6")
+    assert code == 0
+    assert "What ran is what is declared." in said
+    lines = said.splitlines()
+    assert max(len(each) for each in lines) <= 80
+    (reached,) = (line for line in lines if line.startswith("controller.inverse") and "by" in line)
+    assert "gain scaled by 0.6 gain_estimate 0 1 2 0 1 2" in " ".join(reached.split())
+    code, said = run(BROKEN, "--broken", "nosy", "--json")
+    assert (code, len(json.loads(said)["findings"])) == (1, 1)
+    assert run(BROKEN, "--fault", "mass:scale=2@guard")[0] == 2

@@ -1,0 +1,118 @@
+"""Plain functions as a plant: a scene is what `start` draws, a step is what `step` does."""
+
+import numpy as np
+import pytest
+from gym_toys import SCENES, Steer, fly, functions
+
+from faultpath.core.errors import SystemMistake
+from faultpath.system import ComposedSystem, Status, writes
+from faultpath.system.observed import hashed
+
+UNITS = {"place": "m", "push": "m", "clock": "1"}
+
+
+def start(rng):
+    return {"at": rng.uniform(-1, 1), "clock": 0}
+
+
+def step(state, push, rng):
+    at = state["at"] + float(push) + rng.normal(scale=0.05)
+    return {"at": at, "clock": state["clock"] + 1}
+
+
+def cart(**given):
+    episodes = []
+
+    def note(episode):
+        episodes.append(episode)
+        return not episode.terminated
+
+    more = {"over": lambda state: abs(state["at"]) > 1.5, "succeeded": note} | given
+    observes = {"place": "at", "clock": "clock"}
+    plant = functions(start, step, steps=6, dt_s=0.5, observes=observes, **more)
+    built = ComposedSystem("cart", plant, {"only": [Steer()]}, UNITS)
+    episodes.clear()
+    return built, episodes
+
+
+def test_a_scene_ends_where_over_says_so_and_is_frozen():
+    built, episodes = cart()
+    outcomes = fly(built)
+    assert {o.status for o in outcomes} == {Status.SUCCESS, Status.CRASH}
+    assert sorted(len(e.rewards) * 0.5 for e in episodes) == sorted(o.time_s for o in outcomes)
+    assert all(list(e["clock"]) == list(range(len(e.rewards) + 1)) for e in episodes)
+    for episode in episodes:
+        beyond = np.abs(episode["place"]) > 1.5
+        assert not beyond[:-1].any()
+        assert beyond[-1] == episode.terminated
+
+
+def test_noise_belongs_to_scene_seed_and_step_and_not_to_who_flies_beside():
+    built, _ = cart()
+    by_scene = {o.scene: o for o in fly(built)}
+    mixed = [SCENES[i] for i in (3, 1)]
+    assert fly(built, mixed) == [by_scene[scene] for scene in mixed]
+    other = fly(built, mixed, seed=1)
+    assert [o.initial_hash for o in other] == [by_scene[s].initial_hash for s in mixed]
+    assert all(o.disturbance_hash != by_scene[o.scene].disturbance_hash for o in other)
+
+
+def test_a_module_stands_in_for_a_source_of_several_numbers():
+    plant = functions(
+        lambda rng: {"pair": rng.uniform(size=2)},
+        lambda state, push, rng: {"pair": state["pair"] + push},
+        observes={"seen": "pair"},
+    )
+
+    @writes("guessed")
+    def guess(seen):
+        return 2 * seen
+
+    @writes("push")
+    def steer(place):
+        return place[:, 0]
+
+    built = ComposedSystem(
+        "pair",
+        plant,
+        {"seeing": [steer], "guessing": [guess, steer]},
+        dict.fromkeys(("seen", "guessed", "push"), "m"),
+        channels={"place": ("seen", "guessed")},
+    )
+    assert built.interface.source("guessed").shape == (2,)
+    assert built.interface.reconstructs == {"guess": ("guessed",)}
+    assert built.variants["seeing"].bindings == {"place": "seen"}
+    assert built.variants["guessing"].bindings == {"place": "guessed"}
+    assert len(fly(built, variant="guessing")) == len(SCENES)
+
+
+def test_the_hash_of_a_state_that_holds_an_object_does_not_depend_on_places() -> None:
+    def held(name: str, module: str) -> object:
+        return type(name, (), {"__module__": module})()
+
+    one, two = held("Craft", "faultpath_system_a1"), held("Craft", "faultpath_system_b2")
+    assert hashed({"craft": one, "x": 1.0}) == hashed({"craft": two, "x": 1.0})
+    assert hashed({"craft": one}) != hashed({"craft": held("Boat", "faultpath_system_a1")})
+
+
+def test_a_key_that_the_state_has_not_is_told_with_those_that_it_has():
+    sentence = "observes: source 'place': the state has no key 'plce'; it has at, clock"
+    with pytest.raises(SystemMistake, match=sentence):
+        functions(start, step, observes={"place": "plce"})
+
+
+def test_a_state_may_hold_what_has_another_shape_in_each_scene():
+    def drawn(rng):
+        return start(rng) | {"obstacles": np.zeros(int(rng.integers(1, 50)))}
+
+    def moved(state, push, rng):
+        return step(state, push, rng) | {"obstacles": state["obstacles"]}
+
+    observes = {"place": "at", "clock": "clock"}
+    plant = functions(drawn, moved, steps=6, dt_s=0.5, observes=observes)
+    built = ComposedSystem("cart", plant, {"only": [Steer()]}, UNITS)
+    assert (
+        len({len(world.observation["obstacles"]) for world in map(plant.world, SCENES, [0] * 6)})
+        > 1
+    )
+    assert [outcome.failed for outcome in fly(built)] == [False] * len(SCENES)

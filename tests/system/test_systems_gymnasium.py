@@ -1,0 +1,263 @@
+"""Gymnasium's environments as plants: ends of episodes, scenes, what follows from what runs."""
+
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gym_toys import SCENES, Keyed, Steer, Walk, fly, plant, system
+
+import faultpath
+from faultpath.core.errors import SystemMistake, UserError
+from faultpath.loop import Port
+from faultpath.run import SystemSpec, Treatment
+from faultpath.run.check.blocks import BlockSpec, run_block
+from faultpath.run.code import system_code
+from faultpath.run.registry import load_parts
+from faultpath.run.store.signals import DRAWN
+from faultpath.system import ComposedSystem, writes
+from faultpath.system.checks import UNNAMED
+from faultpath.system.episodes import EpisodePlant
+
+PENDULUM = Path(__file__).resolve().parents[2] / "examples" / "pendulum.py"
+
+
+def test_a_finished_episode_is_frozen_as_it_ended():
+    episodes, clocks = [], []
+
+    @writes("push")
+    def watch(place, clock):
+        clocks.append(clock.copy())
+        return np.clip(0.5 * place, -1, 1)
+
+    seen = plant(observes={"place": 0, "clock": 1}, succeeded=lambda e: episodes.append(e) or True)
+    built = system(seen, [watch], units={"clock": "1"})
+    clocks.clear()
+    ends = [round(o.time_s / 0.5) for o in fly(built)]
+    assert all(e.returned == -abs(e["place"][1:]).sum() for e in episodes)
+    delivered = np.array(clocks).T.tolist()
+    assert delivered == [[min(step, end) for step in range(len(clocks))] for end in ends]
+
+
+def test_an_environment_of_its_own_is_never_moved_beyond_its_end():
+    made = []
+
+    def make():
+        made.append(Walk())
+        return made[-1]
+
+    built = system(plant(make))
+    made.clear()
+    ends = [round(o.time_s / 0.5) for o in fly(built)]
+    assert [each.calls for each in made] == [["reset", *["step"] * end] for end in ends]
+
+
+def test_what_runs_is_the_interface():
+    def setup(env, rng):
+        env.unwrapped.slope = rng.uniform(-0.1, 0.1)
+        return {"slope": env.unwrapped.slope}
+
+    class Knowing(Steer):
+        reads = frozenset({Port("place", "feedback"), Port("slope", "model")})
+
+    built = system(plant(setup=setup, observes={"place": slice(0, 1)}), [Knowing()])
+    found = {s.name: (s.shape, s.unit, s.provenance.value) for s in built.interface.sources}
+    assert found == {
+        "place": ((1,), "m", "measured"),
+        "push": ((1,), "m", "commanded"),
+        "slope": ((), "m", "estimated"),
+    }
+    assert built.interface.channel("slope").gap == "fidelity"
+    assert built.variants["only"].readers == {"steer.feedback", "steer.model", "plant.actuator"}
+
+
+def test_scenes_set_up_in_another_way_are_no_pair():
+    def setup(width, env, rng):
+        env.unwrapped.slope = rng.uniform(-width, width)
+
+    def disturbances(width):
+        return [o.disturbance_hash for o in fly(system(plant(setup=partial(setup, width))))]
+
+    def drawn_twice(env, rng):
+        setup(0.1, env, rng)
+        rng.uniform()
+
+    assert disturbances(0.1) == disturbances(0.1)
+    assert len(set(disturbances(0.1))) == len(SCENES)
+    twice = [o.disturbance_hash for o in fly(system(plant(setup=drawn_twice)))]
+    assert not set(twice) & set(disturbances(0.1))
+
+
+def test_what_disturbs_a_step_is_drawn_by_scene_seed_and_step():
+    drawn = []
+
+    def gust(env, rng, step):
+        env.unwrapped.slope = rng.uniform(-0.5, 0.5)
+        drawn.append((env.unwrapped.slope, step))
+
+    built = system(plant(on_step=gust))
+    drawn.clear()
+    first = fly(built, SCENES[:1])
+    alone = drawn.copy()
+    assert [step for _, step in alone] == list(range(len(alone)))
+    assert len({slope for slope, _ in alone}) == len(alone) > 1
+    drawn.clear()
+    both = fly(built, SCENES[1::-1])
+    assert both[1] == first[0]
+    assert set(alone) < set(drawn)
+    drawn.clear()
+    again = fly(built, SCENES[:1], seed=1)
+    assert not set(alone) & set(drawn)
+    assert again[0].disturbance_hash != first[0].disturbance_hash
+
+
+def test_what_is_traced_and_rendered_is_kept_for_the_player():
+    def rod(env):
+        return [(0, 0), (env.unwrapped.at, 1)]
+
+    made = system(
+        plant(trace=lambda env: [env.unwrapped.at], render=rod, observes={"place": slice(0, 2)}),
+        units={"place": {"unit": "m, 1", "components": ("where", "clock")}},
+        modules=[Ahead()],
+    )
+    found = run_block(made, BlockSpec(Treatment(variant="only", seed=0), SCENES[:2], signals=True))
+    for outcome, signals in zip(found.outcomes, found.signals, strict=True):
+        named = {each.name: each for each in signals}
+        assert named["place"].parts == ("where", "clock")
+        assert np.array_equal(named[DRAWN].values[:, 2], named["place"].values[:, 0])
+        assert np.array_equal(outcome.trace[:-1, 0], named["place"].values[:, 0])
+        assert named[DRAWN].values.shape[1] == 4
+
+
+def test_libraries_are_seeds_and_a_single_one_is_taken_where_none_is_named():
+    built = system(plant(), scenes={"some": range(5, 8)})
+    library = built.library("some")
+    assert [scene.id for scene in library.scenes] == ["seed/5", "seed/6", "seed/7"]
+    other = system(plant(), scenes={"some": range(6, 9)}).library("some")
+    assert library.content_hash != other.content_hash
+    several = system(plant(), scenes={"some": range(5, 8), "more": range(9)})
+    for default in UNNAMED:
+        assert built.library(default) == library
+        with pytest.raises(UserError, match=f"unknown library '{default}'; known: more, some"):
+            several.library(default)
+
+
+class Ahead(Steer):
+    def step(self, inputs, memory):
+        return {"push": 0.1 * inputs["place", "feedback"][:, 0]}, memory
+
+
+def measured(units):
+    return ComposedSystem("walk", plant(), {"only": [Steer()]}, units)
+
+
+@writes("push")
+def whole(place):
+    return np.zeros((len(place), 2))
+
+
+@writes("push")
+def look(eye):
+    return eye[:, 0]
+
+
+@writes("push", past="push")
+def again(place, push):
+    return push
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: plant(observes={"place": 7}), "holds no such part"),
+        (lambda: plant(observes={"place": "at"}), "holds no such part"),
+        (
+            lambda: plant(Keyed, observes={"place": "to"}),
+            "the observation has no key 'to'; it has ",
+        ),
+        (lambda: plant(dt_s=None, environment="CartPole-v1"), "does not say dt_s: give it"),
+        (lambda: plant(steps=None), "does not say steps: give it"),
+        (lambda: measured({}), "'place' has no unit"),
+        (lambda: measured({"plce": "m"}), "units names 'plce', which is no .*did you mean 'place'"),
+        (lambda: system(plant(), [look]), "'look': unknown source 'eye'; known:"),
+        (lambda: system(plant(), [again]), "before the first step"),
+        (lambda: fly(system(plant(), [whole])), r"shape \[1\], and.* of shape \[2\]"),
+        (lambda: fly(system(plant(Keyed, observes={"place": ("at", 0)}))), "whole numbers.*float"),
+        (lambda: fly(system(plant(succeeded=lambda e: None))), "returned None of an episode"),
+        (lambda: fly(system(plant(succeeded=lambda e: e["x"]))), "unknown source 'x'"),
+        (lambda: fly(system(plant()), ["a"]), "scene 'a' names no seed"),
+        (
+            lambda: system(plant(), units={"place": {"unit": "m", "components": ("a", "b")}}),
+            "'place' has 2 components",
+        ),
+        (lambda: fly(system(plant(trace=lambda env: []))), "`trace` returned 0 numbers"),
+    ],
+)
+def test_mistakes_are_told_in_a_sentence(make, said):
+    with pytest.raises(SystemMistake, match=said):
+        make()
+
+
+def test_the_code_of_an_environment_that_nobody_imports_counts(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "their_walk.py").write_text(
+        "import gymnasium\nfrom gym_toys import Walk\n"
+        "class Theirs(Walk): pass\n"
+        "gymnasium.register('Theirs-v0', lambda: Theirs(), max_episode_steps=30)\n"
+    )
+    built = system(plant("their_walk:Theirs-v0", steps=None))
+    assert built.plant().steps == 30
+    code = system_code(built, SystemSpec(name="examples/pendulum.py:create"))
+    assert any(name.endswith("their_walk.py") for name in code.state.files)
+    assert "Theirs-v0" in built.fingerprint()
+
+
+WRAPPED = """
+import gymnasium
+from gymnasium.wrappers import TransformReward
+from faultpath.system.gymnasium import GymnasiumPlant
+
+class Own(gymnasium.Wrapper, gymnasium.utils.RecordConstructorArgs):
+    def __init__(self, env, law):
+        gymnasium.utils.RecordConstructorArgs.__init__(self, law=law)
+        super().__init__(env)
+
+def made() -> GymnasiumPlant:
+    return GymnasiumPlant(
+        lambda: Own(TransformReward(gymnasium.make("Pendulum-v1"), abs), lambda reward: reward),
+        observes={"angle": 0}, action="torque", succeeded=bool, dt_s=0.05,
+    )
+"""
+
+
+def test_scenes_are_the_same_wherever_the_file_of_a_system_lies(tmp_path):
+    """Their hash is in records; with another one a run could be flown again in its folder only."""
+    made = []
+    for folder in ("here", "there"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "wrapped.py").write_text(WRAPPED)
+        made += load_parts([f"{tmp_path / folder / 'wrapped.py'}:made"], (EpisodePlant,)).values()
+    here, there = (make().identity for make in made)
+    assert "faultpath_system_:Own" in here
+    assert "function" in here
+    assert here == there
+
+
+def test_the_pendulums_repair_helps_against_the_isolated_fault_and_hurts_under_the_shared(tmp_path):
+    run = faultpath.audit(
+        PENDULUM,
+        baseline="calibrated",
+        repair="nominal",
+        fault="motor_gain:scale=0.8",
+        library="training",
+        scenes=12,
+        workers=0,
+        folder=tmp_path / "run",
+        progress=False,
+    )
+    assert run.failed == 0
+    assert run.record.findings == ()
+    effects = {effect.condition: effect.value for effect in run.record.effects}
+    assert effects["filter"] > 0 > effects["shared"]
+    metrics = {of.condition: of.metrics["offset_m"] for of in run.record.secondary}
+    assert metrics["filter"].value < 0 < metrics["shared"].value
