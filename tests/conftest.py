@@ -2,7 +2,7 @@
 
 import secrets
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from importlib.util import find_spec
 
@@ -28,6 +28,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--engine-alone", action="store_true", help="Leave out what needs torch or the quadrotor."
     )
+    parser.addoption("--approve", action="store_true", help="Write texts that tests compare anew.")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -42,6 +43,24 @@ def fuzz_seed(request: pytest.FixtureRequest) -> int:
     """The seed of what a fuzz test tries; a failing test names it."""
     given = request.config.getoption("--fuzz-seed")
     return secrets.randbelow(10**9) if given == "random" else int(given)
+
+
+@pytest.fixture
+def approved(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
+    """Compare a text with the approved one of its name, in a folder beside the test's file.
+
+    `--approve` writes it anew; read the difference before it is committed.
+    """
+    folder = request.path.parent / "approved" / request.path.stem.removeprefix("test_")
+
+    def check(name: str, text: str) -> None:
+        path = folder / f"{name}.txt"
+        if request.config.getoption("--approve"):
+            folder.mkdir(parents=True, exist_ok=True)
+            path.write_text(f"{text}\n", "utf-8")
+        assert text == path.read_text("utf-8").removesuffix("\n")
+
+    return check
 
 
 @pytest.fixture(scope="module")

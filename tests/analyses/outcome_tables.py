@@ -3,12 +3,14 @@
 from collections.abc import Mapping, Sequence
 from math import comb
 
+from outcomes import trial
+
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED, Condition
 from faultpath.analyses.question import Question
 from faultpath.analyses.record import DecisionRecord
 from faultpath.run import Trial, Trials
-from faultpath.system import Outcome, Status
+from faultpath.system import Status
 
 BASELINE, REPAIR = "old", "new"
 SCENES = 100
@@ -34,14 +36,10 @@ def question(n_scenes: int = SCENES, seeds: Sequence[int] = (0,)) -> Question:
 
 
 def conditions(*names: str) -> tuple[Condition, ...]:
+    taps = {name: () if name == CORRECT else (f"{name}.tap",) for name in names}
     return tuple(
-        Condition(
-            name=name,
-            title=name,
-            readers=() if name == CORRECT else (f"{name}.tap",),
-            baseline_readers=(),
-        )
-        for name in names
+        Condition(name=name, title=name, readers=readers, baseline_readers=())
+        for name, readers in taps.items()
     )
 
 
@@ -62,70 +60,54 @@ def rows(
     condition: str,
     statuses: Sequence[Status],
     seed: int = 0,
-    slower_s: float = 0.0,
     altered: int | None = None,
 ) -> list[Trial]:
     """Return trials with these ends; the fault acts in the first `altered` of them, or in all."""
+    faulted = condition != CORRECT
+    acted = (len(statuses) if altered is None else altered) if variant == REPAIR and faulted else 0
+    measured = {"terminal_distance_m": 1.0, "min_clearance_m": 0.25}
     return [
-        Trial(
-            variant=variant,
-            condition=condition,
+        trial(
+            *(variant, condition, i, status),
             seed=seed,
-            scene_index=i,
-            topology="",
-            outcome=Outcome(
-                scene=f"s{i:03d}",
-                status=status,
-                time_s=0.0 if status is Status.FAILED else 5.0 + 0.01 * i + slower_s,
-                metrics={}
-                if status is Status.FAILED
-                else {"terminal_distance_m": 1.0 + slower_s, "min_clearance_m": 0.25},
-                initial_hash=f"i{i}",
-                disturbance_hash=f"d{i}",
-                planner_noise_hash=f"n{i}-{seed}",
-                faulted_steps=3 if condition != CORRECT else 0,
-                altered_steps=2
-                if condition != CORRECT
-                and variant == REPAIR
-                and i < (len(statuses) if altered is None else altered)
-                else 0,
-            ),
+            time_s=0.0 if status is Status.FAILED else 5.0 + 0.01 * i,
+            metrics={} if status is Status.FAILED else measured,
+            faulted_steps=3 * faulted,
+            altered_steps=2 * (i < acted),
         )
         for i, status in enumerate(statuses)
     ]
 
 
-def table(cells: Mapping[str, Counts], n: int = SCENES, slower_s: float = 0.0) -> Trials:
-    out: list[Trial] = []
-    for condition, counts in cells.items():
-        for variant, statuses in variants(counts, n).items():
-            late = slower_s if variant == REPAIR else 0.0
-            out += rows(variant, condition, statuses, slower_s=late)
-    return Trials.of(out)
-
-
-def record(cells: Mapping[str, Counts], n: int = SCENES, **changes: float) -> DecisionRecord:
-    return decide(question(n), conditions(*cells), table(cells, n, **changes))
-
-
-def seeded(
-    cells: Mapping[str, Sequence[Counts]], n: int = SCENES, **asked: object
-) -> DecisionRecord:
-    """Return the record of several seeds, counts seed by seed; `asked` changes the question."""
-    out = [
+def table(
+    cells: Mapping[str, Counts | Sequence[Counts]], n: int = SCENES, **altered: int
+) -> Trials:
+    """Return trials with these counts, of one seed or seed by seed; `altered` as `rows` has it, by
+    condition."""
+    return Trials.of(
         row
-        for condition, by_seed in cells.items()
-        for seed, counts in enumerate(by_seed)
+        for condition, of in cells.items()
+        for seed, counts in enumerate(of if isinstance(of, list) else [of])
         for variant, statuses in variants(counts, n).items()
-        for row in rows(variant, condition, statuses, seed=seed)
-    ]
-    seeds = range(len(next(iter(cells.values()))))
-    about = question(n, tuple(seeds)).model_copy(update=asked)
-    return decide(about, conditions(*cells), Trials.of(out))
+        for row in rows(variant, condition, statuses, seed, altered.get(condition))
+    )
 
 
-def three(correct: Counts, isolated: Counts, shared: Counts) -> DecisionRecord:
-    return record({CORRECT: correct, "observer": isolated, SHARED: shared})
+def record(
+    cells: Mapping[str, Counts | Sequence[Counts]],
+    n: int = SCENES,
+    altered: Mapping[str, int] = {},
+    **asked: object,
+) -> DecisionRecord:
+    """Return the record of such trials; `asked` changes the question."""
+    first = next(iter(cells.values()))
+    seeds = range(len(first)) if isinstance(first, list) else (0,)
+    about = question(n, seeds).model_copy(update=asked)
+    return decide(about, conditions(*cells), table(cells, n, **altered))
+
+
+def three(correct: Counts, isolated: Counts, shared: Counts, **changes: object) -> DecisionRecord:
+    return record({CORRECT: correct, "observer": isolated, SHARED: shared}, **changes)
 
 
 def exact_p(wins: int, losses: int) -> float:

@@ -11,7 +11,6 @@ from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.analyses.question import StopRule
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.sentences.phrases import in_short, not_standing
 from faultpath.analyses.sentences.wording import where
 
 State = tuple[int, str]
@@ -141,19 +140,3 @@ def test_what_follows_says_who_is_ahead_where_and_what_sharing_does() -> None:
         follows = answers(it)["What follows"]
         assert "With the fault at the a alone, new succeeds more often." in follows
         assert "no difference is seen" not in follows
-
-
-def test_an_interval_that_leaves_out_0_undetected_has_its_p_and_the_reason() -> None:
-    it = record({CORRECT: (50, 3, 3), "a": (40, 30, 2), "b": (50, 3, 3), SHARED: (60, 1, 7)})
-    shared = it.effects[-1]
-    assert (shared.high or 0.0) < 0
-    assert not shared.significant
-    p = f"p = {shared.corrected_p:.3f} after Holm"
-    assert in_short(it, shared) == f"no significant difference ({p})"
-    (said,) = not_standing(it)
-    assert said in answers(it)["Left open"]
-    assert p in said
-    assert f"{it.hypotheses} contrasts" in said
-    clear = record({CORRECT: (50, 3, 3), "a": (40, 30, 2), SHARED: (50, 5, 5)})
-    assert not list(not_standing(clear))
-    assert "although the interval" not in " ".join(clear.sentences)

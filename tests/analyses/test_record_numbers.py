@@ -10,7 +10,6 @@ from outcome_tables import (
     question,
     record,
     rows,
-    seeded,
     table,
     three,
     variants,
@@ -140,7 +139,7 @@ def test_a_condition_without_any_pair_costs_the_others_nothing_and_is_named():
 
 
 def test_several_seeds_are_averaged_within_each_scene():
-    (effect,) = seeded({CORRECT: [(40, 20, 5), (40, 10, 5)]}).effects
+    (effect,) = record({CORRECT: [(40, 20, 5), (40, 10, 5)]}).effects
     assert effect.value == pytest.approx((15 + 5) / 2)
     assert effect.won == ((20, 5), (10, 5))
     assert effect.scenes == 100
@@ -149,8 +148,8 @@ def test_several_seeds_are_averaged_within_each_scene():
 
 
 def test_seeds_that_change_nothing_are_counted_once():
-    thrice = seeded({CORRECT: [(40, 9, 2)] * 3, "observer": [(40, 2, 9)] * 3})
-    once = seeded({CORRECT: [(40, 9, 2)], "observer": [(40, 2, 9)]})
+    thrice = record({CORRECT: [(40, 9, 2)] * 3, "observer": [(40, 2, 9)] * 3})
+    once = record({CORRECT: [(40, 9, 2)], "observer": [(40, 2, 9)]})
     for many, one in zip(thrice.effects, once.effects, strict=True):
         assert many == one
         assert many.won == one.won

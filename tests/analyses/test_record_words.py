@@ -1,169 +1,111 @@
-"""The sentences say what was decided, and read well, case by case."""
-
-import re
+"""What a record says, case by case, as it was approved."""
 
 import pytest
-from outcome_tables import BASELINE, REPAIR, conditions, question, rows, seeded, three, variants
+from outcome_tables import Counts, conditions, question, record, table, three
+from outcomes import trial
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases
-from faultpath.analyses.sentences.phrases import in_short
+from faultpath.analyses.sentences.answers import answers
+from faultpath.analyses.sentences.phrases import change, estimand, in_short
 from faultpath.analyses.sentences.shares import ahead
 from faultpath.core.errors import UserError
 from faultpath.run import Trials
 from faultpath.system import Status
 
-LEVEL = (50, 5, 5)
-GAIN = (40, 30, 2)
-LOSS = (40, 2, 30)
+LEVEL, GAIN, LOSS = (50, 5, 5), (40, 30, 2), (40, 2, 30)
+TRAININGS = [(40, 30, 2), (42, 28, 3), (38, 31, 1), (39, 30, 2), (41, 29, 0)]
+COST, PAID = (50, 0, 16), (30, 24, 0)
+FEW = {CORRECT: (0, 3, 0), "a": (0, 3, 0), "b": (0, 3, 0), SHARED: (0, 0, 3)}
+UNDETECTED = {CORRECT: (50, 3, 3), "a": GAIN, "b": (50, 3, 3), SHARED: (60, 1, 7)}
+
+CASES = {
+    "reversal": lambda: three((50, 0, 0), GAIN, LOSS),
+    "reversal, the other way": lambda: three((50, 0, 0), LOSS, GAIN),
+    "isolated as without the fault": lambda: three(LOSS, LOSS, GAIN),
+    "gain everywhere": lambda: three(GAIN, GAIN, GAIN),
+    "nothing anywhere": lambda: three(LEVEL, LEVEL, LEVEL),
+    "gain with the fault": lambda: three(LEVEL, GAIN, GAIN),
+    "gain with the fault, loss without": lambda: three(LOSS, GAIN, GAIN),
+    "loss without the fault": lambda: three(LOSS, LEVEL, LEVEL),
+    "gain at the floor": lambda: three(GAIN, GAIN, (0, 9, 0)),
+    "no success at all": lambda: three((0, 0, 0), (0, 0, 0), (0, 0, 0)),
+    "ties": lambda: three((0, 50, 50), (0, 50, 50), (0, 50, 50)),
+    "few scenes": lambda: record(FEW, n=3),
+    "an interval that leaves out 0": lambda: record(UNDETECTED),
+    "cost and gain": lambda: three(COST, PAID, PAID),
+    "gain at every frequency": lambda: three((50, 20, 0), (30, 20, 0), (30, 20, 0)),
+    "cost not detected": lambda: three((50, 6, 1), (30, 30, 0), (30, 30, 0)),
+    "a fault that never acted": lambda: three(GAIN, GAIN, GAIN, altered={"observer": 0, SHARED: 0}),
+    "a fault that acted where it is shared": lambda: three(
+        GAIN, GAIN, GAIN, altered={"observer": 0}
+    ),
+    "a fault that rarely acted": lambda: three(GAIN, GAIN, GAIN, altered={"observer": 30}),
+    "trained models": lambda: three(LEVEL, GAIN, LOSS, trained=True),
+    "newly trained models": lambda: record(
+        {CORRECT: TRAININGS, "observer": TRAININGS}, trained=True, generalise="models"
+    ),
+    "seeds that change nothing": lambda: record({CORRECT: [GAIN] * 3, "observer": [LOSS] * 3}),
+    "every repair failed with the fault": lambda: failing("observer"),
+}
 
 
-@pytest.mark.parametrize(("isolated", "shared"), [(GAIN, LOSS), (LOSS, GAIN)])
-def test_a_reversal_is_the_headline_and_names_who_is_ahead_where(isolated, shared):
-    made = three((50, 0, 0), isolated, shared)
-    (change,) = made.changes
-    one, other = (REPAIR, BASELINE) if isolated == GAIN else (BASELINE, REPAIR)
-    assert change.turn == "reversal"
-    said = phrases.change(made, change)
-    assert said in made.sentences
-    assert f"with the fault at the observer alone, {one} succeeds" in said
-    assert f"under the shared fault, {other} does" in said
-    assert made.headline == (
-        f"Do not choose by the fault at the observer alone: {one} is ahead there, {other} with it "
-        "shared."
+def failing(condition: str) -> DecisionRecord:
+    """Return a record of which every trial of the repair under a condition failed."""
+    cells = {CORRECT: (40, 20, 10), "observer": (20, 10, 30)}
+    return decide(question(), conditions(*cells), lost(cells, condition))
+
+
+def lost(cells: dict[str, Counts | list[Counts]], condition: str, seed: int = 0) -> Trials:
+    """Return trials of which all of the repair under a condition with a seed failed."""
+    at = ("new", condition, seed)
+    return Trials.of(
+        trial(*at[:2], row.scene_index, Status.FAILED, seed=seed, metrics={})
+        if (row.variant, row.condition, row.seed) == at
+        else row
+        for row in table(cells)
     )
 
 
-def test_an_isolated_fault_that_leaves_the_ranking_of_correct_inputs_is_not_the_headline():
-    decided = three((40, 2, 30), LOSS, GAIN)
-    (change,) = decided.changes
-    assert change.turn == "reversal"
-    assert "Do not choose" not in decided.headline
-    assert decided.headline == (
-        f"{BASELINE} is ahead without the fault and with it at the observer alone, {REPAIR} with "
-        "it shared."
-    )
+def text_of(made: DecisionRecord) -> str:
+    """Return all that is said: headline, answers, remarks, changes, and each effect in short."""
+    lines = [made.headline, f"Of {estimand(made.question)}.", ""]
+    lines += [f"{label}: {said}" for label, said in answers(made).items()]
+    lines += [
+        "",
+        *(change(made, of) for of in made.changes),
+        *made.findings,
+        "",
+        *made.would_change,
+    ]
+    lines += [f"{effect.condition}: {in_short(made, effect)}" for effect in made.effects]
+    lines += [f"{of.condition}, how often: {ahead(made.question, of)}" for of in made.break_even]
+    return "\n".join(lines)
 
 
-@pytest.mark.parametrize(
-    ("cells", "said"),
-    [
-        ((GAIN, GAIN, GAIN), "new is ahead of old under every condition."),
-        (
-            (LEVEL, LEVEL, LEVEL),
-            "No difference between old and new is significant under any condition.",
-        ),
-        ((LEVEL, GAIN, GAIN), "under the shared fault and with the fault at the observer alone."),
-        ((LOSS, GAIN, GAIN), "; old is ahead under correct inputs."),
-        ((LOSS, LEVEL, LEVEL), "is significant under the shared fault"),
-        ((GAIN, GAIN, (0, 9, 0)), "Both nearly always fail under the shared fault; new is ahead"),
-        (((0, 0, 0),) * 3, "No difference could show"),
-    ],
-)
-def test_the_headline_of_each_case(cells, said):
-    assert said in three(*cells).headline
-
-
-def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
-    made = three(LEVEL, GAIN, GAIN)
-    words = " ".join(made.sentences)
-    (effect,) = (e for e in made.effects if e.condition == CORRECT)
-    least = re.search(
-        r"significant under correct inputs; a true one of (\d+) pp would be found in 8 of 10", words
-    )
-    assert least is not None
-    assert effect.least_pp <= int(least[1]) < effect.least_pp + 1
-
-
-@pytest.mark.parametrize(
-    ("correct", "fault", "said"),
-    [
-        ((50, 0, 16), (30, 24, 0), r"old is ahead up to \d+ %, new is ahead from \d+ % on"),
-        ((50, 20, 0), (30, 20, 0), "new is ahead at every frequency"),
-        ((50, 6, 1), (30, 30, 0), "new is ahead from 1?[0-9] % on|where the fault is frequent"),
-    ],
-    ids=["above", "always", "cost not detected"],
-)
-def test_the_fault_frequency_is_said_where_it_is_decided(correct, fault, said):
-    made = three(correct, fault, fault)
-    assert [each.condition for each in made.break_even] == ["observer", SHARED]
-    assert all(re.search(said, ahead(made.question, each)) for each in made.break_even)
-
-
-def test_a_fault_that_never_acted_was_not_tested():
-    def made(altered: dict[str, int | None]) -> DecisionRecord:
-        out = []
-        for condition in (CORRECT, "observer", SHARED):
-            for variant, statuses in variants(GAIN).items():
-                out += rows(variant, condition, statuses, altered=altered.get(condition))
-        return decide(question(), conditions(CORRECT, "observer", SHARED), Trials.of(out))
-
-    never = made({"observer": 0, SHARED: 0})
-    assert never.headline == "The fault never changed a reading: no effect of it was tested."
-    assert in_short(never, never.effects[-1]) == "the fault never acted: not tested"
-    assert never.break_even == ()
-    partly = made({"observer": 0})
-    assert partly.headline.startswith("new is ahead of old under the shared fault")
-    rarely = made({"observer": 30})
-    assert (
-        "With the fault at the observer alone, the fault changed something in only 30 of 100 "
-        "trials of new." in rarely.sentences
-    )
-
-
-def test_results_of_trained_models_are_said_to_be_theirs():
-    cells = {CORRECT: [LEVEL] * 1, "observer": [GAIN], SHARED: [LOSS]}
-    plain, trained = (seeded(cells, trained=flag) for flag in (False, True))
-    assert "model" not in " ".join((plain.headline, *plain.sentences))
-    assert "model" not in phrases.estimand(plain.question)
-    assert trained.headline == plain.headline
-    assert phrases.estimand(trained.question) == "new scenes like these, for these trained models"
-    assert "models trained anew may differ" in " ".join(trained.sentences)
-
-
-def test_what_is_said_of_newly_trained_models_names_its_condition_and_a_sign_test():
-    by_seed = [(40, 30, 2), (42, 28, 3), (38, 31, 1), (39, 30, 2), (41, 29, 0)]
-    cells = {CORRECT: by_seed, "observer": by_seed}
-    made = seeded(cells, trained=True, generalise="models")
-    assert phrases.estimand(made.question).endswith("models newly trained with other seeds")
-    assert "these trained models" not in made.headline
-    whole = " ".join(made.sentences)
-    assert "5 trainings stand for new ones as far as trainings spread evenly" in whole
-    assert "Under correct inputs, new is ahead in 5 of 5 trainings, p = 0.062 (sign test" in whole
-    assert all("t test" in effect.test for effect in made.effects)
+@pytest.mark.parametrize("name", CASES)
+def test_what_is_said_is_what_was_approved(name, approved) -> None:
+    approved(name, text_of(CASES[name]()))
 
 
 @pytest.mark.parametrize("kept", [4, 5])
 def test_of_few_trainings_or_of_copies_nothing_is_said_of_new_ones(kept):
     trainings = [(40 - seed, 30 + seed, 2) for seed in range(kept)]
-    by_seed = [*trainings, *[trainings[0]] * (6 - kept)]
+    cells = {CORRECT: [*trainings, *[trainings[0]] * (6 - kept)]}
     if kept < 5:
         with pytest.raises(UserError, match="only 4 of the 6 trainings ran under"):
-            seeded({CORRECT: by_seed}, trained=True, generalise="models")
+            record(cells, trained=True, generalise="models")
     else:
-        assert seeded({CORRECT: by_seed}, trained=True, generalise="models").effects
+        assert record(cells, trained=True, generalise="models").effects
 
 
-@pytest.mark.parametrize("lost", [5, 1])
-def test_a_training_that_failed_throughout_under_one_condition_is_left_out_there(lost):
+@pytest.mark.parametrize("training", [5, 1])
+def test_a_training_that_failed_throughout_under_one_condition_is_left_out_there(training):
     """It ended in a traceback: effects under two conditions had other numbers of trainings."""
     by_seed = [(40 - seed, 30 + seed, 2) for seed in range(6)]
     cells = {CORRECT: by_seed, "observer": by_seed, SHARED: by_seed}
-    trials = [
-        row
-        for condition, counts in cells.items()
-        for seed, count in enumerate(counts)
-        for variant, statuses in variants(count).items()
-        for row in rows(
-            variant,
-            condition,
-            [Status.FAILED] * 100 if (condition, seed) == (SHARED, lost) else statuses,
-            seed=seed,
-        )
-    ]
     about = question(100, range(6)).model_copy(update={"trained": True, "generalise": "models"})
-    made = decide(about, conditions(*cells), Trials.of(trials))
+    made = decide(about, conditions(*cells), lost(cells, SHARED, training))
     assert [len(effect.per_seed) for effect in made.effects] == [6, 6, 5]
     assert len(made.changes[0].per_seed) == 5

@@ -1,14 +1,16 @@
 """The probe of a source: only what the modules make of the faulty input differs."""
 
+import runpy
+from pathlib import Path
+
 import numpy as np
 import pytest
-from declared_toy import Declared
 
 from faultpath.analyses.scan.probing import command_responses
 from faultpath.faults import at_readers
 from faultpath.loop import Batch, Taps
 
-SYSTEM = Declared()
+SYSTEM = runpy.run_path(str(Path(__file__).parents[2] / "examples" / "toy.py"))["create"]()
 SCENES = tuple(f"cart/{i:03d}" for i in range(5))
 
 
