@@ -1,7 +1,6 @@
 """Joint errors, break-even correlation, turning sizes, and that nothing undecided is said."""
 
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ from faultpath.analyses.map.lattice import COARSE, SHOWN, UNITS, lattice, surfac
 from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.map.surface import Combined, Differences
 
-REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS
 DECIDES = re.compile(r"(new|old) (is|does|is expected)")
 
@@ -40,9 +38,6 @@ def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
     weights = lattice_weights(Errors((0.0, 0.0), (0.4, 0.4)), estimate)
     expected = Combined.of((weights @ surface_weights(found.points))[np.newaxis], found)
     assert expected.means[0] == pytest.approx(0, abs=0.1)
-    (said,) = [text for text in made.sentences if "averages to" in text]
-    assert "nothing is concluded" in said
-    assert "correlation" not in made.headline
 
 
 def test_swapping_the_variants_swaps_the_record() -> None:
@@ -69,12 +64,17 @@ def test_nothing_is_said_to_be_decided_of_a_few_scenes(scenes: int) -> None:
 
 def test_nothing_is_said_to_be_decided_of_ties() -> None:
     made = record(alike(40))
-    assert made.headline == "At none of 81 pairs of errors is the difference significant."
-    said = " ".join(made.sentences)
-    assert "old is significantly ahead at 0 and new at 0; at" in said
-    assert said.count("nothing is significant") == 6
-    assert not DECIDES.search(said.replace("old is significantly ahead at 0 and new at 0", ""))
+    assert not any(point.sign for point in made.points)
     assert [flip.estimate for flip in made.flips] == [None] * 6
+
+
+MAPS = {"a reversal": reversal(100), "two scenes": reversal(2), "ties": alike(40)}
+
+
+@pytest.mark.parametrize("name", MAPS)
+def test_what_is_said_is_what_was_approved(name: str, approved) -> None:
+    made = record(MAPS[name], spreads=(0.16, 0.16))
+    approved(name, "\n".join((made.headline, "", *made.sentences)))
 
 
 def _weak(strong: int, sign: int) -> Seen:
@@ -135,9 +135,6 @@ def test_every_claim_of_a_condition_is_one_of_its_points() -> None:
             assert point.sign == 1
     shared = next(f for f in made.flips if (f.condition, f.direction) == ("shared", -1))
     assert (shared.until, shared.estimate, shared.first) == (-0.4, None, None)
-    said = " ".join(made.sentences)
-    assert "With both wrong alike, error below 0: old is ahead at every size run." in said
-    assert "Sharing the error reverses the ranking at" in said
 
 
 def test_a_place_between_points_is_claimed_nowhere() -> None:

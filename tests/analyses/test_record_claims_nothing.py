@@ -241,11 +241,12 @@ def reads_well(made: DecisionRecord) -> None:
         assert sentence.count("(") == sentence.count(")")
 
 
-@pytest.mark.parametrize("n", [1, 2, 4, 8, 40])
+@pytest.mark.parametrize("n", [1, 2, 4, 40])
 @pytest.mark.parametrize("how", RUNS)
 @pytest.mark.parametrize("over", CONDITIONS)
 def test_no_sentence_claims_what_was_not_decided(n: int, how: str, over: str) -> None:
-    for shape in SHAPES:
+    every = how in ("one seed", "three seeds", "void") or n == 40
+    for shape in SHAPES if every else ("ties", *CHANCES):
         if how == "void" and n == 1 and len(CONDITIONS[over]) == 1:
             with pytest.raises(UserError, match="no scene is left"):
                 run(shape, CONDITIONS[over], n, how, trained=False)
@@ -293,7 +294,8 @@ def test_no_sentence_of_a_sequential_audit_claims_what_was_not_decided(
     n: int, how: str, over: str
 ) -> None:
     for shape in SHAPES:
-        for rule in RULES if how == "one seed" and n > 2 else ("to the last scene",):
+        every = how == "one seed" and (n == 40 or (over == "one condition" and n > 2))
+        for rule in RULES if every else ("to the last scene",):
             if how == "void" and n == 1 and len(CONDITIONS[over]) == 1:
                 continue
             made = run(shape, CONDITIONS[over], n, how, trained=n % 3 == 0, rule=rule)

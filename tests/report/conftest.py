@@ -8,11 +8,13 @@ import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from outcomes import outcome
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import Condition, FaultedTap
@@ -197,48 +199,38 @@ def _scene(index: int) -> str:
 def _rows(
     seeds: tuple[int, ...], n_scenes: int, void: bool, law: Mapping[str, tuple[float, float]]
 ) -> Iterator[Trial]:
-    for seed in seeds:
-        for index in range(n_scenes):
-            rng = np.random.default_rng([seed, index])
-            hard = 0.8 * np.random.default_rng([99, index]).random() + 0.2 * rng.random()
-            for condition, chances in law.items():
-                for variant, chance in zip((BASELINE, REPAIR), chances, strict=True):
-                    at = (seed, index, condition, variant)
-                    failed = void and at == (seeds[0], 17, "shared", REPAIR)
-                    draw = hard + 0.11 * rng.standard_normal()
-                    outcome = _outcome(
-                        index, seed, draw < chance, failed, condition != "correct", rng
-                    )
-                    yield Trial(variant, condition, seed, index, TOPOLOGIES[index % 5], outcome)
+    for seed, index in product(seeds, range(n_scenes)):
+        rng = np.random.default_rng([seed, index])
+        hard = 0.8 * np.random.default_rng([99, index]).random() + 0.2 * rng.random()
+        for condition, chances in law.items():
+            for variant, chance in zip((BASELINE, REPAIR), chances, strict=True):
+                at = (seed, index, condition, variant)
+                failed = void and at == (seeds[0], 17, "shared", REPAIR)
+                solved = hard + 0.11 * rng.standard_normal() < chance
+                ended = _outcome(index, seed, solved, failed, condition != "correct", rng)
+                yield Trial(variant, condition, seed, index, TOPOLOGIES[index % 5], ended)
 
 
 def _outcome(
     index: int, seed: int, solved: bool, failed: bool, faulted: bool, rng: np.random.Generator
 ) -> Outcome:
-    hashes = {
-        name: f"{name[:3]}-{index}-{seed}"
-        for name in ("initial_hash", "disturbance_hash", "planner_noise_hash")
-    }
     if failed:
         error = "RuntimeError: <b>no</b> candidate is finite"
-        return Outcome(_scene(index), Status.FAILED, 0.0, **hashes, error=error)
+        return outcome(_scene(index), Status.FAILED, seed, error=error)
     crash = rng.random() < 0.7
     status = Status.SUCCESS if solved else Status.CRASH if crash else Status.TIMEOUT
     trace = _track(index, status, rng)
-    time = 12.0 if status is Status.TIMEOUT else 0.05 * (len(trace) - 1)
-    goal = np.array(_plan(index).goal)
-    return Outcome(
-        scene=_scene(index),
-        status=status,
-        time_s=time,
-        metrics={
-            "terminal_distance_m": float(np.linalg.norm(trace[-1] - goal)),
-            "min_clearance_m": 0.0 if status is Status.CRASH else float(rng.uniform(0.05, 0.6)),
-        },
-        faulted_steps=len(trace) if faulted else 0,
-        altered_steps=len(trace) if faulted else 0,
+    missed = float(np.linalg.norm(trace[-1] - np.array(_plan(index).goal)))
+    clearance = 0.0 if status is Status.CRASH else float(rng.uniform(0.05, 0.6))
+    return outcome(
+        _scene(index),
+        status,
+        seed,
+        time_s=12.0 if status is Status.TIMEOUT else 0.05 * (len(trace) - 1),
+        metrics={"terminal_distance_m": missed, "min_clearance_m": clearance},
+        faulted_steps=len(trace) * faulted,
+        altered_steps=len(trace) * faulted,
         trace=trace,
-        **hashes,
     )
 
 

@@ -82,9 +82,10 @@ def test_the_lines_are_drawn_anew_in_the_time_that_they_took(
         expect(play).to_have_text("Play")
 
 
-def test_a_few_large_values_do_not_squeeze_the_others(heard) -> None:
+def test_a_few_large_values_do_not_squeeze_the_others_and_are_cut_at_the_axes(heard) -> None:
+    """A line along the edge would read as values that lie at it."""
     jump = {
-        at: tuple(replace(each, values=_jumped(each.values)) for each in named)
+        at: tuple(replace(signal, values=_jumped(signal.values)) for signal in named)
         for at, named in heard.signals.items()
     }
     both = (heard, replace(heard, signals=jump))
@@ -93,16 +94,7 @@ def test_a_few_large_values_do_not_squeeze_the_others(heard) -> None:
     assert levels[0] == levels[1]
     said = "Lines leave the axes where they are larger, up to 100 m/s²."
     assert [said in report_page(each) for each in both] == [False, True]
-
-
-def test_what_lies_outside_the_axes_is_drawn_outside_and_cut_there(heard) -> None:
-    """A line along the edge would read as values that lie at it."""
-    signals = {
-        at: tuple(replace(signal, values=_jumped(signal.values)) for signal in named)
-        for at, named in heard.signals.items()
-    }
-    source = replace(heard, signals=signals)
-    for panel in adding_panels(adding(source, pairs_of(source))):
+    for panel in jumped:
         clips = re.findall(r'<clipPath.*?y="([\d.]+)" width="[\d.]+" height="([\d.]+)"', panel)
         groups = panel.split('<g clip-path="url(#')[1:]
         assert len(clips) == len(groups) == 2

@@ -2,7 +2,7 @@
 
 import re
 import shlex
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,16 +14,17 @@ from playwright.sync_api import Browser, Page, expect
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.run import Trials
-from faultpath.run.store.signals import Signal
+from faultpath.run.store.signals import DRAWN, Signal
 from faultpath.run.store.tables import TrialAddress
+from faultpath.system import FloorPlan
 
 pytestmark = pytest.mark.browser
 
 
 @pytest.fixture(scope="module")
-def address(three_seeds: ReportInput, tmp_path_factory: pytest.TempPathFactory) -> str:
+def address(make: Callable[..., ReportInput], tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("report")
-    return write_report(three_seeds, folder)[0].as_uri()
+    return write_report(make(seeds=(0, 1, 2), n_scenes=30), folder)[0].as_uri()
 
 
 @pytest.fixture(params=[(1280, "light"), (390, "dark")], ids=["desktop", "telephone"])
@@ -173,3 +174,53 @@ def test_a_trial_that_was_not_recorded_shows_its_end_and_how_to_run_it_again(
     dialog.get_by_role("button", name="Close").click()
     expect(dialog).not_to_be_visible()
     page.close()
+
+
+def test_a_cart_has_its_goal(
+    make: Callable[..., ReportInput], browser: Browser, tmp_path: Path
+) -> None:
+    source = make(n_scenes=4, void=False)
+    line = with_traces(source.trials, lambda track: track * np.float32([1, 0, 0]))
+    rail = FloorPlan((0, 0, 0), (9, 0, 0), (), (), (0, 0, 0), (9.2, 0, 0), "")
+    plans = dict.fromkeys(source.system.plans, rail)
+    flat = replace(source, trials=line, system=source.system.model_copy(update={"plans": plans}))
+    opened = browser.new_page()
+    folder = tmp_path / "my cart"
+    opened.goto(write_report(flat, folder)[0].as_uri())
+    opened.wait_for_selector("#viewer[data-ready]")
+    assert opened.locator(".v-goal").count() == len(source.record.conditions)
+    assert opened.locator("#viewer text", has_text="goal").count() == len(source.record.conditions)
+    opened.close()
+
+
+def test_a_picture_moves_with_the_clock_and_lifts_its_pen(
+    make: Callable[..., ReportInput], browser: Browser, tmp_path: Path
+) -> None:
+    """Without positions: a cart that drives on, and a mark that stays."""
+    source = make(n_scenes=4, void=False)
+    system = source.system.model_copy(update={"plans": {}, "control_dt_s": 0.5})
+    bare = with_traces(source.trials, lambda track: None)
+    source = replace(source, trials=bare, system=system)
+    steps, lift = np.arange(9.0, dtype=np.float32)[:, None], np.full((9, 2), np.nan, np.float32)
+    cart = np.hstack([steps, steps * 0, steps + 2, steps * 0, lift, steps * 0 + 5, steps * 0 + 1])
+    named = (
+        Signal(DRAWN, DRAWN, "m", np.hstack([cart, steps * 0 + 5, steps * 0 + 2])),
+        Signal("body", "body", "m, rad", np.hstack([steps, -steps]), ("place", "angle")),
+    )
+    heard = {
+        TrialAddress(r.variant, r.condition, r.seed, r.outcome.scene): named for r in source.trials
+    }
+    opened = browser.new_page()
+    written = write_report(replace(source, signals=heard), tmp_path / "cart")
+    opened.goto(f"{written[0].as_uri()}#scene={source.trials.scenes[0].id}&t=0")
+    opened.wait_for_selector("#viewer[data-ready]")
+    line = opened.locator("#viewer-across .plan path.v-track").first
+    began = line.get_attribute("d") or ""
+    assert [began.count(letter) for letter in "ML"] == [2, 2]
+    opened.locator("#viewer-time").fill("4")
+    moved = line.get_attribute("d") or ""
+    assert moved != began
+    assert moved.split("M")[2] == began.split("M")[2]
+    titles = opened.locator("#viewer-signal option").all_inner_texts()
+    assert titles == ["body, place (m)", "body, angle (rad)"]
+    opened.close()

@@ -11,8 +11,9 @@ import pytest
 from rich.console import Console
 
 from faultpath.analyses.model import Condition
+from faultpath.analyses.tables.markdown import grid
 from faultpath.report.compared import Compared, differing, titles, together
-from faultpath.report.comparison import effects, facts_table, headline, page, sentences, shown
+from faultpath.report.comparison import effects, headline, page, sentences, shown
 from faultpath.report.inputs import ReportInput
 
 if TYPE_CHECKING:
@@ -43,55 +44,66 @@ def decided(one: Compared, **changed: object) -> Compared:
     return replace(one, source=replace(one.source, record=record))
 
 
-@pytest.fixture
-def two(one_seed: ReportInput) -> Given:
-    return run(one_seed, 1), run(one_seed, 2, fault="mass=-0.1")
+def sizes_of(one_seed: ReportInput, last_p: float) -> Given:
+    """Return three sizes of a fault, each significant by itself."""
+    runs = [run(one_seed, i, fault=f"calibration={s}") for i, s in enumerate((-0.1, 0.1, 0.2), 1)]
+    p_values = (1e-5, 1e-5, last_p)
+    return together(
+        [signed(one, "shared", -1, p_value=p) for one, p in zip(runs, p_values, strict=True)]
+    )
 
 
-def test_detected_here_and_not_there_is_no_difference(two: Given) -> None:
-    first, second = two
-    assert first.effect("shared").sign == -1
-    quiet = (first, signed(second, "shared", 0))
-    assert headline(quiet) == "2 audits side by side"
-    said = sentences(quiet)
-    assert said[0] == "No two audits of the same versions are significant in opposite directions."
-    assert "separate tests" in said[1]
-    assert "not shown to differ" in said[1]
+def unlike(one_seed: ReportInput) -> Given:
+    """Return two runs between which everything differs that may."""
+    options = {"predictor": "wm-a", "plant": "mujoco"}
+    second = run(one_seed, 2, fault="calibration=-0.1", options=options, seeds=(0, 1))
+    other = {"packages": {**second.provenance.packages, "torch": "2.14.0"}, "python": "3.12.1"}
+    provenance = second.provenance.model_copy(update=other | {"system_fingerprint": "1" * 64})
+    source = replace(second.source, provenance=provenance)
+    return run(one_seed, 1), replace(second, source=source)
 
 
-def test_sizes_of_one_fault_are_drawn_over_the_size_and_decided_as_one_family(
+def turned(one_seed: ReportInput, sign: int) -> Given:
+    """Return a run that is significant for the baseline, and one with this sign."""
+    second = run(one_seed, 2, fault="mass=-0.1")
+    return run(one_seed, 1), signed(second, "shared", sign, rates=(95.0, 96.0))
+
+
+CASES = {
+    "significant here and not there": lambda source: turned(source, 0),
+    "significant in opposite directions": lambda source: turned(source, 1),
+    "three sizes": lambda source: sizes_of(source, 1e-5),
+    "three sizes, the last only by itself": lambda source: sizes_of(source, 0.04),
+    "unlike runs": unlike,
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_what_is_said_is_what_was_approved(name: str, one_seed: ReportInput, approved) -> None:
+    runs = CASES[name](one_seed)
+    facts = [f"{fact}: {' | '.join(values)}" for fact, values in dict(differing(runs)).items()]
+    parts = (headline(runs), *sentences(runs), "", *facts, "", grid(effects(runs)))
+    approved(name, "\n".join(parts))
+
+
+def test_runs_that_are_alike_differ_in_nothing(one_seed: ReportInput) -> None:
+    assert dict(differing((run(one_seed, 1), run(one_seed, 2)))) == {}
+
+
+@pytest.mark.browser
+def test_sizes_of_one_fault_are_drawn_over_the_size(
     one_seed: ReportInput, browser: "Browser", tmp_path: Path
 ) -> None:
-    sizes = (-0.1, 0.1, 0.2)
-    apart = [run(one_seed, i, fault=f"calibration={s}") for i, s in enumerate(sizes, 1)]
-    apart = [signed(each, "shared", -1, p_value=1e-5) for each in apart]
-    three = together(apart)
-    baseline = three[0].asked.baseline
-    assert headline(three) == (
-        f"3 sizes of calibration, under the shared fault: {baseline} ahead at every size"
-    )
-    said = " ".join(sentences(three))
-    assert "nothing significant at any size" in said
-    assert "All 3 sizes are one family" in said
-    assert "Correct inputs are the same trials at every size" in said
-    mixed = together([*apart[:2], signed(apart[2], "shared", -1, p_value=0.04)])
-    assert mixed[2].effect("shared").sign == 0, "its own audit decides it, all sizes do not"
-    answer = f"{baseline} ahead at −0.1 and 0.1; nothing significant at 0.2"
-    assert headline(mixed).endswith(answer)
-    assert any(each.endswith(f": {answer}.") for each in sentences(mixed))
-    shared = titles(three)["shared"]
+    three, mixed = sizes_of(one_seed, 1e-5), sizes_of(one_seed, 0.04)
     assert mixed[2].headline.startswith("By itself, and not over all sizes: ")
     assert mixed[2].headline in page(mixed)
-    bold = [line.entries[1].detected for line in effects(mixed).lines if len(line.entries) > 1]
-    assert bold[-3:] == [True, True, False]
-    drawn = page(three)
-    panel = next(each for each in drawn.split("<figure>")[1:] if shared in each)
-    assert panel.count('class="dot baseline"') == 3
-    fallen = next(each for each in page(mixed).split("<figure>")[1:] if shared in each)
-    assert fallen.count('class="dot baseline"') == 2
+    shared = titles(three)["shared"]
+    for runs, spots in ((three, 3), (mixed, 2)):
+        panel = next(each for each in page(runs).split("<figure>")[1:] if shared in each)
+        assert panel.count('class="dot baseline"') == spots
     other = (*three[:2], run(one_seed, 3, fault="calibration=0.2", seeds=(7,)))
     assert "over all sizes together" not in page(other), "not only the fault differs"
-    (tmp_path / "sweep.html").write_text(drawn)
+    (tmp_path / "sweep.html").write_text(page(three))
     with browser.new_context(viewport={"width": 390, "height": 800}) as context:
         tab = context.new_page()
         tab.goto((tmp_path / "sweep.html").as_uri())
@@ -109,42 +121,6 @@ def test_long_names_leave_numbers_whole_on_a_terminal(one_seed: ReportInput, wid
     for row in effects(runs).lines:
         for entry in row.entries[:2]:
             assert f" {entry.text}" in table
-
-
-def test_decided_in_opposite_directions(two: Given) -> None:
-    first, second = two
-    turned = (first, signed(second, "shared", 1, rates=(95.0, 96.0)))
-    assert headline(turned) == (
-        "2 audits side by side: significant in opposite directions on Shared fault (primary)"
-    )
-    assert sentences(turned)[0] == (
-        "Shared fault (primary): significant for gru (baseline) in 1, for gru-dcc (repair) in 2 "
-        "(at the ceiling)."
-    )
-
-
-def test_only_what_differs_is_told(one_seed: ReportInput) -> None:
-    first = run(one_seed, 1)
-    assert differing((first, run(one_seed, 2))) == {}
-    options = {"predictor": "wm-a", "plant": "mujoco"}
-    second = run(one_seed, 2, fault="calibration=-0.1", options=options, seeds=(0, 1))
-    other = {"packages": {**second.provenance.packages, "torch": "2.14.0"}, "python": "3.12.1"}
-    other |= {"system_fingerprint": "1" * 64}
-    provenance = second.provenance.model_copy(update=other)
-    second = replace(second, source=replace(second.source, provenance=provenance))
-    told = dict(differing((first, second)))
-    assert len(set(told.pop("Code, data and packages"))) == 2
-    assert told == {
-        "Fault": ("calibration=+0.1", "calibration=-0.1"),
-        "Seeds": ("0", "0, 1"),
-        "Option plant": ("not given", "mujoco"),
-        "Option wind": ("L3", "not given"),
-        "Package torch": ("2.13.0", "2.14.0"),
-        "Python": ("3.11.2", "3.12.1"),
-    }
-    table = facts_table((first, second), differing((first, second)))
-    at = [line.label for line in table.lines].index("calibration=-0.1")
-    assert table.lines[at].entries[0].text == "2"
 
 
 def test_other_conditions_are_blank_and_not_left_out(

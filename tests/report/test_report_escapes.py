@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 from faultpath_paper.report.terminal import ledger_markdown
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 from reproduction_toys import ledger
@@ -66,6 +66,7 @@ def test_markdown_shows_a_name_as_it_is(name: str) -> None:
     assert _shown(escapes.markdown(name)) == _line(name)
 
 
+@settings(max_examples=40)
 @given(st.text(st.characters(codec="utf-8", max_codepoint=0x2FF), min_size=1))
 def test_markdown_shows_any_text_as_it_is(name: str) -> None:
     seen = escapes.visible(_line(name)).strip(" ")

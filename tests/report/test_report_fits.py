@@ -1,36 +1,40 @@
 """Pictures in a real browser: nothing lies outside its picture, and no two marks of a key touch."""
 
-import itertools
+from itertools import product
 from pathlib import Path
 
 import pytest
+from outcomes import outcome
 from playwright.sync_api import Browser, Page
 
+from faultpath import compare, open_run
 from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.pairs import Pair
 from faultpath.analyses.scan.record import ScanRecord
-from faultpath.api.folders import read_run
 from faultpath.report.frame import STYLES
-from faultpath.report.html import report_page
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.pair_grid import pair_grid
 from faultpath.report.scan_pictures import strip, triangle
 from faultpath.report.svg import template
-from faultpath.system import Outcome, Status
 
 pytestmark = pytest.mark.browser
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 
-OUTSIDE = """() => [...document.querySelectorAll("svg.fig")].flatMap((svg) => {
-  const frame = svg.getBoundingClientRect();
-  return [...svg.querySelectorAll("rect, circle, path, polygon, polyline, line, text")]
-    .filter((part) => !part.closest("defs, clipPath, [clip-path]"))
-    .map((part) => [part, part.getBoundingClientRect()])
-    .filter(([, b]) => frame.width && (b.left < frame.left - 1 || b.right > frame.right + 1
-      || b.top < frame.top - 1 || b.bottom > frame.bottom + 1))
-    .map(([part]) => `${svg.querySelector("title").textContent}: ${part.outerHTML}`);
-})"""
-"""Parts that lie outside their picture by more than a pixel, of every picture that is shown."""
+OUTSIDE = """() => {
+  document.querySelectorAll("details").forEach((each) => (each.open = true));
+  return [...document.querySelectorAll("svg")].flatMap((svg) => {
+    const frame = svg.getBoundingClientRect();
+    const drawn = "rect, circle, path, polygon, polyline, line, text";
+    const parts = svg.matches(".fig") ? drawn : "text";
+    return [...svg.querySelectorAll(parts)]
+      .filter((part) => !part.closest("defs, clipPath, [clip-path]"))
+      .map((part) => [part, part.getBoundingClientRect()])
+      .filter(([, b]) => frame.width && b.width && (b.left < frame.left - 1
+        || b.right > frame.right + 1 || b.top < frame.top - 1 || b.bottom > frame.bottom + 1))
+      .map(([part]) => `${svg.querySelector("title")?.textContent}: ${part.outerHTML}`);
+  });
+}"""
+"""Labels, and parts of pictures, that lie outside their picture by more than a pixel."""
 
 PLACES = """() => [...document.querySelectorAll(".pair")]
   .map((cell) => cell.getBoundingClientRect())
@@ -64,42 +68,57 @@ def pictures(*svgs: str) -> str:
     return f'<style>{style}</style><main><div class="panels two">{figures}</div></main>'
 
 
-@pytest.mark.parametrize("seeds", [1, 3])
-@pytest.mark.parametrize("groups", [("",), ("rooms", "intersections with a long name")])
-@pytest.mark.parametrize("scenes", [1, 24, 25, 60, 300])
-def test_all_cells_of_a_grid_lie_in_its_picture(
-    browser: Browser, scenes: int, groups: tuple[str, ...], seeds: int
-) -> None:
-    trial = Outcome(
-        "", Status.SUCCESS, 1.0, initial_hash="", disturbance_hash="", planner_noise_hash=""
+def test_all_cells_of_a_grid_lie_in_its_picture(browser: Browser) -> None:
+    trial = outcome("")
+    sizes = list(
+        product((1, 24, 25, 60, 300), (("",), ("rooms", "a long name of its own")), (1, 3))
     )
-    pairs = [
-        Pair("shared", seed, f"{group}-{index}", index, group, trial, trial)
-        for group, index, seed in itertools.product(groups, range(scenes), range(seeds))
+    grids = [
+        [
+            Pair("shared", seed, f"{group}-{index}", index, group, trial, trial)
+            for group, index, seed in product(groups, range(scenes), range(seeds))
+        ]
+        for scenes, groups, seeds in sizes
     ]
-    page = shown(browser, pictures(pair_grid("Shared fault", pairs, {}, {})))
-    cells = page.locator(".pair rect")
-    assert cells.count() == len(pairs)
+    drawn = (pair_grid(f"Grid {at}", pairs, {}, {}) for at, pairs in enumerate(grids))
+    page = shown(browser, pictures(*drawn))
+    count = sum(map(len, grids))
+    assert page.locator(".pair rect").count() == count
     assert page.evaluate(OUTSIDE) == []
-    assert len(set(map(tuple, page.evaluate(PLACES)))) == len(pairs)
+    assert len(set(map(tuple, page.evaluate(PLACES)))) == count
     page.close()
 
 
-@pytest.mark.parametrize("width", [1280, 390])
-@pytest.mark.parametrize("run", ["toy", "pendulum"])
-def test_every_picture_of_a_report_holds_its_parts_and_dashes_the_baseline_alone(
-    browser: Browser, run: str, width: int
+def reported(name: str, folder: Path) -> Path:
+    """Write the page of a reference run, or of three side by side."""
+    if name == "side by side":
+        runs = [REFERENCE / run for run in ("toy", "pendulum", "quadrotor-L3")]
+        return compare(runs).report(folder / "page.html")
+    return open_run(REFERENCE / name).report(folder)[0]
+
+
+@pytest.mark.parametrize(
+    "name", ["toy", "pendulum", "quadrotor-L3", "map-toy", "scan-wpilib", "side by side"]
+)
+def test_every_picture_of_a_page_holds_its_parts_at_all_widths(
+    browser: Browser, name: str, tmp_path: Path
 ) -> None:
-    page = shown(browser, report_page(read_run(REFERENCE / run)), width)
-    page.wait_for_selector("#viewer[data-ready]")
-    assert page.locator("svg.fig").count() > 15
-    assert page.evaluate(OUTSIDE) == []
-    dashed = page.evaluate(DASHED)
-    assert len(dashed) > 3
+    page = browser.new_page()
+    page.goto(reported(name, tmp_path).as_uri())
+    if audit := page.query_selector("#viewer"):
+        page.wait_for_selector("#viewer[data-ready]")
+    assert page.locator("svg text").count() > 30
+    for width in (390, 800, 1400):
+        page.set_viewport_size({"width": width, "height": 900})
+        page.evaluate("() => new Promise((done) => requestAnimationFrame(() => done()))")
+        assert page.evaluate(OUTSIDE) == [], f"at {width} pixels"
+    dashed = page.evaluate(DASHED) if audit else ["baseline"]
+    assert dashed
     assert [classes for classes in dashed if "baseline" not in classes] == []
-    for table in page.locator("div.scroll:has-text('–')").all():
-        note = table.locator("+ p")
-        assert note.text_content() == "A dash: there is nothing to compute this from."
+    for table in page.locator("div.scroll:has-text('–')").all() if audit else ():
+        assert table.locator("+ p").text_content() == (
+            "A dash: there is nothing to compute this from."
+        )
     page.close()
 
 
