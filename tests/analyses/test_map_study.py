@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from faultpath.analyses.map.lattice import UNITS
 from faultpath.analyses.map.study import MapPlan, plan_map
@@ -70,27 +71,10 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
     assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr] - a bias
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        ({"fault": "gain:scale=0.6"}, "the map sets the size itself; leave '=0.6' out"),
-        ({"fault": "gain@observer"}, "name the modules with --against"),
-        ({"fault": "gain:noise"}, "errors of both signs"),
-        ({"points": 9 * 10**400}, "takes at most 10000"),
-        ({"against": ("controller",)}, "--against needs two modules"),
-        ({"against": ("controller", "controller.inverse")}, "share no place"),
-        ({"against": ("controller", "speedometer")}, "name two of controller, observer"),
-        ({"against": ("controller", "observer"), "baseline": "blind"}, "two different variants"),
-        ({"up_to": None}, "say how large errors may be"),
-        ({"up_to": 1.0}, "less than 1"),
-        ({"up_to": 1e-13}, "1e-13 is no size"),
-        ({"points": 24}, "begins with 25"),
-        ({"spread": (0.1, 1e308)}, "--spread: give standard deviations above 0, up to"),
-        ({"spread": (0.1, 0.1, 0.1)}, "one for each module"),
-        ({"mean": (0.5,)}, "beyond the map"),
-        ({"correlation": 1.5}, "between -1 and 1"),
-    ],
-)
+MISTAKES = yaml.safe_load(Path(__file__).with_name("mistakes.yaml").read_text("utf-8"))["map"]
+
+
+@pytest.mark.parametrize(("given", "said"), MISTAKES)
 def test_a_mistake_is_one_sentence(given: dict[str, Any], said: str) -> None:
     with pytest.raises(UserError) as refused:
         plan(**given)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from scan_toy import Cost, Planted, names, planned, scanned
 
 from faultpath.analyses.scan.design import COSTLY_PP, FIRST_SCENES, HALVINGS, TRIALS
@@ -191,21 +192,11 @@ def test_at_most_ten_errors_go_on_and_the_worst_first():
     assert [lost[place] for place in scan.chosen] == sorted(lost.values(), reverse=True)[:10]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "parts"),
-    [
-        ({"scenes": 55}, ("55 scenes of 'selection' are too few", "so 59 would do")),
-        ({"scenes": 500}, ("cannot run 500 scenes", "choose 1 to 400")),
-        ({"variant": "hole"}, ("unknown variant 'hole'", "did you mean 'whole'")),
-        ({"repair": "whole"}, ("both 'whole'",)),
-        ({"fault": "a:delay=3"}, ("'a:delay=3'", "two signs")),
-        ({"fault": "a:offset=0"}, ("changes nothing",)),
-        ({"fault": "a:offset"}, ("needs one size",)),
-        ({"fault": ("a:offset=1", "a:scale=2")}, ("given an error already",)),
-        ({"seeds": tuple(range(40))}, ("trials at least, and 8000 are run", "--scenes 59")),
-    ],
-)
-def test_a_mistake_is_one_sentence(arguments: dict[str, Any], parts: tuple[str, ...]):
+MISTAKES = yaml.safe_load(Path(__file__).with_name("mistakes.yaml").read_text("utf-8"))["scan"]
+
+
+@pytest.mark.parametrize(("arguments", "parts"), MISTAKES)
+def test_a_mistake_is_one_sentence(arguments: dict[str, Any], parts: list[str]):
     with pytest.raises(UserError) as refused:
         planned(Planted(lambda at: 0.0), **arguments)
     assert all(part in str(refused.value) for part in parts), str(refused.value)

@@ -10,6 +10,7 @@ from faultpath_paper.evidence.table import EvidenceTable, Measured, Measurement
 from faultpath_paper.page import Page
 from faultpath_paper.pages import PAGES
 from faultpath_paper.results import Results
+from outcomes import trial
 
 from faultpath.analyses.tables import Entry, Line, Table
 from faultpath.run import Pairs, Trial, Trials
@@ -31,11 +32,20 @@ def won(wins: Callable[[Cell], int]) -> Ends:
 def trials(cells: Iterable[Cell], ends: Ends, scenes: Iterable[int] = range(SCENES)) -> Trials:
     """Return a table with each variant, condition and seed once."""
     variants = {(c.variant, c.condition, seed): c for c in cells for seed in c.seeds}
-    rows = (
-        Trial(*variant, i, "", _outcome(i, variant[-1], ends(cell, variant[-1], i)))
-        for (variant, cell), i in product(variants.items(), scenes)
+    return Trials.of(
+        ended(variant, condition, i, ends(cell, seed, i), seed)
+        for ((variant, condition, seed), cell), i in product(variants.items(), scenes)
     )
-    return Trials.of(rows)
+
+
+def ended(variant: str, condition: str, scene: int, status: Status, seed: int) -> Trial:
+    """Return a trial that ends so; later scenes take longer."""
+    if status is Status.FAILED:
+        return trial(variant, condition, scene, status, seed=seed, metrics={})
+    missed = 0.3 if status is Status.SUCCESS else 2.3
+    metrics = {"terminal_distance_m": missed, "min_clearance_m": 0.25}
+    time_s = 3.0 + 0.1 * scene
+    return trial(variant, condition, scene, status, seed=seed, time_s=time_s, metrics=metrics)
 
 
 def measured(
@@ -90,19 +100,6 @@ class Watched(Results):
     def measured(self, measurement: Measurement) -> Measured:
         self.measurements.append(measurement)
         return super().measured(measurement)
-
-
-def _outcome(scene: int, seed: int, status: Status) -> Outcome:
-    failed, missed = status is Status.FAILED, 0.3 if status is Status.SUCCESS else 2.3
-    return Outcome(
-        scene=f"s{scene:03d}",
-        status=status,
-        time_s=0.0 if failed else 3.0 + 0.1 * scene,
-        metrics={} if failed else {"terminal_distance_m": missed, "min_clearance_m": 0.25},
-        initial_hash=f"i{scene}",
-        disturbance_hash=f"d{scene}",
-        planner_noise_hash=f"n{scene}-{seed}",
-    )
 
 
 def tables(page: Page, results: Results) -> dict[str, Table]:

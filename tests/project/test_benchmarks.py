@@ -1,14 +1,12 @@
 """The page on performance says what was measured, and what was measured is complete."""
 
 import json
-import re
 from pathlib import Path
 
-from benchmarks import page, physics, planning
+from benchmarks import page, planning
 from benchmarks.peers import batched
-from benchmarks.results import DEVICE, WAITS, Target, load, record
+from benchmarks.results import DEVICE, Target, load, record
 from benchmarks.rows import ROWS, SIDES
-from benchmarks.waits import STEPS, TESTS
 
 ROOT = Path(__file__).parents[2]
 
@@ -27,32 +25,12 @@ def test_every_row_was_measured_or_says_why_not_and_is_shown():
             assert (each.target is None) == (each.met is None)
 
 
-def test_sizes_in_the_text_are_those_that_are_measured():
-    text = (ROOT / "docs" / "performance.md").read_text("utf-8")
-    words = re.sub(r"<!-- begin:(\S+) -->.*?<!-- end:\1 -->", "", text, flags=re.DOTALL).split()
-    scenes, seeds = physics.outcomes()[0].shape
-    for sizes in (
-        f"{planning.CANDIDATES} candidates, {planning.HORIZON} steps",
-        f"{physics.VEHICLES} vehicles",
-        f"{physics.SCENES} selection scenes",
-        f"{scenes} scenes and {seeds} seeds with {physics.RESAMPLES:,} resamples",
-    ):
-        assert sizes in " ".join(words)
-
-
 def test_every_figure_of_a_gpu_names_its_command_or_says_that_it_was_entered_by_hand():
     text = page.gpu()
     for figures in json.loads(DEVICE.read_text("utf-8")).values():
         for part in (figures, figures.get("audits"), figures.get("paper")):
             if part is not None:
                 assert (part.get("command") or part["by_hand"]) in text
-
-
-def test_every_wait_that_was_timed_is_a_step_of_today():
-    clones = json.loads(WAITS.read_text("utf-8"))
-    seconds = [step for clone in clones.values() for step in clone["seconds"]]
-    assert seconds in ([*STEPS], [*STEPS, *TESTS])  # the tests are timed after the others
-    assert all(f"`{step}`" in page.waits() for step in seconds)
 
 
 def test_a_ratio_is_formed_within_each_round():

@@ -1,4 +1,4 @@
-"""The package's declarations agree with each other, and tests with theirs."""
+"""The package's declarations agree with each other."""
 
 import importlib.metadata
 import re
@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 import yaml
-from hypothesis import settings
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
@@ -60,18 +59,6 @@ def test_constraints_satisfy_every_declared_range(
             assert requirement.specifier.contains(versions[name]), requirement
 
 
-def test_every_room_but_the_one_with_torch_is_checked_strictly(
-    declared: dict[str, Any], root: Path
-) -> None:
-    packages = {
-        path.parent.relative_to(root).as_posix()
-        for path in (root / "src" / "faultpath").glob("*/__init__.py")
-    }
-    strict = set(declared["tool"]["pyright"]["strict"])
-    assert packages - strict == {"src/faultpath/learning"}
-    assert "src/faultpath/*.py" in strict
-
-
 def test_what_is_to_be_installed_exists(declared: dict[str, Any], root: Path) -> None:
     extras = set(declared["project"]["optional-dependencies"])
     named: set[str] = set()
@@ -97,10 +84,3 @@ def test_the_readme_names_the_paper_that_is_to_be_cited(
     readme = (root / "README.md").read_text("utf-8")
     assert f"*{paper['title']}*" in readme
     assert f"arXiv {number}" in readme
-
-
-def test_hypothesis_draws_the_same_examples_every_time(request: pytest.FixtureRequest) -> None:
-    exploring = request.config.getoption("--hypothesis-profile") == "explore"
-    assert settings.default.derandomize is not exploring
-    assert settings.get_profile("fixed").derandomize
-    assert settings.get_profile("fixed").database is None

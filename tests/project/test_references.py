@@ -8,19 +8,6 @@ import references
 from blocks import Repeats
 
 
-def test_every_stored_audit_and_map_is_flown_again_and_the_quickest_first() -> None:
-    runs = references.by_time()
-    stored = {path.parent.name for path in references.REFERENCE.glob("*/record.json")}
-    assert stored - {*references.APART} <= {*runs}
-    times = [run.provenance.wall_s for run in runs.values()]
-    assert times == sorted(times)
-    for run in runs.values():
-        command = run.provenance.command
-        assert command[0] == "faultpath"
-        assert command[1] in ("audit", "map", "scan")
-        assert "--out" in command
-
-
 def test_an_example_of_another_package_runs_where_that_is_installed() -> None:
     runs = references.by_time()
     here = references.environment(runs["toy"])

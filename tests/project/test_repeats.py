@@ -3,7 +3,7 @@
 import pytest
 import references
 import repeats
-from blocks import REFERENCE, Repeats, load
+from blocks import Repeats, load
 
 HERE = [
     name for name, run in references.by_time().items() if references.environment(run) == ".venv"
@@ -57,16 +57,3 @@ def test_a_page_says_how_many_trials_repeat(repeated, near, current, text) -> No
     result = Repeats(trials=800, sampled=8, repeated=repeated, near=near)
     assert f"; {result}." == text
     assert result.current is current
-
-
-def test_the_sample_is_the_same_each_time_and_has_every_version_and_condition() -> None:
-    run = load("toy")
-    table = repeats.read_outcomes(REFERENCE / "toy" / "outcomes.parquet")
-    before = repeats.outcomes_at(table)
-    with repeats.chdir(repeats.ROOT):
-        _, study = repeats.planned(run)
-    drawn = [at for at, _ in repeats.sample(run, study, before)]
-    assert drawn == [at for at, _ in repeats.sample(run, study, dict(reversed(before.items())))]
-    assert {(at.variant, at.condition) for at in drawn} == {
-        (at.variant, at.condition) for at in before
-    }

@@ -7,6 +7,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
+import yaml
 from flights import bits, fly, quadrotor
 
 from faultpath.api.systems import with_parts
@@ -83,48 +84,9 @@ def test_a_variant_gets_a_part_of_its_own_with_the_seed_that_it_names():
     assert named.load_predictor(2) is not named.load_predictor(2)
 
 
+MISTAKES = yaml.safe_load(Path(__file__).with_name("brought.yaml").read_text("utf-8"))
+BROKEN, FLOWN = MISTAKES["refused when brought"], MISTAKES["refused at first use"]
 CREATE = "def create(seed) -> K:\n    "
-READS = f"{CREATE}c = Constant(); c.reads = "
-STEP = "class P(K):\n    def step(self, *given):\n        "
-P = f"\n{CREATE}return P()"
-BROKEN = {
-    "no file": (None, "there is no file"),
-    "no factory": ("", "has no function 'create'"),
-    "no part": (f"{CREATE}return 3", "returned a int for seed None"),
-    "raises": (f"{CREATE}1 / 0  # here", "line 10: ZeroDivisionError"),
-    "syntax": ("def create(:", "line 9: SyntaxError"),
-    "takes nothing": ("def create() -> K:\n    return K()", "called with a seed alone"),
-    "place": (f"{CREATE}k = K(); k.reads |= {{'sonar'}}; return k", "'sonar', which predictors do"),
-    "no start": (f"{CREATE}k = K(); k.reads = frozenset({{'trim'}}); return k", "'initial_state'"),
-    "history alone": (f"{CREATE}k = K(); k.reads |= {{'latent'}}; return k", "'history' and"),
-    "channel": (f"{READS}{{('wind', 'head')}}; return c", "('wind', 'head'), a channel and place"),
-    "half a place": (f"{READS}{{('mass', 'head')}}; return c", "add ('thrust_scale', 'head')"),
-    "no data": (f"{CREATE}k = K(); k.net = torch.nn.Linear(1, 1); return k", "set its data_files"),
-    "lost data": (f"{CREATE}k = K(); k.data_files = ['gone.pt']; return k", "its data files"),
-}
-FLOWN = {
-    "wide state": (f"{STEP}return given[0], given[2]{P}", "[3, 2, 1] of float32: it must be a"),
-    "no memory": (f"{STEP}return super().step(*given)[0]{P}", "returns a State and the memory"),
-    "fails in a step": (f"{STEP}return {{}}['x'], 0  # here{P}", "line 11: KeyError"),
-    "not a number": (
-        f"{STEP}s, m = super().step(*given); return replace(s, rate=s.rate / 0), m{P}",
-        "rate of the state that step() returns is NaN",
-    ),
-    "flat wind": (
-        f"class C(Constant):\n    def wind(self, memory): return memory\n{CREATE}return C()",
-        "wind() is a tensor [32] of float64: it must be a tensor [3, 32]",
-    ),
-    "other kind": (f"{CREATE}return K(seed is None, seed is None)", "reads elsewhere than the one"),
-    "no weights": (
-        f"{CREATE}if seed is not None:\n        open('gone.pt')  # here\n    return K()",
-        "line 11: FileNotFoundError",
-    ),
-    "horizon": (
-        f"{CREATE}p = planner(seed)\n"
-        "    p.sampler = AutoregressiveSampler(SamplerSettings(candidates=1024))\n    return p",
-        "the sampler's candidates is 1024",
-    ),
-}
 
 
 def _file(folder: Path, code: str) -> Path:
@@ -142,15 +104,17 @@ def _file(folder: Path, code: str) -> Path:
     return path
 
 
-@pytest.mark.parametrize(("code", "says"), BROKEN.values(), ids=BROKEN)
-def test_a_part_that_cannot_be_brought_is_refused_in_a_sentence(code, says, tmp_path):
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_part_that_cannot_be_brought_is_refused_in_a_sentence(name, tmp_path):
+    code, says = BROKEN[name]["code"], BROKEN[name]["says"]
     named = f"{'nowhere.py' if code is None else _file(tmp_path, code)}:create"
     with pytest.raises(UserError, match=rf"\A.*{re.escape(says)}.*\Z"):
         system_code(quadrotor(bring=named), SystemSpec(name="quadrotor"))
 
 
-@pytest.mark.parametrize(("code", "says"), FLOWN.values(), ids=FLOWN)
-def test_a_part_that_does_another_thing_is_refused_at_first_use(code, says, tmp_path):
+@pytest.mark.parametrize("name", FLOWN)
+def test_a_part_that_does_another_thing_is_refused_at_first_use(name, tmp_path):
+    code, says = FLOWN[name]["code"], FLOWN[name]["says"]
     named = f"{_file(tmp_path, code)}:create"
     with pytest.raises(UserError, match=re.escape(says)):
         fly(quadrotor(bring=named), f"dki-drag/{named}" if "Constant" in code else named)

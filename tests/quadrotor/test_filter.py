@@ -59,15 +59,6 @@ def test_errors_of_a_thousand_flights_are_as_large_as_the_filter_says(flown):
     assert (last[3:] < 0.7 * first[3:]).all()  # those of the accelerometer more slowly
 
 
-def test_a_flight_has_the_same_estimates_beside_any_others(flown):
-    _, sensed = flown
-    read = [{name: value[..., :LANES] for name, value in every.items()} for every in sensed.read]
-    alone = filtered(replace(sensed, read=read))
-    for one, many in zip(alone, filtered(sensed), strict=True):
-        for mine, theirs in zip(one.now(), many.now(), strict=True):
-            assert torch.equal(mine, theirs[..., :LANES])
-
-
 def test_another_implementation_estimates_the_same(flown):
     """filterpy's filter with derivatives by differences, one flight, all numbers of a reading at
     once."""

@@ -9,17 +9,15 @@ from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
-from faultpath_quadrotor.state import State, padded_lanes
+from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M, MOTOR_THRUST_MAX_N, VehicleParameters
 from flights import hall, spread, tumbling
-from kernel_sets import FUSED
 from test_plant import drawn_vehicles
 from torch import Tensor
 
 F64 = torch.float64
 LANES = 37
 STEPS = 25
-EVERYONE = torch.arange(LANES)
 
 
 def wild(seed: int) -> tuple[PlantState, Tensor, Tensor]:
@@ -34,13 +32,11 @@ def wild(seed: int) -> tuple[PlantState, Tensor, Tensor]:
     return PlantState(state, thrusts), spread(4, by=20), spread(STEPS, 3, by=6)
 
 
-def flown(isa: str, seed: int = 0, lanes: Tensor = EVERYONE) -> Tensor:
+def flown(isa: str, seed: int) -> Tensor:
     """All that the plant carries after one control step, `[22, n]`."""
-    vehicle = drawn_vehicles(LANES, seed)
     start, command, winds = wild(seed)
     with native.using(isa):
-        plant = TorchPlant(vehicle.take(lanes))
-    end = plant.advance(start.take(lanes), command[:, lanes], winds[..., lanes])
+        end = TorchPlant(drawn_vehicles(LANES, seed)).advance(start, command, winds)
     state = end.state
     parts = (state.position, state.velocity, state.rotation.flatten(0, 1), state.rate, end.thrusts)
     return torch.cat(parts)
@@ -49,19 +45,6 @@ def flown(isa: str, seed: int = 0, lanes: Tensor = EVERYONE) -> Tensor:
 @pytest.mark.parametrize("seed", [0, 100, 200])
 def test_the_compiled_plant_is_the_portable_one(isa: str, seed: int) -> None:
     torch.testing.assert_close(flown(isa, seed), flown(native.PORTABLE, seed), rtol=0, atol=1e-11)
-
-
-def test_fused_sets_give_the_same_bits() -> None:
-    first, *others = [flown(isa) for isa in FUSED] or [torch.zeros(0)]
-    assert all(torch.equal(first, other) for other in others)
-
-
-@pytest.mark.parametrize("isa", [*native.available(), native.PORTABLE])
-def test_neighbours_and_the_number_of_lanes_change_no_bit(isa: str) -> None:
-    together = flown(isa, lanes=EVERYONE[padded_lanes(LANES)])
-    for lanes in ([36], [3, 0, 11], list(range(9, 29))):
-        alone = flown(isa, lanes=torch.tensor(lanes)[padded_lanes(len(lanes))])
-        assert torch.equal(alone[:, : len(lanes)], together[:, lanes])
 
 
 def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:

@@ -11,7 +11,6 @@ from faultpath_quadrotor.perception.render import DepthRenderer
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State
-from kernel_sets import FUSED
 from test_perception_render import flown
 
 SCENES = [*load_library("selection").scenes[:40], *load_library("training").scenes[:40]]
@@ -39,18 +38,3 @@ def test_images_are_those_of_the_portable_path_silhouettes_included(isa, level):
     torch.testing.assert_close(ours, theirs, rtol=0, atol=ROUNDING_M)
     least = 0.999 if roots_are_exact() else 0.99
     assert (ours == theirs).float().mean() > least, "roots alone may differ in their last bit"
-
-
-def test_fused_sets_draw_the_same_bits() -> None:
-    state = flown(SCENES)
-    first, *others = [drawn(isa, SCENES, state) for isa in FUSED] or [torch.zeros(0)]
-    assert all(torch.equal(first, other) for other in others)
-
-
-@pytest.mark.parametrize("isa", [*native.available(), native.PORTABLE])
-def test_a_scene_s_image_does_not_depend_on_its_neighbours(isa: str) -> None:
-    state = flown(SCENES)
-    together = drawn(isa, SCENES, state)
-    for rows in ([0], [79, 3], list(range(20, 37))):
-        few = drawn(isa, [SCENES[i] for i in rows], state.take(torch.tensor(rows)))
-        assert torch.equal(few, together[rows])

@@ -1,14 +1,16 @@
 """The page of `make statistics`: every promise of the statistics, measured."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
 from itertools import product, repeat
 from pathlib import Path
+from typing import Any
 
 import simulation_scan as scans
+import yaml
 from simulation import (
     LEANS,
     RATES,
@@ -34,120 +36,89 @@ LOST = (0.005, 0.01, 0.02, 0.05)
 """Shares of scenes that lose all seeds."""
 
 
+def table(
+    corner: str, columns: Mapping[str, Any], rows: Mapping[str, Any], rates: Callable[..., Any]
+) -> Callable[[], str]:
+    """Return what measures a table: of a row and a column one rate, or the range of several."""
+
+    def measured(row: Any, column: Any) -> str:
+        found = rates(row, column)
+        return share([found] if isinstance(found, float) else found)
+
+    def written() -> str:
+        lines = (
+            (name, *(measured(row, of) for of in columns.values())) for name, row in rows.items()
+        )
+        return markdown((corner, *columns), lines)
+
+    return written
+
+
+def pairs(first: Iterable[int], second: Iterable[int]) -> dict[str, tuple[int, int]]:
+    """Return all pairs by their names, such as `25, 3`."""
+    return {f"{one}, {two}": (one, two) for one, two in product(first, second)}
+
+
+def percent(shares: Iterable[float]) -> dict[str, float]:
+    """Return shares by their names, such as `5 %`."""
+    return {f"{100 * part:g} %": part for part in shares}
+
+
+def structured(rate: float, lean: float, seeds: int) -> list[Population]:
+    """Return populations whose seeds are independent or half alike, without and with effects."""
+    if seeds == 1:
+        return [Population(rate, lean)]
+    kinds = product((0.0, 0.5), (False, True))
+    return [Population(rate, lean, seeds, alike, own) for alike, own in kinds]
+
+
 def sections() -> Iterator[Section]:
     """Yield everything that is measured."""
-    by_rate = [f"{100 * rate:g} %" for rate in RATES]
-    kinds = [(seeds, alike, own) for seeds in (3, 5) for alike in (0.0, 0.5) for own in (0, 1)]
-
-    def structured(rate: float, lean: float, seeds: int) -> list[Population]:
-        mine = [each for each in kinds if each[0] == seeds] or [(1, 0.0, 0)]
-        return [Population(rate, lean, n, alike, bool(own)) for n, alike, own in mine]
-
+    by_rate, seeds = percent(RATES), {"1 seed": 1, "3 seeds": 3}
     yield (
         "Interval of an effect",
-        "Least and greatest coverage of the 95 % interval, over even and one-sided splits of the "
-        "scenes that differ, and over seeds that are independent or half alike, without and with "
-        "seed effects; exact for one seed. Columns: share of scenes that differ. Promised: at "
-        "least .93. Where few scenes differ no interval of counts can keep .95: it covers more.",
-        lambda: markdown(
-            ("scenes, seeds", *by_rate),
-            (
-                (
-                    f"{n}, {seeds}",
-                    *(
-                        share(
-                            interval_coverage(n, truth)
-                            for lean in LEANS
-                            for truth in structured(rate, lean, seeds)
-                        )
-                        for rate in RATES
-                    ),
-                )
-                for n, seeds in product((10, 25, 50, 100, 300), (1, 3, 5))
+        table(
+            *("scenes, seeds", by_rate, pairs((10, 25, 50, 100, 300), (1, 3, 5))),
+            lambda size, rate: (
+                interval_coverage(size[0], truth)
+                for lean in LEANS
+                for truth in structured(rate, lean, size[1])
             ),
         ),
     )
     yield (
         "Break-even frequency",
-        "Least and greatest coverage of the set of frequencies at which neither version is "
-        "significantly ahead, over costs that are one-sided or in between and gains of 5 and 30 pp "
-        "under the fault. Columns: share of scenes that differ under correct inputs. Promised: at "
-        "least .93.",
-        lambda: markdown(
-            ("scenes, seeds", *by_rate),
-            (
-                (
-                    f"{n}, {seeds}",
-                    *(
-                        share(
-                            break_even_coverage(n, cost, replace(cost, rate=gain, lean=1.0))
-                            for lean, gain in product((0.5, 1.0), (0.05, 0.3))
-                            for cost in structured(rate, -lean, seeds)
-                            if cost.mean <= 0.0
-                        )
-                        for rate in RATES
-                    ),
-                )
-                for n, seeds in product((25, 100, 300), (1, 3))
+        table(
+            *("scenes, seeds", by_rate, pairs((25, 100, 300), (1, 3))),
+            lambda size, rate: (
+                break_even_coverage(size[0], cost, replace(cost, rate=gain, lean=1.0))
+                for lean, gain in product((0.5, 1.0), (0.05, 0.3))
+                for cost in structured(rate, -lean, size[1])
+                if cost.mean <= 0.0
             ),
         ),
     )
+    sizes = product((25, 100, 300), (0.02, 0.1, 0.3))
     yield (
         "Least detectable difference",
-        "Audits of two equal versions report the difference that they would find with 80 % "
-        "probability; then the true difference is made that. Share of audits in which it is "
-        "significant. Promised: about .80, at least .70.",
-        lambda: markdown(
-            ("scenes, share that differs", "1 seed", "3 seeds"),
-            (
-                (
-                    f"{n}, {100 * rate:g} %",
-                    *(
-                        share([detection(n, Population(rate, 0.0, s, 0.5 * (s > 1)), ALPHA)])
-                        for s in (1, 3)
-                    ),
-                )
-                for n, rate in product((25, 100, 300), (0.02, 0.1, 0.3))
-            ),
+        table(
+            *("scenes, share that differs", seeds),
+            {f"{n}, {100 * rate:g} %": (n, rate) for n, rate in sizes},
+            lambda size, s: detection(size[0], Population(size[1], 0.0, s, 0.5 * (s > 1)), ALPHA),
         ),
     )
-    for title, what, found in (
-        ("Audits of equal versions", "four conditions", equal_variants),
-        ("Sequential audits of equal versions", "four conditions and ten looks", any_look),
-    ):
-        yield (
-            title,
-            f"Share of audits with {what} that report any difference. Conditions alike: chance "
-            "that a scene ends the same under all conditions. Promised: at most .05.",
-            partial(announced, found),
-        )
+    yield "Audits of equal versions", partial(announced, equal_variants)
+    yield "Sequential audits of equal versions", partial(announced, any_look)
+    heads = ("largest level", "largest to one side", "populations above .05")
+    heads = (*heads, "above .025 to one side", "power, 3 seeds", "power, 1 seed")
     yield (
         "Skewed populations",
-        "A thousand populations of 25 to 300 scenes, two to five seeds and no difference, that "
-        "differ otherwise to one side than to the other (as many by little as few by much), and a "
-        "grid of those in which some scenes gain part of the seeds and few lose all. Share of "
-        "audits under one condition that report a difference, promised: at most .05; and that "
-        "report one to the worse side, which is a false reversal where an isolated fault certainly "
-        "favours the other version, promised: at most .025; both but for a standard error of .001. "
-        "The power is that at 100 scenes and three seeds, of which half of the scenes agree, where "
-        "5.4 % of trials favour one version and .6 % the other.",
         lambda: markdown(
-            (
-                "largest level",
-                "largest to one side",
-                "populations above .05",
-                "above .025 to one side",
-                "power, 3 seeds",
-                "power, 1 seed",
-            ),
-            ((share([rate]) for rate in (*skewed(1000), powered(3), powered(1))),),
+            heads, [[share([rate]) for rate in (*skewed(1000), powered(3), powered(1))]]
         ),
     )
     yield (
         "Many scenes",
-        "Above 1,000 scenes the E step of one seed's test is approximated. Largest chance, "
-        "computed, that the test of two equal versions reports a difference, over all shares of "
-        "scenes that differ. Columns: level. Promised: at most that level.",
         lambda: markdown(
             ("scenes", *(f"{level:g}".removeprefix("0") for level in LEVELS)),
             (
@@ -156,89 +127,48 @@ def sections() -> Iterator[Section]:
             ),
         ),
     )
+    sizes = product((50, 100, 300), (3, 5), (0.2, 0.9))
     yield (
         "Intervals of skewed seeds",
-        "Coverage of the 95 % interval where a share of the scenes gains one seed and a few lose "
-        "all: what no scene showed may be a whole difference. Columns: share that loses all. "
-        "Promised: at least .93.",
-        lambda: markdown(
-            ("scenes, seeds, share that gains", *(f"{100 * lost:g} %" for lost in LOST)),
-            (
-                (
-                    f"{n}, {seeds}, {100 * gains:g} %",
-                    *(share([skewed_coverage(n, seeds, gains, lost)]) for lost in LOST),
-                )
-                for n, seeds, gains in product((50, 100, 300), (3, 5), (0.2, 0.9))
-            ),
+        table(
+            *("scenes, seeds, share that gains", percent(LOST)),
+            {f"{n}, {s}, {100 * gains:g} %": (n, s, gains) for n, s, gains in sizes},
+            lambda size, lost: skewed_coverage(*size, lost),
         ),
     )
     yield (
         "Missing trials",
-        "Two equal versions under three conditions, of which trials are missing that ended badly "
-        "(one-sided: those of one version; opposite: of one version those that succeeded, of the "
-        "other those that did not; repeated: of one seed of three that end alike; clustered: tasks "
-        "of five scenes, half of the tasks with one less). Share of results that report any "
-        "difference, promised: at most .05. Where the versions differ, share in which any of five "
-        "break-even sets puts a version ahead where the other one is. 2,000 results each, with a "
-        "standard error of at most .005. Both: both versions die, in 60 % of the scenes that only "
-        "the baseline would solve and in 5 % of the others.",
         lambda: markdown(
             ("what is missing, seeds", "any difference", "any set is wrong"),
             (
-                (f"{kind}, {seeds}", *(share([rate]) for rate in rates))
-                for (kind, seeds), rates in zip(BLANKS, missing(), strict=True)
+                (f"{kind}, {s}", *(share([rate]) for rate in rates))
+                for (kind, s), rates in zip(BLANKS, missing(), strict=True)
             ),
         ),
     )
     yield (
         "Reversals",
-        "Share of audits that report a reversal where the shared effect is -20 pp. Where both "
-        "isolated effects are 0 there is none; promised: at most .025, half of the 5 %, "
-        "since the other half lies on the same side. The others show the power.",
-        lambda: markdown(
-            ("scenes, seeds", "isolated effects 0", "isolated effects 20 pp"),
-            (
-                (f"{n}, {s}", *(share([reversals(n, s, pp)]) for pp in (0.0, 0.2)))
-                for n, s in product((25, 100), (1, 3))
-            ),
+        table(
+            "scenes, seeds",
+            {"isolated effects 0": 0.0, "isolated effects 20 pp": 0.2},
+            pairs((25, 100), (1, 3)),
+            lambda size, effect: reversals(*size, effect),
         ),
     )
-    yield (
-        "Failed trials",
-        "Share of audits of 60 scenes and three seeds that report a reversal, with isolated "
-        "effects of 14 pp and a shared one of -20 pp, where a share of all trials fails by chance: "
-        "what is significant has to be so whatever these would have been. And power for an effect "
-        "of 12 pp where trials fail under another condition alone, which costs it next to nothing.",
-        lambda: markdown(
-            ("trials that fail", "reversal", "effect under another condition"),
-            (
-                (
-                    f"{100 * failed:g} %",
-                    share([reversals(60, 3, 0.14, failed)]),
-                    share([beside_failures(failed)]),
-                )
-                for failed in (0.0, 0.01, 0.05)
-            ),
-        ),
-    )
+    failures = {
+        "reversal": lambda failed: reversals(60, 3, 0.14, failed),
+        "effect under another condition": beside_failures,
+    }
+    rows = percent((0.0, 0.01, 0.05))
+    yield "Failed trials", table("trials that fail", failures, rows, lambda row, of: of(row))
+    trained = {
+        "new trainings": lambda s: trainings(100, s, True),
+        "these trainings": lambda s: trainings(100, s, False),
+        "new, one in ten collapses": lambda s: trainings(100, s, True, collapse=0.4),
+    }
     yield (
         "Equal methods, other trainings",
-        "Two equal methods, of which every training is off by 8 pp (standard deviation). Share of "
-        "audits that report a difference. For newly trained models that is an error, promised in "
-        "at most .05 where trainings spread as a Gaussian does; for these trained models it is not "
-        "one: they do differ. The last column is what no interval can keep, and the result says "
-        "so: one training in ten loses 40 pp and the others gain 4.4.",
-        lambda: markdown(
-            ("scenes, trainings", "new trainings", "these trainings", "new, one in ten collapses"),
-            (
-                (
-                    f"100, {s}",
-                    *(share([trainings(100, s, m)]) for m in (True, False)),
-                    share([trainings(100, s, True, collapse=0.4)]),
-                )
-                for s in (5, 10)
-            ),
-        ),
+        table("scenes, trainings", trained, {"100, 5": 5, "100, 10": 10}, lambda row, of: of(row)),
     )
     yield from scans.sections()
 
@@ -284,14 +214,15 @@ def main() -> None:
         "",
     ]
     measured_before = written(Path(page)) if titles else {}
-    if unknown := set(titles) - {title for title, *_ in sections()}:
+    notes = yaml.safe_load(Path(__file__).with_name("simulation_notes.yaml").read_text("utf-8"))
+    if unknown := set(titles) - {title for title, _ in sections()}:
         sys.exit(f"No section of the page is called {min(unknown)!r}: name one by its heading.")
-    for title, note, measured in sections():
+    for title, measured in sections():
         if title in measured_before and title not in titles:
             lines += [measured_before[title], ""]
             continue
         print(title, file=sys.stderr, flush=True)
-        lines += [f"## {title}", "", note, "", kept(title, measured), ""]
+        lines += [f"## {title}", "", notes.get(title, ""), "", kept(title, measured), ""]
     Path(page).write_text("\n".join(lines).rstrip() + "\n", "utf-8")
 
 

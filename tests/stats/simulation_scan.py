@@ -154,17 +154,6 @@ def sections() -> Iterator[Section]:
     """Yield both tables of scans."""
     yield (
         "Scans for errors that cancel",
-        "Scans in both stages: each signed error alone in 50 scenes; at most ten that hurt go on, "
-        "with the other reader of their source, to pairs in other scenes. A trial succeeds where "
-        "the ability of its scene and chance, equal parts of the variance, exceed what the errors "
-        "add to the difficulty, so outcomes of a scene are alike under all conditions. Errors cost "
-        "10 to 30 points alone, equal ones 20; those that help gain 17 points where 60 % succeed "
-        "and 3 where 95 % do. Share of 800 scans that report any pair that cancels, where none "
-        "does, promised: at most .05; and that report any error that covers for another one of "
-        "its source, where none does. The latter is above .05 where errors help and success is "
-        "near 100 %, so that hardly anything shows that they do. Least and greatest over 60 and "
-        "95 % success without an error, with a standard error of at most .005 for rates below "
-        ".02. Rows: truth, scenes of the second stage, seeds. Columns: claim, signed errors.",
         lambda: markdown(
             (
                 "truth; scenes, seeds",
@@ -182,13 +171,6 @@ def sections() -> Iterator[Section]:
     )
     yield (
         "Scans with a pair that cancels",
-        "Share of 800 scans of 38 signed errors that report the one pair that cancels: each of its "
-        "errors costs 30 points, both together 3. The other errors cost what a row says, and add "
-        "up; the more of them hurt, the more pairs the trials are divided by. Least and greatest "
-        "over 60 and 95 % success without an error, with a standard error of at most .018. "
-        "Columns: trials of both stages. Promised: at least .8 at 8,000 trials. It is not quite "
-        "kept where 36 others cost 15 points each: ten errors and all of their pairs then share "
-        "the trials.",
         lambda: markdown(
             ("cost of the others", *(f"{trials:,}" for trials in TRIALS)),
             (

@@ -8,8 +8,8 @@ from typing import TypeAlias
 import faultpath
 from faultpath.core.files.atomic import write_file
 
-Section: TypeAlias = tuple[str, str, Callable[[], str]]
-"""Title, note and what measures the table."""
+Section: TypeAlias = tuple[str, Callable[[], str]]
+"""Title and what measures the table; `simulation_notes.yaml` says what that is."""
 
 
 def share(rates: Iterable[float]) -> str:

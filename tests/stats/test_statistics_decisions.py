@@ -155,16 +155,3 @@ def test_trainings_that_agree_to_the_digit_are_not_certain():
     assert 0.005 < with_test(effect).test.p_value < 0.05
     none = success_effect(0 * difference, 0 * difference, RESAMPLES, models=True)
     assert with_test(none).test.p_value == 1.0
-
-
-def test_newly_trained_models_are_not_told_apart_by_six_single_wins():
-    """Two scenes of a hundred won in each training, others in each: bootstrap and t test agreed."""
-    wins = np.zeros((100, 3))
-    wins[np.arange(6), np.arange(6) % 3] = 1
-    resamples = Resamples.draw("hundred", 100, n_resamples=2000)
-    found = with_test(success_effect(wins, 0 * wins, resamples, models=True))
-    assert found.test.rejects()
-    assert found.test.leans == 1
-    assert found.detected == 0
-    wins[:12] = 1
-    assert with_test(success_effect(wins, 0 * wins, resamples, models=True)).detected == 1

@@ -146,7 +146,7 @@ def test_one_section_is_measured_alone_and_others_stay_to_the_byte(tmp_path, mon
     monkeypatch.setattr(
         simulation_page,
         "sections",
-        lambda: [(title, f"Of {title}.", str) for title in tables],
+        lambda: [(title, str) for title in tables],
     )
     monkeypatch.setattr(simulation_page, "kept", lambda title, measured: tables[title])
     monkeypatch.setattr("sys.argv", ["", str(page)])
