@@ -1,112 +1,73 @@
 """Tables of the studies: what the shipped run, whose tables are all compared, does not show."""
 
+import pytest
 from faultpath_paper.cells import Cell
-from faultpath_paper.evidence.table import Measurement
 from faultpath_paper.pages import table_3, table_4, table_6
+from faultpath_paper.results import Results
 from faultpath_quadrotor.training import trajectories
-from toy_runs import SCENES, calibrated, line, measured, page, papers, run, tables, texts, won
+from toy_runs import SCENES, Ends, calibrated, measured, page, run, tables, won
 
+from faultpath.analyses.tables.markdown import block
 from faultpath.system import Status
 
 
-def test_table_1_counts_how_trials_end_and_when() -> None:
-    def ends(cell: Cell, seed: int, scene: int) -> Status:
-        if cell.variant == "dki" and scene == SCENES - 1:
-            return Status.FAILED
-        if scene < 12:
-            return Status.SUCCESS
-        return Status.CRASH if scene < 14 else Status.TIMEOUT
-
-    table = tables(page("table-1"), run(ends))["table-1"]
-    assert texts(line(table, "WM-A"))[2:] == ["60", "10", "30", "3.55"]
-    assert papers(line(table, "WM-A")) == ["8.2", "9.5", "69", "21", "10", "2.75"]
-    # Of 19 trials: the one that failed says nothing.
-    assert texts(line(table, "DKI"))[2:5] == ["63", "11", "26"]
-    assert texts(line(table, "True-parameter", below="With ground-truth clearance"))[2] == "60"
+def below(wins) -> Ends:
+    """Let a cell win the scenes below a number that follows from it and the seed."""
+    return lambda cell, seed, scene: Status.SUCCESS if scene < wins(cell, seed) else Status.CRASH
 
 
-def test_what_the_paper_prints_below_table_1_is_of_common_successes() -> None:
-    def ends(cell: Cell, seed: int, scene: int) -> Status:
-        won = scene < 12 + seed and (cell.variant, scene) != ("dki", 3)
-        return Status.SUCCESS if won else Status.CRASH
-
-    table = tables(page("table-1"), run(ends))["table-1b"]
-    assert texts(line(table, "DKI"))[::2] == ["0.00", "11"]
-    assert texts(line(table, "True-parameter"))[::2] == ["0.00", "12"]
-    assert papers(line(table, "DKI")) == ["+1.40", "", "65", ""]
-    assert texts(line(table, "WM-U")) == ["", "", "", "60 to 70"]
-    assert papers(line(table, "WM-A"))[-1] == "68 to 71"
+def of_all_kinds(cell: Cell, seed: int, scene: int) -> Status:
+    """Let 12 scenes be won, two crash and the others time out; one of DKI's fails."""
+    if cell.variant == "dki" and scene == SCENES - 1:
+        return Status.FAILED
+    return Status.SUCCESS if scene < 12 else Status.CRASH if scene < 14 else Status.TIMEOUT
 
 
-def test_scenes_whose_wind_was_not_met_are_counted_apart() -> None:
-    def ends(cell: Cell, seed: int, scene: int) -> Status:
-        return Status.SUCCESS if scene < 75 + seed else Status.CRASH
-
-    results = run(ends, page("table-3").cells, scenes=range(60, 80))
-    table = tables(page("table-3"), results)["table-3b"]
-    assert texts(line(table, "Wind-conditioned, trajectory GRU")) == ["5/6/7", "5/6/7"]
-    assert texts(line(table, "Wind-conditioned, zero")) == ["5", "5"]
-    assert papers(line(table, "Wind-conditioned, ground truth")) == ["30", "19"]
-    assert table_3.UNMET.start == trajectories.SCENES
+def common(cell: Cell, seed: int, scene: int) -> Status:
+    """Let a scene more be won with each seed; DKI loses one that the others win."""
+    won = scene < 12 + seed and (cell.variant, scene) != ("dki", 3)
+    return Status.SUCCESS if won else Status.CRASH
 
 
-def _reconstructed(cell: Cell) -> int:
+def reversing(cell: Cell) -> int:
     """GRU falls under the isolated error and recovers under the shared one; GRU+DCC stays."""
     alone = any("reconstruction" in fault for fault in cell.faults)
     return 10 if cell.variant == "gru+dcc" else 4 if alone else 16
 
 
-def test_tables_4_to_6_show_the_reversal_its_changes_and_when_it_pays() -> None:
-    results = run(won(_reconstructed))
-    table = tables(page("table-4"), results)["table-4"]
-    difference = line(table, "Difference", below="GRU+DCC minus GRU, success (pp)")
-    assert texts(difference) == ["−30.0", "+30.0", "−30.0"]
-    assert all(entry.detected for entry in difference.entries)
-    interaction = line(table, "DOB minus GRU, shared minus reconstruction-only (pp)")
-    assert texts(interaction) == ["", "", "0.0"]
-    # Each scene that is lost ends 2 m farther away.
-    assert texts(line(table, "Mean difference")) == ["+0.60", "−0.60", "+0.60"]
-    assert texts(line(table, "Shared minus reconstruction-only (m)"))[2] == "+1.20"
-
-    table = tables(page("table-5"), results)["table-5"]
-    *changes, pays = texts(line(table, "GRU: reconstruction only"))[:3]
-    assert changes[:2] == ["−30.0", "+30.0"]
-    assert pays.startswith("50 [")
-    low, high = (int(end) for end in pays.partition("[")[2].strip("]").split(", "))
-    assert 0 < low < 50 < high < 100
-    assert papers(line(table, "GRU: reconstruction only"))[2] == "59 [33, 80]"
-    assert texts(line(table, "GRU: shared with predictor"))[2] == "no crossing"
-
-    table = tables(page("table-6"), results)["table-6b"]
-    assert texts(line(table, "GRU+DCC only:GRU only")) == ["0:6", "6:0", "0:6"]
-    assert texts(line(table, "Exact McNemar p")) == ["0.031"] * 3
-    assert papers(line(table, "Exact McNemar p")) == ["0.002", "0.648", "0.057"]
+def with_medians(seeds: tuple[int, ...]) -> Results:
+    """Return a run whose errors are one more than their seed."""
+    asked = [m for m in table_6.PAGE.measurements if m.seed in seeds]
+    return run(won(calibrated), evidence=measured(asked, lambda m: 1.0 + m.seed))
 
 
-def test_the_observer_flies_once_and_is_compared_with_each_trained_seed() -> None:
-    def ends(cell: Cell, seed: int, scene: int) -> Status:
-        wins = 10 + seed if cell.variant == "gru" else 10
-        return Status.SUCCESS if scene < wins else Status.CRASH
+CASES = {
+    "trials of all kinds": ("table-1", "table-1", lambda: run(of_all_kinds)),
+    "common successes": ("table-1", "table-1b", lambda: run(common)),
+    "winds that were not met": (
+        *("table-3", "table-3b"),
+        lambda: run(below(lambda _, seed: 75 + seed), page("table-3").cells, scenes=range(60, 80)),
+    ),
+    "a reversal": ("table-4", "table-4", lambda: run(won(reversing))),
+    "a reversal, when it pays": ("table-5", "table-5", lambda: run(won(reversing))),
+    "a reversal, compensated": ("table-6", "table-6b", lambda: run(won(reversing))),
+    "an observer of one run": (
+        *("table-4", "table-4"),
+        lambda: run(below(lambda cell, seed: 10 + seed * (cell.variant == "gru"))),
+    ),
+    "medians of three seeds": ("table-6", "table-6a", lambda: with_medians((0, 1, 2))),
+    "medians of one seed": ("table-6", "table-6a", lambda: with_medians((0,))),
+}
 
-    results = run(ends)
-    table = tables(page("table-4"), results)["table-4"]
-    assert texts(line(table, "DOB"))[0] == "50"  # of one run: no decimals
-    heading = "DOB minus GRU, success (pp)"
-    assert texts(line(table, "Wins:losses", below=heading))[0] == "0:0/0:1/0:2"
-    assert texts(line(table, "Difference", below=heading))[0] == "−5.0"
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_table_is_what_was_approved(name: str, approved) -> None:
+    of, table, results = CASES[name]
+    approved(name, block(tables(page(of), results())[table]))
+
+
+def test_the_observer_flies_once_and_scenes_of_training_have_their_wind() -> None:
     dob = table_4.cell("dob", "correct")
-    assert (dob.fixed, dob.seeds, results.pairs(dob, dob).seeds) == (True, (0,), (0,))
-
-
-def test_table_6_averages_the_medians_of_the_seeds() -> None:
-    def value(measurement: Measurement) -> float:
-        return 1.0 + measurement.seed
-
-    evidence = measured(table_6.PAGE.measurements, value)
-    table = tables(page("table-6"), run(won(calibrated), evidence=evidence))["table-6a"]
-    assert texts(line(table, "GRU")) == ["2.00"] * 4
-    assert texts(line(table, "DOB")) == ["1.00"] * 4
-    assert texts(line(table, "GRU, wind term alone")) == ["", "2.00", "", "2.00"]
-    first = measured([m for m in table_6.PAGE.measurements if m.seed == 0], value)
-    table = tables(page("table-6"), run(won(calibrated), evidence=first))["table-6a"]
-    assert texts(line(table, "GRU")) == ["1.00"] * 4
+    assert (dob.fixed, dob.seeds) == (True, (0,))
+    assert run(won(calibrated)).pairs(dob, dob).seeds == (0,)
+    assert table_3.UNMET.start == trajectories.SCENES

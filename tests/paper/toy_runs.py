@@ -12,7 +12,7 @@ from faultpath_paper.pages import PAGES
 from faultpath_paper.results import Results
 from outcomes import trial
 
-from faultpath.analyses.tables import Entry, Line, Table
+from faultpath.analyses.tables import Entry, Table
 from faultpath.run import Pairs, Trial, Trials
 from faultpath.system import Outcome, Status
 
@@ -108,21 +108,6 @@ def tables(page: Page, results: Results) -> dict[str, Table]:
 
 def page(name: str) -> Page:
     return next(page for page in PAGES if page.name == name)
-
-
-def line(table: Table, label: str, *, below: str = "") -> Line:
-    """Return the first line of a label, after the heading `below`."""
-    labels = [each.label for each in table.lines]
-    start = labels.index(below) if below else 0
-    return table.lines[labels.index(label, start)]
-
-
-def texts(found: Line) -> list[str]:
-    return [entry.text for entry in found.entries]
-
-
-def papers(found: Line) -> list[str]:
-    return [entry.published for entry in found.entries]
 
 
 def entries(table: Table) -> Iterator[Entry]:
