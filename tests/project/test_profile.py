@@ -16,8 +16,10 @@ from faultpath.run.question import AuditQuestion
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = str(ROOT / "src" / "faultpath")
-SCENES = 23
+SCENES = 11
 """So many that an effect is a number which nothing else is."""
+MOST = 100
+"""Instances of a class that are looked into: what carries an effect or a question has few."""
 QUESTIONS = (AuditQuestion, Question)
 """They keep the text and the faults for whoever reads the run."""
 READ, RESOLVED = FaultText.read.__func__.__code__, resolve.__code__  # pyright: ignore[reportFunctionMemberAccess]
@@ -30,6 +32,7 @@ class Profile:
         self.carries, self.rooms = carries, tuple(f"{SOURCE}/{room}" for room in rooms)
         self.classes: set[type] = set()
         self.calls = Counter[object]()
+        self.seen = Counter[type]()
 
     def __call__(self, frame: FrameType, event: str, result: Any) -> None:
         if not frame.f_code.co_filename.startswith(self.rooms):
@@ -38,8 +41,12 @@ class Profile:
             self.calls[frame.f_code] += 1
         elif event == "return":
             for value in (frame.f_locals.get("self"), *members(result)):
-                if is_ours(value) and type(value) not in self.classes and self.carries(value):
-                    self.classes.add(type(value))
+                kind = type(value)
+                if not is_ours(value) or kind in self.classes or self.seen[kind] > MOST:
+                    continue
+                self.seen[kind] += 1
+                if self.carries(value):
+                    self.classes.add(kind)
 
 
 def is_ours(value: Any) -> bool:

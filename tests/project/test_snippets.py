@@ -59,6 +59,11 @@ def session(text: str) -> Iterator[tuple[str, str]]:
             yield line.strip(), output
 
 
+def commands(text: str) -> list[tuple[str, str]]:
+    """Return the commands of a document that are run, each with its output."""
+    return [(line, output) for line, output in session(text) if RUNNABLE.match(line)]
+
+
 def initialise(line: str, workspace: Path, run: Run) -> CompletedProcess[str]:
     """Carry out a `faultpath init` command, whether or not another test has done so."""
     (name,) = INIT.findall(line)
@@ -75,25 +80,28 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+TEXTS = {path: path.read_text(encoding="utf-8") for path in DOCUMENTS}
+
+
+@pytest.mark.parametrize(
+    "document", [path for path in TEXTS if program(TEXTS[path])], ids=lambda path: path.name
+)
 def test_python_of_a_document_runs(document: Path, workspace: Path, run: Run) -> None:
-    text = document.read_text(encoding="utf-8")
-    for line, _ in session(text):
+    for line, _ in session(TEXTS[document]):
         if INIT.match(line):
             initialise(line, workspace, run)
-    source = program(text)
     script = workspace / f"{document.stem}_snippets.py"
-    script.write_text(source, encoding="utf-8")
+    script.write_text(program(TEXTS[document]), encoding="utf-8")
     done = run(str(script))
     assert done.returncode == 0, f"{document.name}, at the line of the same number:\n{done.stderr}"
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "document", [path for path in TEXTS if commands(TEXTS[path])], ids=lambda path: path.name
+)
 def test_console_of_a_document_runs(document: Path, workspace: Path, run: Run) -> None:
     checker = doctest.OutputChecker()
-    for line, output in session(document.read_text(encoding="utf-8")):
-        if not RUNNABLE.match(line):
-            continue
+    for line, output in commands(TEXTS[document]):
         brief = OF_ALL_SCENES.match(line) and not output.strip()
         line += " --scenes 8" * bool(brief)
         done = initialise(line, workspace, run) if INIT.match(line) else run(line, shell=True)

@@ -62,20 +62,24 @@ def begun(source: ReportInput, record: DecisionRecord, pairs: list[Pair]) -> lis
     ]
 
 
-def test_an_isolated_win_is_shown_by_a_scene_where_only_that_variant_survives_there(
-    one_seed: ReportInput,
+@pytest.mark.parametrize(
+    ("signs", "patterns", "first"),
+    [
+        ({"reconstruction": 1}, "nnrn lnnb bblb bbbb bbrb rbrl bbrb brrb", 4),
+        (
+            {"reconstruction": 1, "shared": -1, "correct": -1},
+            "lbbl lbbl bbrb bbrl nnrl lbrr bbbl",
+            3,
+        ),
+    ],
+)
+def test_what_is_significant_is_shown_by_a_scene_that_goes_so(
+    one_seed: ReportInput, signs: dict[str, int], patterns: str, first: int
 ) -> None:
-    record = announcing(one_seed, reconstruction=1)
-    pairs = scenes(one_seed, "nnrn", "lnnb", "bblb", "bbbb", "bbrb", "rbrl", "bbrb", "brrb")
-    assert begun(one_seed, record, pairs)[0] == 4
-    said = captions(pairs)[next(p.scene for p in pairs if p.index == 4), 0]
-    assert said.startswith("2 of 8 scenes go like this one:")
-
-
-def test_a_reversal_is_shown_by_a_scene_that_has_both_sides(one_seed: ReportInput) -> None:
-    record = announcing(one_seed, reconstruction=1, shared=-1, correct=-1)
-    pairs = scenes(one_seed, "lbbl", "lbbl", "bbrb", "bbrl", "nnrl", "lbrr", "bbbl")
-    assert begun(one_seed, record, pairs)[0] == 3
+    """An isolated win by one in which only that variant survives there, a reversal by one that has
+    both sides."""
+    record, pairs = announcing(one_seed, **signs), scenes(one_seed, *patterns.split())
+    assert begun(one_seed, record, pairs)[0] == first
 
 
 @pytest.mark.parametrize(
@@ -100,8 +104,10 @@ def test_what_is_decided_at_the_floor_announces_nothing(one_seed: ReportInput, s
     record = record.model_copy(update={"effects": floor, "changes": quiet})
     pairs = scenes(one_seed, "rrrr", "bbrb", "nnnn", "bbbb", "nnnn", "bbbb")
     assert begun(one_seed, record, pairs) == [0, 1, 2, 3, 4, 5]
-    said = captions(pairs)[next(p.scene for p in pairs if p.index == 0), 0]
-    assert said.startswith("1 of 6 scenes goes like this one:")
+    counts = sorted(said.partition(":")[0] for said in captions(pairs).values())
+    assert counts == [
+        f"{n} of 6 scenes go{'es' * (n == 1)} like this one" for n in (1, 1, 2, 2, 2, 2)
+    ]
 
 
 def test_void_scenes_are_neither_shown_nor_counted(one_seed: ReportInput) -> None:

@@ -71,19 +71,6 @@ def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
         assert len(scenes) == effect.scenes
 
 
-def test_a_condition_of_which_every_trial_failed_costs_the_others_nothing(
-    make: Callable[..., ReportInput],
-) -> None:
-    lost = "shared"
-    source = make(void=False, n_scenes=40, lost=lost)
-    page = Page(report_page(source))
-    assert f"40 of {40 * len(source.record.conditions)} pairs are void." in page.text
-    assert "other pair" not in page.text
-    assert page.text.count("no pair of trials is left to compare") == 2  # headline and finding
-    pairs = read_pairs(source.trials, source.record)
-    assert PairKind.VOID not in {p.kind for p in pairs if p.condition != lost}
-
-
 def test_viewer_data_cannot_close_its_element(html: str) -> None:
     (data,) = re.findall(r'id="viewer-data">(.*?)</script>', html, re.DOTALL)
     assert "<" not in data
