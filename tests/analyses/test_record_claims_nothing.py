@@ -55,29 +55,17 @@ COUNTS: dict[str, Callable[[str, int], Counts]] = {
 }
 
 
-def by_chance(condition: str, seed: int, n: int) -> Statuses:
-    stream = generator("test/words", condition, seed)
-    return {v: [YES if x else NO for x in stream.random(n) < 0.5] for v in (REPAIR, BASELINE)}
-
-
-def leaning(condition: str, seed: int, n: int) -> Statuses:
-    """Return effects of different size and side under every condition, some of them detected."""
-    stream = generator("test/words", condition, seed)
-    lean = {CORRECT: -0.1, "a": 0.25, "b": 0.0, SHARED: -0.3}[condition]
-    chances = {REPAIR: 0.5 + lean, BASELINE: 0.5 - lean}
-    return {v: [YES if x else NO for x in stream.random(n) < p] for v, p in chances.items()}
-
-
-CHANCES = {"by chance": by_chance, "leaning": leaning}
-SHAPES = (*COUNTS, *CHANCES)
+LEANS = {"by chance": {}, "leaning": {CORRECT: -0.1, "a": 0.25, SHARED: -0.3}}
+"""Drawn effects: none, and of different size and side by condition, some of them significant."""
+SHAPES = (*COUNTS, *LEANS)
 
 
 def ends_of(shape: str, condition: str, seed: int, n: int) -> Statuses:
-    return (
-        variants(COUNTS[shape](condition, n), n)
-        if shape in COUNTS
-        else CHANCES[shape](condition, seed, n)
-    )
+    if shape in COUNTS:
+        return variants(COUNTS[shape](condition, n), n)
+    stream, lean = generator("test/words", condition, seed), LEANS[shape].get(condition, 0.0)
+    chances = {REPAIR: 0.5 + lean, BASELINE: 0.5 - lean}
+    return {v: [YES if x else NO for x in stream.random(n) < p] for v, p in chances.items()}
 
 
 RUNS = ("one seed", "three seeds", "identical seeds", "void", "never acted", "one condition idle")
@@ -246,7 +234,7 @@ def reads_well(made: DecisionRecord) -> None:
 @pytest.mark.parametrize("over", CONDITIONS)
 def test_no_sentence_claims_what_was_not_decided(n: int, how: str, over: str) -> None:
     every = how in ("one seed", "three seeds", "void") or n == 40
-    for shape in SHAPES if every else ("ties", *CHANCES):
+    for shape in SHAPES if every else ("ties", *LEANS):
         if how == "void" and n == 1 and len(CONDITIONS[over]) == 1:
             with pytest.raises(UserError, match="no scene is left"):
                 run(shape, CONDITIONS[over], n, how, trained=False)
