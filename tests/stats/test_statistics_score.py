@@ -60,17 +60,6 @@ def test_no_discordance_has_an_interval_with_width(n, n_seeds):
     assert whole.estimate().low == pytest.approx(100 - 2 * expected)
 
 
-def test_sums_of_sizes_that_round_do_not_break_the_mirror():
-    """Sizes of a third and of two: their sum depends on the order in its last bit."""
-    stream = np.random.default_rng(0)
-    for rate in stream.random(600):
-        variants = stream.random((2, N, 3)) < rate
-        forward, backward = (
-            success_effect(*pair, RESAMPLES) for pair in (variants, variants[::-1])
-        )
-        assert backward.scenes.far == forward.scenes.far
-
-
 @laws
 @given(VERSIONS, st.sampled_from([0.5, 0.95, 0.999]))
 def test_the_interval_holds_exactly_the_means_that_the_test_does_not_reject(variants, level):
