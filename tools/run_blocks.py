@@ -203,7 +203,7 @@ def template(kind: str, name: str, *parts: str) -> str:
 
     A part is a function, by its name; `imports` is what stands above the first one.
     """
-    folder = ROOT / "src" / "faultpath" / "systems" / "templates"
+    folder = ROOT / "src" / "faultpath" / "system" / "templates"
     text = (folder / f"{kind}.py.txt").read_text("utf-8").replace("NAME", name).rstrip()
     if not parts:
         return fence("python", text)

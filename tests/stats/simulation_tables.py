@@ -28,7 +28,7 @@ def markdown(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 def kept(title: str, measured: Callable[[], str]) -> str:
     """Return a table, from `build/statistics` where the same code has measured it before."""
     package = Path(faultpath.__file__).parent
-    rooms = (package / "statistics", package / "decisions")
+    rooms = (package / "stats", package / "analyses")
     files = [file for room in rooms for file in room.rglob("*.py")]
     files += Path(__file__).parent.glob("simulation*.py")
     code = sha256(b"".join(file.read_bytes() for file in sorted(files))).hexdigest()[:16]
