@@ -75,7 +75,7 @@ def planned(run: Run) -> tuple[System, Study]:
     fields = {n: v for n in kind.model_fields if (v := getattr(question, n, None)) is not None}
     request: Any = kind(**{**fields, "scenes": question.n_scenes})
     if isinstance(run.record, ScanRecord):
-        plan = plan_scan(system, spec, request, library)
+        plan = plan_scan(system, spec, request, library, known=run.record.ranking)
         return system, study_of(plan, read_outcomes(REFERENCE / run.name / OUTCOMES))
     if not isinstance(run.record, MapRecord):
         return system, plan_audit(system, spec, request, library).study

@@ -192,9 +192,13 @@ class ScanPlan(Analysis[Scanned]):
 
 
 def plan_scan(
-    system: System, spec: SystemSpec, request: ScanQuestion, library: Library
+    system: System,
+    spec: SystemSpec,
+    request: ScanQuestion,
+    library: Library,
+    known: Ranking | None = None,
 ) -> ScanPlan:
-    """Lay out the first stage, and rank the sources.
+    """Lay out the first stage, and rank the sources where their ranking is not known.
 
     Raises `UserError` for an unknown variant, one that is both, a fault that a scan cannot take,
     where no source has a size, and for fewer scenes than a scan needs.
@@ -233,7 +237,7 @@ def plan_scan(
         others=chosen[FIRST_SCENES:],
     )
     _check_scenes(plan)
-    return replace(plan, ranking=ranked_sources(system, request, library))
+    return replace(plan, ranking=known or ranked_sources(system, request, library))
 
 
 def ranked_sources(system: System, request: ScanQuestion, library: Library) -> Ranking:
